@@ -1,0 +1,56 @@
+//! Full-body haptics for 5-axis machining: what a cutting tool feels of a workpiece, at any pose.
+//!
+//! A tool is written in a small language and compiled by [`include_tool!`], [`tool!`] or
+//! [`tool_library!`] into straight-line code. A [`Part`] is a mesh made into a weighted point
+//! cloud in a tree. A [`Probe`] brings them together: [`Probe::detect`], [`Probe::wrench`],
+//! [`Probe::contacts`].
+//!
+//! ```
+//! use touchoff::{Part, Pose, Probe, Unit, mesh::shapes};
+//! use nalgebra::{Point3, Vector3};
+//!
+//! touchoff::tool! {
+//!     tool Ball "a ball of 3 mm radius" {
+//!         units mm;
+//!         region ball as ball cutting where hypot(d, z - 3) <= 3 {
+//!             depth: 3 - hypot(d, z - 3);
+//!         }
+//!         niceness cutting: 1 - depth/3;
+//!     }
+//! }
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let block = shapes::cuboid(Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.), Unit::Millimetre)?;
+//! let part = Part::from_mesh(&block, 20_000, 1)?;
+//! let mut probe = Probe::new(&part, &Ball);
+//! let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.5), Vector3::z())?;
+//! let felt = probe.wrench(&pose);
+//! assert!(felt.colliding > 0 && felt.force.z > 0.0);
+//! # Ok(()) }
+//! ```
+
+// Generated code names this crate `::touchoff`, here as elsewhere.
+extern crate self as touchoff;
+
+pub mod cloud;
+pub mod mesh;
+mod part;
+mod pose;
+mod probe;
+pub mod program;
+pub mod scenes;
+pub mod tool;
+mod tree;
+mod unit;
+
+pub use cloud::{Cloud, CloudError};
+pub use fearless_simd::Level;
+pub use mesh::{Mesh, MeshError, StlError, Survey};
+pub use part::{Part, PartError};
+pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
+pub use probe::{Contact, Deepest, Law, Probe, Summary, UnknownWord, Weights, Wrench, summary};
+pub use program::{Program, ProgramError, Stop};
+pub use tool::Tool;
+pub use tool_macros::{include_tool, tool, tool_library};
+pub use tree::Tree;
+pub use unit::{Unit, UnknownUnit};

@@ -1,0 +1,332 @@
+//! Meshes the project ships because it makes them, as parts for examples, tests and benchmarks,
+//! and the way of any mesh into an STL file.
+//!
+//! Measures are in the given unit; triangles are counter-clockwise seen from outside. Each
+//! function refuses, with [`MeshError::Shape`], measures that its shape cannot have.
+
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+use nalgebra::{Point3, Vector3};
+
+use super::stl::{HEADER, RECORD};
+use super::{Mesh, MeshError, area_and_normal};
+use crate::Unit;
+
+/// The most triangles a shape may be made of: 2^25, some gigabytes of mesh and more than any
+/// part needs.
+pub const MOST_TRIANGLES: u64 = 1 << 25;
+
+/// A tube about the z axis from z = 0 to `height`, closed and oriented outward: its inside is a
+/// bore. It has `segments` flat sides, whose edges lie on the radii, and its walls are cut into
+/// `layers` along the height; `4 segments (layers + 1)` triangles.
+///
+/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the
+/// thesis's.
+///
+/// # Errors
+/// Unless `0 < inner < outer`, `height > 0`, `segments >= 3`, `layers >= 1`.
+pub fn tube(
+    inner: f64,
+    outer: f64,
+    height: f64,
+    segments: u32,
+    layers: u32,
+    unit: Unit,
+) -> Result<Mesh, MeshError> {
+    let fits = 4 * u128::from(segments) * (u128::from(layers) + 1) <= MOST_TRIANGLES.into();
+    if !(0.0 < inner && inner < outer && 0.0 < height && segments >= 3 && layers >= 1 && fits) {
+        let rule = "it needs 0 < inner radius < outer radius, height > 0, 3 segments or more, \
+                    1 layer or more, and at most 2^25 triangles";
+        return Err(MeshError::Shape { shape: "tube", rule });
+    }
+    let mut vertices = Vec::new();
+    for layer in 0..=layers {
+        let z = height * (f64::from(layer) / f64::from(layers));
+        for radius in [inner, outer] {
+            for segment in 0..segments {
+                let turn = f64::from(segment) / f64::from(segments);
+                let (sin, cos) = (std::f64::consts::TAU * turn).sin_cos();
+                vertices.push(Point3::new(radius * cos, radius * sin, z));
+            }
+        }
+    }
+    let inside = |layer: u32, segment: u32| 2 * segments * layer + segment % segments;
+    let outside = |layer: u32, segment: u32| inside(layer, segment) + segments;
+    let mut triangles = Vec::new();
+    for s in 0..segments {
+        for l in 0..layers {
+            let wall = [outside(l, s), outside(l, s + 1), outside(l + 1, s + 1), outside(l + 1, s)];
+            triangles.extend(halves(wall));
+            let bore = [inside(l, s), inside(l + 1, s), inside(l + 1, s + 1), inside(l, s + 1)];
+            triangles.extend(halves(bore));
+        }
+        let top = layers;
+        triangles.extend(halves([
+            inside(0, s),
+            inside(0, s + 1),
+            outside(0, s + 1),
+            outside(0, s),
+        ]));
+        triangles.extend(halves([
+            inside(top, s),
+            outside(top, s),
+            outside(top, s + 1),
+            inside(top, s + 1),
+        ]));
+    }
+    Mesh::new(vertices, triangles, unit)
+}
+
+/// A box with the given lowest and highest corner, closed and oriented outward; 12 triangles, two
+/// to a side, the sides in the order -x, +x, -y, +y, -z, +z.
+///
+/// # Errors
+/// Unless `min < max` in each coordinate.
+pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, MeshError> {
+    if !(0..3).all(|axis| min[axis] < max[axis]) {
+        let rule = "its lowest corner must be below its highest in x, in y and in z";
+        return Err(MeshError::Shape { shape: "cuboid", rule });
+    }
+    let vertices = (0..8usize)
+        .map(|corner| {
+            let pick = |axis: usize| {
+                if corner >> axis & 1 == 0 { min[axis] } else { max[axis] }
+            };
+            Point3::new(pick(0), pick(1), pick(2))
+        })
+        .collect();
+    let sides =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    Mesh::new(vertices, sides.into_iter().flat_map(halves).collect(), unit)
+}
+
+/// A square sheet in z = 0 about the origin, `2 half_width` wide, open, its normals +z, cut into
+/// `divisions`² squares; `2 divisions²` triangles.
+///
+/// # Errors
+/// Unless `half_width > 0` and `divisions >= 1`.
+pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshError> {
+    let fits = 2 * u128::from(divisions).pow(2) <= MOST_TRIANGLES.into();
+    if !(0.0 < half_width && divisions >= 1 && fits) {
+        let rule = "it needs a half width > 0, 1 division or more, and at most 2^25 triangles";
+        return Err(MeshError::Shape { shape: "plane", rule });
+    }
+    let n = f64::from(divisions);
+    let place = |i: u32| half_width * ((2.0 * f64::from(i) - n) / n);
+    let rows = (0..=divisions).flat_map(|j| (0..=divisions).map(move |i| (i, j)));
+    let vertices = rows.map(|(i, j)| Point3::new(place(i), place(j), 0.0)).collect();
+    let at = |i: u32, j: u32| j * (divisions + 1) + i;
+    let squares = (0..divisions).flat_map(|j| (0..divisions).map(move |i| (i, j)));
+    let triangles = squares
+        .flat_map(|(i, j)| halves([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .collect();
+    Mesh::new(vertices, triangles, unit)
+}
+
+/// A ball about the origin, closed and oriented outward: an icosahedron whose triangles are cut
+/// into four `subdivisions` times; `20 · 4^subdivisions` triangles, vertices on the sphere.
+///
+/// # Errors
+/// Unless `radius > 0` and `subdivisions <= 10`.
+pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshError> {
+    if !(0.0 < radius && subdivisions <= 10) {
+        let rule = "it needs a radius > 0 and at most 10 subdivisions";
+        return Err(MeshError::Shape { shape: "sphere", rule });
+    }
+    // The icosahedron: even permutations of (0, ±1, ±golden ratio).
+    let golden = (1.0 + 5f64.sqrt()) / 2.0;
+    let mut directions: Vec<Vector3<f64>> = Vec::new();
+    for [one, far] in [[1.0, golden], [-1.0, golden], [1.0, -golden], [-1.0, -golden]] {
+        directions.push(Vector3::new(0.0, one, far).normalize());
+        directions.push(Vector3::new(one, far, 0.0).normalize());
+        directions.push(Vector3::new(far, 0.0, one).normalize());
+    }
+    let mut triangles = icosahedron(&directions);
+    for _ in 0..subdivisions {
+        let mut middles = HashMap::new();
+        let mut finer = Vec::with_capacity(4 * triangles.len());
+        for [a, b, c] in triangles {
+            let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(|[from, to]: [u32; 2]| {
+                *middles.entry((from.min(to), from.max(to))).or_insert_with(|| {
+                    let middle = directions[from as usize] + directions[to as usize];
+                    directions.push(middle.normalize());
+                    directions.len() as u32 - 1
+                })
+            });
+            finer.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+        }
+        triangles = finer;
+    }
+    let vertices = directions.iter().map(|direction| Point3::from(radius * direction)).collect();
+    Mesh::new(vertices, triangles, unit)
+}
+
+/// The faces of the icosahedron: the triples of corners next to each other, turned outward.
+fn icosahedron(corners: &[Vector3<f64>]) -> Vec<[u32; 3]> {
+    // Neighbours see each other under 63.4 degrees, others under 116.6 or more.
+    let near = |a: usize, b: usize| corners[a].dot(&corners[b]) > 0.0;
+    let mut faces = Vec::new();
+    for a in 0..corners.len() {
+        for b in (a + 1..corners.len()).filter(|&b| near(a, b)) {
+            for c in (b + 1..corners.len()).filter(|&c| near(a, c) && near(b, c)) {
+                let outward = corners[a].dot(&corners[b].cross(&corners[c])) > 0.0;
+                let [b, c] = if outward { [b, c] } else { [c, b] };
+                faces.push([a, b, c].map(|corner| corner as u32));
+            }
+        }
+    }
+    faces
+}
+
+/// The two triangles of a four-sided face.
+fn halves([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+impl Mesh {
+    /// Writes the mesh as binary STL, in its own unit, which the header's text names.
+    /// Coordinates are rounded to `f32`, as the format demands.
+    ///
+    /// # Errors
+    /// What `out` says, and `InvalidInput` for a coordinate beyond the range of `f32`.
+    pub fn write_stl(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut bytes = Vec::with_capacity(HEADER + RECORD * self.triangles.len());
+        bytes.extend(format!("binary STL in {} by touchoff", self.unit).bytes());
+        bytes.resize(80, b' ');
+        // `Mesh::new` has seen to it that the ids, and so their count, fit.
+        bytes.extend((self.triangles.len() as u32).to_le_bytes());
+        for corners in self.corners() {
+            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
+            for vector in [normal, corners[0].coords, corners[1].coords, corners[2].coords] {
+                for &number in vector.iter() {
+                    let rounded = number as f32;
+                    if !rounded.is_finite() {
+                        let text = format!("{number:e} is beyond binary STL: write ASCII instead");
+                        return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
+                    }
+                    bytes.extend(rounded.to_le_bytes());
+                }
+            }
+            bytes.extend([0, 0]);
+        }
+        out.write_all(&bytes)
+    }
+
+    /// Writes the mesh as ASCII STL, in its own unit, with all digits: reading it again gives
+    /// the same corners to the bit.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn write_stl_ascii(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut out = io::BufWriter::new(out);
+        writeln!(out, "solid touchoff, in {}", self.unit)?;
+        for corners in self.corners() {
+            let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
+            writeln!(out, "  facet normal {:e} {:e} {:e}", normal.x, normal.y, normal.z)?;
+            writeln!(out, "    outer loop")?;
+            for p in corners {
+                writeln!(out, "      vertex {:e} {:e} {:e}", p.x, p.y, p.z)?;
+            }
+            writeln!(out, "    endloop\n  endfacet")?;
+        }
+        writeln!(out, "endsolid touchoff")?;
+        out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    const UNIT: Unit = Unit::Millimetre;
+
+    fn near(found: f64, expected: f64) -> bool {
+        (found / expected - 1.0).abs() < 1e-13
+    }
+
+    #[test]
+    fn the_tube_is_the_prism_it_should_be() {
+        for (inner, outer, height, segments, layers) in
+            [(3.0, 5.0, 13.116, 96, 23), (1e-9, 2e-9, 1e-9, 3, 1), (1.0, 1e6, 0.1, 7, 2)]
+        {
+            let mesh = tube(inner, outer, height, segments, layers, UNIT).expect("a tube");
+            let survey = mesh.survey();
+            let n = f64::from(segments);
+            let base = n / 2.0 * (2.0 * PI / n).sin() * (outer * outer - inner * inner);
+            let around = 2.0 * n * (PI / n).sin() * (outer + inner);
+            assert!(near(survey.area, 2.0 * base + around * height), "{survey}");
+            assert!(near(survey.volume, base * height), "{survey}");
+            assert!(survey.solid() && survey.findings().len() == 1, "{survey}");
+            assert_eq!(survey.triangles as u32, 4 * segments * (layers + 1));
+        }
+    }
+
+    #[test]
+    fn the_other_shapes_are_what_they_say() {
+        let [low, high] = [Point3::new(-1.0, 0.0, 2.0), Point3::new(1.0, 3.0, 6.0)];
+        let survey = cuboid(low, high, UNIT).expect("a cuboid").survey();
+        assert!(survey.solid() && (survey.area, survey.volume) == (52.0, 24.0), "{survey}");
+
+        let sheet = plane(2.0, 4, UNIT).expect("a plane");
+        let survey = sheet.survey();
+        assert_eq!((survey.area, survey.open_edges, survey.triangles), (16.0, 16, 32));
+        assert!(survey.oriented() && sheet.normal(31) == Some(Vector3::z()));
+
+        for subdivisions in 0..6u32 {
+            let survey = sphere(3.0, subdivisions, UNIT).expect("a sphere").survey();
+            assert!(survey.solid() && survey.triangles == 20 << (2 * subdivisions), "{survey}");
+            let short = 1.0 - survey.volume / (36.0 * PI);
+            assert!(short > 0.0 && short < 0.6 / f64::from(1 << (2 * subdivisions)), "{short}");
+        }
+    }
+
+    #[test]
+    fn refuses_measures_no_shape_has() {
+        let p = |x: f64| Point3::new(x, 0.0, x);
+        for refused in [
+            tube(5.0, 3.0, 1.0, 8, 1, UNIT),
+            tube(0.0, 3.0, 1.0, 8, 1, UNIT),
+            tube(1.0, 3.0, f64::NAN, 8, 1, UNIT),
+            tube(1.0, 3.0, 1.0, 2, 1, UNIT),
+            tube(1.0, 3.0, 1.0, 8, 0, UNIT),
+            tube(1.0, 3.0, 1.0, u32::MAX, u32::MAX, UNIT),
+            cuboid(p(0.0), p(1.0), UNIT),
+            plane(-1.0, 1, UNIT),
+            plane(1.0, 0, UNIT),
+            plane(1.0, u32::MAX, UNIT),
+            sphere(0.0, 1, UNIT),
+            sphere(1.0, 11, UNIT),
+        ] {
+            let error = refused.expect_err("it should be refused");
+            assert!(matches!(error, MeshError::Shape { .. }), "{error}");
+        }
+        assert!(matches!(sphere(1e70, 0, UNIT), Err(MeshError::Coordinate { .. })));
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let mesh = tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
+        let mut text = Vec::new();
+        mesh.write_stl_ascii(&mut text).expect("written");
+        let again = Mesh::from_stl(&text, "", UNIT).expect("read");
+        assert!(mesh.corners().eq(again.corners()));
+
+        let mut binary = Vec::new();
+        mesh.write_stl(&mut binary).expect("written");
+        assert!(binary.starts_with(b"binary STL in mm"));
+        let again = Mesh::from_stl(&binary, "", UNIT).expect("read");
+        assert!(
+            mesh.corners()
+                .flatten()
+                .zip(again.corners().flatten())
+                .all(|(a, b)| { a.iter().zip(b.iter()).all(|(a, b)| f64::from(*a as f32) == *b) })
+        );
+        assert!(again.survey().solid() && again.survey().opposed_normals == 0);
+
+        let far = sphere(1e40, 0, UNIT).expect("a large sphere");
+        let error = far.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");
+        assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+    }
+}

@@ -1,0 +1,65 @@
+//! The workpiece, ready to be felt.
+
+use crate::Unit;
+use crate::cloud::{Cloud, CloudError};
+use crate::mesh::{Mesh, StlError, Survey};
+use crate::tree::Tree;
+use std::path::Path;
+
+/// A part: its points in their tree, and what was found out about its mesh.
+#[derive(Clone, Debug)]
+pub struct Part {
+    tree: Tree,
+    unit: Unit,
+    survey: Option<Survey>,
+}
+
+/// A part that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PartError {
+    /// The mesh could not be read.
+    #[error(transparent)]
+    Stl(#[from] StlError),
+    /// The cloud could not be made.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
+}
+
+impl Part {
+    /// A part from an STL file, whose lengths are in `unit`: `points` points spread at random,
+    /// evenly over the surface, the same for the same `seed`.
+    pub fn read_stl(
+        path: impl AsRef<Path>,
+        unit: Unit,
+        points: usize,
+        seed: u64,
+    ) -> Result<Part, PartError> {
+        Ok(Part::from_mesh(&Mesh::read_stl(path, unit)?, points, seed)?)
+    }
+
+    /// A part from a mesh, its points as [`Part::read_stl`] spreads them.
+    pub fn from_mesh(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
+        let cloud = Cloud::random(mesh, points, seed)?;
+        Ok(Part { survey: Some(mesh.survey()), ..Part::from_cloud(&cloud) })
+    }
+
+    /// A part from a cloud.
+    pub fn from_cloud(cloud: &Cloud) -> Part {
+        Part { tree: Tree::new(cloud), unit: cloud.unit(), survey: None }
+    }
+
+    /// The points in their tree.
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// The unit of every length of the part.
+    pub fn unit(&self) -> Unit {
+        self.unit
+    }
+
+    /// What the mesh is like: closed, oriented, how large. `None` for a part made of points.
+    pub fn survey(&self) -> Option<&Survey> {
+        self.survey.as_ref()
+    }
+}

@@ -1,0 +1,119 @@
+//! Where a tool is: its tip, and which way it stands.
+
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+
+/// How far the norm of a given axis may be from 1: published programs round their axes to four
+/// digits, and anything further off is a mistake in the data.
+pub const AXIS_TOLERANCE: f64 = 1e-3;
+
+/// A tool's pose in the world: the map from the tool's frame (tip at the origin, +z from the tip
+/// to the spindle) to the part's, both in the part's unit of length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    rotation: Matrix3<f64>,
+    tip: Point3<f64>,
+}
+
+/// A pose that cannot be one.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PoseError {
+    /// A coordinate is NaN or infinite.
+    #[error("the pose has a coordinate that is not a finite number")]
+    NotFinite,
+    /// The axis, or the quaternion, has no direction to take.
+    #[error("the {what} has norm {norm}: give a unit vector (within {AXIS_TOLERANCE} of 1)")]
+    NotUnit {
+        /// `axis` or `quaternion`.
+        what: &'static str,
+        /// The norm that was found.
+        norm: f64,
+    },
+}
+
+impl Pose {
+    /// A pose from the tip and the unit vector from the tip to the spindle, as in a 5-axis
+    /// program's `x,y,z,i,j,k`. The spin about the axis, which no axisymmetric tool feels, is
+    /// chosen by the branch-free frame of Duff et al., *Building an orthonormal basis, revisited*
+    /// (JCGT 2017), accurate for every axis.
+    ///
+    /// An axis whose norm is within [`AXIS_TOLERANCE`] of 1 is normalised, another refused.
+    pub fn from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Result<Pose, PoseError> {
+        let axis = unit("axis", [axis.x, axis.y, axis.z, 0.0])?;
+        let [x, y, z, _] = axis;
+        let sign = 1f64.copysign(z);
+        let a = -1.0 / (sign + z);
+        let b = x * y * a;
+        let first = Vector3::new(1.0 + sign * x * x * a, sign * b, -sign * x);
+        let second = Vector3::new(b, sign + y * y * a, -y);
+        let rotation = Matrix3::from_columns(&[first, second, Vector3::new(x, y, z)]);
+        Pose::finite(rotation, tip)
+    }
+
+    /// A pose from the tip and a quaternion `(x, y, z, w)` that turns the tool's frame into the
+    /// world's. Its norm is held to the same tolerance as an axis.
+    pub fn from_quaternion(tip: Point3<f64>, quaternion: [f64; 4]) -> Result<Pose, PoseError> {
+        let [x, y, z, w] = unit("quaternion", quaternion)?;
+        let rotation = Matrix3::new(
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - z * w),
+            2.0 * (x * z + y * w),
+            2.0 * (x * y + z * w),
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z - x * w),
+            2.0 * (x * z - y * w),
+            2.0 * (y * z + x * w),
+            1.0 - 2.0 * (x * x + y * y),
+        );
+        Pose::finite(rotation, tip)
+    }
+
+    fn finite(rotation: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
+        if tip.iter().all(|c| c.is_finite()) {
+            Ok(Pose { rotation, tip })
+        } else {
+            Err(PoseError::NotFinite)
+        }
+    }
+
+    /// Where the tip is, in the world.
+    pub fn tip(&self) -> Point3<f64> {
+        self.tip
+    }
+
+    /// The unit vector from the tip to the spindle, in the world.
+    pub fn axis(&self) -> Vector3<f64> {
+        self.rotation.column(2).into()
+    }
+
+    /// The rotation from the tool's frame to the world's; its columns are the tool's x, y and z.
+    pub fn rotation(&self) -> &Matrix3<f64> {
+        &self.rotation
+    }
+
+    /// The same pose as nalgebra's isometry.
+    pub fn isometry(&self) -> Isometry3<f64> {
+        let rotation = nalgebra::Rotation3::from_matrix_unchecked(self.rotation);
+        Isometry3::from_parts(self.tip.into(), nalgebra::UnitQuaternion::from(rotation))
+    }
+}
+
+impl TryFrom<Isometry3<f64>> for Pose {
+    type Error = PoseError;
+
+    fn try_from(isometry: Isometry3<f64>) -> Result<Pose, PoseError> {
+        let q = isometry.rotation.coords;
+        Pose::from_quaternion(isometry.translation.vector.into(), [q.x, q.y, q.z, q.w])
+    }
+}
+
+/// Normalises what is within tolerance of a unit vector.
+fn unit(what: &'static str, v: [f64; 4]) -> Result<[f64; 4], PoseError> {
+    if !v.iter().all(|c| c.is_finite()) {
+        return Err(PoseError::NotFinite);
+    }
+    let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > AXIS_TOLERANCE {
+        return Err(PoseError::NotUnit { what, norm });
+    }
+    Ok(v.map(|c| c / norm))
+}

@@ -1,0 +1,139 @@
+//! A tool feeling a part, pose by pose.
+//!
+//! ```text
+//! pose ──view──▶ leaves near the tool ──filter──▶ candidates ──carry──▶ tool's frame
+//!                                                                          │ evaluate
+//!      detect, wrench, contacts  ◀──sum or list──  what is felt  ◀─────────┘
+//! ```
+
+mod candidates;
+mod contacts;
+mod law;
+mod wrench;
+
+pub use contacts::{Contact, Summary, summary};
+pub use law::{Law, UnknownWord, Weights};
+pub use wrench::{Deepest, Wrench};
+
+use crate::part::Part;
+use crate::pose::Pose;
+use crate::tool::{Ask, Felt, Tool};
+use crate::tree::{View, Walker, filter};
+use candidates::Candidates;
+use fearless_simd::Level;
+use nalgebra::Point3;
+
+/// A tool beside a part, ready to be asked at one pose after another.
+///
+/// Memory is kept between questions, so that after the first few none is allocated. The answers
+/// have the same bits on every machine and at every [`Level`].
+pub struct Probe<'a> {
+    part: &'a Part,
+    tool: &'a dyn Tool,
+    /// The tool's unit of length in the part's.
+    length: f64,
+    law: Law,
+    weights: Weights,
+    centre: Point3<f64>,
+    level: Level,
+    view: View,
+    walker: Walker,
+    candidates: Candidates,
+    felt: Felt,
+    contacts: Vec<Contact>,
+}
+
+impl<'a> Probe<'a> {
+    /// A probe with the thesis's law, area weights and the tip for a compliance centre.
+    pub fn new(part: &'a Part, tool: &'a dyn Tool) -> Probe<'a> {
+        Probe {
+            part,
+            tool,
+            length: tool.card().unit.to(part.unit()),
+            law: Law::Thesis,
+            weights: Weights::Area,
+            centre: Point3::origin(),
+            level: Level::new(),
+            view: View::new(),
+            walker: Walker::new(),
+            candidates: Candidates::default(),
+            felt: Felt::default(),
+            contacts: Vec::new(),
+        }
+    }
+
+    /// With another force law.
+    #[must_use]
+    pub fn law(mut self, law: Law) -> Probe<'a> {
+        self.law = law;
+        self
+    }
+
+    /// With other weights.
+    #[must_use]
+    pub fn weights(mut self, weights: Weights) -> Probe<'a> {
+        self.weights = weights;
+        self
+    }
+
+    /// With a compliance centre: a point of the tool's frame, in the part's unit, about which
+    /// torque is taken.
+    #[must_use]
+    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a> {
+        self.centre = centre;
+        self
+    }
+
+    /// With another SIMD level than the best of this machine. The answers do not change.
+    #[must_use]
+    pub fn level(mut self, level: Level) -> Probe<'a> {
+        self.level = level;
+        self
+    }
+
+    /// Whether any point of the part is inside the tool or on its surface. Stops at the first.
+    pub fn detect(&mut self, pose: &Pose) -> bool {
+        let tree = self.part.tree();
+        self.view.set(tree, self.tool.card(), pose, self.length);
+        let leaves = self.walker.leaves(self.level, tree, &self.view);
+        // A few leaves at a time: the first hit ends the question.
+        leaves.chunks(4).any(|leaves| {
+            self.candidates.clear();
+            filter(self.level, tree, &self.view, leaves, &mut self.candidates.indices);
+            self.candidates.carry(tree, pose, self.length);
+            let points = &self.candidates.points;
+            !points.is_empty() && {
+                self.tool.evaluate(self.level, Ask::Inside, points, self.length, &mut self.felt);
+                self.felt.inside.iter().any(|block| *block != 0)
+            }
+        })
+    }
+
+    /// Force, torque, depth and niceness of the whole contact.
+    pub fn wrench(&mut self, pose: &Pose) -> Wrench {
+        let ask = if self.law == Law::Gradient { Ask::Gradient } else { Ask::Direction };
+        self.feel(pose, ask);
+        wrench::sum(self, pose)
+    }
+
+    /// Every point of the part inside the tool, with all that is felt there.
+    pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
+        self.feel(pose, Ask::Everything);
+        let mut contacts = std::mem::take(&mut self.contacts);
+        contacts.clear();
+        contacts::list(self, pose, &mut contacts);
+        self.contacts = contacts;
+        &self.contacts
+    }
+
+    /// Finds the candidates and evaluates them.
+    fn feel(&mut self, pose: &Pose, ask: Ask) {
+        let tree = self.part.tree();
+        self.view.set(tree, self.tool.card(), pose, self.length);
+        self.candidates.clear();
+        let leaves = self.walker.leaves(self.level, tree, &self.view);
+        filter(self.level, tree, &self.view, leaves, &mut self.candidates.indices);
+        self.candidates.carry(tree, pose, self.length);
+        self.tool.evaluate(self.level, ask, &self.candidates.points, self.length, &mut self.felt);
+    }
+}

@@ -1,0 +1,218 @@
+//! The whole contact as one force and torque (Ho 1999, eq. 5.1 to 5.5).
+
+use super::{Law, Probe, Weights};
+use crate::pose::Pose;
+use crate::tool::LANES;
+use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
+use nalgebra::{Point3, Vector3};
+
+/// What a tool feels at a pose. Forces and torques are on the tool, in the world's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench {
+    /// The law that made the force.
+    pub law: Law,
+    /// The weights that were used.
+    pub weights: Weights,
+    /// How many points of the part are inside the tool.
+    pub colliding: usize,
+    /// The deepest of them.
+    pub deepest: Option<Deepest>,
+    /// Force, in magnitude times weight.
+    pub force: Vector3<f64>,
+    /// Torque about the compliance centre, in force times the part's unit of length.
+    pub torque: Vector3<f64>,
+    /// The least niceness of all points; `None` without contact.
+    pub niceness: Option<f64>,
+    /// `Σ w m`
+    pub integral: f64,
+    /// `½ Σ w m²`
+    pub energy: f64,
+}
+
+/// The deepest point of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deepest {
+    /// Its penetration depth, in the part's unit.
+    pub depth: f64,
+    /// Where it is, in the world.
+    pub point: Point3<f64>,
+    /// The triangle it lies on.
+    pub triangle: u32,
+}
+
+impl Wrench {
+    /// Penetration depth of the deepest point; 0 without contact.
+    pub fn depth(&self) -> f64 {
+        self.deepest.map_or(0.0, |deepest| deepest.depth)
+    }
+}
+
+/// Sums over eight lanes: each lane adds its points in order, the lanes are added at the end.
+struct Sums<S: Simd> {
+    /// `Σ w m` and `Σ w m²`.
+    pushes: [f64x8<S>; 2],
+    /// In the tool's frame: force and torque about the tip.
+    tool: [f64x8<S>; 6],
+    /// In the part's frame: force and torque about the tip.
+    part: [f64x8<S>; 6],
+    niceness: f64x8<S>,
+    depth: f64x8<S>,
+    deepest: f64x8<S>,
+}
+
+/// The same sums, lanes added.
+struct Totals {
+    pushes: [f64; 2],
+    tool: [f64; 6],
+    part: [f64; 6],
+    niceness: f64,
+    /// Each lane's deepest, and which candidate it is.
+    depth: [f64; LANES],
+    deepest: [f64; LANES],
+}
+
+/// Sums what the probe has just felt.
+pub(super) fn sum(probe: &Probe<'_>, pose: &Pose) -> Wrench {
+    let colliding = probe.felt.inside.iter().map(|block| block.count_ones() as usize).sum();
+    let totals = dispatch!(probe.level, simd => totals(simd, probe, pose));
+    let rotation = pose.rotation();
+    let half =
+        |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
+    // In the tool's frame lengths are the tool's.
+    let force = rotation * half(&totals.tool, 0) + half(&totals.part, 0);
+    let about_tip = rotation * (half(&totals.tool, 3) * probe.length) + half(&totals.part, 3);
+    let arm = rotation * probe.centre.coords;
+    Wrench {
+        law: probe.law,
+        weights: probe.weights,
+        colliding,
+        deepest: deepest(probe, pose, &totals),
+        force,
+        torque: about_tip - arm.cross(&force),
+        niceness: (colliding > 0).then_some(totals.niceness),
+        integral: totals.pushes[0],
+        energy: totals.pushes[1] / 2.0,
+    }
+}
+
+fn deepest(probe: &Probe<'_>, pose: &Pose, totals: &Totals) -> Option<Deepest> {
+    let found = totals.depth.iter().zip(&totals.deepest).filter(|(depth, _)| **depth >= 0.0);
+    let (depth, index) = found.min_by(|(a, i), (b, j)| b.total_cmp(a).then(i.total_cmp(j)))?;
+    let candidate = *index as usize;
+    let from_tip = &probe.candidates.from_tip;
+    let point = pose.tip() + Vector3::from(from_tip.each_ref().map(|list| list[candidate]));
+    let place = probe.candidates.indices[candidate] as usize;
+    let tree = probe.part.tree();
+    Some(Deepest { depth: depth * probe.length, point, triangle: tree.triangle(place) })
+}
+
+#[inline(always)]
+fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
+    let zero = f64x8::splat(simd, 0.0);
+    let mut sums = Sums {
+        pushes: [zero; 2],
+        tool: [zero; 6],
+        part: [zero; 6],
+        niceness: f64x8::splat(simd, f64::INFINITY),
+        depth: f64x8::splat(simd, -1.0),
+        deepest: zero,
+    };
+    for (block, inside) in probe.felt.inside.iter().enumerate() {
+        if *inside != 0 {
+            add(simd, probe, pose, block, *inside, &mut sums);
+        }
+    }
+    Totals {
+        pushes: sums.pushes.map(|sum| sum.reduce_sum()),
+        tool: sums.tool.map(|sum| sum.reduce_sum()),
+        part: sums.part.map(|sum| sum.reduce_sum()),
+        niceness: sums.niceness.reduce_min(),
+        depth: sums.depth.to_array(),
+        deepest: sums.deepest.to_array(),
+    }
+}
+
+/// Adds one block of points.
+#[inline(always)]
+fn add<S: Simd>(
+    simd: S,
+    probe: &Probe<'_>,
+    pose: &Pose,
+    block: usize,
+    inside: u8,
+    sums: &mut Sums<S>,
+) {
+    let (felt, candidates, tree) = (&probe.felt, &probe.candidates, probe.part.tree());
+    let place = block * LANES..(block + 1) * LANES;
+    let load = |list: &[f64]| f64x8::from_slice(simd, &list[place.clone()]);
+    let zero = f64x8::splat(simd, 0.0);
+    // Weights and normals are read of points inside only.
+    let mut weights = [0.0; LANES];
+    let mut normals = [[0.0; LANES]; 3];
+    for lane in (0..LANES).filter(|lane| inside >> lane & 1 != 0) {
+        let index = candidates.indices[block * LANES + lane] as usize;
+        weights[lane] = match probe.weights {
+            Weights::Area => tree.weight(index),
+            Weights::Unit => 1.0,
+        };
+        if probe.law != Law::Gradient {
+            let normal = tree.normal(index);
+            for axis in 0..3 {
+                normals[axis][lane] = normal[axis];
+            }
+        }
+    }
+    let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
+    let magnitude = in_solid.select(load(&felt.magnitude), zero);
+    let push = f64x8::from_slice(simd, &weights) * magnitude;
+    sums.pushes[0] += push;
+    sums.pushes[1] += push * magnitude;
+    sums.niceness = in_solid.select(sums.niceness.min(load(&felt.niceness)), sums.niceness);
+    let depth = load(&felt.depth);
+    let deeper = in_solid & depth.simd_gt(sums.depth);
+    let indices = f64x8::from_fn(simd, |lane| (block * LANES + lane) as f64);
+    sums.depth = deeper.select(depth, sums.depth);
+    sums.deepest = deeper.select(indices, sums.deepest);
+
+    let p = candidates.points.coordinates().map(load);
+    if probe.law == Law::Gradient {
+        let slope = felt.gradient.each_ref().map(|list| in_solid.select(load(list), zero));
+        accumulate(&mut sums.tool, push, p, slope);
+        return;
+    }
+    let mut direction = felt.direction.each_ref().map(|list| in_solid.select(load(list), zero));
+    let mut normal = normals.each_ref().map(|list| f64x8::from_slice(simd, list));
+    if probe.law == Law::Facing {
+        let rotation = pose.rotation();
+        let mut along = zero;
+        for axis in 0..3 {
+            let column = rotation.column(axis);
+            let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
+            along += turned * direction[axis];
+        }
+        let facing = along.simd_le(zero);
+        direction = direction.map(|part| facing.select(part, zero));
+        normal = normal.map(|part| facing.select(part, zero));
+    }
+    let back = direction.map(|part| -part);
+    accumulate(&mut sums.tool, push, p, back);
+    let from_tip = candidates.from_tip.each_ref().map(|list| load(list));
+    accumulate(&mut sums.part, push, from_tip, normal);
+}
+
+/// Adds `push · way` and its moment about the origin.
+#[inline(always)]
+fn accumulate<S: Simd>(
+    sums: &mut [f64x8<S>; 6],
+    push: f64x8<S>,
+    p: [f64x8<S>; 3],
+    way: [f64x8<S>; 3],
+) {
+    let f = way.map(|part| push * part);
+    sums[0] += f[0];
+    sums[1] += f[1];
+    sums[2] += f[2];
+    sums[3] += p[1] * f[2] - p[2] * f[1];
+    sums[4] += p[2] * f[0] - p[0] * f[2];
+    sums[5] += p[0] * f[1] - p[1] * f[0];
+}

@@ -1,0 +1,226 @@
+//! Tables of poses: `x,y,z,i,j,k`, or `x,y,z,qx,qy,qz,qw`, one pose a row.
+//!
+//! `x,y,z` is the tip and `i,j,k` the unit vector from the tip to the spindle; the quaternion
+//! turns the tool's frame into the part's. The number of columns of the first row decides, and
+//! every other row must have as many. Columns are separated by commas; `#` opens a comment, blank
+//! lines are skipped, and a first row of the names above is taken as such.
+
+use super::{Fault, Located, PLAIN_NUMBER, Stop, axis_pose, lines, number, shown};
+use crate::Pose;
+use nalgebra::Point3;
+
+const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
+const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+
+/// The positions of a table.
+pub(super) fn read(text: &str) -> Result<Vec<Stop>, Located> {
+    let mut stops = Vec::new();
+    let mut columns = None;
+    for (line, raw) in lines(text) {
+        let row = raw.split_once('#').map_or(raw, |(row, _)| row.trim_end());
+        if row.is_empty() {
+            continue;
+        }
+        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        let names = columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
+        if !names {
+            let pose = pose(row, &cells, columns).map_err(|fault| (line, fault))?;
+            stops.push(Stop { line, pose, rapid: false });
+        }
+        columns = Some(cells.len());
+    }
+    Ok(stops)
+}
+
+/// Whether a first row is the columns' names; one of other names is refused.
+fn is_names(row: &str, cells: &[&str]) -> Result<bool, Fault> {
+    let numeric = |cell: &&str| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    if cells.iter().any(numeric) || cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
+        return Ok(false);
+    }
+    let named = |names: &[&str]| {
+        let same = |(cell, name): (&&str, &&str)| cell.trim_matches('"').eq_ignore_ascii_case(name);
+        cells.len() == names.len() && cells.iter().zip(names).all(same)
+    };
+    if named(&AXIS) || named(&QUATERNION) {
+        Ok(true)
+    } else {
+        Err(Fault::Names { names: shown(row) })
+    }
+}
+
+/// The pose of a row, which must have `columns` cells if a row before it has set them.
+fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, Fault> {
+    let found = cells.len();
+    let expected = match columns {
+        Some(6) => "6 (x,y,z,i,j,k)",
+        Some(_) => "7 (x,y,z,qx,qy,qz,qw)",
+        None => "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)",
+    };
+    let wrong = || Fault::Columns { found, expected, remedy: columns_remedy(row, found) };
+    if columns.is_some_and(|columns| columns != found) {
+        return Err(wrong());
+    }
+    if !matches!(found, 6 | 7) {
+        return Err(wrong());
+    }
+    let values = cells.iter().map(|cell| number(cell)).collect::<Result<Vec<f64>, Fault>>();
+    match values.map_err(|fault| with_separators(fault, row))?[..] {
+        [x, y, z, i, j, k] => axis_pose([x, y, z], [i, j, k]),
+        [x, y, z, qx, qy, qz, qw] => quaternion_pose([x, y, z], [qx, qy, qz, qw]),
+        _ => Err(wrong()),
+    }
+}
+
+fn quaternion_pose(tip: [f64; 3], quaternion: [f64; 4]) -> Result<Pose, Fault> {
+    if quaternion == [0.0; 4] {
+        let remedy = "give the unit quaternion from the tool's frame to the part's";
+        return Err(Fault::NoDirection { what: "the quaternion qx,qy,qz,qw", remedy });
+    }
+    Ok(Pose::from_quaternion(Point3::from(tip), quaternion)?)
+}
+
+const SEMICOLONS: &str =
+    "separate the columns by commas, not semicolons, and write decimals with a point";
+
+/// What to do about a wrong number of columns, guessed from how spreadsheets write them.
+fn columns_remedy(row: &str, found: usize) -> &'static str {
+    if row.contains(';') {
+        SEMICOLONS
+    } else if found == 1 && row.contains(char::is_whitespace) {
+        "separate the columns by commas, not blanks"
+    } else if found > QUATERNION.len() && !row.contains('.') {
+        "these look like decimal commas (`0,5`): write points (`0.5`)"
+    } else {
+        "correct the row"
+    }
+}
+
+/// Semicolons between decimal commas may give the right number of cells, none a number.
+fn with_separators(fault: Fault, row: &str) -> Fault {
+    match fault {
+        Fault::NotNumber { cell, .. } => {
+            let remedy = if row.contains(';') { SEMICOLONS } else { PLAIN_NUMBER };
+            Fault::NotNumber { cell, remedy }
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{refusal, shared};
+    use crate::program::{Program, Stop};
+    use nalgebra::{Point3, Vector3};
+
+    fn stops(text: &str) -> Vec<Stop> {
+        Program::parse(text, "part.csv").expect("it is a table").stops
+    }
+
+    #[test]
+    fn reads_the_published_fan() {
+        let Some(path) = shared("ijms2021_fan_xyzijk.csv") else {
+            return;
+        };
+        let program = Program::read(path).expect("it is a table");
+        assert_eq!(program.stops.len(), 25);
+        assert_eq!(program.unit, None);
+        assert!(program.ignored.is_empty());
+        let last = program.stops[24];
+        assert_eq!(last.line, 26);
+        assert_eq!(last.pose.tip(), Point3::new(-49.4389, -108.7844, 2.0895));
+        assert!((last.pose.axis() - Vector3::new(0.6189, -0.2239, 0.7529)).norm() < 1e-4);
+        for stop in &program.stops {
+            assert!((stop.pose.axis().norm() - 1.0).abs() < 1e-15);
+            assert!(!stop.rapid);
+        }
+    }
+
+    #[test]
+    fn skips_comments_names_and_marks() {
+        let text = "\u{feff}# made by hand\r\n\r\n X , y,Z, i,j,\"k\"\r\n\
+                    \t1 , -2,+3.5,0,.6,8e-1 # tip\r\n4,5,6,0,0,-1";
+        let stops = stops(text);
+        assert_eq!(stops.iter().map(|stop| stop.line).collect::<Vec<_>>(), [4, 5]);
+        assert_eq!(stops[0].pose.tip(), Point3::new(1.0, -2.0, 3.5));
+        assert!((stops[0].pose.axis() - Vector3::new(0.0, 0.6, 0.8)).norm() < 1e-15);
+        assert_eq!(stops[1].pose.axis(), Vector3::new(0.0, 0.0, -1.0));
+    }
+
+    #[test]
+    fn counts_lone_carriage_returns_as_lines() {
+        let stops = stops("# old\r1,2,3,0,0,1\r4,5,6,0,0,1\r");
+        assert_eq!(stops.iter().map(|stop| stop.line).collect::<Vec<_>>(), [2, 3]);
+    }
+
+    #[test]
+    fn reads_quaternions() {
+        let half = 0.5f64.sqrt();
+        let stops = stops(&format!("x,y,z,qx,qy,qz,qw\n1,2,3,0,0,0,1\n1,2,3,{half},0,0,{half}\n"));
+        assert_eq!(stops[0].pose.axis(), Vector3::z());
+        assert!((stops[1].pose.axis() - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn every_refusal_names_its_line_and_remedy() {
+        let either = "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)";
+        let semicolons =
+            "separate the columns by commas, not semicolons, and write decimals with a point";
+        let plain = "is not a number: write a plain number with a decimal point";
+        let infinite = "is not a finite number: correct it or remove the position";
+        let unit = "give a unit vector (within 0.001 of 1)";
+        for (text, message) in [
+            ("1,2,3\n", format!("1: found 3 columns, expected {either}: correct the row")),
+            (
+                "1,2,3,0,0,1\n1,2,3,0,0,0,1\n",
+                "2: found 7 columns, expected 6 (x,y,z,i,j,k): correct the row".to_owned(),
+            ),
+            (
+                "x,y,z,qx,qy,qz,qw\n1,2,3,0,0,1\n",
+                "2: found 6 columns, expected 7 (x,y,z,qx,qy,qz,qw): correct the row".to_owned(),
+            ),
+            (
+                "1,5,2,5,3,5,0,0,0,0,1,0\n",
+                format!(
+                    "1: found 12 columns, expected {either}: these look like decimal commas \
+                     (`0,5`): write points (`0.5`)"
+                ),
+            ),
+            ("1.5;2;3;0;0;1\n", format!("1: found 1 columns, expected {either}: {semicolons}")),
+            ("0,5;1,5;2,5;0,0;1,0;0,0\n", format!("1: `5;1` is not a number: {semicolons}")),
+            (
+                "1 2 3 0 0 1\n",
+                format!(
+                    "1: found 1 columns, expected {either}: separate the columns by commas, not \
+                     blanks"
+                ),
+            ),
+            (
+                "i,j,k,x,y,z\n",
+                "1: `i,j,k,x,y,z` are not the columns: write x,y,z,i,j,k or x,y,z,qx,qy,qz,qw, \
+                 or no names"
+                    .to_owned(),
+            ),
+            ("1,2,3,0,0,1\nx,y,z,i,j,k\n", format!("2: `x` {plain}")),
+            ("1,2,,0,0,1\n", format!("1: an empty cell {plain}")),
+            ("nan,2,3,0,0,1\n", format!("1: `nan` {infinite}")),
+            ("1,2,3,0,0,1\n1,-1e400,3,0,0,1\n", format!("2: `-1e400` {infinite}")),
+            (
+                "1,2,3,0,0,-0\n",
+                "1: the axis i,j,k is zero and points nowhere: give the unit vector from the tip \
+                 to the spindle"
+                    .to_owned(),
+            ),
+            (
+                "1,2,3,0,0,0,0\n",
+                "1: the quaternion qx,qy,qz,qw is zero and points nowhere: give the unit \
+                 quaternion from the tool's frame to the part's"
+                    .to_owned(),
+            ),
+            ("# a\n\n1,2,3,0,0,0.5\n", format!("3: the axis has norm 0.5: {unit}")),
+            ("1,2,3,0,0,0,2\n", format!("1: the quaternion has norm 2: {unit}")),
+        ] {
+            assert_eq!(refusal(text), format!("part.cl:{message}"), "{text:?}");
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Who a tool is.
+
+use crate::Unit;
+use std::borrow::Cow;
+
+/// A tool's name, parts and reach.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Card {
+    /// The type's name.
+    pub name: Cow<'static, str>,
+    /// What it is, for people; may be empty.
+    pub title: Cow<'static, str>,
+    /// The unit of the file, and of every length on this card.
+    pub unit: Unit,
+    /// The surfaces.
+    pub surfaces: Cow<'static, [Surface]>,
+    /// The regions, as listed in the file.
+    pub regions: Cow<'static, [Region]>,
+    /// The solid's largest radius along the axis, proved: no point of it lies outside all slabs.
+    pub envelope: Cow<'static, [Slab]>,
+}
+
+impl Card {
+    /// A card from constants, as generated code writes it.
+    pub const fn new(
+        name: &'static str,
+        title: &'static str,
+        unit: Unit,
+        surfaces: &'static [Surface],
+        regions: &'static [Region],
+        envelope: &'static [Slab],
+    ) -> Card {
+        Card {
+            name: Cow::Borrowed(name),
+            title: Cow::Borrowed(title),
+            unit,
+            surfaces: Cow::Borrowed(surfaces),
+            regions: Cow::Borrowed(regions),
+            envelope: Cow::Borrowed(envelope),
+        }
+    }
+
+    /// The surface that a region belongs to.
+    pub fn surface_of(&self, region: usize) -> &Surface {
+        &self.surfaces[self.regions[region].surface]
+    }
+
+    /// The lowest and highest z that the tool may reach.
+    pub fn reach(&self) -> [f64; 2] {
+        self.envelope.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], slab| {
+            [low.min(slab.low), high.max(slab.high)]
+        })
+    }
+
+    /// A radius about the axis that the tool does not exceed.
+    pub fn radius(&self) -> f64 {
+        self.envelope.iter().fold(0.0, |radius, slab| radius.max(slab.radius))
+    }
+}
+
+/// A surface of a tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Its name: `ball`, `flute`, `shank`, …
+    pub name: Cow<'static, str>,
+    /// Whether it cuts.
+    pub cutting: bool,
+}
+
+impl Surface {
+    /// A surface from constants.
+    pub const fn new(name: &'static str, cutting: bool) -> Surface {
+        Surface { name: Cow::Borrowed(name), cutting }
+    }
+}
+
+/// A region of a tool's inside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Its name.
+    pub name: Cow<'static, str>,
+    /// Its surface's place in the card's list.
+    pub surface: usize,
+}
+
+impl Region {
+    /// A region from constants.
+    pub const fn new(name: &'static str, surface: usize) -> Region {
+        Region { name: Cow::Borrowed(name), surface }
+    }
+}
+
+/// A stretch of the axis and the largest radius of the solid there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slab {
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+    /// The radius.
+    pub radius: f64,
+}
+
+impl Slab {
+    /// A slab.
+    pub const fn new(low: f64, high: f64, radius: f64) -> Slab {
+        Slab { low, high, radius }
+    }
+}

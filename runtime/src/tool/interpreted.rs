@@ -1,0 +1,140 @@
+//! Tools that are loaded at run time.
+
+use super::{Ask, Card, Felt, LANES, Points, Region, Slab, Surface, Tool, present};
+use crate::Unit;
+use fearless_simd::Level;
+use std::borrow::Cow;
+use std::path::Path;
+use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape};
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, compile, model, report};
+
+/// A tool from a `.tool` file, evaluated by the interpreter.
+pub struct Interpreted {
+    card: Card,
+    tape: Tape,
+    warnings: String,
+}
+
+/// A `.tool` file that could not be loaded; the message is for people, with the place and the
+/// remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum ToolError {
+    /// The file could not be read.
+    #[error("{file}: {source}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file says something wrong.
+    #[error("{0}")]
+    Wrong(String),
+}
+
+impl Interpreted {
+    /// Loads a `.tool` file.
+    pub fn load(path: impl AsRef<Path>) -> Result<Interpreted, ToolError> {
+        let file = path.as_ref().display().to_string();
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ToolError::Unreadable { file: file.clone(), source })?;
+        Interpreted::parse(&Source::new(file, text))
+    }
+
+    /// Compiles a tool's text.
+    pub fn parse(source: &Source) -> Result<Interpreted, ToolError> {
+        let compiled = compile(source);
+        let said: Vec<String> =
+            compiled.reports.iter().map(|report| report.render(source, false)).collect();
+        match compiled.tool {
+            Some(tool) if !report::any_error(&compiled.reports) => Ok(Interpreted {
+                card: card(&tool),
+                tape: Tape::new(&tool),
+                warnings: said.join("\n\n"),
+            }),
+            _ => Err(ToolError::Wrong(said.join("\n\n"))),
+        }
+    }
+
+    /// What the compiler warned of; empty if nothing.
+    pub fn warnings(&self) -> &str {
+        &self.warnings
+    }
+}
+
+fn card(tool: &Checked) -> Card {
+    let model = &tool.model;
+    Card {
+        name: Cow::Owned(model.name.clone()),
+        title: Cow::Owned(model.title.clone().unwrap_or_default()),
+        unit: match model.unit {
+            model::Unit::Millimetre => Unit::Millimetre,
+            model::Unit::Inch => Unit::Inch,
+            model::Unit::Metre => Unit::Metre,
+        },
+        surfaces: model
+            .surfaces
+            .iter()
+            .map(|s| Surface { name: Cow::Owned(s.name.clone()), cutting: s.cutting })
+            .collect(),
+        regions: model
+            .regions
+            .iter()
+            .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: r.surface })
+            .collect(),
+        envelope: tool.envelope.iter().map(|s| Slab::new(s.low, s.high, s.radius)).collect(),
+    }
+}
+
+impl Tool for Interpreted {
+    fn card(&self) -> &Card {
+        &self.card
+    }
+
+    fn evaluate(&self, _: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
+        felt.reserve(points, ask);
+        // Results are owner, depth, magnitude, niceness, direction, gradient.
+        let wanted = match ask {
+            Ask::Inside => 1,
+            Ask::Direction => 7,
+            Ask::Gradient | Ask::Everything => OUTPUTS,
+        };
+        let coordinates = points.coordinates();
+        let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
+        let mut results = [[0.0; BLOCK]; OUTPUTS];
+        let total = coordinates[0].len();
+        for start in (0..total).step_by(BLOCK) {
+            let count = BLOCK.min(total - start);
+            for (part, list) in block.iter_mut().zip(coordinates) {
+                part[..count].copy_from_slice(&list[start..start + count]);
+            }
+            self.tape.run(block.each_ref(), length, wanted, &mut felt.registers, &mut results);
+            for (offset, owners) in results[0][..count].chunks(LANES).enumerate() {
+                let at = start / LANES + offset;
+                let bits = owners.iter().rev().fold(0, |bits, o| bits << 1 | u8::from(*o >= 0.0));
+                felt.inside[at] = bits & present(points.len(), at);
+            }
+            if ask == Ask::Inside {
+                continue;
+            }
+            let copy = |list: &mut Vec<f64>, result: usize| {
+                list[start..start + count].copy_from_slice(&results[result][..count]);
+            };
+            copy(&mut felt.depth, 1);
+            copy(&mut felt.magnitude, 2);
+            copy(&mut felt.niceness, 3);
+            for part in 0..3 {
+                if ask.direction() {
+                    copy(&mut felt.direction[part], 4 + part);
+                }
+                if ask.gradient() {
+                    copy(&mut felt.gradient[part], 7 + part);
+                }
+            }
+            if ask == Ask::Everything {
+                copy(&mut felt.region, 0);
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What a tool is to the runtime: a card that describes it, and evaluators of what is felt.
+//!
+//! Everything here is in the tool's frame (tip at the origin, +z from the tip to the spindle) and
+//! in the unit of the tool's file, unless it says otherwise.
+
+mod card;
+mod compiled;
+#[cfg(feature = "interpreter")]
+mod interpreted;
+mod lane;
+
+pub use card::{Card, Region, Slab, Surface};
+pub use compiled::Evaluators;
+#[cfg(feature = "interpreter")]
+pub use interpreted::{Interpreted, ToolError};
+pub use lane::Lane;
+
+use fearless_simd::Level;
+
+/// How many points evaluators do at a time; buffers are padded to a multiple of it.
+pub const LANES: usize = 8;
+
+/// A tool that can be asked what it feels: one that was compiled, or one that is interpreted.
+pub trait Tool: Send + Sync {
+    /// Who it is and how far it reaches.
+    fn card(&self) -> &Card;
+
+    /// Evaluates what is asked for at points of the tool's frame.
+    ///
+    /// `length` is the length of the file's unit in the part's, by which a magnitude that is the
+    /// depth is scaled. The answer has the same bits whatever the level.
+    fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt);
+}
+
+/// What a caller wants; what it does not want is not computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Only which points are inside.
+    Inside,
+    /// Depth, magnitude, direction and niceness too.
+    Direction,
+    /// Depth, magnitude, the magnitude's gradient and niceness too.
+    Gradient,
+    /// All of these, and the region.
+    Everything,
+}
+
+impl Ask {
+    /// Whether directions are wanted.
+    pub fn direction(self) -> bool {
+        matches!(self, Ask::Direction | Ask::Everything)
+    }
+
+    /// Whether gradients are wanted.
+    pub fn gradient(self) -> bool {
+        matches!(self, Ask::Gradient | Ask::Everything)
+    }
+}
+
+/// Points of the tool's frame, in the unit of the tool's file. The three lists are padded to a
+/// multiple of [`LANES`] with copies of finite points.
+#[derive(Clone, Debug, Default)]
+pub struct Points {
+    coordinates: [Vec<f64>; 3],
+    count: usize,
+}
+
+impl Points {
+    /// No points; the memory stays.
+    pub fn clear(&mut self) {
+        self.coordinates.iter_mut().for_each(Vec::clear);
+        self.count = 0;
+    }
+
+    /// One more point. [`Points::pad`] must follow the last.
+    pub fn push(&mut self, point: [f64; 3]) {
+        for (list, value) in self.coordinates.iter_mut().zip(point) {
+            list.push(value);
+        }
+        self.count += 1;
+    }
+
+    /// Fills the last block.
+    pub fn pad(&mut self) {
+        let padded = self.count.next_multiple_of(LANES);
+        for list in &mut self.coordinates {
+            let last = list.last().copied().unwrap_or(0.0);
+            list.resize(padded, last);
+        }
+    }
+
+    /// How many points there are, without padding.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// x, y and z of all points and the padding.
+    pub fn coordinates(&self) -> [&[f64]; 3] {
+        [&self.coordinates[0], &self.coordinates[1], &self.coordinates[2]]
+    }
+}
+
+/// What is felt at [`Points`], list by list. Entries of points outside, and lists not asked for,
+/// mean nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Felt {
+    /// A bit a point, set inside; a byte a block of [`LANES`]. Padding is not inside.
+    pub inside: Vec<u8>,
+    /// Penetration depth, at least 0, in the file's unit.
+    pub depth: Vec<f64>,
+    /// Magnitude: if it is the depth, in the part's unit; else the file's own number.
+    pub magnitude: Vec<f64>,
+    /// Niceness, at least 0.
+    pub niceness: Vec<f64>,
+    /// Unit vector to the nearest surface.
+    pub direction: [Vec<f64>; 3],
+    /// Gradient of the magnitude by the position in the part's unit.
+    pub gradient: [Vec<f64>; 3],
+    /// The region's place in the card's list.
+    pub region: Vec<f64>,
+    /// Room for the interpreter.
+    #[cfg(feature = "interpreter")]
+    pub(crate) registers: Vec<tool_dsl::interpret::Lanes>,
+}
+
+impl Felt {
+    /// Makes room for what is asked of so many points.
+    pub(crate) fn reserve(&mut self, points: &Points, ask: Ask) {
+        let blocks = points.count.div_ceil(LANES);
+        self.inside.clear();
+        self.inside.resize(blocks, 0);
+        let size = |list: &mut Vec<f64>, wanted: bool| {
+            if wanted && list.len() < blocks * LANES {
+                list.resize(blocks * LANES, 0.0);
+            }
+        };
+        let more = ask != Ask::Inside;
+        size(&mut self.depth, more);
+        size(&mut self.magnitude, more);
+        size(&mut self.niceness, more);
+        self.direction.iter_mut().for_each(|list| size(list, ask.direction()));
+        self.gradient.iter_mut().for_each(|list| size(list, ask.gradient()));
+        size(&mut self.region, ask == Ask::Everything);
+    }
+}
+
+/// The bits of a block that are points and not padding.
+pub(crate) fn present(count: usize, block: usize) -> u8 {
+    match count - block * LANES {
+        full if full >= LANES => u8::MAX,
+        rest => (1 << rest) - 1,
+    }
+}

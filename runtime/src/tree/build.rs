@@ -1,0 +1,159 @@
+//! From a cloud to its tree.
+
+use super::{Boxes, Leaf, Tree, WIDTH};
+use crate::cloud::Cloud;
+use nalgebra::Point3;
+
+/// A point on its way to a leaf.
+#[derive(Clone, Copy)]
+struct Item {
+    at: [f64; 3],
+    index: u32,
+}
+
+/// A box by its ends.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Bounds {
+    fn of(items: &[Item]) -> Bounds {
+        let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+        for item in items {
+            for axis in 0..3 {
+                bounds.low[axis] = bounds.low[axis].min(item.at[axis]);
+                bounds.high[axis] = bounds.high[axis].max(item.at[axis]);
+            }
+        }
+        bounds
+    }
+
+    fn middle(&self, axis: usize) -> f64 {
+        self.low[axis] / 2.0 + self.high[axis] / 2.0
+    }
+
+    fn size(&self) -> f64 {
+        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
+    }
+}
+
+pub(super) fn build(cloud: &Cloud) -> Tree {
+    let points = cloud.points();
+    let mut items: Vec<Item> = points
+        .iter()
+        .zip(0u32..)
+        .map(|(point, index)| Item { at: [point.x, point.y, point.z], index })
+        .collect();
+    let whole = Bounds::of(&items);
+    let origin: [f64; 3] = std::array::from_fn(|axis| whole.middle(axis));
+    let scale = power_of_two(whole.size());
+    for item in &mut items {
+        for (value, origin) in item.at.iter_mut().zip(origin) {
+            *value = (*value - origin) / scale;
+        }
+    }
+    order(&mut items);
+    let (leaves, mut boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(leaf).unzip();
+    let leaf_size = boxes.iter().map(|b| outward(b.size() / 2.0)).fold(0.0, f32::max);
+    let mut levels = Vec::new();
+    loop {
+        let level: Vec<Boxes> = boxes.chunks(WIDTH).map(side_by_side).collect();
+        boxes = level.iter().map(around).collect();
+        levels.push(level);
+        if boxes.len() == 1 {
+            break;
+        }
+    }
+    levels.reverse();
+    let pick = |item: &Item| item.index as usize;
+    Tree {
+        origin: Point3::from(origin),
+        scale,
+        levels,
+        leaves,
+        leaf_size,
+        size: outward(boxes[0].size()),
+        normals: items.iter().map(|item| cloud.normals()[pick(item)].into()).collect(),
+        weights: items.iter().map(|item| cloud.weights()[pick(item)]).collect(),
+        triangles: items.iter().map(|item| cloud.triangles()[pick(item)]).collect(),
+    }
+}
+
+/// The power of two next to a size; 1 for a single point.
+fn power_of_two(size: f64) -> f64 {
+    if size > 0.0 { 2f64.powi((size.log2().ceil() as i32).clamp(-1000, 1000)) } else { 1.0 }
+}
+
+/// Kd order: across the longest side, the left part a power of two of full leaves.
+fn order(items: &mut [Item]) {
+    if items.len() <= WIDTH {
+        return;
+    }
+    let leaves = items.len().div_ceil(WIDTH);
+    let left = WIDTH * (leaves.next_power_of_two() / 2);
+    let bounds = Bounds::of(items);
+    let size = |axis: usize| bounds.high[axis] - bounds.low[axis];
+    let axis = (0..3).fold(0, |best, axis| if size(axis) > size(best) { axis } else { best });
+    // Equal coordinates are told apart by the index, so the order is the cloud's alone.
+    items.select_nth_unstable_by(left, |a, b| {
+        a.at[axis].total_cmp(&b.at[axis]).then(a.index.cmp(&b.index))
+    });
+    let (low, high) = items.split_at_mut(left);
+    order(low);
+    order(high);
+}
+
+/// A leaf and the box about its points as they are stored.
+fn leaf(items: &[Item]) -> (Leaf, Bounds) {
+    let bounds = Bounds::of(items);
+    let centre: [f64; 3] = std::array::from_fn(|axis| f64::from(bounds.middle(axis) as f32));
+    let mut leaf = Leaf { offset: [[f32::NAN; WIDTH]; 3] };
+    let mut half = [0f64; 3];
+    for (lane, item) in items.iter().enumerate() {
+        for axis in 0..3 {
+            let offset = (item.at[axis] - centre[axis]) as f32;
+            leaf.offset[axis][lane] = offset;
+            half[axis] = half[axis].max(f64::from(offset.abs()));
+        }
+    }
+    let low = std::array::from_fn(|axis| centre[axis] - half[axis]);
+    let high = std::array::from_fn(|axis| centre[axis] + half[axis]);
+    (leaf, Bounds { low, high })
+}
+
+fn side_by_side(bounds: &[Bounds]) -> Boxes {
+    let mut boxes = Boxes { centre: [[f32::NAN; WIDTH]; 3], half: [[0.0; WIDTH]; 3] };
+    for (lane, bounds) in bounds.iter().enumerate() {
+        for axis in 0..3 {
+            let centre = bounds.middle(axis) as f32;
+            let reach =
+                (bounds.high[axis] - f64::from(centre)).max(f64::from(centre) - bounds.low[axis]);
+            boxes.centre[axis][lane] = centre;
+            boxes.half[axis][lane] = outward(reach);
+        }
+    }
+    boxes
+}
+
+/// The box about boxes as they are stored.
+fn around(boxes: &Boxes) -> Bounds {
+    let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+    for axis in 0..3 {
+        for (centre, half) in boxes.centre[axis].iter().zip(boxes.half[axis]) {
+            if !centre.is_nan() {
+                let (centre, half) = (f64::from(*centre), f64::from(half));
+                bounds.low[axis] = bounds.low[axis].min(centre - half);
+                bounds.high[axis] = bounds.high[axis].max(centre + half);
+            }
+        }
+    }
+    bounds
+}
+
+/// The nearest `f32` that is no smaller.
+fn outward(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) < value { near.next_up() } else { near }
+}

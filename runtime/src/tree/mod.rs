@@ -1,0 +1,104 @@
+//! The point cloud, arranged for being felt: a 16-wide tree of boxes whose leaves hold 16 points.
+//!
+//! **Layout.** Points are put in kd order by splits at powers of two of leaves, so that every leaf
+//! but the last is full and the tree needs no pointers: node `n` of a level has the children
+//! `16 n … 16 n + 15` of the next. A level is a list of [`Boxes`], 16 boxes side by side.
+//!
+//! **Numbers.** Boxes are `f32` relative to the cloud's origin, points `f32` relative to the centre
+//! of their leaf's box, both in units of `scale`, a power of two near the part's size. The stored
+//! point *is* `origin + scale · (centre + offset)`, taken exactly; it differs from the given one by
+//! at most 2^-24 of its leaf's size. So a part far from the world's origin, tiny or huge loses
+//! nothing. A point takes 12 bytes and its share of the boxes, 1.6 bytes.
+
+mod build;
+mod walk;
+
+pub(crate) use walk::{View, Walker, filter};
+
+use crate::cloud::Cloud;
+use nalgebra::Point3;
+
+/// Children of a node, points of a leaf.
+pub(crate) const WIDTH: usize = 16;
+
+/// 16 boxes by centre and half extent; what is not there has NaN for a centre.
+#[derive(Clone, Debug)]
+pub(crate) struct Boxes {
+    pub(crate) centre: [[f32; WIDTH]; 3],
+    pub(crate) half: [[f32; WIDTH]; 3],
+}
+
+/// 16 points by their offset from the centre of the leaf's box; what is not there is NaN.
+#[derive(Clone, Debug)]
+pub(crate) struct Leaf {
+    pub(crate) offset: [[f32; WIDTH]; 3],
+}
+
+/// A cloud in its tree.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    pub(crate) origin: Point3<f64>,
+    pub(crate) scale: f64,
+    /// From the root's children down to the leaves' boxes.
+    pub(crate) levels: Vec<Vec<Boxes>>,
+    pub(crate) leaves: Vec<Leaf>,
+    /// The largest half extent of a leaf's box, and of the whole.
+    pub(crate) leaf_size: f32,
+    pub(crate) size: f32,
+    /// Of each point, in the tree's order.
+    pub(crate) normals: Vec<[f64; 3]>,
+    pub(crate) weights: Vec<f64>,
+    pub(crate) triangles: Vec<u32>,
+}
+
+impl Tree {
+    /// The tree of a cloud.
+    pub fn new(cloud: &Cloud) -> Tree {
+        build::build(cloud)
+    }
+
+    /// How many points there are.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there is none; a [`Cloud`] always has some.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// A point as it is stored, by its place in the tree's order.
+    pub fn point(&self, index: usize) -> Point3<f64> {
+        self.origin + nalgebra::Vector3::from(self.from_origin(index))
+    }
+
+    /// A point relative to the origin.
+    fn from_origin(&self, index: usize) -> [f64; 3] {
+        let (leaf, lane) = (index / WIDTH, index % WIDTH);
+        let centre = self.centre(leaf);
+        let offset = &self.leaves[leaf].offset;
+        std::array::from_fn(|axis| centre[axis] + self.scale * f64::from(offset[axis][lane]))
+    }
+
+    /// The centre of a leaf's box relative to the origin.
+    #[inline]
+    pub(crate) fn centre(&self, leaf: usize) -> [f64; 3] {
+        let boxes = &self.levels[self.levels.len() - 1][leaf / WIDTH];
+        std::array::from_fn(|axis| self.scale * f64::from(boxes.centre[axis][leaf % WIDTH]))
+    }
+
+    /// A point's outward unit normal.
+    pub fn normal(&self, index: usize) -> [f64; 3] {
+        self.normals[index]
+    }
+
+    /// A point's share of the surface.
+    pub fn weight(&self, index: usize) -> f64 {
+        self.weights[index]
+    }
+
+    /// The triangle that a point lies on.
+    pub fn triangle(&self, index: usize) -> u32 {
+        self.triangles[index]
+    }
+}

@@ -1,0 +1,231 @@
+//! Interference by asking the oracle about every point, one after the other.
+//!
+//! No tree, no filter, no lanes: a loop in f64 with compensated sums. All results are in the world frame and in the part's unit.
+
+use super::Oracle;
+
+/// Where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The tip, in the world.
+    pub tip: [f64; 3],
+    /// The tool's x, y and z axis in the world: the columns of its rotation matrix.
+    pub axes: [[f64; 3]; 3],
+}
+
+impl Pose {
+    /// The tool's frame is the world's.
+    pub const IDENTITY: Self =
+        Self { tip: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
+
+    /// The tip at `tip` and the spindle along `spindle` (any length but 0), spun arbitrarily.
+    pub fn along(tip: [f64; 3], spindle: [f64; 3]) -> Self {
+        let z = unit(spindle);
+        let across = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+        let x = unit(cross(across, z));
+        Self { tip, axes: [x, cross(z, x), z] }
+    }
+
+    /// A vector of the tool's frame, in the world.
+    pub fn turn(&self, v: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| v[0] * self.axes[0][k] + v[1] * self.axes[1][k] + v[2] * self.axes[2][k])
+    }
+}
+
+/// How a point pushes the tool (`accuracy.md`, section 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// `w m (n - u)` (Ho 1999, eq. 5.1, without the factor ½).
+    Thesis,
+    /// `w m ∇m`, the slope of `½ Σ w m²` with respect to the point in the world.
+    Gradient,
+    /// The thesis's, without points whose normal faces away (`u·n > 0`). They push nothing, but still count as contact.
+    Facing,
+}
+
+/// One tool, one pose, one cloud.
+#[derive(Clone, Copy)]
+pub struct Query<'a> {
+    /// The tool.
+    pub oracle: &'a dyn Oracle,
+    /// Where it is.
+    pub pose: Pose,
+    /// Part's unit in the tool's: 1/25.4 for a part in millimetres and a tool in inches.
+    pub scale: f64,
+    /// Whether the magnitude is a length, to be given in the part's unit. [`Query::new`] asks the oracle.
+    pub magnitude_is_depth: bool,
+    /// How points push.
+    pub law: Law,
+    /// Compliance centre, in the world. [`Query::new`] takes the tip.
+    pub centre: [f64; 3],
+    /// The part's points.
+    pub points: &'a [[f64; 3]],
+    /// Their outward normals.
+    pub normals: &'a [[f64; 3]],
+    /// Their weights: areas, or ones for the thesis's plain sum.
+    pub weights: &'a [f64],
+}
+
+/// What a query finds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Points in the tool or on its surface, in order.
+    pub contacts: Vec<usize>,
+    /// How many there are.
+    pub count: usize,
+    /// Largest depth and where; the first of several.
+    pub deepest: Option<(f64, usize)>,
+    /// `Σ F`, on the tool.
+    pub force: [f64; 3],
+    /// `Σ (p - centre) × F`, on the tool.
+    pub torque: [f64; 3],
+    /// `Σ w m`.
+    pub integral: f64,
+    /// `½ Σ w m²`.
+    pub energy: f64,
+    /// Smallest niceness; `None` without contact.
+    pub niceness: Option<f64>,
+    /// `Σ |F|` and `Σ |p - centre| |F|`: what errors of force and torque are relative to.
+    pub size: [f64; 2],
+}
+
+impl<'a> Query<'a> {
+    /// The thesis's law, one unit, torque about the tip.
+    pub fn new(
+        oracle: &'a dyn Oracle,
+        pose: Pose,
+        points: &'a [[f64; 3]],
+        normals: &'a [[f64; 3]],
+        weights: &'a [f64],
+    ) -> Self {
+        assert!(points.len() == normals.len() && points.len() == weights.len());
+        Self {
+            oracle,
+            pose,
+            scale: 1.0,
+            magnitude_is_depth: oracle.magnitude_is_depth(),
+            law: Law::Thesis,
+            centre: pose.tip,
+            points,
+            normals,
+            weights,
+        }
+    }
+
+    /// The point in the tool's frame and unit: `scale Rᵀ (p - tip)`, subtracting first.
+    pub fn in_tool(&self, p: [f64; 3]) -> [f64; 3] {
+        let from_tip = sub(p, self.pose.tip);
+        self.pose.axes.map(|axis| self.scale * dot(axis, from_tip))
+    }
+
+    /// Asks about every point.
+    pub fn answer(&self) -> Answer {
+        let mut contacts = Vec::new();
+        let mut deepest: Option<(f64, usize)> = None;
+        let mut niceness: Option<f64> = None;
+        let (mut force, mut torque) = ([Sum::default(); 3], [Sum::default(); 3]);
+        let (mut integral, mut energy) = (Sum::default(), Sum::default());
+        let mut size = [Sum::default(); 2];
+        for (i, &p) in self.points.iter().enumerate() {
+            let q = self.in_tool(p);
+            let Some(s) = self.oracle.sense(q) else {
+                continue;
+            };
+            contacts.push(i);
+            let depth = s.depth / self.scale;
+            if deepest.is_none_or(|(d, _)| depth > d) {
+                deepest = Some((depth, i));
+            }
+            niceness = Some(niceness.map_or(s.niceness, |n| n.min(s.niceness)));
+
+            // The slope of a magnitude in the tool's unit, taken over the part's, is `scale` times as steep.
+            let (m, steep) = if self.magnitude_is_depth {
+                (s.magnitude / self.scale, 1.0)
+            } else {
+                (s.magnitude, self.scale)
+            };
+            let w = self.weights[i];
+            integral.add(w * m);
+            energy.add(0.5 * w * m * m);
+
+            let (n, u) = (self.normals[i], self.pose.turn(s.direction));
+            let push = match self.law {
+                Law::Facing if dot(u, n) > 0.0 => continue,
+                Law::Thesis | Law::Facing => sub(n, u),
+                Law::Gradient => {
+                    let slope = self.oracle.gradient(q).unwrap_or_default();
+                    self.pose.turn(slope).map(|c| steep * c)
+                }
+            };
+            let f = push.map(|c| w * m * c);
+            let arm = sub(p, self.centre);
+            let t = cross(arm, f);
+            for k in 0..3 {
+                force[k].add(f[k]);
+                torque[k].add(t[k]);
+            }
+            size[0].add(norm(f));
+            size[1].add(norm(arm) * norm(f));
+        }
+        Answer {
+            count: contacts.len(),
+            contacts,
+            deepest,
+            force: force.map(|s| s.value()),
+            torque: torque.map(|s| s.value()),
+            integral: integral.value(),
+            energy: energy.value(),
+            niceness,
+            size: size.map(|s| s.value()),
+        }
+    }
+}
+
+/// A compensated sum (Neumaier 1974): its error does not grow with the number of terms.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum {
+    sum: f64,
+    lost: f64,
+}
+
+impl Sum {
+    /// Adds a term.
+    pub fn add(&mut self, x: f64) {
+        let next = self.sum + x;
+        self.lost +=
+            if self.sum.abs() >= x.abs() { (self.sum - next) + x } else { (x - next) + self.sum };
+        self.sum = next;
+    }
+
+    /// The sum so far.
+    pub fn value(&self) -> f64 {
+        self.sum + self.lost
+    }
+}
+
+impl FromIterator<f64> for Sum {
+    fn from_iter<T: IntoIterator<Item = f64>>(terms: T) -> Self {
+        let mut sum = Self::default();
+        for x in terms {
+            sum.add(x);
+        }
+        sum
+    }
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+fn unit(a: [f64; 3]) -> [f64; 3] {
+    let n = norm(a);
+    a.map(|c| c / n)
+}

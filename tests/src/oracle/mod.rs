@@ -1,0 +1,301 @@
+//! What the tools should say, worked out a second time and without the compiler.
+//!
+//! An [`Oracle`] answers for one tool at one point. Nothing here shares code with the project: solids that the compiler derives from a
+//! profile are answered by brute force over the profile's pieces ([`profile`]), the thesis's own tool by its equations written out by
+//! hand ([`fig73`]), contacts by textbook integrals ([`closed_forms`]) and by a plain loop over the points ([`brute`]).
+//!
+//! **Frame.** Everything is in the tool frame: tip at the origin, +z from the tip to the spindle, lengths in the tool file's unit.
+//! `[d, z]` is a point of the half plane `d >= 0`, `d` being the distance from the axis.
+//!
+//! **Where a direction does not exist.** On the axis the radial part is that of +x. Where the vector in the half plane itself vanishes
+//! (centre of an arc, or a reflex corner that owns the point) the direction is +z.
+
+pub mod brute;
+#[cfg(test)]
+mod brute_contacts;
+pub mod closed_forms;
+pub mod draw;
+pub mod fig73;
+#[cfg(test)]
+mod fig73_table;
+pub mod nearest;
+mod piece;
+pub mod profile;
+pub mod solids;
+
+pub use fig73::Fig73;
+pub use nearest::{D2Ball, Fig73Exact, HalfSphereCylinder};
+pub use solids::{Cylinder, UnitSphere};
+
+/// What a point inside a tool feels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sense {
+    /// The owner's name, one of [`Oracle::regions`].
+    pub region: &'static str,
+    /// The owner's place in [`Oracle::regions`].
+    pub owner: usize,
+    /// How deep the point lies, `>= 0`. The true distance to the surface, except for [`Fig73`], whose magnitude it is.
+    pub depth: f64,
+    /// How hard the point is pushed.
+    pub magnitude: f64,
+    /// Unit vector toward the tool's surface.
+    pub direction: [f64; 3],
+    /// How good a contact is here; 0 where the surface does not cut.
+    pub niceness: f64,
+}
+
+/// One tool's ground truth.
+pub trait Oracle {
+    /// The tool's name, as in its file.
+    fn name(&self) -> &'static str;
+
+    /// Regions in the order of listing: on a border the first one owns the point.
+    fn regions(&self) -> &'static [&'static str];
+
+    /// What `p` feels; `None` outside. The surface belongs to the solid.
+    fn sense(&self, p: [f64; 3]) -> Option<Sense>;
+
+    /// The slope of the magnitude inside, in the tool's frame, per unit of the tool's file. For a magnitude that is the distance this is
+    /// minus the direction; on the axis it follows the same convention.
+    fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]>;
+
+    /// The true signed distance to the solid's surface: negative inside, positive outside.
+    fn signed_distance(&self, p: [f64; 3]) -> f64;
+
+    /// A lower bound of the distance in the half plane from `p` to the surface and to every splitting curve: farther than rounding from
+    /// both, inside or outside and the owner are beyond doubt. (0 on the curves themselves.)
+    fn border(&self, p: [f64; 3]) -> f64;
+
+    /// Distance from `p` to the nearest point at which its owner's direction does not exist: the axis where the direction has a radial
+    /// part, the centre of an arc, the owning corner. Infinite where there is none, and outside.
+    fn singular(&self, p: [f64; 3]) -> f64;
+
+    /// Whether the magnitude is the depth itself, so that it is a length and comes out in the part's unit. A magnitude that the file
+    /// writes is a number in the file's unit.
+    fn magnitude_is_depth(&self) -> bool {
+        true
+    }
+
+    /// `[d, z]`: vertices of the profile, ends of splitting curves, centres of arcs.
+    fn corners(&self) -> Vec<[f64; 2]>;
+
+    /// Points `[d, z]` along every splitting curve and every piece of the surface, a list for each, ends included.
+    fn curves(&self) -> Vec<Vec<[f64; 2]>>;
+
+    /// Largest distance from the axis, and largest z. The smallest z is 0.
+    fn extent(&self) -> [f64; 2];
+}
+
+/// Every oracle, for suites that run over all of them.
+pub fn all() -> Vec<Box<dyn Oracle>> {
+    vec![
+        Box::new(UnitSphere),
+        Box::new(Cylinder),
+        Box::<HalfSphereCylinder>::default(),
+        Box::<Fig73>::default(),
+        Box::<Fig73Exact>::default(),
+        Box::<D2Ball>::default(),
+    ]
+}
+
+/// A point seen in the half plane through it and the axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Meridian {
+    /// Distance from the axis, and z.
+    pub dz: [f64; 2],
+    /// Unit vector away from the axis; +x on the axis.
+    pub radial: [f64; 2],
+}
+
+impl Meridian {
+    /// The half plane through `p`.
+    pub fn of(p: [f64; 3]) -> Self {
+        let [x, y, z] = p;
+        let d = x.hypot(y);
+        // A denormal `d` has too few bits to divide by: the quotient would not be a unit vector.
+        let (sx, sy) = if d < 1e-290 { (x * 2f64.powi(600), y * 2f64.powi(600)) } else { (x, y) };
+        let s = sx.hypot(sy);
+        let radial = if s > 0.0 { [sx / s, sy / s] } else { [1.0, 0.0] };
+        Self { dz: [d, z], radial }
+    }
+
+    /// The vector with these radial and axial parts, in space.
+    pub fn lift(&self, [e_d, e_z]: [f64; 2]) -> [f64; 3] {
+        [e_d * self.radial[0], e_d * self.radial[1], e_z]
+    }
+}
+
+/// `v` as a unit vector; +z if it vanishes.
+pub fn unit_or_z(v: [f64; 2]) -> [f64; 2] {
+    let n = v[0].hypot(v[1]);
+    if n > 0.0 { [v[0] / n, v[1] / n] } else { [0.0, 1.0] }
+}
+
+/// Points evenly spaced from `a` to `b`, both included.
+pub fn straight(a: [f64; 2], b: [f64; 2]) -> Vec<[f64; 2]> {
+    sampled(|t| {
+        // Exact at both ends and along level and upright lines.
+        [a[0] * (1.0 - t) + b[0] * t, if a[1] == b[1] { a[1] } else { a[1] * (1.0 - t) + b[1] * t }]
+    })
+}
+
+/// Points of a curve given on `0..=1`.
+pub fn sampled(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+    const STEPS: u32 = 64;
+    (0..=STEPS).map(|i| at(f64::from(i) / f64::from(STEPS))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::draw::Draw;
+    use super::*;
+
+    /// A point of space over `[d, z]`, at a random angle.
+    fn over([d, z]: [f64; 2], draw: &mut Draw) -> [f64; 3] {
+        let a = draw.between(0.0, std::f64::consts::TAU);
+        [d * a.cos(), d * a.sin(), z]
+    }
+
+    fn anywhere(o: &dyn Oracle, draw: &mut Draw) -> [f64; 3] {
+        let [d, z] = o.extent();
+        over([draw.between(0.0, 1.2 * d), draw.between(-0.2 * d, z + 0.2 * d)], draw)
+    }
+
+    #[test]
+    fn answers_are_consistent() {
+        for o in all() {
+            let mut draw = Draw::new(1);
+            for _ in 0..20_000 {
+                let p = anywhere(&*o, &mut draw);
+                let sd = o.signed_distance(p);
+                let Some(s) = o.sense(p) else {
+                    assert!(sd > -1e-12, "{} {p:?} {sd}", o.name());
+                    continue;
+                };
+                assert!(sd < 1e-12, "{} {p:?} {sd}", o.name());
+                assert_eq!(o.regions()[s.owner], s.region);
+                let norm = s.direction.iter().map(|c| c * c).sum::<f64>().sqrt();
+                assert!((norm - 1.0).abs() < 4.0 * f64::EPSILON);
+                assert!(s.depth >= 0.0 && s.magnitude == s.depth && s.niceness >= 0.0);
+                if o.name() != "Fig73" {
+                    assert!((s.depth + sd).abs() < 1e-13);
+                }
+            }
+        }
+    }
+
+    /// Within its border no point changes owner or side.
+    #[test]
+    fn borders_are_lower_bounds() {
+        for o in all() {
+            let mut draw = Draw::new(2);
+            for _ in 0..20_000 {
+                let p = anywhere(&*o, &mut draw);
+                let reach = o.border(p) * 0.999_999;
+                let owner = o.sense(p).map(|s| s.owner);
+                let m = Meridian::of(p);
+                for k in 0..8 {
+                    let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
+                    let d = m.dz[0] + reach * cos;
+                    let q = [d * m.radial[0], d * m.radial[1], p[2] + reach * sin];
+                    let there = o.sense(q).map(|s| s.owner);
+                    assert_eq!(owner, there, "{} {p:?} {q:?}", o.name());
+                }
+            }
+        }
+    }
+
+    /// On each curve the border is 0 to rounding, and each is a border: some owner or side changes close by.
+    #[test]
+    fn curves_and_corners_lie_on_borders() {
+        for o in all() {
+            for curve in o.curves() {
+                let inner = &curve[1..curve.len() - 1];
+                for &[d, z] in inner {
+                    assert!(o.border([d, 0.0, z]) < 1e-14, "{} {d} {z}", o.name());
+                    let mut owners = (0..16).map(|k| {
+                        let (sin, cos) =
+                            (0.1 + f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
+                        o.sense([d + 1e-6 * cos, 0.0, z + 1e-6 * sin]).map(|s| s.owner)
+                    });
+                    let first = owners.next().expect("sixteen of them");
+                    assert!(owners.any(|other| other != first), "{} {d} {z}", o.name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_owner_is_lost_between_the_curves() {
+        // Every change of owner found on a fine walk has a listed curve within a step of it.
+        for o in all() {
+            let [width, height] = o.extent();
+            let all: Vec<_> = o.curves().into_iter().flatten().collect();
+            let step = 0.05;
+            let mut draw = Draw::new(3);
+            for _ in 0..2_000 {
+                let a = [draw.between(0.0, width), draw.between(0.0, height)];
+                let b = [a[0] + step, a[1] + draw.between(-step, step)];
+                let owner = |q: [f64; 2]| o.sense([q[0], 0.0, q[1]]).map(|s| s.owner);
+                if owner(a) == owner(b) {
+                    continue;
+                }
+                let near = all
+                    .iter()
+                    .map(|c| (c[0] - a[0]).hypot(c[1] - a[1]))
+                    .fold(f64::INFINITY, f64::min);
+                let spacing = height / 64.0;
+                assert!(near < 2.0 * step + spacing, "{} {a:?} {near}", o.name());
+            }
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_the_slope_of_the_magnitude() {
+        for o in all() {
+            let mut draw = Draw::new(4);
+            for _ in 0..20_000 {
+                let p = anywhere(&*o, &mut draw);
+                let h = 1e-5;
+                if o.border(p) < 3.0 * h || o.singular(p) < 1e-2 {
+                    continue;
+                }
+                let Some(g) = o.gradient(p) else {
+                    assert!(o.sense(p).is_none());
+                    continue;
+                };
+                for k in 0..3 {
+                    let m = |s: f64| {
+                        let mut q = p;
+                        q[k] += s;
+                        o.sense(q).expect("inside its border").magnitude
+                    };
+                    let slope = (m(h) - m(-h)) / (2.0 * h);
+                    assert!((slope - g[k]).abs() < 1e-6, "{} {p:?} {k}", o.name());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_axis_answers() {
+        for o in all() {
+            for tiny in [0.0, -0.0, 5e-324, 2f64.powi(-540)] {
+                for i in 0..=1000 {
+                    let z = o.extent()[1] * f64::from(i) / 1000.0;
+                    for p in [[tiny, 0.0, z], [tiny, tiny, z], [0.0, -tiny, z]] {
+                        let s = o.sense(p).expect("the axis is inside");
+                        let norm = s.direction.iter().map(|c| c * c).sum::<f64>().sqrt();
+                        assert!(
+                            (norm - 1.0).abs() < 4.0 * f64::EPSILON,
+                            "{} {p:?} {s:?}",
+                            o.name()
+                        );
+                    }
+                    let on = o.sense([0.0, 0.0, z]).expect("the axis is inside");
+                    assert!(on.direction[0] >= 0.0 && on.direction[1] == 0.0);
+                }
+            }
+        }
+    }
+}

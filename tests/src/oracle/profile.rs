@@ -1,0 +1,321 @@
+//! A profile of lines and arcs, and the nearest of its pieces by trying them all.
+//!
+//! For a surface of revolution the nearest surface point lies in the half plane through the query point, so two dimensions are enough;
+//! the axis is a mirror and not a feature. Each piece is asked only for points whose foot lies on it, and each vertex for all points;
+//! the smallest distance wins, and among equals the feature listed first. Inside is decided by crossings (even-odd), not by the
+//! nearest piece.
+
+use super::piece::{P2, Piece, cross, dot, len, sub};
+use super::unit_or_z;
+
+/// How the profile turns at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Turn {
+    /// An end of the profile, on the axis.
+    Axis,
+    /// The material fills less than a half turn: nearest from outside only.
+    Convex,
+    /// No turn: the vertex owns nothing.
+    Smooth,
+    /// The material fills more than a half turn: the vertex owns a fan inside, under this rank.
+    Reflex(usize),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    at: P2,
+    turn: Turn,
+}
+
+/// The nearest feature of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// Place in the order of listing. For a convex vertex (outside only) that of the piece listed first of the two that meet there.
+    pub owner: usize,
+    /// Distance to the foot.
+    pub distance: f64,
+    /// The nearest point of the profile.
+    pub foot: P2,
+    /// Whether the foot is a reflex corner that owns the point.
+    pub corner: bool,
+}
+
+/// A closed profile from the axis to the axis, counter-clockwise with `d` to the right and `z` up.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    pieces: Vec<Piece>,
+    vertices: Vec<Vertex>,
+}
+
+/// A piece to be: its end, its centre if it is an arc, and its name.
+pub type Draft = ([f64; 2], Option<[f64; 2]>, &'static str);
+
+impl Profile {
+    /// The profile that starts at `start` and goes on through `drafts`. `corners` names the reflex corners in the order of the profile,
+    /// and `order` lists all names; the first listed wins a tie.
+    ///
+    /// # Panics
+    /// If a name is missing from `order`, or the number of reflex corners is another.
+    pub fn new(start: P2, drafts: &[Draft], corners: &[&str], order: &[&str]) -> Self {
+        let rank = |name: &str| {
+            let found = order.iter().position(|o| *o == name);
+            found.unwrap_or_else(|| panic!("`{name}` is not listed"))
+        };
+        let mut at = start;
+        let mut pieces = Vec::new();
+        for &(to, centre, name) in drafts {
+            pieces.push(Piece::new(at, to, centre, rank(name)));
+            at = to;
+        }
+        let mut names = corners.iter();
+        let mut vertices = vec![Vertex { at: start, turn: Turn::Axis }];
+        for pair in pieces.windows(2) {
+            let bend = cross(pair[0].tangent(pair[0].b), pair[1].tangent(pair[1].a));
+            let turn = if bend < -1e-12 {
+                Turn::Reflex(rank(names.next().expect("a name for each reflex corner")))
+            } else if bend > 1e-12 {
+                Turn::Convex
+            } else {
+                Turn::Smooth
+            };
+            vertices.push(Vertex { at: pair[0].b, turn });
+        }
+        vertices.push(Vertex { at, turn: Turn::Axis });
+        assert!(names.next().is_none(), "more names than reflex corners");
+        Self { pieces, vertices }
+    }
+
+    /// The nearest feature, from inside or outside.
+    ///
+    /// Beside a fan or joint two features differ only in the square of the distance from their border, far below rounding. So each is
+    /// asked only for its own side, and ties are left for the borders themselves.
+    pub fn nearest(&self, p: P2) -> Near {
+        let mut best = Near { owner: 0, distance: f64::INFINITY, foot: p, corner: false };
+        for piece in self.pieces.iter().filter(|piece| piece.faces(p)) {
+            let (owner, distance) = (piece.rank, piece.distance(p));
+            if (distance, owner) < (best.distance, best.owner) {
+                best = Near { owner, distance, foot: piece.foot(p), corner: false };
+            }
+        }
+        for (i, v) in self.vertices.iter().enumerate() {
+            let beside = [i.checked_sub(1), Some(i)].map(|k| self.pieces.get(k?));
+            let from = sub(p, v.at);
+            let in_fan = beside.iter().zip([1.0, -1.0]).all(|(piece, sign)| {
+                piece.is_none_or(|piece| sign * dot(from, piece.tangent(v.at)) >= 0.0)
+            });
+            let first = beside.iter().flatten().map(|piece| piece.rank).min();
+            let (owner, corner) = match v.turn {
+                Turn::Reflex(rank) => (rank, true),
+                _ => (first.unwrap_or(0), false),
+            };
+            // A joint, and a corner outside its fan, only catch what rounding let fall between their neighbours.
+            let distance = len(from);
+            let wins = match v.turn {
+                Turn::Reflex(_) if in_fan => (distance, owner) < (best.distance, best.owner),
+                Turn::Reflex(_) | Turn::Smooth => distance < best.distance * (1.0 - 1e-9),
+                Turn::Axis | Turn::Convex => distance < best.distance,
+            };
+            if wins {
+                best = Near { owner, distance, foot: v.at, corner };
+            }
+        }
+        best
+    }
+
+    /// Whether `p` is in the solid or on its surface.
+    pub fn contains(&self, p: P2) -> bool {
+        self.encloses(p) || self.nearest(p).distance == 0.0
+    }
+
+    /// For a point of the solid, its nearest feature and the unit vector `(radial, axial)` toward it.
+    pub fn sense(&self, p: P2) -> Option<(Near, P2)> {
+        let near = self.nearest(p);
+        (near.distance == 0.0 || self.encloses(p)).then(|| (near, self.direction(&near, p)))
+    }
+
+    /// Even-odd rule, on the ray from `p` away from the axis. Undecided on the surface.
+    fn encloses(&self, p: P2) -> bool {
+        let crossed = self.pieces.iter().map(|piece| piece.crossings(p)).sum::<usize>();
+        crossed % 2 == 1
+    }
+
+    /// Negative inside.
+    pub fn signed_distance(&self, p: P2) -> f64 {
+        let distance = self.nearest(p).distance;
+        if self.contains(p) { -distance } else { distance }
+    }
+
+    fn direction(&self, near: &Near, p: P2) -> P2 {
+        if near.corner {
+            return unit_or_z(sub(near.foot, p));
+        }
+        self.owner_piece(near, p).outward(p)
+    }
+
+    /// A lower bound of the distance to the surface and to the curves on which the nearest feature changes. Outside only to the surface.
+    ///
+    /// Two features meet either at a shared fan line or joint, whose distance is plain, or on the curve where their distances agree;
+    /// distances are 1-Lipschitz, so that curve is at least half their difference away.
+    pub fn border(&self, p: P2) -> f64 {
+        let near = self.nearest(p);
+        if !self.contains(p) {
+            return near.distance;
+        }
+        let mut least = near.distance;
+        let mut linked = vec![near.owner];
+        for (i, v) in self.vertices.iter().enumerate() {
+            let (Some(before), Some(after)) =
+                (i.checked_sub(1).map(|k| self.pieces[k]), self.pieces.get(i))
+            else {
+                continue;
+            };
+            let fan = match v.turn {
+                Turn::Reflex(rank) => Some(rank),
+                Turn::Smooth => None,
+                Turn::Axis | Turn::Convex => continue,
+            };
+            let owners = [Some(before.rank), fan, Some(after.rank)];
+            if owners.contains(&Some(near.owner)) {
+                linked.extend(owners.into_iter().flatten());
+                for tangent in [before.tangent(v.at), after.tangent(v.at)] {
+                    least = least.min(dot(sub(p, v.at), tangent).abs());
+                }
+            }
+        }
+        for piece in self.pieces.iter().filter(|piece| !linked.contains(&piece.rank)) {
+            least = least.min((piece.clamped(p) - near.distance) / 2.0);
+        }
+        for v in &self.vertices {
+            if matches!(v.turn, Turn::Reflex(rank) if !linked.contains(&rank)) {
+                least = least.min((len(sub(p, v.at)) - near.distance) / 2.0);
+            }
+        }
+        least.max(0.0)
+    }
+
+    /// See [`super::Oracle::singular`].
+    pub fn singular(&self, p: P2) -> f64 {
+        let Some((near, direction)) = self.sense(p) else {
+            return f64::INFINITY;
+        };
+        let axis = if direction[0] == 0.0 { f64::INFINITY } else { p[0] };
+        let point = if near.corner {
+            near.distance
+        } else {
+            let centre = self.owner_piece(&near, p).centre();
+            centre.map_or(f64::INFINITY, |c| len(sub(p, c)))
+        };
+        axis.min(point)
+    }
+
+    /// Vertices and centres.
+    pub fn corners(&self) -> Vec<P2> {
+        let vertices = self.vertices.iter().map(|v| v.at);
+        vertices.chain(self.pieces.iter().filter_map(Piece::centre)).collect()
+    }
+
+    /// Points along each piece.
+    pub fn surface(&self) -> Vec<Vec<P2>> {
+        self.pieces.iter().map(Piece::samples).collect()
+    }
+
+    /// The piece that owns `p`; several may share a name.
+    fn owner_piece(&self, near: &Near, p: P2) -> &Piece {
+        let mine = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
+        let facing = mine().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
+        facing.or_else(|| mine().next()).unwrap_or(&self.pieces[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::draw::Draw;
+    use super::*;
+
+    /// A body with a neck: convex and concave arcs, a taper, both kinds of corner.
+    fn vase() -> Profile {
+        Profile::new(
+            [0.0, 0.0],
+            &[
+                ([2.0, 2.0], Some([0.0, 2.0]), "bowl"),
+                ([1.0, 3.0], Some([2.0, 3.0]), "neck"),
+                ([3.0, 5.0], None, "flare"),
+                ([3.0, 6.0], None, "rim"),
+                ([0.0, 6.0], None, "top"),
+            ],
+            &["throat"],
+            &["bowl", "neck", "throat", "flare", "rim", "top"],
+        )
+    }
+
+    /// Against a polyline so fine that only its sagitta (below 1e-6) is left.
+    #[test]
+    fn distances_agree_with_a_fine_polyline() {
+        let vase = vase();
+        let fine: Vec<_> = vase.pieces.iter().flat_map(|piece| piece.chords(2000)).collect();
+        let mut draw = Draw::new(5);
+        for _ in 0..2_000 {
+            let p = [draw.between(0.0, 5.0), draw.between(-2.0, 8.0)];
+            let polyline = fine.iter().map(|&(a, b)| {
+                let e = sub(b, a);
+                let t = (dot(sub(p, a), e) / dot(e, e)).clamp(0.0, 1.0);
+                len([p[0] - a[0] - t * e[0], p[1] - a[1] - t * e[1]])
+            });
+            let least = polyline.fold(f64::INFINITY, f64::min);
+            let near = vase.nearest(p);
+            assert!((least - near.distance).abs() < 1e-6, "{p:?}");
+            assert!((len(sub(p, near.foot)) - near.distance).abs() < 1e-14);
+        }
+    }
+
+    /// Even-odd against the side of the nearest feature, two unlike tests.
+    #[test]
+    fn inside_agrees_with_the_side_of_the_nearest_feature() {
+        let vase = vase();
+        let mut draw = Draw::new(6);
+        for _ in 0..100_000 {
+            let p = [draw.between(0.0, 4.0), draw.between(-1.0, 7.0)];
+            let near = vase.nearest(p);
+            if near.distance < 1e-12 {
+                continue;
+            }
+            let at_vertex = vase.vertices.iter().any(|v| v.at == near.foot);
+            let inside = near.corner
+                || (!at_vertex && {
+                    let piece = vase.owner_piece(&near, p);
+                    cross(piece.tangent(near.foot), sub(p, near.foot)) > 0.0
+                });
+            assert_eq!(inside, vase.contains(p), "{p:?} {near:?}");
+        }
+    }
+
+    #[test]
+    fn directions_step_onto_the_surface() {
+        let vase = vase();
+        let mut draw = Draw::new(7);
+        for _ in 0..100_000 {
+            let p = [draw.between(0.0, 4.0), draw.between(-1.0, 7.0)];
+            let Some((near, u)) = vase.sense(p) else {
+                continue;
+            };
+            for k in 0..2 {
+                assert!(
+                    (p[k] + near.distance * u[k] - near.foot[k]).abs() < 1e-13,
+                    "{p:?} {near:?} {u:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_surface_belongs_to_the_solid() {
+        let vase = vase();
+        for p in vase.corners() {
+            let centre = vase.pieces.iter().any(|piece| piece.centre() == Some(p));
+            assert!(centre || vase.contains(p), "{p:?}");
+        }
+        for p in [[0.0, 0.0], [3.0, 5.5], [1.5, 6.0], [3.0, 6.0], [2.0, 2.0]] {
+            assert!(vase.contains(p) && vase.nearest(p).distance == 0.0, "{p:?}");
+        }
+    }
+}

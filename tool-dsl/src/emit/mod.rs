@@ -1,0 +1,361 @@
+//! A checked tool to Rust: straight-line code without loops, recursion, tables or panics, in two
+//! forms of one plan. Emitting cannot fail, since everything is found before it.
+
+mod code;
+
+use crate::Checked;
+use crate::expr::Id;
+use crate::model::Outputs;
+use crate::plan::Tree;
+use code::{Form, Writer, literal, tested};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+/// The type and its evaluators.
+pub fn emit(tool: &Checked) -> TokenStream {
+    let name = Ident::new(&tool.model.name, Span::call_site());
+    let docs = documentation(tool);
+    let card = card(tool);
+    let scalar = functions(tool, Form::Scalar);
+    let lanes = functions(tool, Form::Lanes);
+    quote! {
+        #[doc = #docs]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct #name;
+
+        #[allow(clippy::all, clippy::pedantic, unused_variables, unused_parens)]
+        const _: () = {
+            use ::touchoff::tool::{Card, Evaluators, Lane, Region, Slab, Surface};
+
+            impl Evaluators for #name {
+                #card
+                #scalar
+                #lanes
+            }
+        };
+    }
+}
+
+/// A type that has the tool's name and no meaning: after an error it keeps the code that uses the
+/// tool quiet, so that one mistake gives one message.
+pub fn skeleton(name: &str) -> TokenStream {
+    let name = Ident::new(name, Span::call_site());
+    let mut functions = quote! { fn card() -> &'static Card { ::core::unreachable!() } };
+    let empty = quote! { ::core::unreachable!() };
+    for form in [Form::Scalar, Form::Lanes] {
+        let (contains, _) = signature(form, "contains");
+        let (owner, number) = signature(form, "owner");
+        let (yes, whose) = match form {
+            Form::Scalar => (quote! { bool }, quote! { Option<usize> }),
+            Form::Lanes => (quote! { L::Mask }, quote! { L }),
+        };
+        functions.extend(function(form, &contains, &quote! {}, &yes, &empty));
+        functions.extend(function(form, &owner, &quote! {}, &whose, &empty));
+        for output in &OUTPUTS {
+            let (name, _) = signature(form, output.name);
+            let (extra, _) = length(output.with_length, &number, &empty);
+            let result = if output.vector {
+                quote! { [#number; 3] }
+            } else {
+                number.clone()
+            };
+            functions.extend(function(form, &name, &extra, &result, &empty));
+        }
+    }
+    quote! {
+        #[allow(missing_docs)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct #name;
+
+        #[allow(unused)]
+        const _: () = {
+            use ::touchoff::tool::{Card, Evaluators, Lane};
+            impl Evaluators for #name { #functions }
+        };
+    }
+}
+
+fn documentation(tool: &Checked) -> String {
+    let model = &tool.model;
+    let mut text = format!(
+        "{}\n\nUnit: {}. Reaches from z = {} to {}, and {} from the axis.\n\n\
+         | region | surface |\n|---|---|\n",
+        model.title.as_deref().unwrap_or(&model.name),
+        model.unit.word(),
+        short(tool.extent.low),
+        short(tool.extent.high),
+        short(tool.extent.radius),
+    );
+    for region in &model.regions {
+        let surface = &model.surfaces[region.surface];
+        let cutting = if surface.cutting { ", cutting" } else { "" };
+        // Writing to a String does not fail.
+        let _ = writeln!(text, "| {} | {}{cutting} |", region.name, surface.name);
+    }
+    text
+}
+
+/// A length for people.
+fn short(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
+fn card(tool: &Checked) -> TokenStream {
+    let model = &tool.model;
+    let name = &model.name;
+    let title = model.title.as_deref().unwrap_or("");
+    let unit = Ident::new(&format!("{:?}", model.unit), Span::call_site());
+    let surfaces = model.surfaces.iter().map(|surface| {
+        let (name, cutting) = (&surface.name, surface.cutting);
+        quote! { Surface::new(#name, #cutting) }
+    });
+    let regions = model.regions.iter().map(|region| {
+        let (name, surface) = (&region.name, region.surface);
+        quote! { Region::new(#name, #surface) }
+    });
+    let slabs = tool.envelope.iter().map(|slab| {
+        let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
+        quote! { Slab::new(#low, #high, #radius) }
+    });
+    quote! {
+        fn card() -> &'static Card {
+            static SURFACES: &[Surface] = &[#(#surfaces),*];
+            static REGIONS: &[Region] = &[#(#regions),*];
+            static SLABS: &[Slab] = &[#(#slabs),*];
+            static CARD: Card =
+                Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS);
+            &CARD
+        }
+    }
+}
+
+/// What an evaluator computes.
+struct Output {
+    name: &'static str,
+    /// Whether it depends on the unit of the part.
+    with_length: bool,
+    vector: bool,
+    of: fn(&Outputs) -> Vec<Id>,
+}
+
+const OUTPUTS: [Output; 5] = [
+    Output { name: "depth", with_length: false, vector: false, of: |o| vec![o.depth] },
+    Output { name: "magnitude", with_length: true, vector: false, of: |o| vec![o.magnitude] },
+    Output { name: "niceness", with_length: false, vector: false, of: |o| vec![o.niceness] },
+    Output { name: "direction", with_length: false, vector: true, of: |o| o.direction.to_vec() },
+    Output { name: "gradient", with_length: true, vector: true, of: |o| o.gradient.to_vec() },
+];
+
+fn functions(tool: &Checked, form: Form) -> TokenStream {
+    let mut all = TokenStream::new();
+    all.extend(contains(tool, form));
+    all.extend(owner(tool, form));
+    for output in &OUTPUTS {
+        let tree = tool
+            .plan
+            .owner
+            // Outside nobody asks, so those leaves join their siblings.
+            .map(&|owner: &Option<usize>| {
+                owner.map(|r| (output.of)(&tool.model.regions[r].outputs))
+            });
+        let Some(tree) = tree else { continue };
+        let body = body(tool, form, &tree);
+        let (name, number) = signature(form, output.name);
+        let (extra, per) = length(output.with_length, &number, &body);
+        let result = if output.vector {
+            quote! { [#number; 3] }
+        } else {
+            number
+        };
+        all.extend(function(form, &name, &extra, &result, &quote! { #per #body }));
+    }
+    all
+}
+
+/// The function's name and the type of its numbers.
+fn signature(form: Form, name: &str) -> (Ident, TokenStream) {
+    match form {
+        Form::Scalar => (format_ident!("{name}"), quote! { f64 }),
+        Form::Lanes => (format_ident!("{name}_lanes"), quote! { L }),
+    }
+}
+
+/// The parameter for the unit of length, and its reciprocal where the body wants it.
+fn length(with: bool, number: &TokenStream, body: &TokenStream) -> (TokenStream, TokenStream) {
+    if !with {
+        return (quote! {}, quote! {});
+    }
+    let wants = body.clone().into_iter().any(|token| mentions(&token, "per_length"));
+    let per = if wants {
+        quote! { let per_length = Lane::of(length, 1.0) / length; }
+    } else {
+        quote! {}
+    };
+    (quote! { , length: #number }, per)
+}
+
+fn mentions(token: &proc_macro2::TokenTree, word: &str) -> bool {
+    match token {
+        proc_macro2::TokenTree::Ident(ident) => ident == word,
+        proc_macro2::TokenTree::Group(group) => {
+            group.stream().into_iter().any(|t| mentions(&t, word))
+        }
+        _ => false,
+    }
+}
+
+fn function(
+    form: Form,
+    name: &Ident,
+    extra: &TokenStream,
+    result: &TokenStream,
+    body: &TokenStream,
+) -> TokenStream {
+    match form {
+        Form::Scalar => quote! {
+            #[inline]
+            fn #name([x, y, z]: [f64; 3] #extra) -> #result { #body }
+        },
+        Form::Lanes => quote! {
+            #[inline(always)]
+            fn #name<L: Lane>([x, y, z]: [L; 3] #extra) -> #result { #body }
+        },
+    }
+}
+
+/// The body of a function whose leaves are one or three expressions.
+fn body(tool: &Checked, form: Form, tree: &Tree<Vec<Id>>) -> TokenStream {
+    let model = &tool.model;
+    let mut roots = Vec::new();
+    leaves(tree, &mut roots);
+    let separate: Vec<Tree<Id>> =
+        (0..leaf_width(tree)).filter_map(|part| tree_part(tree, part)).collect();
+    let mut tests = BTreeSet::new();
+    match form {
+        Form::Scalar => tested(tree, &mut tests),
+        Form::Lanes => separate.iter().for_each(|tree| tested(tree, &mut tests)),
+    }
+    let writer = Writer::new(&model.graph, &model.curves, form, &roots, &tests);
+    let coordinates = writer.coordinates();
+    let together = |values: Vec<TokenStream>| match values.as_slice() {
+        [one] => one.clone(),
+        _ => quote! { [#(#values),*] },
+    };
+    let code = match form {
+        Form::Scalar => writer.nested(
+            tree,
+            &|ids: &Vec<Id>| ids.clone(),
+            &|w, ids| together(ids.iter().map(|id| w.leaf(*id)).collect()),
+            &BTreeSet::new(),
+        ),
+        Form::Lanes => {
+            let lets = writer.straight(&roots, &tests);
+            let values = together(separate.iter().map(|tree| writer.selects(tree)).collect());
+            quote! { #lets #values }
+        }
+    };
+    quote! { #coordinates #code }
+}
+
+/// The tree of one component.
+fn tree_part(tree: &Tree<Vec<Id>>, part: usize) -> Option<Tree<Id>> {
+    tree.map(&|ids: &Vec<Id>| ids.get(part).copied())
+}
+
+fn leaf_width(tree: &Tree<Vec<Id>>) -> usize {
+    match tree {
+        Tree::Leaf(ids) => ids.len(),
+        Tree::Split { below, .. } => leaf_width(below),
+    }
+}
+
+fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
+    match tree {
+        Tree::Leaf(ids) => roots.extend(ids),
+        Tree::Split { below, above, .. } => {
+            leaves(below, roots);
+            leaves(above, roots);
+        }
+    }
+}
+
+fn contains(tool: &Checked, form: Form) -> TokenStream {
+    let model = &tool.model;
+    let tree = &tool.plan.inside;
+    let mut tests = BTreeSet::new();
+    tested(tree, &mut tests);
+    let writer = Writer::new(&model.graph, &model.curves, form, &[], &tests);
+    let coordinates = writer.coordinates();
+    let (name, _) = signature(form, "contains");
+    match form {
+        Form::Scalar => {
+            let code =
+                writer.nested(tree, &|_| vec![], &|_, inside| quote! { #inside }, &BTreeSet::new());
+            function(form, &name, &quote! {}, &quote! { bool }, &quote! { #coordinates #code })
+        }
+        Form::Lanes => {
+            let lets = writer.straight(&[], &tests);
+            let logic = writer.logic(tree);
+            let body = quote! { #coordinates #lets #logic };
+            function(form, &name, &quote! {}, &quote! { L::Mask }, &body)
+        }
+    }
+}
+
+/// The place of a point's region in the list; `None`, or -1 in lanes, outside.
+fn owner(tool: &Checked, form: Form) -> TokenStream {
+    let model = &tool.model;
+    let tree = &tool.plan.owner;
+    let mut tests = BTreeSet::new();
+    tested(tree, &mut tests);
+    let writer = Writer::new(&model.graph, &model.curves, form, &[], &tests);
+    let coordinates = writer.coordinates();
+    let (name, _) = signature(form, "owner");
+    match form {
+        Form::Scalar => {
+            let leaf = |_: &Writer<'_>, owner: &Option<usize>| match owner {
+                Some(index) => quote! { Some(#index) },
+                None => quote! { None },
+            };
+            let code = writer.nested(tree, &|_| vec![], &leaf, &BTreeSet::new());
+            function(
+                form,
+                &name,
+                &quote! {},
+                &quote! { Option<usize> },
+                &quote! { #coordinates #code },
+            )
+        }
+        Form::Lanes => {
+            let lets = writer.straight(&[], &tests);
+            let indices = owner_lanes(tree);
+            let body = quote! { #coordinates #lets #indices };
+            function(form, &name, &quote! {}, &quote! { L }, &body)
+        }
+    }
+}
+
+fn owner_lanes(tree: &Tree<Option<usize>>) -> TokenStream {
+    match tree {
+        Tree::Leaf(owner) => {
+            let index = literal(owner.map_or(-1.0, |index| index as f64));
+            quote! { z.of(#index) }
+        }
+        Tree::Split { curve, strict, below, above } => {
+            let mask = code::mask(*curve, *strict);
+            let (below, above) = (owner_lanes(below), owner_lanes(above));
+            quote! { Lane::select(#mask, #below, #above) }
+        }
+    }
+}
+
+/// The code as a person reads it.
+pub fn rust(tool: &Checked) -> String {
+    let tokens = emit(tool);
+    match syn::parse2(tokens.clone()) {
+        Ok(file) => prettyplease::unparse(&file),
+        Err(_) => tokens.to_string(),
+    }
+}

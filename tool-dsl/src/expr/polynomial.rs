@@ -1,0 +1,103 @@
+//! Expressions as polynomials of the coordinates, where they are such: to recognise curves that
+//! are equal up to a factor.
+
+use super::{Coord, Graph, Id, Node};
+use crate::number::Number;
+use std::collections::BTreeMap;
+
+/// Exponents of (d, x, y, z); d² is the same as x² + y² only outside this module.
+type Monomial = [u8; 4];
+
+/// A sum of monomials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polynomial(BTreeMap<Monomial, Number>);
+
+/// The highest degree that is recognised.
+const DEGREE: u8 = 8;
+
+impl Polynomial {
+    /// The polynomial that a node is, if it is one.
+    pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
+        let single = |monomial, value: Number| Polynomial(BTreeMap::from([(monomial, value)]));
+        Some(match graph.node(id) {
+            Node::Const(value) => single([0; 4], value.clone()),
+            Node::Coord(coord) => single(
+                match coord {
+                    Coord::D => [1, 0, 0, 0],
+                    Coord::Q => [2, 0, 0, 0],
+                    Coord::X => [0, 1, 0, 0],
+                    Coord::Y => [0, 0, 1, 0],
+                    Coord::Z => [0, 0, 0, 1],
+                    Coord::Length | Coord::PerLength => return None,
+                },
+                Number::int(1),
+            ),
+            Node::Neg(a) => Polynomial::of(graph, *a)?.scaled(&Number::int(-1)),
+            Node::Add(a, b) => Polynomial::of(graph, *a)?.plus(&Polynomial::of(graph, *b)?),
+            Node::Sub(a, b) => Polynomial::of(graph, *a)?
+                .plus(&Polynomial::of(graph, *b)?.scaled(&Number::int(-1))),
+            Node::Mul(a, b) => Polynomial::of(graph, *a)?.times(&Polynomial::of(graph, *b)?)?,
+            _ => return None,
+        })
+    }
+
+    fn scaled(&self, factor: &Number) -> Polynomial {
+        Polynomial(self.0.iter().map(|(m, c)| (*m, c * factor)).collect())
+    }
+
+    fn plus(mut self, other: &Polynomial) -> Polynomial {
+        for (monomial, value) in &other.0 {
+            let sum = match self.0.get(monomial) {
+                Some(own) if own.agrees(&-value) => Number::int(0),
+                Some(own) => own + value,
+                None => value.clone(),
+            };
+            self.0.insert(*monomial, sum);
+        }
+        self.0.retain(|_, value| !value.is_zero());
+        self
+    }
+
+    fn times(&self, other: &Polynomial) -> Option<Polynomial> {
+        let mut product = Polynomial(BTreeMap::new());
+        for (left, a) in &self.0 {
+            for (right, b) in &other.0 {
+                let mut monomial = *left;
+                for (sum, more) in monomial.iter_mut().zip(right) {
+                    *sum += more;
+                }
+                if monomial.iter().sum::<u8>() > DEGREE {
+                    return None;
+                }
+                product = product.plus(&Polynomial(BTreeMap::from([(monomial, a * b)])));
+            }
+        }
+        Some(product)
+    }
+
+    /// The factor by which `self` is `other`, if it is a multiple of it.
+    pub fn ratio(&self, other: &Polynomial) -> Option<Number> {
+        let factor = self.0.first_key_value()?.1.over(other.0.first_key_value()?.1)?;
+        let same = self.0.len() == other.0.len()
+            && self
+                .0
+                .iter()
+                .zip(&other.0)
+                .all(|((m, a), (n, b))| m == n && a.agrees(&(b * &factor)));
+        same.then_some(factor)
+    }
+
+    /// The value, if nothing but a constant is left.
+    pub fn constant(&self) -> Option<Number> {
+        match self.0.len() {
+            0 => Some(Number::int(0)),
+            1 => self.0.get(&[0; 4]).cloned(),
+            _ => None,
+        }
+    }
+
+    /// The terms.
+    pub fn terms(&self) -> impl Iterator<Item = (Monomial, &Number)> {
+        self.0.iter().map(|(monomial, value)| (*monomial, value))
+    }
+}

@@ -1,0 +1,113 @@
+//! The value of expressions at a point, in `f64`, one operation at a time in the graph's order:
+//! the reference for emitted code, which performs the same operations.
+
+use super::{Coord, Graph, Id, Node};
+
+/// Evaluates chosen nodes of a graph again and again.
+#[derive(Clone, Debug)]
+pub struct Evaluator<'g> {
+    graph: &'g Graph,
+    order: Vec<Id>,
+    values: Vec<f64>,
+}
+
+/// A point by its coordinates in the tool's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct At {
+    /// x
+    pub x: f64,
+    /// y
+    pub y: f64,
+    /// z
+    pub z: f64,
+    /// `sqrt(x² + y²)`
+    pub d: f64,
+    /// `x² + y²`
+    pub q: f64,
+    /// The file's unit of length in the part's
+    pub length: f64,
+}
+
+impl At {
+    /// A point of space.
+    pub fn point(x: f64, y: f64, z: f64) -> At {
+        let q = x * x + y * y;
+        At { x, y, z, d: q.sqrt(), q, length: 1.0 }
+    }
+
+    /// A point of the half plane that the profile lies in.
+    pub fn meridian(d: f64, z: f64) -> At {
+        At { x: d, y: 0.0, z, d, q: d * d, length: 1.0 }
+    }
+}
+
+impl<'g> Evaluator<'g> {
+    /// An evaluator of some nodes.
+    pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Evaluator<'g> {
+        let mut order = graph.needed(roots);
+        let mut values = vec![0.0; graph.nodes().len()];
+        // Constants are rounded once, not at every point.
+        order.retain(|id| match graph.constant(*id) {
+            Some(value) => {
+                values[id.index()] = value.to_f64();
+                false
+            }
+            None => true,
+        });
+        Evaluator { graph, order, values }
+    }
+
+    /// Moves to a point.
+    pub fn set(&mut self, at: At) {
+        for &id in &self.order {
+            let v = |id: Id| self.values[id.index()];
+            self.values[id.index()] = match self.graph.node(id) {
+                Node::Const(_) => v(id),
+                Node::Coord(Coord::X) => at.x,
+                Node::Coord(Coord::Y) => at.y,
+                Node::Coord(Coord::Z) => at.z,
+                Node::Coord(Coord::D) => at.d,
+                Node::Coord(Coord::Q) => at.q,
+                Node::Coord(Coord::Length) => at.length,
+                Node::Coord(Coord::PerLength) => 1.0 / at.length,
+                Node::Neg(a) => -v(*a),
+                Node::Add(a, b) => v(*a) + v(*b),
+                Node::Sub(a, b) => v(*a) - v(*b),
+                Node::Mul(a, b) => v(*a) * v(*b),
+                Node::Div(a, b) => v(*a) / v(*b),
+                Node::Quotient(a, b) => quotient(v(*a), v(*b)),
+                Node::Min(a, b) => min(v(*a), v(*b)),
+                Node::Max(a, b) => max(v(*a), v(*b)),
+                Node::Abs(a) => v(*a).abs(),
+                Node::Sqrt(a) => v(*a).sqrt(),
+                Node::Select { low, high, then, other } => {
+                    if v(*low) <= v(*high) {
+                        v(*then)
+                    } else {
+                        v(*other)
+                    }
+                }
+            };
+        }
+    }
+
+    /// The value of a node at the present point.
+    pub fn get(&self, id: Id) -> f64 {
+        self.values[id.index()]
+    }
+}
+
+/// `a / b`, and 0 where `b` is 0.
+pub fn quotient(a: f64, b: f64) -> f64 {
+    if b == 0.0 { 0.0 } else { a / b }
+}
+
+/// The smaller; `b` if they are equal or one is NaN (as SSE and AVX decide).
+pub fn min(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger; `b` if they are equal or one is NaN.
+pub fn max(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}

@@ -1,0 +1,93 @@
+//! Which points a region has: "and" and "or" over the sides of splitting curves.
+
+/// The place of a curve in [`crate::model::Model::curves`].
+pub type CurveIndex = usize;
+
+/// A condition on the signs of curves. Both sides of an atom are closed: `below` is `c ≤ 0`, its
+/// opposite `c ≥ 0`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Formula {
+    /// Always or never.
+    Const(bool),
+    /// One side of a curve.
+    Atom {
+        /// Which curve.
+        curve: CurveIndex,
+        /// `c ≤ 0` rather than `c ≥ 0`.
+        below: bool,
+    },
+    /// All hold.
+    All(Vec<Formula>),
+    /// One holds.
+    Any(Vec<Formula>),
+}
+
+/// What is known of a curve's sign: a set of `NEGATIVE`, `ZERO` and `POSITIVE`.
+pub type Signs = u8;
+/// `c < 0`
+pub const NEGATIVE: Signs = 1;
+/// `c = 0`
+pub const ZERO: Signs = 2;
+/// `c > 0`
+pub const POSITIVE: Signs = 4;
+/// Nothing is known.
+pub const ANY: Signs = 7;
+
+impl Formula {
+    /// Whether it holds where the curves have these values. A NaN is on no side.
+    pub fn holds(&self, value: &impl Fn(CurveIndex) -> f64) -> bool {
+        match self {
+            Formula::Const(constant) => *constant,
+            Formula::Atom { curve, below: true } => value(*curve) <= 0.0,
+            Formula::Atom { curve, below: false } => value(*curve) >= 0.0,
+            Formula::All(parts) => parts.iter().all(|part| part.holds(value)),
+            Formula::Any(parts) => parts.iter().any(|part| part.holds(value)),
+        }
+    }
+
+    /// Whether it holds, as far as the known signs decide.
+    pub fn decided(&self, signs: &[Signs]) -> Option<bool> {
+        match self {
+            Formula::Const(constant) => Some(*constant),
+            Formula::Atom { curve, below } => {
+                let inside = if *below { NEGATIVE | ZERO } else { POSITIVE | ZERO };
+                match signs[*curve] {
+                    known if known & !inside == 0 => Some(true),
+                    known if known & inside == 0 => Some(false),
+                    _ => None,
+                }
+            }
+            Formula::All(parts) => all(parts.iter().map(|part| part.decided(signs))),
+            Formula::Any(parts) => {
+                all(parts.iter().map(|part| part.decided(signs).map(|d| !d))).map(|d| !d)
+            }
+        }
+    }
+
+    /// The atoms whose curve is not yet decided, in order.
+    pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
+        match self {
+            Formula::Atom { curve, below } if self.decided(signs).is_none() => {
+                atoms.push((*curve, *below));
+            }
+            Formula::All(parts) | Formula::Any(parts) if self.decided(signs).is_none() => {
+                for part in parts {
+                    part.open(signs, atoms);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+fn all(parts: impl Iterator<Item = Option<bool>>) -> Option<bool> {
+    let mut result = Some(true);
+    for part in parts {
+        match part {
+            Some(false) => return Some(false),
+            Some(true) => {}
+            None => result = None,
+        }
+    }
+    result
+}

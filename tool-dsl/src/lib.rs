@@ -1,0 +1,97 @@
+//! The compiler of `.tool` files, an ordinary library.
+//!
+//! ```text
+//! text ──syntax──▶ tree ──resolve──▶ model ──bound, look──▶ checked tool ──plan──▶ splits
+//!                                                                 │
+//!                                    Rust tokens ◀──emit──────────┼──────interpret──▶ values
+//! ```
+//!
+//! A [`Checked`] tool has no error left in it: [`emit::emit`] and [`interpret::Interpreter`]
+//! cannot fail.
+
+pub mod bound;
+pub mod emit;
+pub mod expr;
+pub mod formula;
+pub mod interpret;
+mod look;
+pub mod model;
+pub mod number;
+pub mod plan;
+pub mod report;
+pub mod resolve;
+pub mod source;
+pub mod syntax;
+
+use bound::{Extent, Slab};
+use model::Model;
+use plan::Plan;
+use report::{Report, any_error};
+use source::Source;
+
+/// A tool that was looked over and found good, with everything that is emitted about it.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// What the file says.
+    pub model: Model,
+    /// How far the solid reaches.
+    pub extent: Extent,
+    /// Its largest radius along the axis.
+    pub envelope: Vec<Slab>,
+    /// The order of splits.
+    pub plan: Plan,
+}
+
+/// What came of compiling a text.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The tool, if there is no error.
+    pub tool: Option<Box<Checked>>,
+    /// The tool's name, if the text got so far.
+    pub name: Option<String>,
+    /// Errors and warnings.
+    pub reports: Vec<Report>,
+}
+
+/// Compiles a tool's text as far as a checked tool.
+pub fn compile(source: &Source) -> Compiled {
+    let (tree, mut reports) = syntax::parse(source);
+    let Some(tree) = tree else { return Compiled { tool: None, name: None, reports } };
+    let name = Some(tree.name.word.clone());
+    let (model, found) = resolve::resolve(&tree);
+    // What a broken item would have defined is missing below: say only what is sure.
+    let broken = any_error(&reports);
+    reports.extend(found.into_iter().filter(|report| !broken || !about_a_missing_name(report)));
+    let tool = match model {
+        Some(model) if !any_error(&reports) => match check(model, &mut reports) {
+            Ok(tool) => Some(Box::new(tool)),
+            Err(report) => {
+                reports.push(report);
+                None
+            }
+        },
+        _ => None,
+    };
+    let tool = tool.filter(|_| !any_error(&reports));
+    reports.sort_by_key(|report| report.span.start);
+    Compiled { tool, name, reports }
+}
+
+fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
+    let extent = bound::extent(&model)?;
+    reports.extend(look::look(&model, &extent));
+    if any_error(reports) {
+        // The plan would only repeat what is wrong.
+        let plan = Plan { owner: plan::Tree::Leaf(None), inside: plan::Tree::Leaf(false) };
+        return Ok(Checked { model, extent, envelope: Vec::new(), plan });
+    }
+    let envelope = bound::envelope(&model, &extent);
+    let plan = plan::plan(&model, &extent)?;
+    Ok(Checked { model, extent, envelope, plan })
+}
+
+fn about_a_missing_name(report: &Report) -> bool {
+    ["unknown", "is never used", "has no region", "no unit", "is not the first item"]
+        .iter()
+        .any(|hint| report.message.contains(hint))
+}

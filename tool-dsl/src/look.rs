@@ -1,0 +1,283 @@
+//! Looks for what is wrong with a tool at many points of its section: regions that overlap, are
+//! never reached or say nonsense. What is found comes with the point where it was found.
+
+use crate::bound::Extent;
+use crate::expr::Id;
+use crate::expr::value::{At, Evaluator};
+use crate::formula::{CurveIndex, Formula};
+use crate::model::{Model, Region};
+use crate::plan::spread;
+use crate::report::{Report, any_error};
+use crate::source::Span;
+
+/// Points of the section that are looked at.
+const POINTS: usize = 12_000;
+/// Ways from the inside to the outside along which the surface is sought.
+const CROSSINGS: usize = 1_500;
+/// Lengths below this part of the tool's size are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Everything that is found, each kind once a region.
+pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
+    let roots = model
+        .regions
+        .iter()
+        .flat_map(|r| [r.depth, r.magnitude, r.niceness, r.course.0[0], r.course.0[1]])
+        .chain(model.curves.iter().map(|curve| curve.value));
+    let mut look = Look {
+        model,
+        size: extent.scale(),
+        evaluator: Evaluator::new(&model.graph, roots),
+        found: Vec::new(),
+        wins: vec![0; model.regions.len()],
+        holds: vec![0; model.regions.len()],
+        beaten: vec![None; model.regions.len()],
+    };
+    look.tip(extent);
+    let mut inside = Vec::new();
+    let mut outside = Vec::new();
+    for point in spread(extent, POINTS, 0.02) {
+        match look.point(point) {
+            Some(_) => inside.push(point),
+            None => outside.push(point),
+        }
+    }
+    look.idle_regions();
+    if !any_error(&look.found) {
+        let pairs = inside.iter().cycle().step_by(7).zip(outside.iter().cycle().step_by(5));
+        for (a, b) in pairs.take(if outside.is_empty() { 0 } else { CROSSINGS }) {
+            look.crossing(*a, *b);
+        }
+    }
+    look.found
+}
+
+struct Look<'m> {
+    model: &'m Model,
+    size: f64,
+    evaluator: Evaluator<'m>,
+    found: Vec<Report>,
+    wins: Vec<usize>,
+    holds: Vec<usize>,
+    /// Who owns a point that this region would have had.
+    beaten: Vec<Option<usize>>,
+}
+
+impl Look<'_> {
+    fn place(&self, [d, z]: [f64; 2]) -> String {
+        let digits = |v: f64| (v * 1e6 / self.size).round() * self.size / 1e6 + 0.0;
+        let tidy = |v: f64| {
+            format!("{:.6}", digits(v)).trim_end_matches('0').trim_end_matches('.').to_owned()
+        };
+        format!("({}, {})", tidy(d), tidy(self.model.frame.to_file(z)))
+    }
+
+    /// Reports something once a place of the text.
+    fn report(&mut self, report: Report) {
+        if !self.found.iter().any(|r| r.span == report.span && r.severity == report.severity) {
+            self.found.push(report);
+        }
+    }
+
+    fn value(&self, curve: CurveIndex) -> f64 {
+        self.evaluator.get(self.model.curves[curve].value)
+    }
+
+    fn owner(&mut self, point: [f64; 2]) -> Option<usize> {
+        self.evaluator.set(At::meridian(point[0], point[1]));
+        let value = |curve: CurveIndex| self.value(curve);
+        self.model.regions.iter().position(|region| region.inside.holds(&value))
+    }
+
+    /// The tool's end is its tip.
+    fn tip(&mut self, extent: &Extent) {
+        if extent.low.abs() > 1e-6 * self.size {
+            let frame = &self.model.frame;
+            let end = frame.to_file(extent.low);
+            let rounded = (end * 1e6).round() / 1e6 + 0.0;
+            self.found.push(
+                Report::error(
+                    self.model.name_span,
+                    format!("the tool ends at z = {rounded} and its tip is said to be at {}", frame.tip.to_f64()),
+                )
+                .help(format!("write `tip z = {rounded};`, and `spindle -z;` if the spindle lies toward smaller z")),
+            );
+        }
+    }
+
+    /// Looks at one point; its owner comes back.
+    fn point(&mut self, point: [f64; 2]) -> Option<usize> {
+        let owner = self.owner(point);
+        self.undefined_curves(point);
+        let value = |curve: CurveIndex| self.value(curve);
+        let claims: Vec<usize> = (0..self.model.regions.len())
+            .filter(|r| self.model.regions[*r].inside.holds(&value))
+            .collect();
+        let deep = |r: usize| inner(&self.model.regions[r].inside, &value);
+        let overlap = match claims.as_slice() {
+            [first, second, ..] if deep(*first) && deep(*second) => Some((*first, *second)),
+            _ => None,
+        };
+        for claim in &claims {
+            self.holds[*claim] += 1;
+            if Some(*claim) != owner {
+                self.beaten[*claim] = owner;
+            }
+        }
+        if let Some((first, second)) = overlap {
+            let (a, b) = (&self.model.regions[first], &self.model.regions[second]);
+            let report = Report::error(
+                b.span,
+                format!(
+                    "regions {} and {} overlap, for instance at {}",
+                    a.name,
+                    b.name,
+                    self.place(point)
+                ),
+            )
+            .and(a.span, "the other one")
+            .help("bound one of them by the curve that divides them");
+            self.report(report);
+        }
+        let owner = owner?;
+        self.wins[owner] += 1;
+        self.felt(&self.model.regions[owner], point);
+        Some(owner)
+    }
+
+    /// Values that make no sense.
+    fn felt(&mut self, region: &Region, point: [f64; 2]) {
+        let (name, place) = (&region.name, self.place(point));
+        let get = |id: Id| self.evaluator.get(id);
+        let tidy = |v: f64| (v * 1e6).round() / 1e6;
+        let sayings = [
+            ("depth", region.depth, self.size * ROUNDING),
+            ("magnitude", region.magnitude, ROUNDING),
+            ("niceness", region.niceness, f64::INFINITY),
+        ];
+        for (what, id, slack) in sayings {
+            let value = get(id);
+            let place = &place;
+            let report = if !value.is_finite() {
+                Report::error(
+                    region.depth_span,
+                    format!("`{what}` of {name} is undefined at {place}"),
+                )
+                .help("a square root of a negative number, or a division by zero")
+            } else if value < -slack {
+                Report::error(
+                    region.depth_span,
+                    format!("`{what}` of {name} is {} at {place}", tidy(value)),
+                )
+                .help("it is never negative inside: turn a sign, or bound the region")
+            } else {
+                continue;
+            };
+            return self.report(report);
+        }
+        let [a, b] = region.course.0.map(get);
+        if !a.is_finite() || !b.is_finite() || (a == 0.0 && b == 0.0) {
+            let report = Report::error(
+                region.course.1,
+                format!("the direction of {name} vanishes at {place}"),
+            )
+            .help("give a vector that is not (0, 0), or `toward` a point");
+            self.report(report);
+        }
+    }
+
+    /// Curves that have no value somewhere have no side there.
+    fn undefined_curves(&mut self, point: [f64; 2]) {
+        for curve in 0..self.model.curves.len() {
+            if self.value(curve).is_finite() {
+                continue;
+            }
+            let name = self.model.curves[curve].name.clone();
+            let what =
+                name.map_or_else(|| "a condition".to_owned(), |name| format!("curve `{name}`"));
+            let span = self.reader_of(curve);
+            let report = Report::error(span, format!("{what} is undefined at {}", self.place(point)))
+                .help("a square root of a negative number, or a division by zero: write the condition without it");
+            self.report(report);
+        }
+    }
+
+    /// A region whose conditions read a curve.
+    fn reader_of(&self, curve: CurveIndex) -> Span {
+        let reads = |region: &&Region| mentions(&region.inside, curve);
+        self.model.regions.iter().find(reads).map_or(self.model.name_span, |region| region.span)
+    }
+
+    fn idle_regions(&mut self) {
+        for (index, region) in self.model.regions.iter().enumerate() {
+            if self.wins[index] > 0 {
+                continue;
+            }
+            let report = match self.beaten[index].map(|other| &self.model.regions[other]) {
+                Some(other) if self.holds[index] > 2 => Report::error(
+                    region.span,
+                    format!(
+                        "region {} never wins a point: {}, listed before it, covers it",
+                        region.name, other.name
+                    ),
+                )
+                .and(other.span, "this one")
+                .help("drop it, or list it earlier"),
+                _ => Report::warning(
+                    region.span,
+                    format!("region {} has none of {POINTS} points of the section", region.name),
+                )
+                .help("do its conditions contradict one another?"),
+            };
+            self.found.push(report);
+        }
+    }
+
+    /// The depth is 0 where the way from an inside to an outside point meets the surface.
+    fn crossing(&mut self, inside: [f64; 2], outside: [f64; 2]) {
+        let (mut good, mut bad) = (0.0, 1.0);
+        let at = |t: f64| {
+            [inside[0] + (outside[0] - inside[0]) * t, inside[1] + (outside[1] - inside[1]) * t]
+        };
+        for _ in 0..50 {
+            let middle = (good + bad) / 2.0;
+            if self.owner(at(middle)).is_some() { good = middle } else { bad = middle }
+        }
+        let point = at(good);
+        let Some(owner) = self.owner(point) else { return };
+        let region = &self.model.regions[owner];
+        let depth = self.evaluator.get(region.depth);
+        if depth.abs() > 1e-6 * self.size {
+            let value = (depth * 1e6).round() / 1e6;
+            let report = Report::error(
+                region.depth_span,
+                format!(
+                    "`depth` of {} is {value} at {}, on the surface",
+                    region.name,
+                    self.place(point)
+                ),
+            )
+            .help("is a region missing beside it? A depth is 0 on the surface");
+            self.report(report);
+        }
+    }
+}
+
+/// Whether a formula holds with room to spare.
+fn inner(formula: &Formula, value: &impl Fn(CurveIndex) -> f64) -> bool {
+    formula.holds(&|curve| {
+        let value = value(curve);
+        // What is nearly 0 is on no side.
+        if value.abs() < ROUNDING { f64::NAN } else { value }
+    })
+}
+
+fn mentions(formula: &Formula, wanted: CurveIndex) -> bool {
+    match formula {
+        Formula::Const(_) => false,
+        Formula::Atom { curve, .. } => *curve == wanted,
+        Formula::All(parts) | Formula::Any(parts) => {
+            parts.iter().any(|part| mentions(part, wanted))
+        }
+    }
+}

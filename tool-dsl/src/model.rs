@@ -1,0 +1,165 @@
+//! A tool whose every name, dimension and rule is settled: what the compiler reasons about.
+//!
+//! All expressions are in the tool's frame (tip at the origin, +z toward the spindle) and the
+//! file's unit. A point belongs to the first region whose formula holds; elsewhere it is outside.
+
+use crate::expr::{Coord, Graph, Id};
+use crate::formula::{CurveIndex, Formula};
+use crate::number::Number;
+use crate::source::Span;
+
+/// A unit of length that a file may state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// `mm`
+    Millimetre,
+    /// `inch`
+    Inch,
+    /// `m`
+    Metre,
+}
+
+impl Unit {
+    /// The unit of a word.
+    pub fn from_word(word: &str) -> Option<Unit> {
+        [Unit::Millimetre, Unit::Inch, Unit::Metre].into_iter().find(|unit| unit.word() == word)
+    }
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Unit::Millimetre => "mm",
+            Unit::Inch => "inch",
+            Unit::Metre => "m",
+        }
+    }
+
+    /// Its length in tenths of a millimetre, a whole number for all.
+    fn tenths(self) -> i64 {
+        match self {
+            Unit::Millimetre => 10,
+            Unit::Inch => 254,
+            Unit::Metre => 10_000,
+        }
+    }
+
+    /// The exact factor that turns a length in `self` into one in `other`.
+    pub fn to(self, other: Unit) -> Number {
+        &Number::int(self.tenths()) / &Number::int(other.tenths())
+    }
+}
+
+/// A tool, resolved.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The type's name.
+    pub name: String,
+    /// Where it stands.
+    pub name_span: Span,
+    /// What it is, for people.
+    pub title: Option<String>,
+    /// The file's unit.
+    pub unit: Unit,
+    /// All expressions.
+    pub graph: Graph,
+    /// Where the file's coordinates lie in the tool's frame.
+    pub frame: Frame,
+    /// The splitting curves: every curve on whose side a region depends.
+    pub curves: Vec<Curve>,
+    /// The surfaces.
+    pub surfaces: Vec<Surface>,
+    /// The regions, as listed.
+    pub regions: Vec<Region>,
+    /// The curves that `bsp` wants tried first.
+    pub first: Vec<CurveIndex>,
+}
+
+/// `z_tool = z_file - tip`, or `tip - z_file` where the spindle lies toward smaller z.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The tip's z in the file.
+    pub tip: Number,
+    /// Whether the spindle lies toward the file's -z.
+    pub down: bool,
+}
+
+impl Frame {
+    /// The tool's z as the file's.
+    pub fn to_file(&self, z: f64) -> f64 {
+        if self.down { self.tip.to_f64() - z } else { self.tip.to_f64() + z }
+    }
+
+    /// The file's z, as an expression in the tool's.
+    pub fn file_z(&self, graph: &mut Graph) -> Id {
+        let z = graph.coord(Coord::Z);
+        let tip = graph.number(self.tip.clone());
+        if self.down { graph.sub(tip, z) } else { graph.add(z, tip) }
+    }
+
+    /// A constant z of the file in the tool's frame.
+    pub fn to_tool(&self, z: &Number) -> Number {
+        if self.down { &self.tip - z } else { z - &self.tip }
+    }
+}
+
+/// A splitting curve, the zeros of an expression.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// The file's name for it, if it has one.
+    pub name: Option<String>,
+    /// Zero on the curve.
+    pub value: Id,
+}
+
+/// A surface of the tool.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Its name.
+    pub name: String,
+    /// Whether it cuts.
+    pub cutting: bool,
+    /// Where it was first named.
+    pub span: Span,
+}
+
+/// A region of the tool's inside, and what is felt there.
+#[derive(Clone, Debug)]
+pub struct Region {
+    /// Its name.
+    pub name: String,
+    /// Where it is named.
+    pub span: Span,
+    /// The surface it belongs to.
+    pub surface: usize,
+    /// The points it has, but for those of regions listed earlier.
+    pub inside: Formula,
+    /// How deep a point lies, as the file says it.
+    pub depth: Id,
+    /// Where `depth` is said.
+    pub depth_span: Span,
+    /// How hard it is pushed, as the file says it.
+    pub magnitude: Id,
+    /// The direction to the surface in (d, z), a unit vector.
+    pub direction: [Id; 2],
+    /// The direction before it was made a unit vector, and where it is said.
+    pub course: ([Id; 2], Span),
+    /// How good a contact is, as the file says it.
+    pub niceness: Id,
+    /// What the evaluators compute.
+    pub outputs: Outputs,
+}
+
+/// The expressions that evaluators compute in a region, at a point x, y, z of the tool's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outputs {
+    /// Penetration depth in the file's unit, never below 0.
+    pub depth: Id,
+    /// Magnitude. If it is the depth, in the part's unit; else a number of the file's own.
+    pub magnitude: Id,
+    /// The magnitude's gradient by the point's position in the part's unit.
+    pub gradient: [Id; 3],
+    /// Unit vector to the nearest surface.
+    pub direction: [Id; 3],
+    /// Niceness, never below 0.
+    pub niceness: Id,
+}

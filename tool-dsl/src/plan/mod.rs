@@ -1,0 +1,313 @@
+//! The order of splits: a binary space partition of the tool's section by its curves.
+//!
+//! Every test takes a curve's zero to one side, that of the region listed earlier; where both
+//! sides want it, the curve is split once more. A side that provably has no point is not tested
+//! for ([`empty`]). So a tree gives every point its owner exactly as the regions' list does, and
+//! only the order of the tests is chosen: greedily by the information that they give about
+//! samples of the section, cheap curves first, `bsp` before all.
+
+mod empty;
+
+use crate::bound::Extent;
+use crate::expr::value::{At, Evaluator};
+use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::model::Model;
+use crate::report::Report;
+use empty::Void;
+
+/// The most tests of one tree.
+const LARGEST: usize = 20_000;
+
+/// A binary decision tree over the curves' signs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Tree<L> {
+    /// Decided.
+    Leaf(L),
+    /// To be decided by one more sign.
+    Split {
+        /// Which curve.
+        curve: CurveIndex,
+        /// Whether its zeros go to `above`: the test is `c < 0` rather than `c ≤ 0`.
+        strict: bool,
+        /// Where the test holds.
+        below: Box<Tree<L>>,
+        /// Where it does not.
+        above: Box<Tree<L>>,
+    },
+}
+
+impl<L: Clone + PartialEq> Tree<L> {
+    /// A split, or its common leaf if it makes no difference.
+    fn split(curve: CurveIndex, strict: bool, below: Tree<L>, above: Tree<L>) -> Tree<L> {
+        if below == above {
+            return below;
+        }
+        Tree::Split { curve, strict, below: Box::new(below), above: Box::new(above) }
+    }
+
+    /// The tree with other leaves; `None` is a leaf that nobody asks for and joins its sibling.
+    pub fn map<M: Clone + PartialEq>(&self, leaf: &impl Fn(&L) -> Option<M>) -> Option<Tree<M>> {
+        match self {
+            Tree::Leaf(own) => leaf(own).map(Tree::Leaf),
+            Tree::Split { curve, strict, below, above } => {
+                match (below.map(leaf), above.map(leaf)) {
+                    (Some(below), Some(above)) => Some(Tree::split(*curve, *strict, below, above)),
+                    (one, other) => one.or(other),
+                }
+            }
+        }
+    }
+
+    /// How many tests there are.
+    pub fn tests(&self) -> usize {
+        match self {
+            Tree::Leaf(_) => 0,
+            Tree::Split { below, above, .. } => 1 + below.tests() + above.tests(),
+        }
+    }
+
+    /// The leaf of a point where the curves have these values.
+    pub fn at(&self, value: &impl Fn(CurveIndex) -> f64) -> &L {
+        match self {
+            Tree::Leaf(leaf) => leaf,
+            Tree::Split { curve, strict, below, above } => {
+                let value_here = value(*curve);
+                let holds = if *strict { value_here < 0.0 } else { value_here <= 0.0 };
+                if holds { below.at(value) } else { above.at(value) }
+            }
+        }
+    }
+}
+
+/// The trees of a tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Which region a point belongs to, by its place in the list.
+    pub owner: Tree<Option<usize>>,
+    /// Whether a point belongs to any.
+    pub inside: Tree<bool>,
+}
+
+/// Plans a tool's splits.
+pub fn plan(model: &Model, extent: &Extent) -> Result<Plan, Report> {
+    let samples = samples(model, extent);
+    let all: Vec<u32> = (0..samples.len() as u32).collect();
+    let costs = costs(model);
+    let mut planner =
+        Planner { model, samples: &samples, costs: &costs, void: Void::new(model), tests: 0 };
+    let start = vec![ANY; model.curves.len()];
+    let owner = planner.tree(start.clone(), &all, &|owner| owner)?;
+    planner.tests = 0;
+    let inside = planner.tree(start, &all, &|owner: Option<usize>| owner.is_some())?;
+    Ok(Plan { owner, inside })
+}
+
+/// A point of the section: the side of each curve, and the owner.
+struct Sample {
+    signs: Vec<Signs>,
+    owner: Option<usize>,
+}
+
+/// Points spread evenly over the section's box by the additive recurrence R2 (Roberts 2018).
+pub(crate) fn spread(extent: &Extent, count: usize, around: f64) -> impl Iterator<Item = [f64; 2]> {
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let (height, radius) = (extent.high - extent.low, extent.radius);
+    let low = extent.low - around * height;
+    let (a, b) = (1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC));
+    (1..=count).map(move |k| {
+        let k = k as f64;
+        let (u, v) = ((0.5 + a * k).fract(), (0.5 + b * k).fract());
+        [u * radius * (1.0 + around), low + v * height * (1.0 + 2.0 * around)]
+    })
+}
+
+fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
+    let values = model.curves.iter().map(|curve| curve.value);
+    let mut evaluator = Evaluator::new(&model.graph, values);
+    spread(extent, 2000, 0.05)
+        .map(|[d, z]| {
+            evaluator.set(At::meridian(d, z));
+            let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
+            let owner = model.regions.iter().position(|region| region.inside.holds(&value));
+            let signs = (0..model.curves.len())
+                .map(|curve| match value(curve) {
+                    v if v < 0.0 => NEGATIVE,
+                    v if v > 0.0 => POSITIVE,
+                    _ => ZERO,
+                })
+                .collect();
+            Sample { signs, owner }
+        })
+        .collect()
+}
+
+/// What a curve costs to evaluate, in additions.
+fn costs(model: &Model) -> Vec<f64> {
+    use crate::expr::{Coord, Node};
+    let cost = |node: &Node| match node {
+        Node::Const(_) | Node::Coord(Coord::Z) => 0.0,
+        Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
+        _ => 1.0,
+    };
+    let curve = |curve: &crate::model::Curve| {
+        model.graph.needed([curve.value]).into_iter().map(|id| cost(model.graph.node(id))).sum()
+    };
+    model.curves.iter().map(curve).collect()
+}
+
+struct Planner<'m> {
+    model: &'m Model,
+    samples: &'m [Sample],
+    costs: &'m [f64],
+    void: Void<'m>,
+    tests: usize,
+}
+
+impl Planner<'_> {
+    /// The tree for the points whose curves have these signs.
+    fn tree<L: Clone + PartialEq>(
+        &mut self,
+        mut signs: Vec<Signs>,
+        samples: &[u32],
+        label: &impl Fn(Option<usize>) -> L,
+    ) -> Result<Tree<L>, Report> {
+        loop {
+            let possible = self.possible(&signs);
+            let labels: Vec<L> = possible.iter().map(|owner| label(*owner)).collect();
+            if let Some(first) = labels.first()
+                && labels.iter().all(|other| other == first)
+            {
+                return Ok(Tree::Leaf(first.clone()));
+            }
+            let (curve, strict) = self.choose(&signs, &possible, samples, label);
+            let (below, above) = sides(signs[curve], strict);
+            let of = |side: Signs| -> Vec<u32> {
+                samples
+                    .iter()
+                    .copied()
+                    .filter(|s| self.samples[*s as usize].signs[curve] & side != 0)
+                    .collect()
+            };
+            let (low, high) = (of(below), of(above));
+            // Nobody is asked about a side that has no point.
+            let with = |side| {
+                let mut signs = signs.clone();
+                signs[curve] = side;
+                signs
+            };
+            if low.is_empty() && self.void.proved(&with(below)) {
+                signs[curve] = above;
+                continue;
+            }
+            if high.is_empty() && self.void.proved(&with(above)) {
+                signs[curve] = below;
+                continue;
+            }
+            self.tests += 1;
+            if self.tests > LARGEST {
+                return Err(Report::error(
+                    self.model.name_span,
+                    format!("the regions need more than {LARGEST} tests to tell apart"),
+                )
+                .help("divide the tool by fewer curves"));
+            }
+            let below = self.tree(with(below), &low, label)?;
+            let above = self.tree(with(above), &high, label)?;
+            return Ok(Tree::split(curve, strict, below, above));
+        }
+    }
+
+    /// Who can own a point with these signs, in the order of the list.
+    fn possible(&self, signs: &[Signs]) -> Vec<Option<usize>> {
+        let mut possible = Vec::new();
+        for (index, region) in self.model.regions.iter().enumerate() {
+            match region.inside.decided(signs) {
+                Some(true) => {
+                    possible.push(Some(index));
+                    return possible;
+                }
+                Some(false) => {}
+                None => possible.push(Some(index)),
+            }
+        }
+        possible.push(None);
+        possible
+    }
+
+    /// The next test: a curve, and whether its zeros go above.
+    fn choose<L: PartialEq>(
+        &self,
+        signs: &[Signs],
+        possible: &[Option<usize>],
+        samples: &[u32],
+        label: &impl Fn(Option<usize>) -> L,
+    ) -> (CurveIndex, bool) {
+        let mut atoms = Vec::new();
+        for region in possible.iter().flatten() {
+            self.model.regions[*region].inside.open(signs, &mut atoms);
+        }
+        let mut tried: Vec<CurveIndex> = Vec::new();
+        let mut best: Option<(f64, CurveIndex)> = None;
+        let listed = self.model.first.iter().find(|first| atoms.iter().any(|(c, _)| c == *first));
+        for (curve, _) in &atoms {
+            if tried.contains(curve) {
+                continue;
+            }
+            tried.push(*curve);
+            let gain = self.gain(*curve, samples, label) - 0.01 * self.costs[*curve];
+            if best.is_none_or(|(most, _)| gain > most) {
+                best = Some((gain, *curve));
+            }
+        }
+        let curve = listed.copied().or(best.map(|(_, curve)| curve)).unwrap_or(0);
+        // The zero goes to the side of the region listed earlier.
+        let below = atoms.iter().find(|(c, _)| *c == curve).is_none_or(|(_, below)| *below);
+        let strict = match signs[curve] {
+            s if s & (NEGATIVE | POSITIVE) == NEGATIVE => true,
+            s if s & (NEGATIVE | POSITIVE) == POSITIVE => false,
+            _ => !below,
+        };
+        (curve, strict)
+    }
+
+    /// Bits of information that a curve's sign gives about the labels of samples.
+    fn gain<L: PartialEq>(
+        &self,
+        curve: CurveIndex,
+        samples: &[u32],
+        label: &impl Fn(Option<usize>) -> L,
+    ) -> f64 {
+        let mut counts: Vec<(L, [f64; 2])> = Vec::new();
+        let mut totals = [0.0; 2];
+        for sample in samples {
+            let sample = &self.samples[*sample as usize];
+            let own = label(sample.owner);
+            let side = usize::from(sample.signs[curve] == POSITIVE);
+            totals[side] += 1.0;
+            match counts.iter_mut().find(|(l, _)| *l == own) {
+                Some((_, count)) => count[side] += 1.0,
+                None => {
+                    let mut count = [0.0; 2];
+                    count[side] = 1.0;
+                    counts.push((own, count));
+                }
+            }
+        }
+        let bits =
+            |part: f64, whole: f64| if part > 0.0 { -part * (part / whole).log2() } else { 0.0 };
+        let all = totals[0] + totals[1];
+        if all == 0.0 {
+            return 0.0;
+        }
+        let before: f64 = counts.iter().map(|(_, c)| bits(c[0] + c[1], all)).sum();
+        let after: f64 =
+            counts.iter().map(|(_, c)| bits(c[0], totals[0]) + bits(c[1], totals[1])).sum();
+        (before - after) / all
+    }
+}
+
+/// The signs on the two sides of a test.
+fn sides(signs: Signs, strict: bool) -> (Signs, Signs) {
+    let below = if strict { NEGATIVE } else { NEGATIVE | ZERO };
+    (signs & below, signs & !below)
+}

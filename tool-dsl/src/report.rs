@@ -1,0 +1,114 @@
+//! What the compiler says about a tool: errors and warnings that name the place, the reason and
+//! the remedy.
+
+use crate::source::{Source, Span};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing; code is emitted all the same.
+    Warning,
+    /// Nothing is emitted.
+    Error,
+}
+
+/// One thing to say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Error or warning.
+    pub severity: Severity,
+    /// The reason, in the words of the domain.
+    pub message: String,
+    /// The place.
+    pub span: Span,
+    /// A word at the place itself.
+    pub label: Option<String>,
+    /// A second culprit with its own word.
+    pub second: Option<(Span, String)>,
+    /// The remedy.
+    pub help: Option<String>,
+}
+
+impl Report {
+    /// An error at a place.
+    pub fn error(span: Span, message: impl Into<String>) -> Report {
+        Report {
+            severity: Severity::Error,
+            message: message.into(),
+            span,
+            label: None,
+            second: None,
+            help: None,
+        }
+    }
+
+    /// A warning at a place.
+    pub fn warning(span: Span, message: impl Into<String>) -> Report {
+        Report { severity: Severity::Warning, ..Report::error(span, message) }
+    }
+
+    /// With a word at the place itself.
+    #[must_use]
+    pub fn label(mut self, label: impl Into<String>) -> Report {
+        self.label = Some(label.into());
+        self
+    }
+
+    /// With a second place.
+    #[must_use]
+    pub fn and(mut self, span: Span, label: impl Into<String>) -> Report {
+        self.second = Some((span, label.into()));
+        self
+    }
+
+    /// With the remedy.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Report {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// The report as text: the source's line, a caret, the remedy. `styled` adds terminal colours.
+    pub fn render(&self, source: &Source, styled: bool) -> String {
+        let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let visible = |span: Span| {
+            let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
+            start..source.text.ceil_char_boundary(span.end.min(source.text.len())).max(start)
+        };
+        let mut primary = AnnotationKind::Primary.span(visible(self.span));
+        if let Some(label) = &self.label {
+            primary = primary.label(label.as_str());
+        }
+        let mut snippet =
+            Snippet::source(source.text.as_str()).path(source.name.as_str()).annotation(primary);
+        if let Some((span, label)) = &self.second {
+            snippet = snippet
+                .annotation(AnnotationKind::Context.span(visible(*span)).label(label.as_str()));
+        }
+        let mut group: Group<'_> = level.primary_title(self.message.as_str()).element(snippet);
+        if let Some(help) = &self.help {
+            group = group.element(Level::HELP.message(help.as_str()));
+        }
+        renderer.render(&[group])
+    }
+}
+
+/// Whether any of them is an error.
+pub fn any_error(reports: &[Report]) -> bool {
+    reports.iter().any(|report| report.severity == Severity::Error)
+}
+
+/// The word of `known` that is nearest to `word`, if it is near enough to be meant.
+pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
+        .filter(|(edits, candidate)| *edits <= candidate.len().max(word.len()).div_ceil(3))
+        .min()
+        .map(|(_, candidate)| candidate)
+}

@@ -1,0 +1,111 @@
+//! Conditions to formulas over splitting curves.
+
+use crate::expr::polynomial::Polynomial;
+use crate::expr::{Graph, Id, Node};
+use crate::formula::{CurveIndex, Formula};
+use crate::model::Curve;
+use std::collections::BTreeMap;
+
+/// How many times one condition may be taken apart at `min`, `max` and `abs`.
+const PARTS: usize = 64;
+
+/// The curves seen so far.
+#[derive(Default)]
+pub(super) struct Curves {
+    pub(super) list: Vec<Curve>,
+    polynomials: Vec<Option<Polynomial>>,
+    names: BTreeMap<Id, String>,
+}
+
+impl Curves {
+    /// Remembers the file's name for a curve.
+    pub(super) fn name(&mut self, name: &str, value: Id) {
+        self.names.entry(value).or_insert_with(|| name.to_owned());
+    }
+
+    /// The curve that an expression is zero on, and whether it has the curve's sign.
+    pub(super) fn find(&self, graph: &mut Graph, value: Id) -> Option<(CurveIndex, bool)> {
+        let polynomial = Polynomial::of(graph, value);
+        let opposite = graph.neg(value);
+        for (index, curve) in self.list.iter().enumerate() {
+            if curve.value == value {
+                return Some((index, true));
+            }
+            if curve.value == opposite {
+                return Some((index, false));
+            }
+            if let (Some(a), Some(b)) = (&polynomial, &self.polynomials[index])
+                && let Some(factor) = a.ratio(b)
+            {
+                return Some((index, !factor.is_negative()));
+            }
+        }
+        None
+    }
+
+    /// `value ≤ 0` or, if not `below`, `value ≥ 0`.
+    fn atom(&mut self, graph: &mut Graph, value: Id, below: bool) -> Formula {
+        let polynomial = Polynomial::of(graph, value);
+        if let Some(constant) = polynomial.as_ref().and_then(Polynomial::constant) {
+            return Formula::Const(constant.is_zero() || constant.is_negative() == below);
+        }
+        let (curve, same) = self.find(graph, value).unwrap_or_else(|| {
+            let opposite = graph.neg(value);
+            let name = self.names.get(&value).or_else(|| self.names.get(&opposite)).cloned();
+            self.list.push(Curve { name, value });
+            self.polynomials.push(polynomial);
+            (self.list.len() - 1, true)
+        });
+        Formula::Atom { curve, below: below == same }
+    }
+
+    /// `low ≤ high` as a formula.
+    pub(super) fn at_most(&mut self, graph: &mut Graph, low: Id, high: Id) -> Formula {
+        let value = graph.sub(low, high);
+        self.side(graph, value, true, &mut PARTS.clone())
+    }
+
+    fn side(&mut self, graph: &mut Graph, value: Id, below: bool, parts: &mut usize) -> Formula {
+        let lifted = if *parts > 0 { lift(graph, value) } else { None };
+        let Some((largest, a, b)) = lifted else {
+            return self.atom(graph, value, below);
+        };
+        *parts -= 1;
+        let sides = vec![self.side(graph, a, below, parts), self.side(graph, b, below, parts)];
+        // max(a, b) ≤ 0 wants both, max(a, b) ≥ 0 one of them.
+        if largest == below { Formula::All(sides) } else { Formula::Any(sides) }
+    }
+}
+
+/// A sum with a `min`, `max` or `abs` in it as the larger (`true`) or smaller of two sums.
+fn lift(graph: &mut Graph, value: Id) -> Option<(bool, Id, Id)> {
+    match *graph.node(value) {
+        Node::Max(a, b) => Some((true, a, b)),
+        Node::Min(a, b) => Some((false, a, b)),
+        Node::Abs(a) => Some((true, a, graph.neg(a))),
+        Node::Neg(inner) => {
+            let (largest, a, b) = lift(graph, inner)?;
+            Some((!largest, graph.neg(a), graph.neg(b)))
+        }
+        Node::Add(u, v) => {
+            if let Some((largest, a, b)) = lift(graph, u) {
+                return Some((largest, graph.add(a, v), graph.add(b, v)));
+            }
+            let (largest, a, b) = lift(graph, v)?;
+            Some((largest, graph.add(u, a), graph.add(u, b)))
+        }
+        Node::Sub(u, v) => {
+            if let Some((largest, a, b)) = lift(graph, u) {
+                return Some((largest, graph.sub(a, v), graph.sub(b, v)));
+            }
+            let (largest, a, b) = lift(graph, v)?;
+            Some((!largest, graph.sub(u, a), graph.sub(u, b)))
+        }
+        Node::Mul(c, v) => {
+            let negative = graph.constant(c)?.is_negative();
+            let (largest, a, b) = lift(graph, v)?;
+            Some((largest != negative, graph.mul(c, a), graph.mul(c, b)))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,356 @@
+//! Expressions of the syntax tree to nodes of the graph, with their dimension.
+
+use super::dimension::{Dimension, LENGTH};
+use crate::expr::{Coord, Graph, Id};
+use crate::model::{Frame, Unit};
+use crate::number::Number;
+use crate::report::{Report, nearest};
+use crate::source::Span;
+use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
+use std::collections::BTreeMap;
+
+/// Names that belong to the language.
+const COORDINATES: [&str; 4] = ["d", "z", "x", "y"];
+const FUNCTIONS: [&str; 8] = ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
+
+/// A value that has a name.
+#[derive(Clone, Debug)]
+pub(super) struct Value {
+    pub(super) id: Id,
+    pub(super) dimension: Dimension,
+    pub(super) span: Span,
+    pub(super) used: bool,
+}
+
+/// What an expression may mention where it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum May {
+    /// Constants only, for what (to be named in errors).
+    Constants(&'static str),
+    /// Coordinates too.
+    Coordinates,
+    /// And `depth`, which is this here.
+    Depth(Id),
+}
+
+/// Everything that lowering needs and fills.
+pub(super) struct Lowering {
+    pub(super) graph: Graph,
+    pub(super) unit: Unit,
+    pub(super) frame: Frame,
+    pub(super) values: BTreeMap<String, Value>,
+}
+
+type Lowered = Result<(Id, Dimension), Report>;
+
+impl Lowering {
+    /// Gives a value its name.
+    pub(super) fn define(
+        &mut self,
+        name: &Name,
+        (id, dimension): (Id, Dimension),
+    ) -> Result<(), Report> {
+        let word = name.word.as_str();
+        if word == "d" || word == "z" {
+            let what =
+                if word == "d" { "the distance from the axis" } else { "the place along the axis" };
+            let report =
+                Report::error(name.span, format!("`{word}` is {what} and cannot be defined"));
+            return Err(report.help("for a diameter use `D`"));
+        }
+        if COORDINATES.contains(&word)
+            || FUNCTIONS.contains(&word)
+            || word == "pi"
+            || word == "depth"
+        {
+            let report = Report::error(
+                name.span,
+                format!("`{word}` belongs to the language and cannot be defined"),
+            );
+            return Err(report.help("take another name"));
+        }
+        let value = Value { id, dimension, span: name.span, used: false };
+        if let Some(earlier) = self.values.get(word) {
+            return Err(Report::error(name.span, format!("`{word}` is defined twice"))
+                .label("here")
+                .and(earlier.span, "and above")
+                .help("drop one, or give it another name"));
+        }
+        self.values.insert(word.to_owned(), value);
+        Ok(())
+    }
+
+    /// An expression that must come out constant, for what.
+    pub(super) fn constant(
+        &mut self,
+        expr: &Expr,
+        what: &'static str,
+    ) -> Result<(Number, Dimension), Report> {
+        let (id, dimension) = self.lower(expr, May::Constants(what))?;
+        match self.graph.constant(id) {
+            Some(value) => Ok((value.clone(), dimension)),
+            None => Err(Report::error(expr.span, format!("{what} takes constants only"))),
+        }
+    }
+
+    /// A constant length.
+    pub(super) fn length(&mut self, expr: &Expr, what: &'static str) -> Result<Number, Report> {
+        let (value, dimension) = self.constant(expr, what)?;
+        if !dimension.is_length() {
+            return Err(Report::error(
+                expr.span,
+                format!("{what} takes a length, this is {dimension}"),
+            ));
+        }
+        Ok(value)
+    }
+
+    /// Any expression.
+    pub(super) fn lower(&mut self, expr: &Expr, may: May) -> Lowered {
+        match &expr.kind {
+            ExprKind::Number(value, None) => {
+                Ok((self.graph.number(value.clone()), Dimension::Bare))
+            }
+            ExprKind::Number(value, Some(unit)) => self.measured(value, unit, expr.span),
+            ExprKind::Name(word) => self.name(word, expr.span, may),
+            ExprKind::Neg(inner) => {
+                let (id, dimension) = self.lower(inner, may)?;
+                Ok((self.graph.neg(id), dimension))
+            }
+            ExprKind::Binary(Binary::Pow, base, exponent) => {
+                self.power(base, exponent, expr.span, may)
+            }
+            ExprKind::Binary(operator, left, right) => {
+                self.binary(*operator, left, right, expr.span, may)
+            }
+            ExprKind::Call(name, arguments) => self.call(name, arguments, expr.span, may),
+        }
+    }
+
+    fn measured(&mut self, value: &Number, unit: &Name, span: Span) -> Lowered {
+        let word = unit.word.as_str();
+        if let Some(from) = Unit::from_word(word) {
+            let value = value * &from.to(self.unit);
+            return Ok((self.graph.number(value), LENGTH));
+        }
+        let report = match word {
+            "rad" => return Ok((self.graph.number(value.clone()), Dimension::Angle)),
+            "deg" => {
+                let radians = &(value * &Number::pi()) / &Number::int(180);
+                return Ok((self.graph.number(radians), Dimension::Angle));
+            }
+            "in" | "inches" | "zoll" => Report::error(unit.span, format!("unknown unit `{word}`"))
+                .help("write `inch`, as in `0.25inch`"),
+            _ if COORDINATES.contains(&word) || self.values.contains_key(word) || word == "pi" => {
+                let number = value.to_f64();
+                let report = Report::error(span, format!("`{number}{word}` is not a number"));
+                let times =
+                    if word == "d" { " for two times the distance from the axis" } else { "" };
+                let times = if number == 2.0 { times } else { "" };
+                return Err(report.help(format!("write `{number}*{word}`{times}")));
+            }
+            _ => Report::error(unit.span, format!("unknown unit `{word}`"))
+                .help("units are `mm`, `inch`, `m`, `deg` and `rad`, glued to the number"),
+        };
+        Err(report)
+    }
+
+    fn name(&mut self, word: &str, span: Span, may: May) -> Lowered {
+        let coordinate = match word {
+            "pi" => return Ok((self.graph.number(Number::pi()), Dimension::Bare)),
+            "depth" => {
+                return match may {
+                    May::Depth(depth) => Ok((depth, LENGTH)),
+                    May::Coordinates => Err(Report::error(span, "`depth` is not known here")
+                        .help("only `magnitude` and `niceness` may mention `depth`")),
+                    May::Constants(what) => Err(not_constant(span, word, what)),
+                };
+            }
+            "d" => Some(Coord::D),
+            "z" => Some(Coord::Z),
+            "x" | "y" => {
+                return Err(Report::error(
+                    span,
+                    format!("`{word}` exists in a solid without an axis only"),
+                )
+                .help("in a `tool` the coordinates are `d`, the distance from the axis, and `z`"));
+            }
+            _ => None,
+        };
+        if let Some(coordinate) = coordinate {
+            if let May::Constants(what) = may {
+                return Err(not_constant(span, word, what));
+            }
+            let id = match coordinate {
+                Coord::Z => self.frame.file_z(&mut self.graph),
+                other => self.graph.coord(other),
+            };
+            return Ok((id, LENGTH));
+        }
+        let Some(value) = self.values.get_mut(word) else {
+            let report = Report::error(span, format!("unknown name `{word}`"));
+            let known = self.values.keys().map(String::as_str).chain(["d", "z", "pi", "depth"]);
+            return Err(match nearest(word, known) {
+                Some(meant) => report.help(format!("did you mean `{meant}`?")),
+                None => report.help(format!("define it above: `let {word} = …;`")),
+            });
+        };
+        value.used = true;
+        let value = value.clone();
+        if value.span.start > span.start {
+            return Err(Report::error(span, format!("`{word}` is used above its definition"))
+                .and(value.span, "defined here")
+                .help("move the definition up"));
+        }
+        if let May::Constants(what) = may
+            && self.graph.constant(value.id).is_none()
+        {
+            return Err(not_constant(span, word, what));
+        }
+        Ok((value.id, value.dimension))
+    }
+
+    fn binary(
+        &mut self,
+        operator: Binary,
+        left: &Expr,
+        right: &Expr,
+        span: Span,
+        may: May,
+    ) -> Lowered {
+        let (a, da) = self.lower(left, may)?;
+        let (b, db) = self.lower(right, may)?;
+        let (dimension, verb) = match operator {
+            Binary::Add | Binary::Sub => (da.alike(db), "adds"),
+            Binary::Mul => (da.times(db), "multiplies"),
+            _ => (da.over(db), "divides"),
+        };
+        let Some(dimension) = dimension else {
+            let (what, with) = match operator {
+                Binary::Add => (format!("adds {da} to {db}"), ""),
+                Binary::Sub => (format!("subtracts {db} from {da}"), ""),
+                _ => (format!("{verb} {da} by {db}"), ""),
+            };
+            return Err(Report::error(span, format!("this {what}{with}"))
+                .help("both sides want the same power of length; a bare number fits any"));
+        };
+        let id = match operator {
+            Binary::Add => self.graph.add(a, b),
+            Binary::Sub => self.graph.sub(a, b),
+            Binary::Mul => self.graph.mul(a, b),
+            _ => self.graph.div(a, b).ok_or_else(|| {
+                Report::error(right.span, "division by zero").help("this is 0 everywhere")
+            })?,
+        };
+        Ok((id, dimension))
+    }
+
+    fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: May) -> Lowered {
+        let (base_id, dimension) = self.lower(base, may)?;
+        let (value, of_exponent) = self.constant(exponent, "an exponent")?;
+        let halves =
+            value.halves().filter(|_| of_exponent == Dimension::Bare).ok_or_else(|| {
+                Report::error(exponent.span, "an exponent is a multiple of one half from -16 to 16")
+                    .help("only square roots run at every contact")
+            })?;
+        let dimension =
+            dimension.power(halves).ok_or_else(|| Report::error(span, "an angle has no powers"))?;
+        let id = self.graph.power(base_id, halves).ok_or_else(|| {
+            Report::error(span, "this power of a constant does not exist")
+                .help("the base is negative under a root, or 0 under a negative exponent")
+        })?;
+        Ok((id, dimension))
+    }
+
+    fn call(&mut self, name: &Name, arguments: &[Expr], span: Span, may: May) -> Lowered {
+        let word = name.word.as_str();
+        let wanted = match word {
+            "min" | "max" | "hypot" => 2..=usize::MAX,
+            "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
+            _ => {
+                let report = Report::error(name.span, format!("unknown function `{word}`"));
+                return Err(match nearest(word, FUNCTIONS) {
+                    Some(meant) => report.help(format!("did you mean `{meant}`?")),
+                    None => report.help(format!("functions are {}", FUNCTIONS.join(", "))),
+                });
+            }
+        };
+        if !wanted.contains(&arguments.len()) {
+            let much = if *wanted.start() == 2 { "two or more values" } else { "one value" };
+            return Err(Report::error(
+                span,
+                format!("`{word}` takes {much}, this has {}", arguments.len()),
+            ));
+        }
+        if matches!(word, "sin" | "cos" | "tan") {
+            return self.trigonometric(word, &arguments[0], span, may);
+        }
+        let (mut id, mut dimension) = self.lower(&arguments[0], may)?;
+        match word {
+            "abs" => return Ok((self.graph.abs(id), dimension)),
+            "sqrt" => {
+                let dimension = dimension
+                    .power(1)
+                    .ok_or_else(|| Report::error(span, "an angle has no square root"))?;
+                let root = self.graph.sqrt(id).ok_or_else(|| {
+                    Report::error(arguments[0].span, "square root of a negative number")
+                })?;
+                return Ok((root, dimension));
+            }
+            "hypot" => id = self.graph.mul(id, id),
+            _ => {}
+        }
+        for argument in &arguments[1..] {
+            let (other, of_other) = self.lower(argument, may)?;
+            dimension = dimension.alike(of_other).ok_or_else(|| {
+                Report::error(
+                    argument.span,
+                    format!("`{word}` compares {dimension} with {of_other}"),
+                )
+                .help("all its values want the same power of length")
+            })?;
+            id = match word {
+                "min" => self.graph.min(id, other),
+                "max" => self.graph.max(id, other),
+                _ => {
+                    let square = self.graph.mul(other, other);
+                    self.graph.add(id, square)
+                }
+            };
+        }
+        if word == "hypot" {
+            id = self.graph.sqrt(id).unwrap_or(id);
+        }
+        Ok((id, dimension))
+    }
+
+    fn trigonometric(&mut self, word: &str, argument: &Expr, span: Span, may: May) -> Lowered {
+        let (id, dimension) = self.lower(argument, may)?;
+        let Some(angle) = self.graph.constant(id).cloned() else {
+            return Err(Report::error(span, format!("this `{word}` would run at every contact"))
+                .help(format!("`{word}` takes constants only")));
+        };
+        if dimension != Dimension::Angle {
+            let value = angle.to_f64();
+            return Err(Report::error(
+                argument.span,
+                format!("`{word}` takes an angle, this is {dimension}"),
+            )
+            .help(format!("write `{word}({value}deg)` or `{word}({value}rad)`")));
+        }
+        let value = match word {
+            "sin" => angle.sin(),
+            "cos" => angle.cos(),
+            _ => angle.sin().over(&angle.cos()).unwrap_or_else(|| Number::int(0)),
+        };
+        Ok((self.graph.number(value), Dimension::Bare))
+    }
+}
+
+fn not_constant(span: Span, word: &str, what: &str) -> Report {
+    Report::error(
+        span,
+        format!("`{word}` changes from point to point; {what} takes constants only"),
+    )
+    .help("name a function of the coordinates with `curve`")
+}

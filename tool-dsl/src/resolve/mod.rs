@@ -1,0 +1,233 @@
+//! The syntax tree to the model: names, dimensions, the frame, each region's rules.
+
+mod condition;
+mod dimension;
+mod lower;
+mod outputs;
+mod region;
+
+use crate::expr::Graph;
+use crate::model::{Frame, Model, Unit};
+use crate::number::Number;
+use crate::report::{Report, any_error, nearest};
+use crate::source::Span;
+use crate::syntax::tree::{Definition, Item, Law, Name, Quantity, Tool};
+use condition::Curves;
+use lower::{Lowering, May};
+use region::Laws;
+use std::collections::BTreeMap;
+
+/// Resolves a tool. The model comes back only if nothing is wrong.
+pub fn resolve(tool: &Tool) -> (Option<Model>, Vec<Report>) {
+    let mut reports = Vec::new();
+    let unit = match unit(tool) {
+        Ok(unit) => unit,
+        Err(report) => return (None, vec![report]),
+    };
+    let mut lowering = Lowering {
+        graph: Graph::default(),
+        unit,
+        frame: Frame { tip: Number::int(0), down: false },
+        values: BTreeMap::new(),
+    };
+    constants(tool, &mut lowering, &mut reports);
+    if any_error(&reports) {
+        return (None, reports);
+    }
+    frame(tool, &mut lowering, &mut reports);
+    for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
+        let value = lowering.lower(&definition.value, May::Coordinates);
+        let defined = value.and_then(|value| {
+            if value.1 == dimension::Dimension::Angle {
+                let report = Report::error(definition.value.span, "a curve is no angle");
+                return Err(report.help("give a number or a power of length"));
+            }
+            lowering.define(&definition.name, value)
+        });
+        reports.extend(defined.err());
+    }
+    if any_error(&reports) {
+        return (None, reports);
+    }
+    let mut curves = Curves::default();
+    for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
+        if let Some(value) = lowering.values.get(&definition.name.word) {
+            curves.name(&definition.name.word, value.id);
+        }
+    }
+    let laws: Vec<&Law> = tool
+        .items
+        .iter()
+        .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
+        .collect();
+    let (surfaces, regions) =
+        region::regions(tool, &Laws::new(&laws), &mut lowering, &mut curves, &mut reports);
+    let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
+    for (word, value) in &lowering.values {
+        if !value.used {
+            reports.push(
+                Report::warning(value.span, format!("`{word}` is never used")).help("drop it"),
+            );
+        }
+    }
+    if any_error(&reports) {
+        return (None, reports);
+    }
+    let model = Model {
+        name: tool.name.word.clone(),
+        name_span: tool.name.span,
+        title: tool.title.clone(),
+        unit,
+        graph: lowering.graph,
+        frame: lowering.frame,
+        curves: curves.list,
+        surfaces,
+        regions,
+        first,
+    };
+    (Some(model), reports)
+}
+
+fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Item = &Definition> {
+    tool.items.iter().filter(move |item| wanted(item)).filter_map(|item| match item {
+        Item::Let(definition) | Item::Param(definition) | Item::Curve(definition) => {
+            Some(definition)
+        }
+        _ => None,
+    })
+}
+
+/// The file's unit: the first item, exactly once.
+fn unit(tool: &Tool) -> Result<Unit, Report> {
+    let missing = |span: Span| {
+        Report::error(span, "no unit: a tool says its unit of length first")
+            .help("say `units mm;`, `units inch;` or `units m;`")
+    };
+    let Some(Item::Units(name)) = tool.items.first() else {
+        let later = tool.items.iter().find_map(|item| match item {
+            Item::Units(name) => Some(name.span),
+            _ => None,
+        });
+        return Err(match later {
+            Some(span) => Report::error(span, "the unit is not the first item")
+                .help("move `units` to the top: everything below is measured in it"),
+            None => missing(tool.name.span),
+        });
+    };
+    if let Some(Item::Units(again)) = tool.items[1..].iter().find(|i| matches!(i, Item::Units(_))) {
+        return Err(Report::error(again.span, "the unit is said twice")
+            .and(name.span, "first here")
+            .help("drop one; a single number may carry another unit, as in `0.25inch`"));
+    }
+    Unit::from_word(&name.word).ok_or_else(|| {
+        let report = Report::error(name.span, format!("unknown unit `{}`", name.word));
+        let meant = match name.word.as_str() {
+            "in" | "inches" | "IN" => Some("inch"),
+            "millimetre" | "millimeter" | "MM" => Some("mm"),
+            "meter" | "metre" => Some("m"),
+            word => nearest(word, ["mm", "inch", "m"]),
+        };
+        match meant {
+            Some(meant) => report.help(format!("write `units {meant};`")),
+            None => report.help("units are `mm`, `inch` and `m`"),
+        }
+    })
+}
+
+/// `let` and `param`, in order.
+fn constants(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
+    for definition in definitions(tool, |item| matches!(item, Item::Let(_) | Item::Param(_))) {
+        let value = lowering.constant(&definition.value, "a `let`");
+        let defined = value.and_then(|(value, dimension)| {
+            let size = value.to_f64().abs();
+            if size != 0.0 && !(2f64.powi(-300)..=2f64.powi(300)).contains(&size) {
+                return Err(Report::error(
+                    definition.value.span,
+                    format!("{size:e} is out of range"),
+                )
+                .help("constants lie between 2^-300 and 2^300"));
+            }
+            let id = lowering.graph.number(value);
+            lowering.define(&definition.name, (id, dimension))
+        });
+        reports.extend(defined.err());
+    }
+}
+
+/// `tip` and `spindle`, each at most once.
+fn frame(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
+    let (mut tip, mut spindle): (Option<Span>, Option<Span>) = (None, None);
+    for item in &tool.items {
+        let (seen, span, word) = match item {
+            Item::Tip(expr) => {
+                match lowering.length(expr, "`tip`") {
+                    Ok(value) => lowering.frame.tip = value,
+                    Err(report) => reports.push(report),
+                }
+                (&mut tip, expr.span, "tip")
+            }
+            Item::Spindle { down, span } => {
+                lowering.frame.down = *down;
+                (&mut spindle, *span, "spindle")
+            }
+            _ => continue,
+        };
+        if let Some(first) = seen.replace(span) {
+            reports.push(
+                Report::error(span, format!("`{word}` is said twice"))
+                    .and(first, "first here")
+                    .help("drop one"),
+            );
+        }
+    }
+}
+
+/// The curves that `bsp` lists.
+fn first_curves(
+    tool: &Tool,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+    reports: &mut Vec<Report>,
+) -> Vec<usize> {
+    let mut first = Vec::new();
+    let listed = tool.items.iter().filter_map(|item| match item {
+        Item::Bsp(names) => Some(names),
+        _ => None,
+    });
+    for name in listed.flatten() {
+        match curve_of(name, lowering, curves) {
+            Ok(Some(curve)) if first.contains(&curve) => {
+                reports.push(Report::warning(name.span, format!("`{}` is listed twice", name.word)))
+            }
+            Ok(Some(curve)) => first.push(curve),
+            Ok(None) => reports.push(
+                Report::warning(name.span, format!("no region depends on `{}`", name.word))
+                    .help("drop it from `bsp`"),
+            ),
+            Err(report) => reports.push(report),
+        }
+    }
+    first
+}
+
+fn curve_of(
+    name: &Name,
+    lowering: &mut Lowering,
+    curves: &Curves,
+) -> Result<Option<usize>, Report> {
+    let Some(value) = lowering.values.get_mut(&name.word) else {
+        let report = Report::error(name.span, format!("unknown curve `{}`", name.word));
+        return Err(match nearest(&name.word, lowering.values.keys().map(String::as_str)) {
+            Some(meant) => report.help(format!("did you mean `{meant}`?")),
+            None => report.help(format!("define it above: `curve {} = …;`", name.word)),
+        });
+    };
+    value.used = true;
+    let id = value.id;
+    Ok(curves.find(&mut lowering.graph, id).map(|(curve, _)| curve))
+}
+
+/// Which rule a law is of.
+fn is(quantity: Quantity) -> impl Fn(&&&Law) -> bool {
+    move |law| law.quantity == quantity
+}

@@ -1,0 +1,394 @@
+//! Regions and laws: who says what is felt where.
+
+use super::condition::Curves;
+use super::dimension::Dimension;
+use super::lower::{Lowering, May};
+use super::{is, outputs};
+use crate::expr::Id;
+use crate::formula::Formula;
+use crate::model::{Region, Surface};
+use crate::report::{Report, nearest};
+use crate::source::Span;
+use crate::syntax::tree::{self, Compare, Direction, Expr, Item, Law, Quantity, Tool, Tuple};
+
+/// The most regions that a tool may have.
+const MOST: usize = 4096;
+
+/// A tool's laws.
+pub(super) struct Laws<'t>(&'t [&'t Law]);
+
+impl<'t> Laws<'t> {
+    pub(super) fn new(laws: &'t [&'t Law]) -> Laws<'t> {
+        Laws(laws)
+    }
+
+    /// The law for a surface: for the surface itself, for `cutting`, for all.
+    fn find(&self, quantity: Quantity, surface: &Surface) -> Option<&'t Law> {
+        let for_word = |word: &str| {
+            self.0
+                .iter()
+                .filter(is(quantity))
+                .find(|law| law.surfaces.iter().any(|name| name.word == word))
+        };
+        for_word(&surface.name)
+            .or_else(|| if surface.cutting { for_word("cutting") } else { None })
+            .or_else(|| self.0.iter().filter(is(quantity)).find(|law| law.surfaces.is_empty()))
+            .copied()
+    }
+
+    /// What is wrong with the laws themselves.
+    fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
+        let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
+        for law in self.0 {
+            let what = law.quantity.word();
+            if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
+                reports.push(
+                    Report::error(law.span, "for which surfaces is this niceness?")
+                        .help("write `niceness cutting: …;` or name the surfaces"),
+                );
+            }
+            let words: Vec<(&str, Span)> = if law.surfaces.is_empty() {
+                vec![("", law.span)]
+            } else {
+                law.surfaces.iter().map(|name| (name.word.as_str(), name.span)).collect()
+            };
+            for (word, span) in words {
+                if let Some((.., first)) =
+                    seen.iter().find(|(q, w, _)| *q == law.quantity && *w == word)
+                {
+                    let of =
+                        if word.is_empty() { "everything".to_owned() } else { format!("`{word}`") };
+                    reports.push(
+                        Report::error(span, format!("two laws give the {what} of {of}"))
+                            .label("this one")
+                            .and(*first, "and that one")
+                            .help("drop one"),
+                    );
+                }
+                seen.push((law.quantity, word, span));
+                let surface = surfaces.iter().find(|surface| surface.name == word);
+                if word.is_empty() || word == "cutting" {
+                    continue;
+                }
+                match surface {
+                    None => {
+                        let report = Report::error(span, format!("unknown surface `{word}`"));
+                        let known = surfaces.iter().map(|s| s.name.as_str());
+                        reports.push(match nearest(word, known) {
+                            Some(meant) => report.help(format!("did you mean `{meant}`?")),
+                            None => report.help("name a surface of a region: `region … as NAME`"),
+                        });
+                    }
+                    Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
+                        reports.push(idle_niceness(span, word));
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+    }
+}
+
+fn idle_niceness(span: Span, surface: &str) -> Report {
+    Report::error(span, format!("`{surface}` does not cut, its niceness is 0"))
+        .help("make it `cutting` or drop the rule")
+}
+
+/// All surfaces and regions.
+pub(super) fn regions(
+    tool: &Tool,
+    laws: &Laws<'_>,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+    reports: &mut Vec<Report>,
+) -> (Vec<Surface>, Vec<Region>) {
+    let written: Vec<&tree::Region> = tool
+        .items
+        .iter()
+        .filter_map(|item| if let Item::Region(region) = item { Some(region) } else { None })
+        .collect();
+    if written.is_empty() {
+        reports.push(
+            Report::error(tool.name.span, format!("`{}` has no region", tool.name.word))
+                .help("write `region NAME where … { magnitude: …; }`"),
+        );
+    }
+    if let Some(beyond) = written.get(MOST) {
+        reports.push(Report::error(beyond.name.span, format!("more than {MOST} regions")));
+        return Default::default();
+    }
+    let mut surfaces = Vec::new();
+    let owners: Vec<usize> =
+        written.iter().map(|region| surface(region, &mut surfaces, reports)).collect();
+    laws.check(&surfaces, reports);
+    let mut regions: Vec<Region> = Vec::new();
+    for (written, owner) in written.into_iter().zip(owners) {
+        if let Some(earlier) = regions.iter().find(|r| r.name == written.name.word) {
+            reports.push(
+                Report::error(
+                    written.name.span,
+                    format!("two regions are called `{}`", earlier.name),
+                )
+                .and(earlier.span, "the first")
+                .help("give it another name"),
+            );
+        }
+        match (Felt { laws, lowering, surface: &surfaces[owner] }).region(written, owner, curves) {
+            Ok(region) => regions.push(region),
+            Err(report) => reports.push(report),
+        }
+    }
+    (surfaces, regions)
+}
+
+/// The surface of a region: the one it names, or one of its own name.
+fn surface(region: &tree::Region, surfaces: &mut Vec<Surface>, reports: &mut Vec<Report>) -> usize {
+    let name = region.surface.as_ref().unwrap_or(&region.name);
+    if name.word == "cutting" {
+        reports.push(
+            Report::error(name.span, "no surface is called `cutting`")
+                .help("write `as NAME cutting`"),
+        );
+    }
+    let cutting = region.cutting.is_some();
+    match surfaces.iter().position(|surface| surface.name == name.word) {
+        Some(at) => {
+            if surfaces[at].cutting != cutting {
+                let (here, there) = if cutting { ("is", "not") } else { ("is not", "is") };
+                reports.push(
+                    Report::error(name.span, format!("`{}` {here} cutting here", name.word))
+                        .and(surfaces[at].span, format!("and {there} here"))
+                        .help("all pieces of one surface agree"),
+                );
+            }
+            at
+        }
+        None => {
+            surfaces.push(Surface { name: name.word.clone(), cutting, span: name.span });
+            surfaces.len() - 1
+        }
+    }
+}
+
+/// Settles what one region's evaluators compute.
+struct Felt<'a> {
+    laws: &'a Laws<'a>,
+    lowering: &'a mut Lowering,
+    surface: &'a Surface,
+}
+
+impl Felt<'_> {
+    fn region(
+        mut self,
+        written: &tree::Region,
+        owner: usize,
+        curves: &mut Curves,
+    ) -> Result<Region, Report> {
+        let inside = self.inside(written, curves)?;
+        let (depth, depth_span) = self.depth(written)?;
+        let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
+        let said = self.said(written, Quantity::Magnitude)?.or(law);
+        let magnitude = match said {
+            Some(value) => self.quantity(value, May::Depth(depth))?,
+            None => depth,
+        };
+        // A magnitude that the file writes is a number of its own, though depth be taken from it.
+        let is_depth = magnitude == depth
+            && said.is_none_or(|value| mention(value, Quantity::Depth.word()).is_some());
+        let niceness = self.niceness(written, depth)?;
+        let (course, course_span) = match written.direction.as_slice() {
+            [] => (self.downhill(depth), depth_span),
+            [(direction, span)] => (self.direction(direction)?, *span),
+            [(_, first), (_, second), ..] => {
+                return Err(
+                    Report::error(*second, "the direction is said twice").and(*first, "first here")
+                );
+            }
+        };
+        let graph = &mut self.lowering.graph;
+        let direction = outputs::unit(graph, course, false).ok_or_else(|| {
+            Report::error(course_span, format!("the direction of {} vanishes", written.name.word))
+                .help("give a vector that is not (0, 0), or `toward` a point")
+        })?;
+        let outputs = outputs::outputs(graph, depth, (magnitude, is_depth), direction, niceness);
+        Ok(Region {
+            name: written.name.word.clone(),
+            span: written.name.span,
+            surface: owner,
+            inside,
+            depth,
+            depth_span,
+            magnitude,
+            direction,
+            course: (course, course_span),
+            niceness,
+            outputs,
+        })
+    }
+
+    fn inside(&mut self, written: &tree::Region, curves: &mut Curves) -> Result<Formula, Report> {
+        let mut all = Vec::new();
+        for condition in &written.conditions {
+            let mut left = self.lowering.lower(&condition.first, May::Coordinates)?;
+            for (compare, right) in &condition.rest {
+                let right = self.lowering.lower(right, May::Coordinates)?;
+                if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
+                    let message = format!("this compares {} with {}", left.1, right.1);
+                    return Err(Report::error(condition.span, message)
+                        .help("both sides want the same power of length; a bare number fits any"));
+                }
+                let graph = &mut self.lowering.graph;
+                all.push(match compare {
+                    Compare::AtMost => curves.at_most(graph, left.0, right.0),
+                    Compare::AtLeast => curves.at_most(graph, right.0, left.0),
+                });
+                left = right;
+            }
+        }
+        Ok(Formula::All(all))
+    }
+
+    /// The region's own word on a quantity.
+    fn said<'w>(
+        &self,
+        written: &'w tree::Region,
+        quantity: Quantity,
+    ) -> Result<Option<&'w Expr>, Report> {
+        let mut all = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
+        let first = all.next();
+        if let (Some(first), Some(second)) = (first, all.next()) {
+            return Err(Report::error(second.span, format!("`{}` is said twice", quantity.word()))
+                .and(first.span, "first here")
+                .help("drop one"));
+        }
+        Ok(first.map(|scalar| &scalar.value))
+    }
+
+    fn quantity(&mut self, value: &Expr, may: May) -> Result<Id, Report> {
+        let (id, dimension) = self.lowering.lower(value, may)?;
+        if dimension == Dimension::Angle {
+            return Err(Report::error(value.span, "this is an angle")
+                .help("give a number or a power of length"));
+        }
+        Ok(id)
+    }
+
+    /// The depth: what the region says, else its magnitude.
+    fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Report> {
+        let (value, by) = match self.said(written, Quantity::Depth)? {
+            Some(value) => (value, Quantity::Depth),
+            None => match self.said(written, Quantity::Magnitude)? {
+                Some(value) => (value, Quantity::Magnitude),
+                None => {
+                    let name = &written.name;
+                    return Err(Report::error(
+                        name.span,
+                        format!("region {} says neither `magnitude` nor `depth`", name.word),
+                    )
+                    .help("write `depth: …;` in it: 0 on the surface, positive inside"));
+                }
+            },
+        };
+        if let (Quantity::Magnitude, Some(span)) = (by, mention(value, "depth")) {
+            let name = &written.name.word;
+            return Err(Report::error(
+                span,
+                format!("`magnitude` of {name} mentions `depth`, which nothing else gives"),
+            )
+            .help("write `depth: …;` in the region"));
+        }
+        let (id, dimension) = self.lowering.lower(value, May::Coordinates)?;
+        if by == Quantity::Depth && !dimension.is_length() {
+            return Err(Report::error(
+                value.span,
+                format!("a depth is a length, this is {dimension}"),
+            ));
+        }
+        if dimension == Dimension::Angle {
+            return Err(Report::error(value.span, "a magnitude is no angle"));
+        }
+        let graph = &mut self.lowering.graph;
+        if graph.constant(id).is_some() {
+            return Err(Report::error(value.span, "this depth is the same everywhere")
+                .help("a depth is 0 on the surface and grows inward"));
+        }
+        Ok((id, value.span))
+    }
+
+    fn niceness(&mut self, written: &tree::Region, depth: Id) -> Result<Id, Report> {
+        let own = self.said(written, Quantity::Niceness)?;
+        if !self.surface.cutting {
+            return match own {
+                Some(value) => Err(idle_niceness(value.span, &self.surface.name)),
+                None => Ok(self.lowering.graph.int(0)),
+            };
+        }
+        let law = self.laws.find(Quantity::Niceness, self.surface).map(|law| &law.value);
+        match own.or(law) {
+            Some(value) => self.quantity(value, May::Depth(depth)),
+            None => Ok(self.lowering.graph.int(1)),
+        }
+    }
+
+    /// −∇ of the depth.
+    fn downhill(&mut self, depth: Id) -> [Id; 2] {
+        let graph = &mut self.lowering.graph;
+        outputs::gradient(graph, depth).map(|part| graph.neg(part))
+    }
+
+    fn direction(&mut self, direction: &Direction) -> Result<[Id; 2], Report> {
+        match direction {
+            Direction::Along(tuple) => {
+                let [d, z] = pair(tuple)?;
+                let (d, of_d) = self.lowering.lower(d, May::Coordinates)?;
+                let (z, of_z) = self.lowering.lower(z, May::Coordinates)?;
+                if of_d.alike(of_z).is_none_or(|d| d == Dimension::Angle) {
+                    let message = format!("a direction of {of_d} and {of_z}");
+                    return Err(Report::error(tuple.span, message).help("both parts are alike"));
+                }
+                let down = self.lowering.frame.down;
+                let graph = &mut self.lowering.graph;
+                Ok([d, if down { graph.neg(z) } else { z }])
+            }
+            Direction::AwayFrom(tuple) => self.from_point(tuple),
+            Direction::Toward(tuple) => {
+                let away = self.from_point(tuple)?;
+                Ok(away.map(|part| self.lowering.graph.neg(part)))
+            }
+        }
+    }
+
+    /// The vector from a point to where one feels.
+    fn from_point(&mut self, tuple: &Tuple) -> Result<[Id; 2], Report> {
+        let [d, z] = pair(tuple)?;
+        let d = self.lowering.length(d, "a point")?;
+        let z = self.lowering.length(z, "a point")?;
+        let z = self.lowering.frame.to_tool(&z);
+        let graph = &mut self.lowering.graph;
+        let here = [crate::expr::Coord::D, crate::expr::Coord::Z].map(|c| graph.coord(c));
+        let there = [graph.number(d), graph.number(z)];
+        Ok([graph.sub(here[0], there[0]), graph.sub(here[1], there[1])])
+    }
+}
+
+fn pair(tuple: &Tuple) -> Result<[&Expr; 2], Report> {
+    match tuple.parts.as_slice() {
+        [d, z] => Ok([d, z]),
+        parts => Err(Report::error(
+            tuple.span,
+            format!("a point in a tool has two numbers, this has {}", parts.len()),
+        )
+        .help("a decimal comma? write `0.5`")),
+    }
+}
+
+/// Where an expression mentions a name.
+fn mention(expr: &Expr, word: &str) -> Option<Span> {
+    match &expr.kind {
+        tree::ExprKind::Name(name) => (name == word).then_some(expr.span),
+        tree::ExprKind::Number(..) => None,
+        tree::ExprKind::Neg(inner) => mention(inner, word),
+        tree::ExprKind::Binary(_, a, b) => mention(a, word).or_else(|| mention(b, word)),
+        tree::ExprKind::Call(_, all) => all.iter().find_map(|part| mention(part, word)),
+    }
+}

@@ -1,0 +1,20 @@
+//! Text to syntax tree.
+//!
+//! The grammar accepts a little more than the language; what it accepts too much is refused by
+//! name, with a remedy ([`refuse`]). Items are parsed each for itself, so that one mistake does
+//! not hide the next.
+
+mod parse;
+mod refuse;
+pub mod tree;
+
+pub use parse::parse;
+
+/// pest's generated parser, in a module of its own because it documents nothing.
+mod grammar {
+    #![allow(missing_docs)]
+    #[derive(pest_derive::Parser)]
+    #[grammar = "syntax/grammar.pest"]
+    pub(super) struct Grammar;
+}
+use grammar::{Grammar, Rule};

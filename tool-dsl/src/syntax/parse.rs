@@ -1,0 +1,363 @@
+//! Pairs of pest to the syntax tree.
+
+use super::tree::*;
+use super::{Grammar, Rule, refuse};
+use crate::number::Number;
+use crate::report::Report;
+use crate::source::{Source, Span};
+use pest::Parser;
+use pest::iterators::{Pair, Pairs};
+use std::str::FromStr;
+
+/// The longest text that is read.
+const LONGEST: usize = 1 << 20;
+/// The deepest nesting of brackets.
+const DEEPEST: usize = 64;
+
+/// Reads a tool. What could be read comes back even beside errors, so that later steps can report
+/// theirs; without a tool's name nothing can.
+pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
+    let mut reports = Vec::new();
+    if let Err(report) = within_limits(&source.text) {
+        return (None, vec![report]);
+    }
+    let pairs = match Grammar::parse(Rule::file, &source.text) {
+        Ok(pairs) => pairs,
+        Err(error) => return (None, vec![refuse::syntax(&source.text, 0, &error)]),
+    };
+    let tool = pairs.flatten().find(|pair| pair.as_rule() == Rule::tool);
+    let tool = tool.map(|pair| Reader { offset: 0, reports: &mut reports }.tool(pair));
+    (tool, reports)
+}
+
+fn within_limits(text: &str) -> Result<(), Report> {
+    if text.len() > LONGEST {
+        let end = Span { start: 0, end: 1 };
+        return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
+            .help(format!("a tool has at most {LONGEST} bytes")));
+    }
+    let mut depth = 0usize;
+    for (at, byte) in text.bytes().enumerate() {
+        match byte {
+            b'(' | b'{' | b'[' => depth += 1,
+            b')' | b'}' | b']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth > DEEPEST {
+            return Err(Report::error(
+                Span { start: at, end: at + 1 },
+                format!("brackets are nested more than {DEEPEST} deep"),
+            )
+            .help("name a part of the expression with `let` or `curve`"));
+        }
+    }
+    Ok(())
+}
+
+struct Reader<'a> {
+    /// Where the parsed text begins in the source.
+    offset: usize,
+    reports: &'a mut Vec<Report>,
+}
+
+impl Reader<'_> {
+    fn span(&self, pair: &Pair<'_, Rule>) -> Span {
+        let text = pair.as_str().trim_end();
+        let start = pair.as_span().start() + self.offset;
+        Span { start, end: start + text.len() }
+    }
+
+    fn tool(&mut self, pair: Pair<'_, Rule>) -> Tool {
+        let mut name = Name { word: String::new(), span: self.span(&pair) };
+        let mut title = None;
+        let mut items = Vec::new();
+        for pair in pair.into_inner() {
+            match pair.as_rule() {
+                Rule::name => {
+                    name = self.name(&pair);
+                    if !name.word.starts_with(|c: char| c.is_ascii_uppercase())
+                        || name.word.contains('_')
+                    {
+                        self.reports.push(
+                            Report::error(
+                                name.span,
+                                format!("`{}` is not a tool's name", name.word),
+                            )
+                            .help("the name becomes a Rust type: write it as `UpperCamelCase`"),
+                        );
+                    }
+                }
+                Rule::text => title = Some(pair.as_str().trim_matches('"').to_owned()),
+                Rule::stray => items.extend(self.stray(&pair)),
+                Rule::k_tool => {}
+                _ => items.extend(self.item(pair)),
+            }
+        }
+        Tool { name, title, items }
+    }
+
+    /// An item that the grammar could not read is read again alone, for its own error.
+    fn stray(&mut self, pair: &Pair<'_, Rule>) -> Option<Item> {
+        let text = pair.as_str();
+        let offset = self.offset + pair.as_span().start();
+        match Grammar::parse(Rule::item, text) {
+            Ok(mut pairs) => {
+                let inner = pairs.next()?.into_inner().next()?;
+                Reader { offset, reports: self.reports }.item(inner)
+            }
+            Err(error) => {
+                self.reports.push(refuse::syntax(text, offset, &error));
+                None
+            }
+        }
+    }
+
+    fn item(&mut self, pair: Pair<'_, Rule>) -> Option<Item> {
+        let span = self.span(&pair);
+        let rule = pair.as_rule();
+        let mut inner = pair.into_inner().filter(|p| !is_word(p.as_rule()));
+        Some(match rule {
+            Rule::units => Item::Units(self.name(&inner.next()?)),
+            Rule::let_ => Item::Let(self.definition(inner)?),
+            Rule::param => Item::Param(self.definition(inner)?),
+            Rule::curve => Item::Curve(self.definition(inner)?),
+            Rule::tip => Item::Tip(self.expr(inner.next()?)),
+            Rule::spindle => Item::Spindle { down: inner.next()?.as_str() == "-", span },
+            Rule::region => Item::Region(self.region(inner)?),
+            Rule::bsp => Item::Bsp(inner.map(|pair| self.name(&pair)).collect()),
+            Rule::law => {
+                let quantity = quantity(&inner.next()?);
+                let mut surfaces = Vec::new();
+                let mut next = inner.next()?;
+                if next.as_rule() == Rule::which {
+                    surfaces = next.into_inner().map(|pair| self.name(&pair)).collect();
+                    next = inner.next()?;
+                }
+                Item::Law(Law { quantity, surfaces, value: self.expr(next), span })
+            }
+            _ => return None,
+        })
+    }
+
+    fn name(&self, pair: &Pair<'_, Rule>) -> Name {
+        Name { word: pair.as_str().to_owned(), span: self.span(pair) }
+    }
+
+    fn definition<'i>(
+        &mut self,
+        mut inner: impl Iterator<Item = Pair<'i, Rule>>,
+    ) -> Option<Definition> {
+        Some(Definition { name: self.name(&inner.next()?), value: self.expr(inner.next()?) })
+    }
+
+    fn region<'i>(&mut self, mut inner: impl Iterator<Item = Pair<'i, Rule>>) -> Option<Region> {
+        let mut region = Region {
+            name: self.name(&inner.next()?),
+            surface: None,
+            cutting: None,
+            conditions: Vec::new(),
+            scalars: Vec::new(),
+            direction: Vec::new(),
+        };
+        for pair in inner {
+            let span = self.span(&pair);
+            match pair.as_rule() {
+                Rule::surface => {
+                    for part in pair.into_inner() {
+                        match part.as_rule() {
+                            Rule::name => region.surface = Some(self.name(&part)),
+                            Rule::cutting => region.cutting = Some(self.span(&part)),
+                            _ => {}
+                        }
+                    }
+                }
+                Rule::where_ => {
+                    for part in pair.into_inner().filter(|p| p.as_rule() == Rule::condition) {
+                        let condition = self.condition(part);
+                        region.conditions.extend(condition);
+                    }
+                }
+                Rule::scalar => {
+                    let mut parts = pair.into_inner();
+                    let quantity = quantity(&parts.next()?);
+                    let value = self.expr(parts.next()?);
+                    region.scalars.push(Scalar { quantity, value, span });
+                }
+                Rule::direction => {
+                    let part = pair.into_inner().find(|p| !is_word(p.as_rule()))?;
+                    let direction = match part.as_rule() {
+                        Rule::away => Direction::AwayFrom(self.inner_tuple(part)?),
+                        Rule::toward => Direction::Toward(self.inner_tuple(part)?),
+                        _ => Direction::Along(self.tuple(part)),
+                    };
+                    region.direction.push((direction, span));
+                }
+                _ => {}
+            }
+        }
+        Some(region)
+    }
+
+    fn inner_tuple(&mut self, pair: Pair<'_, Rule>) -> Option<Tuple> {
+        let tuple = pair.into_inner().find(|p| p.as_rule() == Rule::tuple)?;
+        Some(self.tuple(tuple))
+    }
+
+    fn tuple(&mut self, pair: Pair<'_, Rule>) -> Tuple {
+        let span = self.span(&pair);
+        Tuple { parts: pair.into_inner().map(|part| self.expr(part)).collect(), span }
+    }
+
+    fn condition(&mut self, pair: Pair<'_, Rule>) -> Option<Condition> {
+        let span = self.span(&pair);
+        let mut inner = pair.into_inner();
+        let first = self.expr(inner.next()?);
+        let mut rest = Vec::new();
+        while let (Some(compare), Some(next)) = (inner.next(), inner.next()) {
+            let place = self.span(&compare);
+            let compare = match compare.as_str() {
+                "<=" => Compare::AtMost,
+                ">=" => Compare::AtLeast,
+                other => {
+                    self.reports.push(refuse::comparison(place, other));
+                    return None;
+                }
+            };
+            rest.push((compare, self.expr(next)));
+        }
+        Some(Condition { first, rest, span })
+    }
+
+    fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
+        let span = self.span(&pair);
+        let kind = match pair.as_rule() {
+            Rule::expr | Rule::product => return self.chain(pair.into_inner()),
+            Rule::group => match pair.into_inner().next() {
+                Some(inner) => return Expr { span, ..self.expr(inner) },
+                None => ExprKind::Name(String::new()),
+            },
+            Rule::signed | Rule::signed_atom => {
+                let mut inner = pair.into_inner();
+                match (inner.next(), inner.next()) {
+                    (Some(_), Some(operand)) => ExprKind::Neg(Box::new(self.expr(operand))),
+                    (Some(operand), None) => return self.expr(operand),
+                    _ => ExprKind::Name(String::new()),
+                }
+            }
+            Rule::power => {
+                let mut inner = pair.into_inner();
+                match (inner.next(), inner.next()) {
+                    (Some(base), Some(exponent)) => ExprKind::Binary(
+                        Binary::Pow,
+                        Box::new(self.expr(base)),
+                        Box::new(self.expr(exponent)),
+                    ),
+                    (Some(base), None) => return self.expr(base),
+                    _ => ExprKind::Name(String::new()),
+                }
+            }
+            Rule::number => self.number(pair.as_str(), span),
+            Rule::call => {
+                let mut inner = pair.into_inner();
+                match inner.next() {
+                    Some(name) => {
+                        let name = self.name(&name);
+                        ExprKind::Call(name, inner.map(|part| self.expr(part)).collect())
+                    }
+                    None => ExprKind::Name(String::new()),
+                }
+            }
+            _ => ExprKind::Name(pair.as_str().trim().to_owned()),
+        };
+        Expr { kind, span }
+    }
+
+    /// `a + b - c` and `a * b / c`, both from the left.
+    fn chain(&mut self, mut inner: Pairs<'_, Rule>) -> Expr {
+        let mut left = match inner.next() {
+            Some(first) => self.expr(first),
+            None => Expr { kind: ExprKind::Name(String::new()), span: Span { start: 0, end: 0 } },
+        };
+        while let (Some(operator), Some(right)) = (inner.next(), inner.next()) {
+            let operator = match operator.as_str() {
+                "+" => Binary::Add,
+                "-" => Binary::Sub,
+                "*" => Binary::Mul,
+                _ => Binary::Div,
+            };
+            let right = self.expr(right);
+            let span = left.span.to(right.span);
+            left = Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), span };
+        }
+        left
+    }
+
+    fn number(&mut self, text: &str, span: Span) -> ExprKind {
+        let digits = digits(text);
+        let value = match Number::decimal(&text[..digits]) {
+            Some(value) if value.to_f64().is_finite() => value,
+            _ => {
+                self.reports.push(
+                    Report::error(span, format!("`{text}` is too large for a number"))
+                        .help("lengths lie between 2^-300 and 2^300"),
+                );
+                Number::int(1)
+            }
+        };
+        let suffix = (digits < text.len()).then(|| Name {
+            word: text[digits..].to_owned(),
+            span: Span { start: span.start + digits, end: span.end },
+        });
+        ExprKind::Number(value, suffix)
+    }
+}
+
+/// How much of a number token is the number; the rest is its unit.
+fn digits(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let run = |mut at: usize| {
+        while bytes.get(at).is_some_and(u8::is_ascii_digit) {
+            at += 1;
+        }
+        at
+    };
+    let mut end = run(0);
+    if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(u8::is_ascii_digit) {
+        end = run(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if bytes.get(end + 1 + sign).is_some_and(u8::is_ascii_digit) {
+            end = run(end + 1 + sign);
+        }
+    }
+    // An exponent too long for any number is left to the range check.
+    if f64::from_str(&text[..end]).is_err() { text.len() } else { end }
+}
+
+fn quantity(pair: &Pair<'_, Rule>) -> Quantity {
+    match pair.as_rule() {
+        Rule::depth => Quantity::Depth,
+        Rule::magnitude => Quantity::Magnitude,
+        _ => Quantity::Niceness,
+    }
+}
+
+/// Whether a rule is a word of the language that carries nothing.
+fn is_word(rule: Rule) -> bool {
+    matches!(
+        rule,
+        Rule::k_units
+            | Rule::k_let
+            | Rule::k_param
+            | Rule::k_curve
+            | Rule::k_tip
+            | Rule::k_z
+            | Rule::k_spindle
+            | Rule::k_region
+            | Rule::k_as
+            | Rule::k_where
+            | Rule::k_direction
+            | Rule::k_bsp
+    )
+}
