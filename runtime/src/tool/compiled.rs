@@ -1,7 +1,7 @@
 //! Tools that the macros compile.
 
 use super::{Ask, Card, Felt, LANES, Lane, Points, Tool, present};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
@@ -45,11 +45,6 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn gradient_lanes<L: Lane>(point: [L; 3], length: L) -> [L; 3];
 }
 
-const INSIDE: u8 = 0;
-const DIRECTION: u8 = 1;
-const GRADIENT: u8 = 2;
-const EVERYTHING: u8 = 3;
-
 impl<T: Evaluators> Tool for T {
     fn card(&self) -> &Card {
         T::card()
@@ -57,56 +52,106 @@ impl<T: Evaluators> Tool for T {
 
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, ask);
-        match ask {
-            Ask::Inside => {
-                dispatch!(level, simd => run::<T, _, INSIDE>(simd, points, length, felt))
+        // Only levels with vectors of doubles worth having get code of their own: every level more
+        // would add a copy of every tool to the program.
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            if let Some(simd) = level.as_avx512() {
+                return simd.vectorize(
+                    #[inline(always)]
+                    || lanes::<T, _>(simd, ask, points, length, felt),
+                );
             }
-            Ask::Direction => {
-                dispatch!(level, simd => run::<T, _, DIRECTION>(simd, points, length, felt))
-            }
-            Ask::Gradient => {
-                dispatch!(level, simd => run::<T, _, GRADIENT>(simd, points, length, felt))
-            }
-            Ask::Everything => {
-                dispatch!(level, simd => run::<T, _, EVERYTHING>(simd, points, length, felt))
+            if let Some(simd) = level.as_avx2() {
+                return simd.vectorize(
+                    #[inline(always)]
+                    || lanes::<T, _>(simd, ask, points, length, felt),
+                );
             }
         }
+        #[cfg(target_arch = "aarch64")]
+        if let Some(simd) = level.as_neon() {
+            return simd.vectorize(
+                #[inline(always)]
+                || lanes::<T, _>(simd, ask, points, length, felt),
+            );
+        }
+        one_by_one::<T>(ask, points, length, felt);
     }
 }
 
+/// Blocks of eight, output by output; a block without a point inside is passed over.
 #[inline(always)]
-fn run<T: Evaluators, S: Simd, const ASK: u8>(
-    simd: S,
-    points: &Points,
-    length: f64,
-    felt: &mut Felt,
-) {
+fn lanes<T: Evaluators, S: Simd>(simd: S, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
     let length = f64x8::splat(simd, length);
     let [x, y, z] = points.coordinates();
-    let blocks = x.chunks_exact(LANES).zip(y.chunks_exact(LANES)).zip(z.chunks_exact(LANES));
-    for (block, ((x, y), z)) in blocks.enumerate() {
-        let p = [x, y, z].map(|part| f64x8::from_slice(simd, part));
-        let inside = T::contains_lanes(p).to_bitmask() as u8 & present(points.len(), block);
-        felt.inside[block] = inside;
-        if ASK == INSIDE || inside == 0 {
+    let place = |block: usize| block * LANES..(block + 1) * LANES;
+    let at = |block: usize| [x, y, z].map(|list| f64x8::from_slice(simd, &list[place(block)]));
+    for block in 0..felt.inside.len() {
+        let inside = T::contains_lanes(at(block)).to_bitmask() as u8;
+        felt.inside[block] = inside & present(points.len(), block);
+    }
+    if ask == Ask::Inside {
+        return;
+    }
+    let inside = std::mem::take(&mut felt.inside);
+    let touched = |block: &usize| inside[*block] != 0;
+    let blocks = 0..inside.len();
+    for block in blocks.clone().filter(touched) {
+        let p = at(block);
+        T::depth_lanes(p).store_slice(&mut felt.depth[place(block)]);
+        T::magnitude_lanes(p, length).store_slice(&mut felt.magnitude[place(block)]);
+        T::niceness_lanes(p).store_slice(&mut felt.niceness[place(block)]);
+    }
+    if ask.direction() {
+        for block in blocks.clone().filter(touched) {
+            for (list, part) in felt.direction.iter_mut().zip(T::direction_lanes(at(block))) {
+                part.store_slice(&mut list[place(block)]);
+            }
+        }
+    }
+    if ask.gradient() {
+        for block in blocks.clone().filter(touched) {
+            for (list, part) in felt.gradient.iter_mut().zip(T::gradient_lanes(at(block), length)) {
+                part.store_slice(&mut list[place(block)]);
+            }
+        }
+    }
+    if ask == Ask::Everything {
+        for block in blocks.filter(touched) {
+            T::owner_lanes(at(block)).store_slice(&mut felt.region[place(block)]);
+        }
+    }
+    felt.inside = inside;
+}
+
+/// The same without vectors, by the nested form.
+fn one_by_one<T: Evaluators>(ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
+    let [x, y, z] = points.coordinates();
+    for at in 0..points.len() {
+        let p = [x[at], y[at], z[at]];
+        if !T::contains(p) {
             continue;
         }
-        let place = block * LANES..(block + 1) * LANES;
-        T::depth_lanes(p).store_slice(&mut felt.depth[place.clone()]);
-        T::magnitude_lanes(p, length).store_slice(&mut felt.magnitude[place.clone()]);
-        T::niceness_lanes(p).store_slice(&mut felt.niceness[place.clone()]);
-        if ASK != GRADIENT {
-            for (list, part) in felt.direction.iter_mut().zip(T::direction_lanes(p)) {
-                part.store_slice(&mut list[place.clone()]);
+        felt.inside[at / LANES] |= 1 << (at % LANES);
+        if ask == Ask::Inside {
+            continue;
+        }
+        felt.depth[at] = T::depth(p);
+        felt.magnitude[at] = T::magnitude(p, length);
+        felt.niceness[at] = T::niceness(p);
+        if ask.direction() {
+            for (list, part) in felt.direction.iter_mut().zip(T::direction(p)) {
+                list[at] = part;
             }
         }
-        if ASK != DIRECTION {
-            for (list, part) in felt.gradient.iter_mut().zip(T::gradient_lanes(p, length)) {
-                part.store_slice(&mut list[place.clone()]);
+        if ask.gradient() {
+            for (list, part) in felt.gradient.iter_mut().zip(T::gradient(p, length)) {
+                list[at] = part;
             }
         }
-        if ASK == EVERYTHING {
-            T::owner_lanes(p).store_slice(&mut felt.region[place]);
+        if ask == Ask::Everything {
+            felt.region[at] = T::owner(p).map_or(-1.0, |region| region as f64);
         }
     }
 }

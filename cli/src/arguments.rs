@@ -1,0 +1,96 @@
+//! What the program is asked for.
+
+use clap::{Args, Parser, Subcommand};
+use nalgebra::Point3;
+use std::path::PathBuf;
+use touchoff::{Law, Unit, Weights};
+
+/// What a cutting tool feels of a workpiece, at any pose. Alone: `touchoff demo`.
+#[derive(Parser)]
+#[command(version, about)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    /// One JSON object a row (of the demonstration).
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Table 7.1 of Ho (1999), measured here, beside the thesis's own figures.
+    Demo {
+        /// One JSON object a row.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Feel a part with a tool along a path.
+    Run(Box<Run>),
+    /// List the compiled tools.
+    Tools {
+        /// One JSON object a tool.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Look `.tool` files over.
+    Check {
+        /// The files.
+        #[arg(required = true, value_name = "FILE.tool")]
+        files: Vec<PathBuf>,
+    },
+    /// Print the Rust that a `.tool` file becomes.
+    Expand {
+        /// The file.
+        #[arg(value_name = "FILE.tool")]
+        file: PathBuf,
+    },
+}
+
+#[derive(Args)]
+pub(crate) struct Run {
+    /// The part: an STL file, binary or ASCII.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: PathBuf,
+    /// The part's unit, which STL does not say: `mm`, `inch` or `m`.
+    #[arg(long)]
+    pub(crate) unit: Unit,
+    /// A compiled tool by name, or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: String,
+    /// The path: a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, or APT-CL.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) path: PathBuf,
+    /// Points of the part's cloud.
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    pub(crate) points: u64,
+    /// Seed of the cloud: the same seed, the same points.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Force law: `thesis`, `gradient` or `facing`.
+    #[arg(long, default_value_t = Law::Thesis)]
+    pub(crate) law: Law,
+    /// Weights of the points: `area` or `unit`.
+    #[arg(long, default_value_t = Weights::Area)]
+    pub(crate) weights: Weights,
+    /// Compliance centre, in the tool's frame and the part's unit [default: the tip].
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) center: Option<Point3<f64>>,
+    /// One JSON object a pose.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `x,y,z`
+fn point(text: &str) -> Result<Point3<f64>, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| {
+            part.trim().parse::<f64>().map_err(|_| format!("`{}` is not a number", part.trim()))
+        })
+        .collect::<Result<_, _>>()?;
+    match numbers.as_slice() {
+        [x, y, z] if numbers.iter().all(|n| n.is_finite()) => Ok(Point3::new(*x, *y, *z)),
+        [_, _, _] => Err("a coordinate is not finite".to_owned()),
+        _ => Err(format!("write three numbers, `x,y,z`; these are {}", numbers.len())),
+    }
+}

@@ -1,0 +1,49 @@
+//! Why the program fails, said once at its end.
+
+use touchoff::mesh::MeshError;
+use touchoff::tool::ToolError;
+use touchoff::{CloudError, PartError, ProgramError};
+
+/// What ends the program with exit status 1.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// The part could not be loaded.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// A cloud could not be made.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
+    /// A mesh could not be made.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The path could not be read.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
+    /// The tool could not be loaded.
+    #[error(transparent)]
+    Tool(#[from] ToolError),
+    /// No tool has this name.
+    #[error(
+        "no tool is called `{name}`{meant}: `touchoff tools` lists them; a file's name ends in `.tool`"
+    )]
+    UnknownTool {
+        /// What was asked for.
+        name: String,
+        /// `; did you mean …?`, or nothing.
+        meant: String,
+    },
+    /// Some `.tool` files have errors, which were shown.
+    #[error("{wrong} of {all} files {} errors", if *.wrong == 1 { "has" } else { "have" })]
+    Files {
+        /// How many have errors.
+        wrong: usize,
+        /// How many were looked at.
+        all: usize,
+    },
+    /// Standard output could not be written.
+    #[error("the output could not be written whole: {0}")]
+    Output(#[from] std::io::Error),
+    /// A row could not be written as JSON.
+    #[error("the output could not be written whole: {0}")]
+    Json(#[from] serde_json::Error),
+}

@@ -1,0 +1,179 @@
+//! Tools as files: listing, looking over, expanding.
+
+use crate::failure::Failure;
+use serde::Serialize;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use tool_dsl::report::Severity;
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, compile, emit};
+use tools_library::TOOLS;
+use touchoff::tool::{Card, Interpreted, ToolError};
+use touchoff::{Tool, Unit};
+
+#[derive(Serialize)]
+struct Listed<'a> {
+    name: &'a str,
+    title: &'a str,
+    unit: &'static str,
+    low: f64,
+    high: f64,
+    radius: f64,
+    surfaces: Vec<ListedSurface<'a>>,
+    regions: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct ListedSurface<'a> {
+    name: &'a str,
+    cutting: bool,
+}
+
+impl<'a> Listed<'a> {
+    fn of(card: &'a Card) -> Listed<'a> {
+        let [low, high] = card.reach();
+        Listed {
+            name: &card.name,
+            title: &card.title,
+            unit: card.unit.word(),
+            low,
+            high,
+            radius: card.radius(),
+            surfaces: card
+                .surfaces
+                .iter()
+                .map(|s| ListedSurface { name: &s.name, cutting: s.cutting })
+                .collect(),
+            regions: card.regions.iter().map(|region| &*region.name).collect(),
+        }
+    }
+}
+
+/// Lists the compiled tools.
+pub(crate) fn tools(json: bool) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    for tool in TOOLS {
+        let card = tool.card();
+        if json {
+            serde_json::to_writer(&mut out, &Listed::of(card))?;
+            writeln!(out)?;
+        } else {
+            writeln!(out, "{:<20} {:<5} {}", card.name, card.unit.word(), card.title)?;
+        }
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// A compiled tool by name, or a `.tool` file.
+pub(crate) enum Found {
+    Compiled(&'static dyn Tool),
+    File(Box<Interpreted>),
+}
+
+impl Found {
+    /// Finds what `--tool` says.
+    pub(crate) fn find(name: &str) -> Result<Found, Failure> {
+        if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
+            let tool = Interpreted::load(name)?;
+            if !tool.warnings().is_empty() {
+                eprintln!("{}", tool.warnings());
+            }
+            return Ok(Found::File(Box::new(tool)));
+        }
+        tools_library::find(name).map(Found::Compiled).ok_or_else(|| {
+            let distance = |known: &str| {
+                strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase())
+            };
+            let known = TOOLS.iter().map(|tool| &*tool.card().name);
+            let nearest = known.min_by_key(|known| distance(known));
+            let meant = nearest.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
+            Failure::UnknownTool { name: name.to_owned(), meant }
+        })
+    }
+
+    pub(crate) fn tool(&self) -> &dyn Tool {
+        match self {
+            Found::Compiled(tool) => *tool,
+            Found::File(tool) => &**tool,
+        }
+    }
+}
+
+fn read(file: &Path) -> Result<Source, ToolError> {
+    let name = file.display().to_string();
+    match std::fs::read_to_string(file) {
+        Ok(text) => Ok(Source::new(name, text)),
+        Err(source) => Err(ToolError::Unreadable { file: name, source }),
+    }
+}
+
+/// Shows what is wrong with files, and what those that are right are like.
+pub(crate) fn check(files: &[PathBuf]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    let styled = std::io::stderr().is_terminal();
+    let mut wrong = 0;
+    for file in files {
+        let source = match read(file) {
+            Ok(source) => source,
+            Err(error) => {
+                eprintln!("error: {error}");
+                wrong += 1;
+                continue;
+            }
+        };
+        let compiled = compile(&source);
+        for report in &compiled.reports {
+            eprintln!("{}\n", report.render(&source, styled));
+        }
+        match &compiled.tool {
+            Some(tool) => {
+                let is_warning = |r: &&tool_dsl::report::Report| r.severity == Severity::Warning;
+                let warnings = compiled.reports.iter().filter(is_warning).count();
+                writeln!(out, "{}: {}", file.display(), described(tool, warnings))?;
+            }
+            None => wrong += 1,
+        }
+    }
+    out.flush()?;
+    if wrong > 0 { Err(Failure::Files { wrong, all: files.len() }) } else { Ok(()) }
+}
+
+fn described(tool: &Checked, warnings: usize) -> String {
+    let model = &tool.model;
+    let unit = model.unit.word();
+    let cutting: Vec<&str> =
+        model.surfaces.iter().filter(|s| s.cutting).map(|s| s.name.as_str()).collect();
+    let rounded = |v: f64| (v * 1e6).round() / 1e6 + 0.0;
+    format!(
+        "{} is {} {unit} long and {} {unit} in radius; {} regions, {} curves, cutting: {}; {warnings} {}",
+        model.name,
+        rounded(tool.extent.high - tool.extent.low),
+        rounded(tool.extent.radius),
+        model.regions.len(),
+        model.curves.len(),
+        if cutting.is_empty() { "nothing".to_owned() } else { cutting.join(", ") },
+        if warnings == 1 { "warning" } else { "warnings" },
+    )
+}
+
+/// Prints a file's Rust.
+pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
+    let source = read(file)?;
+    let compiled = compile(&source);
+    for report in &compiled.reports {
+        eprintln!("{}\n", report.render(&source, std::io::stderr().is_terminal()));
+    }
+    let Some(tool) = &compiled.tool else {
+        return Err(Failure::Files { wrong: 1, all: 1 });
+    };
+    let mut out = std::io::stdout().lock();
+    write!(out, "{}", emit::rust(tool))?;
+    out.flush()?;
+    Ok(())
+}
+
+/// A length with its unit.
+pub(crate) fn length(value: f64, unit: Unit) -> String {
+    format!("{value:.4} {unit}")
+}

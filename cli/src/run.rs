@@ -1,0 +1,191 @@
+//! A tool along a path: a row a pose, a summary at the end.
+
+use crate::arguments::Run;
+use crate::failure::Failure;
+use crate::files::{Found, length};
+use crate::timing::{Timing, nanoseconds};
+use nalgebra::{Point3, Vector3};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::time::Instant;
+use touchoff::tool::Card;
+use touchoff::{Contact, Part, Probe, Program, Unit, Wrench};
+
+#[derive(Serialize)]
+struct Row<'a> {
+    pose: usize,
+    line: usize,
+    colliding: usize,
+    depth: f64,
+    force: [f64; 3],
+    torque: [f64; 3],
+    niceness: Option<f64>,
+    integral: f64,
+    energy: f64,
+    ns: u64,
+    law: String,
+    /// The deepest point of each surface in contact.
+    surfaces: BTreeMap<&'a str, f64>,
+}
+
+/// Runs a tool along a path.
+pub(crate) fn run(wanted: &Run) -> Result<(), Failure> {
+    // Everything that can be wrong is found before the first row is written.
+    let found = Found::find(&wanted.tool)?;
+    let tool = found.tool();
+    let program = Program::read(&wanted.path)?;
+    program.check_unit(wanted.unit)?;
+    let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
+    let part = Part::read_stl(&wanted.part, wanted.unit, points, wanted.seed)?;
+    about(wanted, &part, &program, tool.card());
+
+    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    if !wanted.json {
+        writeln!(out, "    line  points   depth ({})  by surface", wanted.unit)?;
+    }
+    let mut probe = Probe::new(&part, tool)
+        .law(wanted.law)
+        .weights(wanted.weights)
+        .centre(wanted.center.unwrap_or(Point3::origin()));
+    let mut summary = Summary::default();
+    for (index, stop) in program.stops.iter().enumerate() {
+        let start = Instant::now();
+        let felt = probe.wrench(&stop.pose);
+        let ns = nanoseconds(start.elapsed());
+        let contacts = if felt.colliding > 0 { probe.contacts(&stop.pose) } else { &[] };
+        let surfaces = by_surface(contacts, tool.card());
+        summary.add(stop.line, &felt, &surfaces, ns);
+        if wanted.json {
+            let row = row(index, stop.line, &felt, ns, surfaces);
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
+        } else if felt.colliding > 0 {
+            let each: Vec<String> =
+                surfaces.iter().map(|(name, depth)| format!("{name} {depth:.4}")).collect();
+            let (line, points, depth) = (stop.line, felt.colliding, felt.depth());
+            writeln!(out, "{line:>8} {points:>7} {depth:>12.4}  {}", each.join(", "))?;
+        }
+    }
+    out.flush()?;
+    summary.print(wanted.unit);
+    Ok(())
+}
+
+/// What was loaded.
+fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
+    if let Some(survey) = part.survey() {
+        for finding in survey.findings() {
+            eprintln!("{}: {finding}", wanted.part.display());
+        }
+    }
+    let ignored: BTreeMap<&str, usize> =
+        program.ignored.iter().fold(BTreeMap::new(), |mut words, (_, word)| {
+            *words.entry(word.as_str()).or_default() += 1;
+            words
+        });
+    for (word, times) in ignored {
+        eprintln!("{}: `{word}` means nothing here, {times} times", wanted.path.display());
+    }
+    eprintln!(
+        "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
+        card.name,
+        part.tree().len(),
+        program.stops.len(),
+        wanted.law,
+        wanted.weights,
+        wanted.unit,
+    );
+}
+
+fn by_surface<'a>(contacts: &[Contact], card: &'a Card) -> BTreeMap<&'a str, f64> {
+    let mut surfaces = BTreeMap::new();
+    for contact in contacts {
+        let deepest: &mut f64 = surfaces.entry(&*card.surfaces[contact.surface].name).or_default();
+        *deepest = deepest.max(contact.depth);
+    }
+    surfaces
+}
+
+fn row<'a>(
+    pose: usize,
+    line: usize,
+    felt: &Wrench,
+    ns: u64,
+    surfaces: BTreeMap<&'a str, f64>,
+) -> Row<'a> {
+    let parts = |v: Vector3<f64>| [v.x, v.y, v.z];
+    Row {
+        pose,
+        line,
+        colliding: felt.colliding,
+        depth: felt.depth(),
+        force: parts(felt.force),
+        torque: parts(felt.torque),
+        niceness: felt.niceness,
+        integral: felt.integral,
+        energy: felt.energy,
+        ns,
+        law: felt.law.to_string(),
+        surfaces,
+    }
+}
+
+/// What the whole path came to.
+#[derive(Default)]
+struct Summary {
+    poses: usize,
+    in_contact: usize,
+    /// Depth and line of the deepest pose.
+    deepest: Option<(f64, usize)>,
+    /// Poses in contact, depth and line of the deepest, for each surface.
+    surfaces: BTreeMap<String, (usize, f64, usize)>,
+    times: Vec<u64>,
+}
+
+impl Summary {
+    fn add(&mut self, line: usize, felt: &Wrench, surfaces: &BTreeMap<&str, f64>, ns: u64) {
+        self.poses += 1;
+        self.times.push(ns);
+        if felt.colliding == 0 {
+            return;
+        }
+        self.in_contact += 1;
+        if self.deepest.is_none_or(|(depth, _)| felt.depth() > depth) {
+            self.deepest = Some((felt.depth(), line));
+        }
+        for (name, depth) in surfaces {
+            let entry = self.surfaces.entry((*name).to_owned()).or_insert((0, -1.0, line));
+            entry.0 += 1;
+            if *depth > entry.1 {
+                (entry.1, entry.2) = (*depth, line);
+            }
+        }
+    }
+
+    fn print(mut self, unit: Unit) {
+        match self.deepest {
+            Some((depth, line)) => eprintln!(
+                "{} of {} poses in contact, deepest {} at line {line}",
+                self.in_contact,
+                self.poses,
+                length(depth, unit),
+            ),
+            None => eprintln!("none of {} poses in contact", self.poses),
+        }
+        for (name, (poses, depth, line)) in &self.surfaces {
+            eprintln!(
+                "  {name:<12} {poses:>6} poses, deepest {} at line {line}",
+                length(*depth, unit)
+            );
+        }
+        let timing = Timing::of(&mut self.times);
+        eprintln!(
+            "time a query: {:.2} µs on average, {:.2} median, {:.2} p99, {:.2} at most",
+            timing.avg / 1e3,
+            timing.p50 as f64 / 1e3,
+            timing.p99 as f64 / 1e3,
+            timing.max as f64 / 1e3,
+        );
+    }
+}

@@ -1,0 +1,162 @@
+//! A tool's evaluators against its oracle, within the contract of a generated evaluator: depth to
+//! 1 ulp(S), the side certain beyond 2 ulp(S), unit directions to 8 ε · max(1, S/ρ), where S is the
+//! next power of two above the tool's largest coordinate, and ρ the distance to the nearest point
+//! at which the direction does not exist.
+
+use super::LENGTHS;
+use super::points::{scale, shown};
+use touchoff::tool::Evaluators;
+use touchoff_tests::oracle::{Oracle, Sense};
+
+/// Closer to a border than this part of S, either neighbour may own a point.
+const CLOSE: f64 = 1e-12;
+
+/// The largest error of one kind, and where it is.
+#[derive(Default)]
+struct Worst {
+    error: f64,
+    place: String,
+}
+
+impl Worst {
+    fn see(&mut self, error: f64, p: [f64; 3], more: impl FnOnce() -> String) {
+        // Not `>`, so that a NaN stays.
+        if !(error <= self.error) {
+            *self = Worst { error, place: format!("{}; {}", shown(p), more()) };
+        }
+    }
+
+    fn within(&self, bound: f64, what: &str) {
+        assert!(self.error <= bound, "{what}: {} > {bound} at {}", self.error, self.place);
+    }
+}
+
+/// What is found out about a tool.
+#[derive(Default)]
+struct Findings {
+    /// In ulp(S).
+    depth: Worst,
+    /// In ulp(S), the unit of length's change taken out.
+    magnitude: Worst,
+    /// In ε · max(1, S/ρ).
+    direction: Worst,
+    /// In ε.
+    length: Worst,
+    /// In ε · max(1, S/ρ), relative to the gradient's size where that is above 1.
+    gradient: Worst,
+    /// In ulp(S).
+    niceness: Worst,
+    sides: Vec<String>,
+    owners: Vec<String>,
+}
+
+/// Compares a tool with its oracle on some points, prints a row and asserts the contract.
+pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
+    let s = scale(oracle);
+    let ulp = s * f64::EPSILON;
+    let mut found = Findings::default();
+    let mut inside = 0;
+    for &p in points {
+        let distance = oracle.signed_distance(p);
+        let contained = T::contains(p);
+        if distance.abs() > 2.0 * ulp && contained != (distance < 0.0) {
+            found
+                .sides
+                .push(format!("contains = {contained}, distance {distance:e}: {}", shown(p)));
+        }
+        let owner = T::owner(p);
+        assert_eq!(owner.is_some(), contained, "{}", shown(p));
+        let sense = oracle.sense(p);
+        if oracle.border(p) > CLOSE * s && owner != sense.map(|sense| sense.owner) {
+            found.owners.push(format!("{owner:?}, not {sense:?}: {}", shown(p)));
+        }
+        if let Some(owner) = owner {
+            inside += 1;
+            felt::<T>(oracle, p, owner, sense, ulp, &mut found);
+        }
+    }
+    println!(
+        "{:20} {:7} points {inside:7} inside | ulp(S): depth {:.3}, magnitude {:.3}, niceness {:.3} \
+         | ε·max(1, S/ρ): direction {:.3}, gradient {:.3} | ||u|-1| {:.2} ε | wrong sides {}, owners {}",
+        oracle.name(),
+        points.len(),
+        found.depth.error,
+        found.magnitude.error,
+        found.niceness.error,
+        found.direction.error,
+        found.gradient.error,
+        found.length.error,
+        found.sides.len(),
+        found.owners.len(),
+    );
+    assert!(found.sides.is_empty(), "wrong sides: {:#?}", &found.sides[..found.sides.len().min(5)]);
+    assert!(
+        found.owners.is_empty(),
+        "wrong owners: {:#?}",
+        &found.owners[..found.owners.len().min(5)]
+    );
+    found.length.within(4.0, "||u| - 1| in ε");
+    found.direction.within(8.0, "direction in ε · max(1, S/ρ)");
+    found.gradient.within(8.0, "gradient in ε · max(1, S/ρ)");
+    found.depth.within(1.0, "depth in ulp(S)");
+    found.magnitude.within(1.0, "magnitude in ulp(S)");
+    found.niceness.within(1.0, "niceness in ulp(S)");
+}
+
+/// What is felt at one point inside.
+fn felt<T: Evaluators>(
+    oracle: &dyn Oracle,
+    p: [f64; 3],
+    owner: usize,
+    sense: Option<Sense>,
+    ulp: f64,
+    found: &mut Findings,
+) {
+    let (depth, niceness, direction) = (T::depth(p), T::niceness(p), T::direction(p));
+    let whole = [depth, niceness].into_iter().chain(direction);
+    assert!(whole.clone().all(f64::is_finite), "{:?} at {}", whole.collect::<Vec<_>>(), shown(p));
+    assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", shown(p));
+    // Where rounding alone puts a point inside, the oracle feels nothing: the depth is 0.
+    let deep = sense.map_or(0.0, |sense| sense.depth);
+    found.depth.see((depth - deep).abs() / ulp, p, || format!("{depth:e}, not {deep:e}"));
+    for length in LENGTHS {
+        let magnitude = T::magnitude(p, length);
+        let unit = if magnitude_is_depth(oracle) { length } else { 1.0 };
+        let error = (magnitude / unit - sense.map_or(0.0, |sense| sense.magnitude)).abs() / ulp;
+        found.magnitude.see(error, p, || format!("{magnitude:e} at length {length}"));
+        let gradient = T::gradient(p, length);
+        assert!(gradient.into_iter().all(f64::is_finite), "{gradient:?} at {}", shown(p));
+    }
+    let size = norm(direction);
+    found.length.see((size - 1.0).abs() / f64::EPSILON, p, || format!("{direction:?}"));
+    // On a border each of two neighbours has its own direction.
+    let Some(sense) = sense.filter(|sense| sense.owner == owner) else { return };
+    let doubt = f64::EPSILON * (ulp / f64::EPSILON / oracle.singular(p)).max(1.0);
+    let doubt = if doubt.is_finite() { doubt } else { f64::EPSILON };
+    found.direction.see(apart(direction, sense.direction) / doubt, p, || {
+        format!("{direction:?}, not {:?}, rho {:e}", sense.direction, oracle.singular(p))
+    });
+    let error = (niceness - sense.niceness).abs() / ulp;
+    found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", sense.niceness));
+    let slope = oracle.gradient(p).expect("the oracle has the point inside");
+    for length in LENGTHS {
+        let per = if magnitude_is_depth(oracle) { 1.0 } else { length };
+        let gradient = T::gradient(p, length).map(|part| part * per);
+        let error = apart(gradient, slope) / norm(slope).max(1.0) / doubt;
+        found.gradient.see(error, p, || format!("{gradient:?}, not {slope:?}"));
+    }
+}
+
+/// Of the library's tools only the thesis's own writes `magnitude`; a `magnitude` that is the
+/// depth is a length, and changes with the part's unit.
+fn magnitude_is_depth(oracle: &dyn Oracle) -> bool {
+    oracle.name() != "Fig73"
+}
+
+fn norm(v: [f64; 3]) -> f64 {
+    v.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    norm([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
+}

@@ -1,0 +1,128 @@
+//! Points that an evaluator finds hard, and plenty of ordinary ones.
+
+use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{Meridian, Oracle};
+
+/// Points spread over the box, and as many close to borders.
+const UNIFORM: usize = 60_000;
+/// Borders that are looked for, and points beside each.
+const BORDERS: usize = 15_000;
+const BESIDE: usize = 4;
+
+/// At least 100,000 points for a tool, from a seed.
+pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
+    let mut draw = Draw::new(seed);
+    let mut points = Vec::new();
+    uniform(oracle, &mut draw, &mut points);
+    beside_borders(oracle, &mut draw, &mut points);
+    exact(oracle, &mut draw, &mut points);
+    axis(oracle, &mut draw, &mut points);
+    assert!(points.len() >= 100_000);
+    points
+}
+
+/// Unit vectors across the axis: exactly along x and y, and anywhere.
+fn azimuths(draw: &mut Draw) -> [[f64; 2]; 6] {
+    let mut any = || {
+        let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+        [cos, sin]
+    };
+    [[1.0, 0.0], [0.0, 1.0], [-1.0, -0.0], [0.0, -1.0], any(), any()]
+}
+
+fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
+    [d * cos, d * sin, z]
+}
+
+/// In a box a tenth larger than the tool.
+fn uniform(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    let [radius, height] = oracle.extent();
+    for _ in 0..UNIFORM {
+        let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
+        points.push([across[0], across[1], draw.between(-0.05 * height, 1.05 * height)]);
+    }
+}
+
+/// Within 1e-6 of the surface or a splitting curve. Where they run is found by halving a stretch
+/// on whose ends the oracle disagrees, so that nothing but the oracle's answer is trusted.
+fn beside_borders(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    let samples: Vec<[f64; 2]> = oracle.curves().into_iter().flatten().collect();
+    let owner = |[d, z]: [f64; 2]| oracle.sense([d, 0.0, z]).map(|sense| sense.owner);
+    let mut found = 0;
+    while found < BORDERS {
+        let sample = samples[draw.bits() as usize % samples.len()];
+        let reach = 0.05 * oracle.extent()[0];
+        let mut near = || {
+            [
+                (sample[0] + draw.between(-reach, reach)).abs(),
+                sample[1] + draw.between(-reach, reach),
+            ]
+        };
+        let (mut a, mut b) = (near(), near());
+        let first = owner(a);
+        if first == owner(b) {
+            continue;
+        }
+        found += 1;
+        for _ in 0..45 {
+            let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+            if owner(middle) == first { a = middle } else { b = middle }
+        }
+        for _ in 0..BESIDE {
+            // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
+            let size = 10f64.powf(draw.between(-16.0, -6.0));
+            let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+            let azimuths = azimuths(draw);
+            let azimuth = azimuths[draw.bits() as usize % azimuths.len()];
+            points.push(over([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth));
+        }
+    }
+}
+
+/// Every corner and every sample of a curve, and one ulp to either side of it in d and in z.
+fn exact(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    let around = |v: f64| [v, v.next_up(), v.next_down()];
+    let curves = oracle.curves().into_iter().flatten();
+    for [d, z] in oracle.corners().into_iter().chain(curves) {
+        for d in around(d) {
+            for z in around(z) {
+                points.extend(azimuths(draw).map(|azimuth| over([d.abs(), z], azimuth)));
+            }
+        }
+    }
+}
+
+/// On the axis and as close to it as numbers go, at every height that a corner has and others.
+fn axis(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    const CLOSE: [f64; 8] = [0.0, 5e-324, 1e-310, 1.7e-162, 1.6e-154, 1e-100, 1e-20, f64::EPSILON];
+    let height = oracle.extent()[1];
+    let corners = oracle.corners().into_iter().flat_map(|[_, z]| [z, z.next_up(), z.next_down()]);
+    let others = (0..=200).map(|k| height * f64::from(k) / 200.0);
+    for z in corners.chain(others).chain([-0.0, 5e-324, -5e-324]) {
+        for close in CLOSE.into_iter().chain([2f64.powi(-540)]) {
+            for [sx, sy] in
+                [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            {
+                points.push([close * sx, close * sy, z]);
+            }
+            let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+            points.push([close * cos, close * sin, z]);
+        }
+    }
+}
+
+/// How large a tool is to its rounding: the next power of two above its largest coordinate.
+pub(crate) fn scale(oracle: &dyn Oracle) -> f64 {
+    let [radius, height] = oracle.extent();
+    let mut scale = 1.0;
+    while scale <= radius.max(height) {
+        scale *= 2.0;
+    }
+    scale
+}
+
+/// A point as it is shown: where it lies in the half plane, and its coordinates to the last bit.
+pub(crate) fn shown(p: [f64; 3]) -> String {
+    let [d, z] = Meridian::of(p).dz;
+    format!("(d, z) = ({d:e}, {z:e}), p = {p:?}")
+}

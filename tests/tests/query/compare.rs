@@ -1,0 +1,343 @@
+//! One query against brute force, with bounds that follow from rounding alone.
+//!
+//! **Noise.** Probe and oracle see a point at most `noise` apart: 8 units in the last place of S, the power of two above the tool's
+//! largest coordinate (`accuracy.md`, section 1), and 4 of the world's coordinates. Depths and magnitudes may differ by that times their
+//! Lipschitz constant (1; √5 for fig. 7.3), directions by that over the distance to where they do not exist. Sums may differ by as much
+//! for every point, and by their own rounding.
+//!
+//! **Doubt.** A point within 1e-12 S (and the noise) of the surface or a splitting curve may be felt on either side of it. Such points
+//! are counted, and widen the bounds by what they could do; no other point may be missing or belong elsewhere.
+
+use nalgebra::{Point3, Vector3};
+use std::collections::BTreeMap;
+use touchoff::{Contact, Law, Part, Pose, Probe, Tool, Weights, Wrench, summary};
+use touchoff_tests::oracle::brute::{self, Answer, Query};
+use touchoff_tests::oracle::{Oracle, all};
+
+/// The tools of the library, each with its oracle.
+pub fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
+    all()
+        .into_iter()
+        .map(|oracle| (tools_library::find(oracle.name()).expect("in the library"), oracle))
+        .collect()
+}
+
+/// All laws with all weights.
+pub const WAYS: [(Law, Weights); 6] = [
+    (Law::Thesis, Weights::Area),
+    (Law::Gradient, Weights::Unit),
+    (Law::Facing, Weights::Area),
+    (Law::Thesis, Weights::Unit),
+    (Law::Gradient, Weights::Area),
+    (Law::Facing, Weights::Unit),
+];
+
+/// What was seen over several poses.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    pub poses: usize,
+    pub touching: usize,
+    pub contacts: usize,
+    /// Points that could be felt either way.
+    pub doubtful: usize,
+    /// Points that one side felt and the other did not.
+    pub disputed: usize,
+    /// The largest errors: of depth in ulp(S), of force and torque relative to the sums of their terms' sizes.
+    pub worst: [f64; 3],
+}
+
+/// A part and a tool.
+pub struct Case<'a> {
+    part: &'a Part,
+    tool: &'a dyn Tool,
+    oracle: &'a dyn Oracle,
+    points: Vec<[f64; 3]>,
+    normals: Vec<[f64; 3]>,
+    weights: Vec<f64>,
+    ones: Vec<f64>,
+    /// Of each id, its point's place in the tree.
+    places: Vec<usize>,
+    /// The largest coordinate.
+    reach: f64,
+    /// S, 1 ulp(S) and the Lipschitz constant.
+    size: f64,
+    ulp: f64,
+    steep: f64,
+    pub seen: Seen,
+}
+
+/// One pose, asked about.
+struct Asked<'a> {
+    query: Query<'a>,
+    answer: Answer,
+    wrench: Wrench,
+    contacts: Vec<Contact>,
+    noise: f64,
+    band: f64,
+}
+
+/// How far sums may be apart.
+#[derive(Default)]
+struct Bounds {
+    force: f64,
+    torque: f64,
+    integral: f64,
+    energy: f64,
+    /// Whether the least niceness may be that of a point in doubt.
+    nice: bool,
+}
+
+/// The greatest rotation or slope that a law pushes by.
+const PUSH: f64 = 2.3;
+
+impl<'a> Case<'a> {
+    pub fn new(part: &'a Part, tool: &'a dyn Tool, oracle: &'a dyn Oracle) -> Case<'a> {
+        let tree = part.tree();
+        let places = 0..tree.len();
+        let points: Vec<[f64; 3]> = places.clone().map(|i| tree.point(i).into()).collect();
+        let ids: BTreeMap<u32, usize> = places.clone().map(|i| (tree.triangle(i), i)).collect();
+        assert!(ids.keys().copied().eq(0..tree.len() as u32), "an id for every point");
+        let largest = oracle.extent().into_iter().fold(0.0, f64::max);
+        let size = largest.log2().ceil().exp2();
+        Case {
+            part,
+            tool,
+            oracle,
+            normals: places.clone().map(|i| tree.normal(i)).collect(),
+            weights: places.map(|i| tree.weight(i)).collect(),
+            ones: vec![1.0; points.len()],
+            places: ids.into_iter().map(|(_, place)| place).collect(),
+            reach: points.iter().flatten().fold(0.0, |m, c| m.max(c.abs())),
+            points,
+            size,
+            ulp: size * f64::EPSILON,
+            steep: if oracle.name() == "Fig73" { 5f64.sqrt() } else { 1.0 },
+            seen: Seen::default(),
+        }
+    }
+
+    /// Asks both about a pose, in the `k`th way of pushing, and compares all that they say. Returns how many points touch.
+    pub fn check(&mut self, pose: &Pose, k: usize) -> usize {
+        // A compliance centre at the tip, up the tool, and beside it.
+        let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3].into();
+        let (law, weights) = WAYS[k % 6];
+        let mut probe = Probe::new(self.part, self.tool).law(law).weights(weights).centre(centre);
+        let wrench = probe.wrench(pose);
+        assert_eq!((wrench.law, wrench.weights), (law, weights));
+        assert_eq!(probe.detect(pose), wrench.colliding > 0, "detect at {pose:?}");
+        let contacts = probe.contacts(pose).to_vec();
+        let asked = self.ask(pose, wrench, contacts, centre);
+        self.compare_points(&asked);
+        let bounds = self.compare_sums(&asked);
+        consistent(&asked, &bounds);
+        self.seen.poses += 1;
+        self.seen.touching += usize::from(wrench.colliding > 0);
+        self.seen.contacts += wrench.colliding;
+        wrench.colliding
+    }
+
+    fn ask(
+        &self,
+        pose: &Pose,
+        wrench: Wrench,
+        contacts: Vec<Contact>,
+        centre: Point3<f64>,
+    ) -> Asked<'_> {
+        let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
+        let there = brute::Pose { tip: pose.tip().into(), axes };
+        let weights = match wrench.weights {
+            Weights::Area => &self.weights,
+            Weights::Unit => &self.ones,
+        };
+        let mut query = Query::new(self.oracle, there, &self.points, &self.normals, weights);
+        query.law = match wrench.law {
+            Law::Thesis => brute::Law::Thesis,
+            Law::Gradient => brute::Law::Gradient,
+            Law::Facing => brute::Law::Facing,
+        };
+        query.centre = (pose.tip() + pose.rotation() * centre.coords).into();
+        let world = pose.tip().coords.amax().max(self.reach);
+        let noise = 8.0 * self.ulp + 4.0 * f64::EPSILON * world;
+        let band = 1e-12 * self.size + 2.0 * noise;
+        Asked { answer: query.answer(), query, wrench, contacts, noise, band }
+    }
+
+    /// The points that touch, one by one; both sides list them in the tree's order.
+    fn compare_points(&mut self, asked: &Asked<'_>) {
+        let place = |contact: &Contact| self.places[contact.triangle as usize];
+        assert!(asked.contacts.is_sorted_by_key(place));
+        let mut felt: BTreeMap<usize, &Contact> =
+            asked.contacts.iter().map(|contact| (place(contact), contact)).collect();
+        for &i in &asked.answer.contacts {
+            let q = asked.query.in_tool(self.points[i]);
+            match felt.remove(&i) {
+                Some(contact) => self.compare_point(asked, i, q, contact),
+                None => self.dispute(asked, q, "was not felt"),
+            }
+        }
+        for i in felt.into_keys() {
+            self.dispute(asked, asked.query.in_tool(self.points[i]), "should not be felt");
+        }
+    }
+
+    /// A point that only one side feels must be on the surface.
+    fn dispute(&mut self, asked: &Asked<'_>, q: [f64; 3], what: &str) {
+        let off = self.oracle.signed_distance(q);
+        let (name, pose) = (self.oracle.name(), asked.query.pose);
+        assert!(off.abs() <= asked.band, "{name}: {q:?} {what}, {off:e} outside; {pose:?}");
+        self.seen.disputed += 1;
+    }
+
+    fn compare_point(
+        &self,
+        asked: &Asked<'_>,
+        i: usize,
+        q: [f64; 3],
+        contact: &Contact,
+    ) {
+        let tree = self.part.tree();
+        let sense = self.oracle.sense(q).expect("a contact");
+        let (name, query) = (self.oracle.name(), &asked.query);
+        let near = |got: f64, want: f64, bound: f64, what: &str| {
+            assert!((got - want).abs() <= bound, "{name} {what} at {q:?}: {got}, not {want}");
+        };
+        let level = self.steep * asked.noise;
+        near(contact.depth, sense.depth, level, "depth");
+        near(contact.magnitude, sense.magnitude, level, "magnitude");
+        assert!((contact.point - Point3::from(self.points[i])).norm() <= asked.noise);
+        assert_eq!(contact.normal, Vector3::from(tree.normal(i)));
+        assert_eq!(contact.weight, query.weights[i]);
+        assert_eq!(contact.surface, self.tool.card().regions[contact.region].surface);
+        let doubt = self.oracle.border(q) <= asked.band;
+        if doubt {
+            return;
+        }
+        assert_eq!(contact.region, sense.owner, "{name} region at {q:?}");
+        near(contact.niceness, sense.niceness, 16.0 * asked.noise, "niceness");
+        let turn = self.turn(asked, q);
+        let along = Vector3::from(query.pose.turn(sense.direction));
+        near((contact.direction - along).norm(), 0.0, turn, "direction");
+        let slope = Vector3::from(query.pose.turn(self.oracle.gradient(q).expect("inside")));
+        near((contact.gradient - slope).norm(), 0.0, self.steep * turn, "gradient");
+    }
+
+    /// How far directions may be apart at a point.
+    fn turn(&self, asked: &Asked<'_>, q: [f64; 3]) -> f64 {
+        (16.0 * f64::EPSILON + 2.0 * asked.noise / self.oracle.singular(q)).min(PUSH)
+    }
+
+    /// The wrench.
+    fn compare_sums(&mut self, asked: &Asked<'_>) -> Bounds {
+        let (answer, wrench) = (&asked.answer, &asked.wrench);
+        let level = self.steep * asked.noise;
+        let (bounds, sizes) = self.bounds(asked);
+        let name = self.oracle.name();
+        let near = |got: f64, want: f64, bound: f64, what: &str| {
+            assert!(
+                (got - want).abs() <= bound,
+                "{name} {what}: {got}, not {want} to {bound:e}; {wrench:?}"
+            );
+            (got - want).abs()
+        };
+        let deepest = answer.deepest.map_or(0.0, |(depth, _)| depth);
+        // One that only one side feels is no deeper than the band.
+        let deeper = if asked.contacts.len() == answer.count { level } else { level + asked.band };
+        let depth = near(wrench.depth(), deepest, self.steep * deeper, "depth");
+        near(wrench.integral, answer.integral, bounds.integral, "integral");
+        near(wrench.energy, answer.energy, bounds.energy, "energy");
+        let force = (wrench.force - Vector3::from(answer.force)).norm();
+        near(force, 0.0, bounds.force, "force");
+        let torque = (wrench.torque - Vector3::from(answer.torque)).norm();
+        near(torque, 0.0, bounds.torque, "torque");
+        match (wrench.niceness, answer.niceness) {
+            (Some(got), Some(want)) if !bounds.nice => {
+                near(got, want, 16.0 * asked.noise, "niceness");
+            }
+            (got, want) => assert!(bounds.nice || got == want, "{got:?}, not {want:?}"),
+        }
+        let relative = |error: f64, size: f64| if size > 0.0 { error / size } else { 0.0 };
+        let errors = [depth / self.ulp, relative(force, sizes[0]), relative(torque, sizes[1])];
+        for (worst, error) in self.seen.worst.iter_mut().zip(errors) {
+            *worst = worst.max(error);
+        }
+        bounds
+    }
+
+    /// What sums may be apart by, and the sums of the terms' sizes.
+    fn bounds(&mut self, asked: &Asked<'_>) -> (Bounds, [f64; 2]) {
+        let (query, noise) = (&asked.query, asked.noise);
+        let tip = Point3::from(query.pose.tip);
+        let lever = (Point3::from(query.centre) - tip).norm();
+        let level = self.steep * noise;
+        let mut bounds = Bounds::default();
+        let mut sizes = [0.0; 2];
+        let rounding = f64::EPSILON * (16.0 + asked.answer.count as f64 / 4.0);
+        for &i in &asked.answer.contacts {
+            let p = self.points[i];
+            let q = query.in_tool(p);
+            let s = self.oracle.sense(q).expect("a contact");
+            let (w, m, turn) = (query.weights[i], s.magnitude, self.turn(asked, q));
+            let doubt = self.oracle.border(q) <= asked.band;
+            let normal = Vector3::from(self.normals[i]);
+            let across = Vector3::from(query.pose.turn(s.direction)).dot(&normal).abs();
+            let dropped = query.law == brute::Law::Facing && across <= 1e-12 + turn;
+            let swing = if doubt || dropped { 2.0 * PUSH } else { turn };
+            let force = w * PUSH * (level + m * (swing + rounding));
+            let arm = (Point3::from(p) - tip).norm() + lever;
+            bounds.force += force;
+            bounds.torque += arm * force + noise * w * m * PUSH;
+            bounds.integral += w * (level + rounding * m);
+            bounds.energy += w * m * (level + rounding * m);
+            bounds.nice |= doubt;
+            sizes[0] += w * m * PUSH;
+            sizes[1] += arm * w * m * PUSH;
+            self.seen.doubtful += usize::from(doubt);
+        }
+        // Points that only the probe feels: hardly inside, if at all.
+        let tally = |contacts: &[Contact]| contacts.iter().map(|c| c.weight).sum::<f64>();
+        if asked.contacts.len() != asked.answer.count {
+            let slight = self.steep * asked.band * tally(&asked.contacts).max(1.0) * PUSH;
+            bounds.force += slight;
+            bounds.torque += slight * (4.0 * self.size + lever);
+            bounds.integral += slight;
+            bounds.energy += slight;
+            bounds.nice = true;
+        }
+        (bounds, sizes)
+    }
+}
+
+/// Wrench and contacts of one probe agree to the rounding of their sums, and exactly where nothing is added.
+fn consistent(asked: &Asked<'_>, bounds: &Bounds) {
+    let (wrench, contacts) = (&asked.wrench, &asked.contacts[..]);
+    assert_eq!(contacts.len(), wrench.colliding);
+    let depths = summary(contacts, |contact| contact.depth);
+    assert_eq!(depths.map(|depths| depths.max), wrench.deepest.map(|deepest| deepest.depth));
+    let niceness = summary(contacts, |contact| contact.niceness);
+    assert_eq!(niceness.map(|niceness| niceness.min), wrench.niceness);
+    if let Some(deepest) = wrench.deepest {
+        let first = contacts.iter().find(|contact| contact.depth == deepest.depth);
+        let first = first.map(|contact| (contact.point, contact.triangle));
+        assert_eq!(first, Some((deepest.point, deepest.triangle)), "the first of the deepest");
+    }
+    let push = summary(contacts, |contact| contact.weight * contact.magnitude);
+    let (sum, mean) = push.map_or((0.0, 0.0), |push| (push.sum, push.mean));
+    assert!((sum - wrench.integral).abs() <= bounds.integral, "{sum} {}", wrench.integral);
+    assert_eq!(mean, if contacts.is_empty() { 0.0 } else { sum / contacts.len() as f64 });
+    let energy: f64 = contacts.iter().map(|c| 0.5 * c.weight * c.magnitude * c.magnitude).sum();
+    assert!((energy - wrench.energy).abs() <= bounds.energy);
+    let centre = Point3::from(asked.query.centre);
+    let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
+    for c in contacts {
+        let way = match wrench.law {
+            Law::Facing if c.direction.dot(&c.normal) > 0.0 => continue,
+            Law::Thesis | Law::Facing => c.normal - c.direction,
+            Law::Gradient => c.gradient,
+        };
+        let f = c.weight * c.magnitude * way;
+        force += f;
+        torque += (c.point - centre).cross(&f);
+    }
+    assert!((force - wrench.force).norm() <= bounds.force, "{force} {}", wrench.force);
+    assert!((torque - wrench.torque).norm() <= bounds.torque, "{torque} {}", wrench.torque);
+}

@@ -1,0 +1,14 @@
+//! The tree query against asking the oracle about every point.
+//!
+//! [`compare`] holds the comparison and its bounds, [`parts`] and [`poses`] what is compared.
+
+mod aligned;
+mod anywhere;
+mod bits;
+mod compare;
+mod far;
+mod law;
+mod margins;
+mod parts;
+mod poses;
+mod scenes;
