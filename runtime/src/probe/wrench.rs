@@ -185,10 +185,10 @@ fn add<S: Simd>(
     if probe.law == Law::Facing {
         let rotation = pose.rotation();
         let mut along = zero;
-        for axis in 0..3 {
+        for (axis, part) in direction.iter().enumerate() {
             let column = rotation.column(axis);
             let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
-            along += turned * direction[axis];
+            along += turned * *part;
         }
         let facing = along.simd_le(zero);
         direction = direction.map(|part| facing.select(part, zero));

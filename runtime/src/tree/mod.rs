@@ -67,17 +67,14 @@ impl Tree {
         self.triangles.is_empty()
     }
 
-    /// A point as it is stored, by its place in the tree's order.
+    /// A point as it is stored, by its place in the tree's order, rounded to `f64`.
     pub fn point(&self, index: usize) -> Point3<f64> {
-        self.origin + nalgebra::Vector3::from(self.from_origin(index))
-    }
-
-    /// A point relative to the origin.
-    fn from_origin(&self, index: usize) -> [f64; 3] {
         let (leaf, lane) = (index / WIDTH, index % WIDTH);
         let centre = self.centre(leaf);
         let offset = &self.leaves[leaf].offset;
-        std::array::from_fn(|axis| centre[axis] + self.scale * f64::from(offset[axis][lane]))
+        Point3::from(std::array::from_fn(|axis| {
+            self.origin[axis] + (centre[axis] + self.scale * f64::from(offset[axis][lane]))
+        }))
     }
 
     /// The centre of a leaf's box relative to the origin.

@@ -188,13 +188,7 @@ impl<'a> Case<'a> {
         self.seen.disputed += 1;
     }
 
-    fn compare_point(
-        &self,
-        asked: &Asked<'_>,
-        i: usize,
-        q: [f64; 3],
-        contact: &Contact,
-    ) {
+    fn compare_point(&self, asked: &Asked<'_>, i: usize, q: [f64; 3], contact: &Contact) {
         let tree = self.part.tree();
         let sense = self.oracle.sense(q).expect("a contact");
         let (name, query) = (self.oracle.name(), &asked.query);

@@ -197,7 +197,8 @@ fn first_curves(
     for name in listed.flatten() {
         match curve_of(name, lowering, curves) {
             Ok(Some(curve)) if first.contains(&curve) => {
-                reports.push(Report::warning(name.span, format!("`{}` is listed twice", name.word)))
+                reports
+                    .push(Report::warning(name.span, format!("`{}` is listed twice", name.word)));
             }
             Ok(Some(curve)) => first.push(curve),
             Ok(None) => reports.push(

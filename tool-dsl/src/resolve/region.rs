@@ -350,16 +350,16 @@ impl Felt<'_> {
                 let graph = &mut self.lowering.graph;
                 Ok([d, if down { graph.neg(z) } else { z }])
             }
-            Direction::AwayFrom(tuple) => self.from_point(tuple),
+            Direction::AwayFrom(tuple) => self.away_from(tuple),
             Direction::Toward(tuple) => {
-                let away = self.from_point(tuple)?;
+                let away = self.away_from(tuple)?;
                 Ok(away.map(|part| self.lowering.graph.neg(part)))
             }
         }
     }
 
     /// The vector from a point to where one feels.
-    fn from_point(&mut self, tuple: &Tuple) -> Result<[Id; 2], Report> {
+    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 2], Report> {
         let [d, z] = pair(tuple)?;
         let d = self.lowering.length(d, "a point")?;
         let z = self.lowering.length(z, "a point")?;

@@ -1,0 +1,197 @@
+//! Reading, welding and refusing meshes.
+
+use super::*;
+use rand_core::{Rng, SeedableRng};
+
+const UNIT: Unit = Unit::Millimetre;
+const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.5e-3 0 0\n\
+                     vertex 0 2 0\nendloop\nendfacet\n";
+
+fn binary(header: &str, triangles: &[[f32; 12]]) -> Vec<u8> {
+    let mut bytes = format!("{header:80}").into_bytes();
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for triangle in triangles {
+        bytes.extend(triangle.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend([0, 0]);
+    }
+    bytes
+}
+
+fn one() -> [f32; 12] {
+    [0.0, 0.0, 1.0, -0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+}
+
+fn refusal(bytes: &[u8]) -> String {
+    Mesh::from_stl(bytes, "part.stl", UNIT).expect_err("it should be refused").to_string()
+}
+
+#[test]
+fn refuses_what_is_no_mesh() {
+    let [a, b, c] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
+    let of = |vertices: &[_], triangles: &[_]| Mesh::new(vertices.into(), triangles.into(), UNIT);
+    assert_eq!(of(&[a, b, c], &[]), Err(MeshError::NoTriangle));
+    assert_eq!(of(&[a, b, c], &[[0, 1, 1]]), Err(MeshError::NoArea { triangles: 1 }));
+    let index = MeshError::Index { triangle: 1, index: 3, vertices: 3 };
+    assert_eq!(of(&[a, b, c], &[[0, 1, 2], [0, 3, 1]]), Err(index));
+    for odd in [f64::NAN, f64::INFINITY, -1e61] {
+        let error = of(&[a, b, Point3::new(0.0, odd, 0.0)], &[[0, 1, 2]]);
+        assert!(matches!(error, Err(MeshError::Coordinate { vertex: 2, .. })), "{error:?}");
+    }
+}
+
+#[test]
+fn areas_hold_at_any_scale_and_offset() {
+    for (scale, offset) in
+        [(1.0, 0.0), (1e-9, 0.0), (1e9, 0.0), (1e-60, 0.0), (1e60, 0.0), (1.0, 1e9), (1e-3, 1e6)]
+    {
+        let corner = |x: f64, y: f64| Point3::new(offset + scale * x, offset + scale * y, offset);
+        let (a, b, c) = (corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0));
+        let sliver = corner(0.5, 0.0);
+        let mesh =
+            Mesh::new(vec![a, b, c, sliver], vec![[0, 1, 3], [0, 1, 2]], UNIT).expect("a mesh");
+        assert_eq!((mesh.normal(0), mesh.area(0)), (None, 0.0), "scale {scale}");
+        let expected = 0.5 * (b.x - a.x) * (c.y - a.y);
+        assert!((mesh.area(1) / expected - 1.0).abs() < 1e-15, "scale {scale}");
+        assert_eq!(mesh.normal(1), Some(Vector3::z()), "scale {scale}");
+    }
+}
+
+#[test]
+fn reads_ascii_in_every_dress() {
+    let plain = format!("solid a part\n{FACET}endsolid a part\n");
+    let expected = Mesh::from_stl(plain.as_bytes(), "", UNIT).expect("plain");
+    assert_eq!(expected.triangle(0)[1], Point3::new(1.5e-3, 0.0, 0.0));
+    for text in [
+        format!("solid\n{FACET}endsolid"),
+        plain.to_uppercase(),
+        plain.replace('\n', "\r\n"),
+        plain.replace('\n', "\r"),
+        format!("\u{feff}\n\t{plain}"),
+        plain.replace("normal 0 0 1", "normal nan -nan(ind) 1.#QNAN"),
+        plain.replace("1.5e-3", "+.0015").replace('2', "2."),
+    ] {
+        assert_eq!(Mesh::from_stl(text.as_bytes(), "", UNIT).expect(&text), expected);
+    }
+    let mut latin = plain.clone().into_bytes();
+    latin[6] = 0xE9;
+    assert_eq!(Mesh::from_stl(&latin, "", UNIT).expect("Latin-1 in the name"), expected);
+    let two = Mesh::from_stl(plain.repeat(2).as_bytes(), "", UNIT).expect("two solids");
+    assert_eq!((two.triangles().len(), two.vertices().len()), (2, 3));
+}
+
+#[test]
+fn says_what_is_wrong_with_ascii_and_where() {
+    let file = |facet: &str| format!("solid x\n{facet}endsolid x\n");
+    for (change, into, line, says) in [
+        ("facet n", "face n", 2, "`endsolid`, found `face`"),
+        ("normal", "norm", 2, "`normal`, found `norm`"),
+        ("0 0 1", "0 0 ?", 2, "a number of the facet's"),
+        ("outer", "inner", 3, "expected `outer loop`"),
+        (" loop", "", 4, "expected `loop` after"),
+        ("0 2 0", "0 2", 7, "expected a coordinate"),
+        ("0 2 0", "0 2,5 0", 6, "found `2,5`"),
+        ("endloop", "vertex", 7, "`endloop` after three"),
+        ("vertex 0 2 0\n", "", 6, "a facet has three"),
+        ("endfacet", "end", 8, "expected `endfacet`"),
+        ("0 2 0", "0 inf 0", 6, "`inf` is not a finite"),
+        ("0 2 0", "0 1e999 0", 6, "`1e999` is not"),
+    ] {
+        let message = refusal(file(&FACET.replace(change, into)).as_bytes());
+        let place = format!("part.stl, line {line}: ");
+        assert!(message.starts_with(&place), "{into}: {message}");
+        assert!(message.contains(says), "{into}: {message}");
+    }
+    let more = refusal((file(FACET) + "more").as_bytes());
+    assert!(more.contains("line 10: expected `solid`, or the end of"));
+    let cut = refusal(format!("solid x\n{FACET}").as_bytes());
+    assert!(cut.contains("ends on line 9, where `facet` or `endsolid` should"));
+    assert!(refusal(b"solid").contains("cut off"));
+    assert!(refusal(file("").as_bytes()).contains("no triangle"));
+    let flat = refusal(file(&FACET.replace('2', "0")).as_bytes());
+    assert!(flat.contains("none of the mesh's 1 triangles"));
+}
+
+#[test]
+fn says_what_is_wrong_with_binary_and_where() {
+    let whole = binary("solid by a CAD system", &[one(), one()]);
+    let mesh = Mesh::from_stl(&whole, "", UNIT).expect("binary, whatever its header");
+    assert_eq!((mesh.triangles().len(), mesh.vertices().len()), (2, 3));
+
+    assert!(refusal(&[]).contains("part.stl is empty"));
+    assert!(refusal(b"ply\nformat").contains("is no STL file: it has 10 bytes"));
+    let cut = refusal(&whole[..150]);
+    assert!(cut.contains("2 triangles = 184 bytes, but the file has 150"), "{cut}");
+    let longer = refusal(&[&whole[..], b"!"].concat());
+    assert!(longer.contains("has 185 bytes") && longer.contains("= 184 bytes"), "{longer}");
+    let mut odd = one();
+    odd[7] = f32::NAN;
+    let odd = refusal(&binary("", &[one(), odd]));
+    assert!(odd.contains("triangle 1 (from 0), byte 162: the coordinate NaN"), "{odd}");
+    assert!(refusal(&binary("", &[])).contains("no triangle"));
+    assert!(refusal(&binary("", &[[1.0; 12]])).contains("none of the mesh's 1 triangles"));
+    let missing = Mesh::read_stl("no/such/part.stl", UNIT).expect_err("no such file");
+    assert!(missing.to_string().contains("cannot read no/such/part.stl"), "{missing}");
+}
+
+#[test]
+fn welds_what_only_noise_tells_apart() {
+    let mut noisy = one();
+    noisy[3..6].copy_from_slice(&[1e-17, 0.0, -3e-16]);
+    let [mut far, mut fine] = [one(); 2];
+    (far[6], fine[3]) = (1.0 + f32::EPSILON, 1e-9);
+    let read = |triangles: &[_]| Mesh::from_stl(&binary("", triangles), "", UNIT);
+    let mesh = read(&[one(), noisy, far, fine]).expect("a mesh");
+    assert_eq!(mesh.triangles()[1], [0, 1, 2], "-0, 0 and 1e-17 are one");
+    assert_eq!(mesh.triangles()[2..], [[0, 3, 2], [4, 1, 2]]);
+}
+
+#[test]
+fn survives_any_bytes() {
+    let mut random = rand_pcg::Pcg64::seed_from_u64(1);
+    let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
+    let text = format!("solid\n{}endsolid\n", FACET.repeat(2)).into_bytes();
+    let words: [&[u8]; 6] = [b"endfacet", b"solid", b"\r\n", b"1e400", b"vertex", b"\0"];
+    for seed in [binary("", &[one(), one()]), binary("solid", &[one()]), text, vec![0; 90]] {
+        for _ in 0..5000 {
+            let mut bytes = seed.clone();
+            for _ in 0..1 + below(4) {
+                let at = below(bytes.len());
+                match below(4) {
+                    0 => bytes[at] = below(256) as u8,
+                    1 => bytes[at] ^= 1 << below(8),
+                    2 => bytes.truncate(at.max(1)),
+                    _ => drop(bytes.splice(at..at, words[below(6)].iter().copied())),
+                }
+            }
+            if let Ok(mesh) = Mesh::from_stl(&bytes, "", UNIT) {
+                let survey = mesh.survey();
+                assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
+                assert!(!survey.to_string().is_empty());
+            }
+        }
+    }
+}
+
+#[test]
+fn reads_the_real_parts() {
+    let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
+    if !parts.is_dir() {
+        eprintln!("skipped: {} is absent", parts.display());
+        return;
+    }
+    // The areas are from an independent reading of the files.
+    for (file, unit, triangles, area) in [
+        ("thesis_tube.stl", Unit::Millimetre, 9_216, 759.6236125024762),
+        ("impeller.stl", Unit::Millimetre, 52_872, 12_995.440601326354),
+        ("featuretype_inch.stl", Unit::Inch, 3_476, 53.82738611818216),
+        ("octagonal_pocket_metre.stl", Unit::Metre, 3_262, 0.07482245333956647),
+        ("kiri_pocket_test.stl", Unit::Millimetre, 28, 28_480.0),
+    ] {
+        let mesh = Mesh::read_stl(parts.join(file), unit).expect(file);
+        let survey = mesh.survey();
+        eprintln!("{file}: {survey}");
+        assert_eq!(survey.triangles, triangles, "{file}");
+        assert!(survey.solid(), "{file}: {survey}");
+        assert!((survey.area / area - 1.0).abs() < 1e-12, "{file}: {}", survey.area);
+    }
+}

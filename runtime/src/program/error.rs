@@ -1,0 +1,169 @@
+//! Why a program is refused.
+
+use std::io;
+
+use crate::{PoseError, Unit};
+
+/// Why a program could not be taken. The message names the file, the line, the reason and the
+/// remedy.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramError {
+    /// The file could not be read at all.
+    #[error("{file}: cannot be read ({source}): check the path and its permissions")]
+    Read {
+        /// The file.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file names no position.
+    #[error(
+        "{file}: holds no position: give rows of x,y,z,i,j,k or an APT-CL program of GOTO points \
+         (G-code is not read)"
+    )]
+    NoPosition {
+        /// The file.
+        file: String,
+    },
+    /// A line cannot be taken.
+    #[error("{file}:{line}: {fault}")]
+    Line {
+        /// The file.
+        file: String,
+        /// The line, 1-based.
+        line: usize,
+        /// What is wrong with it.
+        fault: Fault,
+    },
+    /// The program states another unit than the part's.
+    #[error(
+        "{file}:{line}: UNITS says {said}, but the part is in {part}: load the part in {said}, or \
+         post the program in {part}"
+    )]
+    Unit {
+        /// The file.
+        file: String,
+        /// The line of `UNITS`, 1-based.
+        line: usize,
+        /// The program's unit.
+        said: Unit,
+        /// The part's unit.
+        part: Unit,
+    },
+}
+
+/// What can be wrong with a line of a program.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A byte that is no part of a UTF-8 text, or is NUL.
+    #[error("byte {byte} of the file is not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)")]
+    NotText {
+        /// Its offset in the file, from 0.
+        byte: usize,
+    },
+    /// The first line belongs to neither format.
+    #[error(
+        "{start} begins neither a row of x,y,z,i,j,k nor an APT statement: give one or the other"
+    )]
+    Unrecognised {
+        /// How the line starts.
+        start: String,
+    },
+    /// A row with another number of columns.
+    #[error("found {found} columns, expected {expected}: {remedy}")]
+    Columns {
+        /// How many the row has.
+        found: usize,
+        /// How many it should have, and which.
+        expected: &'static str,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// A first row of names that are not the columns'.
+    #[error("{names} are not the columns: write x,y,z,i,j,k or x,y,z,qx,qy,qz,qw, or no names")]
+    Names {
+        /// The row.
+        names: String,
+    },
+    /// A word where a number should be.
+    #[error("{cell} is not a number: {remedy}")]
+    NotNumber {
+        /// The word.
+        cell: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// NaN, an infinity, or a number too large to hold.
+    #[error("{cell} is not a finite number: correct it or remove the position")]
+    NotFinite {
+        /// The number, as written.
+        cell: String,
+    },
+    /// A zero axis or quaternion.
+    #[error("{what} is zero and points nowhere: {remedy}")]
+    NoDirection {
+        /// Which columns.
+        what: &'static str,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// A pose that cannot be one, above all an axis that is no unit vector.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// `GOTO` or `FROM` with another number of numbers.
+    #[error("{word} has {found} numbers: write {word}/x,y,z or {word}/x,y,z,i,j,k")]
+    Count {
+        /// The word.
+        word: &'static str,
+        /// How many numbers follow it.
+        found: usize,
+    },
+    /// A word that moves the tool in a way that is not interpreted.
+    #[error("{word} moves the tool in a way that is not read: post the program as GOTO points")]
+    Moves {
+        /// The word.
+        word: String,
+    },
+    /// A word that moves what positions are measured in.
+    #[error("{word} moves the coordinates: post the program as GOTO points in the part's own")]
+    Frame {
+        /// The word.
+        word: String,
+    },
+    /// A position that is not written as one.
+    #[error("{statement} is not understood: write GOTO/x,y,z,i,j,k, with nothing before it")]
+    Malformed {
+        /// How the statement starts.
+        statement: String,
+    },
+    /// `MULTAX` with another argument.
+    #[error("MULTAX/{argument} is not understood: write MULTAX/ON or MULTAX/OFF")]
+    Multax {
+        /// The argument.
+        argument: String,
+    },
+    /// A unit that is not supported.
+    #[error("UNITS/{unit} is not supported: post the program in MM or INCHES")]
+    UnknownUnit {
+        /// What was written.
+        unit: String,
+    },
+    /// A second, other unit.
+    #[error("UNITS changes from {from} to {to}: post the whole program in one unit")]
+    UnitChanges {
+        /// The unit stated before.
+        from: Unit,
+        /// The unit stated here.
+        to: Unit,
+    },
+    /// A unit stated after the first position.
+    #[error("UNITS comes after the first position: state it before")]
+    UnitLate,
+    /// The end of the file before the end of the program.
+    #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
+    Unfinished,
+    /// A statement after the end.
+    #[error("a statement follows FINI: give one program per file")]
+    AfterEnd,
+}

@@ -1,0 +1,94 @@
+//! Both formats, good and bad.
+
+use super::*;
+use std::path::PathBuf;
+
+/// The message of a content that is refused.
+pub(super) fn refusal(content: impl AsRef<[u8]>) -> String {
+    Program::parse(content, "part.cl").expect_err("it is refused").to_string()
+}
+
+/// A file of the shared data, or nothing, said plainly, where it is absent.
+pub(super) fn shared(name: &str) -> Option<PathBuf> {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/paths");
+    let path = root.join(name);
+    if path.is_file() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is absent", path.display());
+    None
+}
+
+#[test]
+fn refuses_what_is_neither_format() {
+    let no_position = "part.cl: holds no position: give rows of x,y,z,i,j,k or an APT-CL \
+                       program of GOTO points (G-code is not read)";
+    for empty in ["", "\u{feff}", "# only\n\n$$ comments\r\n", "G0 X1 Y2\nM30\n", "FINI\n"] {
+        assert_eq!(refusal(empty), no_position, "{empty:?}");
+    }
+    assert_eq!(
+        refusal("\n%\nO1000\n"),
+        "part.cl:2: `%` begins neither a row of x,y,z,i,j,k nor an APT statement: give one or \
+         the other"
+    );
+    let not_text = "is not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)";
+    for (content, place) in [
+        (&b"1,2,3,0,0,1\r\n# caf\xe9\n"[..], "part.cl:2: byte 18 of the file"),
+        (&b"\xff\xfe1\0"[..], "part.cl:1: byte 0 of the file"),
+        (&b"1\0,\0"[..], "part.cl:1: byte 1 of the file"),
+    ] {
+        assert_eq!(refusal(content), format!("{place} {not_text}"));
+    }
+}
+
+#[test]
+fn names_a_file_that_is_absent() {
+    let error = Program::read("no/such.cl").expect_err("it is absent").to_string();
+    assert!(error.starts_with("no/such.cl: cannot be read ("), "{error}");
+    assert!(error.ends_with("): check the path and its permissions"), "{error}");
+}
+
+#[test]
+fn quotes_briefly_and_in_one_line() {
+    assert_eq!(shown("\u{1b}[2J"), "`\\u{1b}[2J`");
+    assert_eq!(shown(&"é".repeat(99)), format!("`{}…`", "é".repeat(40)));
+}
+
+/// Any bytes are a program or an error, never a panic.
+#[test]
+fn survives_mutations() {
+    let mut seeds = vec![
+        b"\xef\xbb\xbfx,y,z,qx,qy,qz,qw\r\n1,2,3,0,0,0,1 # a\r\n4,5,6,1,0,0,0\n".to_vec(),
+        b"UNITS/MM\nMULTAX/ON\nRAPID;GOTO/1,2,3,$\n0,0,1\nCYCLE/OFF\nGOTO/4,5,6\nFINI\n".to_vec(),
+    ];
+    for name in ["impeller_flank.apt", "ijms2021_fan_xyzijk.csv"] {
+        seeds.extend(shared(name).and_then(|path| fs::read(path).ok()));
+    }
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = move |below: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        usize::try_from(state >> 33).unwrap_or(0) % below.max(1)
+    };
+    let spice = b"\0\r\n,;/$#.-+eE09 \xff\xc3xG\"";
+    for seed in &seeds {
+        for _ in 0..3000 {
+            let start = random(seed.len() / 2);
+            let length = random(600.min(seed.len() - start)) + 1;
+            let mut bytes = seed[start..start + length].to_vec();
+            for _ in 0..random(6) {
+                let at = random(bytes.len());
+                match random(3) {
+                    0 => bytes[at] = spice[random(spice.len())],
+                    1 => bytes.insert(at, spice[random(spice.len())]),
+                    _ => bytes.truncate(at + 1),
+                }
+            }
+            match Program::parse(&bytes, "mutant") {
+                Ok(program) => assert!(!program.stops.is_empty()),
+                Err(error) => assert!(error.to_string().starts_with("mutant:")),
+            }
+        }
+    }
+}
