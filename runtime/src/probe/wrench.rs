@@ -106,6 +106,11 @@ fn deepest(probe: &Probe<'_>, pose: &Pose, totals: &Totals) -> Option<Deepest> {
     Some(Deepest { depth: depth * probe.length, point, triangle: tree.triangle(place) })
 }
 
+// What runs on vectors is in functions that are always inlined: a closure would be compiled without
+// the vector instructions of its surroundings.
+
+type Triple<S> = [f64x8<S>; 3];
+
 #[inline(always)]
 fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
     let zero = f64x8::splat(simd, 0.0);
@@ -123,13 +128,43 @@ fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
         }
     }
     Totals {
-        pushes: sums.pushes.map(|sum| sum.reduce_sum()),
-        tool: sums.tool.map(|sum| sum.reduce_sum()),
-        part: sums.part.map(|sum| sum.reduce_sum()),
+        pushes: [sums.pushes[0].reduce_sum(), sums.pushes[1].reduce_sum()],
+        tool: six(&sums.tool),
+        part: six(&sums.part),
         niceness: sums.niceness.reduce_min(),
         depth: sums.depth.to_array(),
         deepest: sums.deepest.to_array(),
     }
+}
+
+#[inline(always)]
+fn six<S: Simd>(sums: &[f64x8<S>; 6]) -> [f64; 6] {
+    let mut totals = [0.0; 6];
+    for (total, sum) in totals.iter_mut().zip(sums) {
+        *total = sum.reduce_sum();
+    }
+    totals
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, list: &[f64], block: usize) -> f64x8<S> {
+    f64x8::from_slice(simd, &list[block * LANES..(block + 1) * LANES])
+}
+
+/// Three lists; 0 where the mask is not set.
+#[inline(always)]
+fn load_vector<S: Simd>(
+    simd: S,
+    lists: &[Vec<f64>; 3],
+    block: usize,
+    mask: mask64x8<S>,
+) -> Triple<S> {
+    let zero = f64x8::splat(simd, 0.0);
+    [
+        mask.select(load(simd, &lists[0], block), zero),
+        mask.select(load(simd, &lists[1], block), zero),
+        mask.select(load(simd, &lists[2], block), zero),
+    ]
 }
 
 /// Adds one block of points.
@@ -142,73 +177,79 @@ fn add<S: Simd>(
     inside: u8,
     sums: &mut Sums<S>,
 ) {
-    let (felt, candidates, tree) = (&probe.felt, &probe.candidates, probe.part.tree());
-    let place = block * LANES..(block + 1) * LANES;
-    let load = |list: &[f64]| f64x8::from_slice(simd, &list[place.clone()]);
+    const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+    let (felt, candidates) = (&probe.felt, &probe.candidates);
+    let (weights, normals) = gather(probe, block, inside);
     let zero = f64x8::splat(simd, 0.0);
-    // Weights and normals are read of points inside only.
+    let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
+    let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
+    let push = f64x8::from_slice(simd, &weights) * magnitude;
+    sums.pushes[0] += push;
+    sums.pushes[1] += push * magnitude;
+    let niceness = sums.niceness.min(load(simd, &felt.niceness, block));
+    sums.niceness = in_solid.select(niceness, sums.niceness);
+    let depth = load(simd, &felt.depth, block);
+    let deeper = in_solid & depth.simd_gt(sums.depth);
+    let indices = f64x8::from_slice(simd, &COUNT) + (block * LANES) as f64;
+    sums.depth = deeper.select(depth, sums.depth);
+    sums.deepest = deeper.select(indices, sums.deepest);
+
+    let p = load_vector(simd, candidates.points.lists(), block, in_solid);
+    if probe.law == Law::Gradient {
+        let slope = load_vector(simd, &felt.gradient, block, in_solid);
+        accumulate(&mut sums.tool, push, p, slope);
+        return;
+    }
+    let direction = load_vector(simd, &felt.direction, block, in_solid);
+    let normal = [
+        f64x8::from_slice(simd, &normals[0]),
+        f64x8::from_slice(simd, &normals[1]),
+        f64x8::from_slice(simd, &normals[2]),
+    ];
+    let mut force = push;
+    if probe.law == Law::Facing {
+        let mut along = zero;
+        for (axis, part) in direction.iter().enumerate() {
+            let column = pose.rotation().column(axis);
+            let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
+            along += turned * *part;
+        }
+        force = along.simd_le(zero).select(push, zero);
+    }
+    accumulate(&mut sums.tool, -force, p, direction);
+    let from_tip = load_vector(simd, &candidates.from_tip, block, in_solid);
+    accumulate(&mut sums.part, force, from_tip, normal);
+}
+
+/// Weights and normals of a block's points inside; of the others, 0.
+#[inline(always)]
+fn gather(probe: &Probe<'_>, block: usize, inside: u8) -> ([f64; LANES], [[f64; LANES]; 3]) {
     let mut weights = [0.0; LANES];
     let mut normals = [[0.0; LANES]; 3];
-    for lane in (0..LANES).filter(|lane| inside >> lane & 1 != 0) {
-        let index = candidates.indices[block * LANES + lane] as usize;
+    let tree = probe.part.tree();
+    let mut left = inside;
+    while left != 0 {
+        let lane = left.trailing_zeros() as usize;
+        left &= left - 1;
+        let index = probe.candidates.indices[block * LANES + lane] as usize;
         weights[lane] = match probe.weights {
             Weights::Area => tree.weight(index),
             Weights::Unit => 1.0,
         };
         if probe.law != Law::Gradient {
             let normal = tree.normal(index);
-            for axis in 0..3 {
-                normals[axis][lane] = normal[axis];
-            }
+            normals[0][lane] = normal[0];
+            normals[1][lane] = normal[1];
+            normals[2][lane] = normal[2];
         }
     }
-    let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
-    let magnitude = in_solid.select(load(&felt.magnitude), zero);
-    let push = f64x8::from_slice(simd, &weights) * magnitude;
-    sums.pushes[0] += push;
-    sums.pushes[1] += push * magnitude;
-    sums.niceness = in_solid.select(sums.niceness.min(load(&felt.niceness)), sums.niceness);
-    let depth = load(&felt.depth);
-    let deeper = in_solid & depth.simd_gt(sums.depth);
-    let indices = f64x8::from_fn(simd, |lane| (block * LANES + lane) as f64);
-    sums.depth = deeper.select(depth, sums.depth);
-    sums.deepest = deeper.select(indices, sums.deepest);
-
-    let p = candidates.points.coordinates().map(load);
-    if probe.law == Law::Gradient {
-        let slope = felt.gradient.each_ref().map(|list| in_solid.select(load(list), zero));
-        accumulate(&mut sums.tool, push, p, slope);
-        return;
-    }
-    let mut direction = felt.direction.each_ref().map(|list| in_solid.select(load(list), zero));
-    let mut normal = normals.each_ref().map(|list| f64x8::from_slice(simd, list));
-    if probe.law == Law::Facing {
-        let rotation = pose.rotation();
-        let mut along = zero;
-        for (axis, part) in direction.iter().enumerate() {
-            let column = rotation.column(axis);
-            let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
-            along += turned * *part;
-        }
-        let facing = along.simd_le(zero);
-        direction = direction.map(|part| facing.select(part, zero));
-        normal = normal.map(|part| facing.select(part, zero));
-    }
-    let back = direction.map(|part| -part);
-    accumulate(&mut sums.tool, push, p, back);
-    let from_tip = candidates.from_tip.each_ref().map(|list| load(list));
-    accumulate(&mut sums.part, push, from_tip, normal);
+    (weights, normals)
 }
 
 /// Adds `push · way` and its moment about the origin.
 #[inline(always)]
-fn accumulate<S: Simd>(
-    sums: &mut [f64x8<S>; 6],
-    push: f64x8<S>,
-    p: [f64x8<S>; 3],
-    way: [f64x8<S>; 3],
-) {
-    let f = way.map(|part| push * part);
+fn accumulate<S: Simd>(sums: &mut [f64x8<S>; 6], push: f64x8<S>, p: Triple<S>, way: Triple<S>) {
+    let f = [push * way[0], push * way[1], push * way[2]];
     sums[0] += f[0];
     sums[1] += f[1];
     sums[2] += f[2];

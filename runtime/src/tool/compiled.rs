@@ -80,49 +80,56 @@ impl<T: Evaluators> Tool for T {
     }
 }
 
-/// Blocks of eight, output by output; a block without a point inside is passed over.
+/// Three coordinates of eight points.
+#[inline(always)]
+fn load<S: Simd>(simd: S, lists: [&[f64]; 3], block: usize) -> [f64x8<S>; 3] {
+    let place = block * LANES..(block + 1) * LANES;
+    [
+        f64x8::from_slice(simd, &lists[0][place.clone()]),
+        f64x8::from_slice(simd, &lists[1][place.clone()]),
+        f64x8::from_slice(simd, &lists[2][place]),
+    ]
+}
+
+#[inline(always)]
+fn store<S: Simd>(list: &mut [f64], block: usize, values: f64x8<S>) {
+    values.store_slice(&mut list[block * LANES..(block + 1) * LANES]);
+}
+
+#[inline(always)]
+fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: usize, values: [f64x8<S>; 3]) {
+    store(&mut lists[0], block, values[0]);
+    store(&mut lists[1], block, values[1]);
+    store(&mut lists[2], block, values[2]);
+}
+
+/// Blocks of eight; one without a point inside is passed over. What runs on vectors is in
+/// functions that are always inlined, since a closure would be compiled without the vector
+/// instructions of its surroundings.
 #[inline(always)]
 fn lanes<T: Evaluators, S: Simd>(simd: S, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
     let length = f64x8::splat(simd, length);
-    let [x, y, z] = points.coordinates();
-    let place = |block: usize| block * LANES..(block + 1) * LANES;
-    let at = |block: usize| [x, y, z].map(|list| f64x8::from_slice(simd, &list[place(block)]));
+    let lists = points.coordinates();
     for block in 0..felt.inside.len() {
-        let inside = T::contains_lanes(at(block)).to_bitmask() as u8;
-        felt.inside[block] = inside & present(points.len(), block);
-    }
-    if ask == Ask::Inside {
-        return;
-    }
-    let inside = std::mem::take(&mut felt.inside);
-    let touched = |block: &usize| inside[*block] != 0;
-    let blocks = 0..inside.len();
-    for block in blocks.clone().filter(touched) {
-        let p = at(block);
-        T::depth_lanes(p).store_slice(&mut felt.depth[place(block)]);
-        T::magnitude_lanes(p, length).store_slice(&mut felt.magnitude[place(block)]);
-        T::niceness_lanes(p).store_slice(&mut felt.niceness[place(block)]);
-    }
-    if ask.direction() {
-        for block in blocks.clone().filter(touched) {
-            for (list, part) in felt.direction.iter_mut().zip(T::direction_lanes(at(block))) {
-                part.store_slice(&mut list[place(block)]);
-            }
+        let p = load(simd, lists, block);
+        let inside = T::contains_lanes(p).to_bitmask() as u8 & present(points.len(), block);
+        felt.inside[block] = inside;
+        if ask == Ask::Inside || inside == 0 {
+            continue;
+        }
+        store(&mut felt.depth, block, T::depth_lanes(p));
+        store(&mut felt.magnitude, block, T::magnitude_lanes(p, length));
+        store(&mut felt.niceness, block, T::niceness_lanes(p));
+        if ask.direction() {
+            store_vector(&mut felt.direction, block, T::direction_lanes(p));
+        }
+        if ask.gradient() {
+            store_vector(&mut felt.gradient, block, T::gradient_lanes(p, length));
+        }
+        if ask == Ask::Everything {
+            store(&mut felt.region, block, T::owner_lanes(p));
         }
     }
-    if ask.gradient() {
-        for block in blocks.clone().filter(touched) {
-            for (list, part) in felt.gradient.iter_mut().zip(T::gradient_lanes(at(block), length)) {
-                part.store_slice(&mut list[place(block)]);
-            }
-        }
-    }
-    if ask == Ask::Everything {
-        for block in blocks.filter(touched) {
-            T::owner_lanes(at(block)).store_slice(&mut felt.region[place(block)]);
-        }
-    }
-    felt.inside = inside;
 }
 
 /// The same without vectors, by the nested form.

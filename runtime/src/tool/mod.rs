@@ -99,6 +99,11 @@ impl Points {
         self.count == 0
     }
 
+    /// x, y and z of all points and the padding, as lists.
+    pub(crate) fn lists(&self) -> &[Vec<f64>; 3] {
+        &self.coordinates
+    }
+
     /// x, y and z of all points and the padding.
     pub fn coordinates(&self) -> [&[f64]; 3] {
         [&self.coordinates[0], &self.coordinates[1], &self.coordinates[2]]

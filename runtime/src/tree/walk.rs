@@ -77,6 +77,14 @@ impl View {
         widened(&mut self.points, point_margin);
         self.fits = self.origin.iter().chain(self.nodes.iter().flatten()).all(|v| v.is_finite());
     }
+
+    /// A coordinate of a place of the cloud, seen from the tool: in `f64`, then rounded.
+    #[inline(always)]
+    fn place(&self, from_origin: [f64; 3], axis: usize) -> f32 {
+        let row = self.exact_rows[axis];
+        let sum = row[0] * from_origin[0] + row[1] * from_origin[1] + row[2] * from_origin[2];
+        (sum + self.exact_origin[axis]) as f32
+    }
 }
 
 /// The descent, with its memory kept between queries.
@@ -110,6 +118,48 @@ impl Walker {
     }
 }
 
+/// Sixteen points or boxes, coordinate by coordinate.
+type Triple<S> = [f32x16<S>; 3];
+
+// What runs on vectors is written in functions that are always inlined: a closure would be compiled
+// without the vector instructions of its surroundings.
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> Triple<S> {
+    [
+        f32x16::from_slice(simd, &lists[0]),
+        f32x16::from_slice(simd, &lists[1]),
+        f32x16::from_slice(simd, &lists[2]),
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(v: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
+    v[0] * row[0] + v[1] * row[1] + v[2] * row[2]
+}
+
+/// How far a box with these half extents reaches along a row.
+#[inline(always)]
+fn reach<S: Simd>(half: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
+    dot(half, [row[0].abs(), row[1].abs(), row[2].abs()])
+}
+
+/// Which lanes lie in a slab: z from `low` to `high`, and no farther from the axis than its radius.
+#[inline(always)]
+fn in_slabs<S: Simd>(
+    simd: S,
+    slabs: &[[f32; 3]],
+    low: f32x16<S>,
+    high: f32x16<S>,
+    squared: f32x16<S>,
+) -> u32 {
+    let mut hit = mask32x16::splat(simd, false);
+    for [slab_low, slab_high, radius] in slabs {
+        hit |= low.simd_le(*slab_high) & high.simd_ge(*slab_low) & squared.simd_le(*radius);
+    }
+    hit.to_bitmask() as u32
+}
+
 /// Tests the children of `nodes` and appends those that the tool may reach.
 #[inline(always)]
 fn descend<S: Simd>(
@@ -120,72 +170,51 @@ fn descend<S: Simd>(
     below: &mut [u32],
 ) -> usize {
     let mut kept = 0;
+    let zero = f32x16::splat(simd, 0.0);
     for node in nodes {
         let children = &boxes[*node as usize];
-        let centre = children.centre.each_ref().map(|c| f32x16::from_slice(simd, c));
-        let half = children.half.each_ref().map(|h| f32x16::from_slice(simd, h));
-        let place = |axis: usize| {
-            let row = view.rows[axis];
-            centre[0] * row[0] + centre[1] * row[1] + centre[2] * row[2] + view.origin[axis]
-        };
-        let reach = |axis: usize| {
-            let row = view.rows[axis].map(f32::abs);
-            half[0] * row[0] + half[1] * row[1] + half[2] * row[2]
-        };
-        let (z, dz) = (place(2), reach(2));
-        let (low, high) = (z - dz, z + dz);
-        let zero = f32x16::splat(simd, 0.0);
-        let across = |axis: usize| (place(axis).abs() - reach(axis)).max(zero);
-        let (x, y) = (across(0), across(1));
-        let squared = x * x + y * y;
-        let mut hit = mask32x16::splat(simd, false);
-        for [slab_low, slab_high, radius] in &view.nodes {
-            hit |= low.simd_le(*slab_high) & high.simd_ge(*slab_low) & squared.simd_le(*radius);
-        }
-        let hits = hit.to_bitmask() as u32;
+        let (centre, half) = (load(simd, &children.centre), load(simd, &children.half));
+        let z = dot(&centre, view.rows[2]) + view.origin[2];
+        let dz = reach(&half, view.rows[2]);
+        let x = dot(&centre, view.rows[0]) + view.origin[0];
+        let y = dot(&centre, view.rows[1]) + view.origin[1];
+        let x = (x.abs() - reach(&half, view.rows[0])).max(zero);
+        let y = (y.abs() - reach(&half, view.rows[1])).max(zero);
+        let hits = in_slabs(simd, &view.nodes, z - dz, z + dz, x * x + y * y);
         let first = node * WIDTH as u32;
         // Write every child, keep those that hit: no branch to mispredict.
+        let place = &mut below[kept..kept + WIDTH];
+        let mut count = 0;
         for lane in 0..WIDTH as u32 {
-            below[kept] = first + lane;
-            kept += (hits >> lane & 1) as usize;
+            place[count & (WIDTH - 1)] = first + lane;
+            count += (hits >> lane & 1) as usize;
         }
+        kept += count;
     }
     kept
 }
 
-/// The points of a leaf that may be inside the tool, a bit each.
+/// The points of some leaves that may be inside the tool.
 pub(crate) fn filter(level: Level, tree: &Tree, view: &View, leaves: &[u32], found: &mut Vec<u32>) {
     dispatch!(level, simd => sift(simd, tree, view, leaves, found));
 }
 
 #[inline(always)]
 fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], found: &mut Vec<u32>) {
+    let boxes = &tree.levels[tree.levels.len() - 1];
     for leaf in leaves {
         let index = *leaf as usize;
-        let last = &tree.levels[tree.levels.len() - 1][index / WIDTH];
-        let centre: [f64; 3] =
-            std::array::from_fn(|axis| f64::from(last.centre[axis][index % WIDTH]));
-        let offset = tree.leaves[index].offset.each_ref().map(|o| f32x16::from_slice(simd, o));
-        let place = |axis: usize| {
-            let row = view.exact_rows[axis];
-            let base = row[0] * centre[0]
-                + row[1] * centre[1]
-                + row[2] * centre[2]
-                + view.exact_origin[axis];
-            let row = view.rows[axis];
-            offset[0] * row[0] + offset[1] * row[1] + offset[2] * row[2] + base as f32
-        };
-        let (x, y, z) = (place(0), place(1), place(2));
-        let squared = x * x + y * y;
-        let mut hit = mask32x16::splat(simd, false);
-        if view.fits {
-            for [low, high, radius] in &view.points {
-                hit |= z.simd_le(*high) & z.simd_ge(*low) & squared.simd_le(*radius);
-            }
+        let (last, lane) = (&boxes[index / WIDTH].centre, index % WIDTH);
+        let centre = [f64::from(last[0][lane]), f64::from(last[1][lane]), f64::from(last[2][lane])];
+        let offset = load(simd, &tree.leaves[index].offset);
+        let x = dot(&offset, view.rows[0]) + view.place(centre, 0);
+        let y = dot(&offset, view.rows[1]) + view.place(centre, 1);
+        let z = dot(&offset, view.rows[2]) + view.place(centre, 2);
+        let mut hits = if view.fits {
+            in_slabs(simd, &view.points, z, z, x * x + y * y)
         } else {
-            hit = offset[0].simd_le(f32::INFINITY);
-        }
-        let mut hits = hit.to_bitmask() as u32;
+            offset[0].simd_le(f32::INFINITY).to_bitmask() as u32
+        };
         while hits != 0 {
             found.push(leaf * WIDTH as u32 + hits.trailing_zeros());
             hits &= hits - 1;
