@@ -35,7 +35,7 @@ pub struct Contact {
 pub(super) fn list(probe: &Probe<'_>, pose: &Pose, contacts: &mut Vec<Contact>) {
     let (felt, tree, card) = (&probe.felt, probe.part.tree(), probe.tool.card());
     let rotation = pose.rotation();
-    for (at, index) in probe.candidates.indices.iter().enumerate() {
+    for (at, index) in probe.candidates.indices().iter().enumerate() {
         if felt.inside[at / crate::tool::LANES] >> (at % crate::tool::LANES) & 1 == 0 {
             continue;
         }
@@ -43,7 +43,7 @@ pub(super) fn list(probe: &Probe<'_>, pose: &Pose, contacts: &mut Vec<Contact>) 
         let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
         let region = felt.region[at] as usize;
         contacts.push(Contact {
-            point: pose.tip() + vector(&probe.candidates.from_tip),
+            point: pose.tip() + vector(probe.candidates.from_tip()),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,

@@ -6,7 +6,6 @@
 //!      detect, wrench, contacts  ◀──sum or list──  what is felt  ◀─────────┘
 //! ```
 
-mod candidates;
 mod contacts;
 mod law;
 mod wrench;
@@ -18,8 +17,7 @@ pub use wrench::{Deepest, Wrench};
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Ask, Felt, Tool};
-use crate::tree::{View, Walker, filter};
-use candidates::Candidates;
+use crate::tree::{Candidates, View, Walker, filter};
 use fearless_simd::Level;
 use nalgebra::Point3;
 
@@ -99,8 +97,7 @@ impl<'a> Probe<'a> {
         // A few leaves at a time: the first hit ends the question.
         leaves.chunks(4).any(|leaves| {
             self.candidates.clear();
-            filter(self.level, tree, &self.view, leaves, &mut self.candidates.indices);
-            self.candidates.carry(tree, pose, self.length);
+            filter(self.level, tree, &self.view, leaves, &mut self.candidates);
             let points = &self.candidates.points;
             !points.is_empty() && {
                 self.tool.evaluate(self.level, Ask::Inside, points, self.length, &mut self.felt);
@@ -132,8 +129,7 @@ impl<'a> Probe<'a> {
         self.view.set(tree, self.tool.card(), pose, self.length);
         self.candidates.clear();
         let leaves = self.walker.leaves(self.level, tree, &self.view);
-        filter(self.level, tree, &self.view, leaves, &mut self.candidates.indices);
-        self.candidates.carry(tree, pose, self.length);
+        filter(self.level, tree, &self.view, leaves, &mut self.candidates);
         self.tool.evaluate(self.level, ask, &self.candidates.points, self.length, &mut self.felt);
     }
 }

@@ -57,39 +57,44 @@ impl Ask {
     }
 }
 
-/// Points of the tool's frame, in the unit of the tool's file. The three lists are padded to a
-/// multiple of [`LANES`] with copies of finite points.
+/// Points of the tool's frame, in the unit of the tool's file.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
-    coordinates: [Vec<f64>; 3],
+    /// As long as ever needed; always a multiple of [`LANES`], and finite.
+    lists: [Vec<f64>; 3],
     count: usize,
 }
 
 impl Points {
     /// No points; the memory stays.
     pub fn clear(&mut self) {
-        self.coordinates.iter_mut().for_each(Vec::clear);
         self.count = 0;
     }
 
-    /// One more point. [`Points::pad`] must follow the last.
+    /// One more point.
     pub fn push(&mut self, point: [f64; 3]) {
-        for (list, value) in self.coordinates.iter_mut().zip(point) {
-            list.push(value);
+        self.room(1);
+        self.put(point);
+    }
+
+    /// Makes room for some points more.
+    pub(crate) fn room(&mut self, more: usize) {
+        let wanted = (self.count + more).next_multiple_of(LANES);
+        if self.lists[0].len() < wanted {
+            self.lists.iter_mut().for_each(|list| list.resize(wanted, 0.0));
         }
+    }
+
+    /// One more point, for which there is room.
+    #[inline(always)]
+    pub(crate) fn put(&mut self, point: [f64; 3]) {
+        self.lists[0][self.count] = point[0];
+        self.lists[1][self.count] = point[1];
+        self.lists[2][self.count] = point[2];
         self.count += 1;
     }
 
-    /// Fills the last block.
-    pub fn pad(&mut self) {
-        let padded = self.count.next_multiple_of(LANES);
-        for list in &mut self.coordinates {
-            let last = list.last().copied().unwrap_or(0.0);
-            list.resize(padded, last);
-        }
-    }
-
-    /// How many points there are, without padding.
+    /// How many points there are.
     pub fn len(&self) -> usize {
         self.count
     }
@@ -99,14 +104,14 @@ impl Points {
         self.count == 0
     }
 
-    /// x, y and z of all points and the padding, as lists.
-    pub(crate) fn lists(&self) -> &[Vec<f64>; 3] {
-        &self.coordinates
+    /// x, y and z of all points, and of what fills the last block of [`LANES`].
+    pub fn coordinates(&self) -> [&[f64]; 3] {
+        let end = self.count.next_multiple_of(LANES);
+        [&self.lists[0][..end], &self.lists[1][..end], &self.lists[2][..end]]
     }
 
-    /// x, y and z of all points and the padding.
-    pub fn coordinates(&self) -> [&[f64]; 3] {
-        [&self.coordinates[0], &self.coordinates[1], &self.coordinates[2]]
+    pub(crate) fn lists(&self) -> &[Vec<f64>; 3] {
+        &self.lists
     }
 }
 

@@ -11,8 +11,10 @@
 //! nothing. A point takes 12 bytes and its share of the boxes, 1.6 bytes.
 
 mod build;
+mod candidates;
 mod walk;
 
+pub(crate) use candidates::Candidates;
 pub(crate) use walk::{View, Walker, filter};
 
 use crate::cloud::Cloud;

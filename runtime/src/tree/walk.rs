@@ -1,6 +1,6 @@
 //! Which points may be inside a tool: the descent in `f32`, with margins.
 
-use super::{Tree, WIDTH};
+use super::{Candidates, Tree, WIDTH};
 use crate::pose::Pose;
 use crate::tool::Card;
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16};
@@ -15,9 +15,14 @@ pub(crate) struct View {
     /// Low end, high end and squared radius of each slab, for nodes and for points.
     nodes: Vec<[f32; 3]>,
     points: Vec<[f32; 3]>,
-    /// For leaves: the rotation and the origin as they are, in `f64`.
+    /// For leaves and points: the rotation and the origin as they are, in `f64`.
     exact_rows: [[f64; 3]; 3],
     exact_origin: [f64; 3],
+    /// The cloud's origin from the tip in the part's frame, and the tree's unit, in the part's.
+    pub(super) from_tip: [f64; 3],
+    pub(super) scale: f64,
+    /// From the part's frame and unit to the tool's.
+    pub(super) carry: [[f64; 3]; 3],
     /// Whether all of this fits `f32`; if not, no point is ruled out.
     fits: bool,
 }
@@ -35,6 +40,9 @@ impl View {
             points: Vec::new(),
             exact_rows: [[0.0; 3]; 3],
             exact_origin: [0.0; 3],
+            from_tip: [0.0; 3],
+            scale: 1.0,
+            carry: [[0.0; 3]; 3],
             fits: false,
         }
     }
@@ -46,11 +54,15 @@ impl View {
     /// sizes. Twice that is allowed for.
     pub(crate) fn set(&mut self, tree: &Tree, card: &Card, pose: &Pose, length: f64) {
         let rotation = pose.rotation();
-        let from_tip = (tree.origin - pose.tip()) / tree.scale;
+        let from_tip = tree.origin - pose.tip();
+        self.from_tip = from_tip.into();
+        self.scale = tree.scale;
         for axis in 0..3 {
             let column = rotation.column(axis);
             self.exact_rows[axis] = [column[0], column[1], column[2]];
-            self.exact_origin[axis] = column.dot(&from_tip);
+            self.exact_origin[axis] = column.dot(&from_tip) / tree.scale;
+            // The change of unit, once for the query.
+            self.carry[axis] = self.exact_rows[axis].map(|part| part / length);
         }
         self.rows = self.exact_rows.map(|row| row.map(|v| v as f32));
         self.origin = self.exact_origin.map(|v| v as f32);
@@ -194,30 +206,36 @@ fn descend<S: Simd>(
     kept
 }
 
-/// The points of some leaves that may be inside the tool.
-pub(crate) fn filter(level: Level, tree: &Tree, view: &View, leaves: &[u32], found: &mut Vec<u32>) {
-    dispatch!(level, simd => sift(simd, tree, view, leaves, found));
+/// Adds the points of some leaves that may be inside the tool to the candidates.
+pub(crate) fn filter(
+    level: Level,
+    tree: &Tree,
+    view: &View,
+    leaves: &[u32],
+    candidates: &mut Candidates,
+) {
+    dispatch!(level, simd => sift(simd, tree, view, leaves, candidates));
 }
 
 #[inline(always)]
-fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], found: &mut Vec<u32>) {
+fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], candidates: &mut Candidates) {
     let boxes = &tree.levels[tree.levels.len() - 1];
     for leaf in leaves {
         let index = *leaf as usize;
         let (last, lane) = (&boxes[index / WIDTH].centre, index % WIDTH);
         let centre = [f64::from(last[0][lane]), f64::from(last[1][lane]), f64::from(last[2][lane])];
-        let offset = load(simd, &tree.leaves[index].offset);
+        let points = &tree.leaves[index].offset;
+        let offset = load(simd, points);
         let x = dot(&offset, view.rows[0]) + view.place(centre, 0);
         let y = dot(&offset, view.rows[1]) + view.place(centre, 1);
         let z = dot(&offset, view.rows[2]) + view.place(centre, 2);
-        let mut hits = if view.fits {
+        let hits = if view.fits {
             in_slabs(simd, &view.points, z, z, x * x + y * y)
         } else {
             offset[0].simd_le(f32::INFINITY).to_bitmask() as u32
         };
-        while hits != 0 {
-            found.push(leaf * WIDTH as u32 + hits.trailing_zeros());
-            hits &= hits - 1;
+        if hits != 0 {
+            candidates.take(view, leaf * WIDTH as u32, centre, points, hits);
         }
     }
 }

@@ -131,10 +131,11 @@ fn felt<T: Evaluators>(
     found.length.see((size - 1.0).abs() / f64::EPSILON, p, || format!("{direction:?}"));
     // On a border each of two neighbours has its own direction.
     let Some(sense) = sense.filter(|sense| sense.owner == owner) else { return };
-    let doubt = f64::EPSILON * (ulp / f64::EPSILON / oracle.singular(p)).max(1.0);
-    let doubt = if doubt.is_finite() { doubt } else { f64::EPSILON };
+    let rho = oracle.singular(p);
+    // Exactly where no direction exists, the one that the language fixes is wanted.
+    let doubt = if rho == 0.0 { 1.0 } else { (ulp / f64::EPSILON / rho).max(1.0) } * f64::EPSILON;
     found.direction.see(apart(direction, sense.direction) / doubt, p, || {
-        format!("{direction:?}, not {:?}, rho {:e}", sense.direction, oracle.singular(p))
+        format!("{direction:?}, not {:?}, rho {rho:e}", sense.direction)
     });
     let error = (niceness - sense.niceness).abs() / ulp;
     found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", sense.niceness));

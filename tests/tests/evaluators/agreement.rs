@@ -20,7 +20,6 @@ pub(crate) fn of<T: Evaluators>(
 ) {
     let mut list = Points::default();
     points.iter().for_each(|p| list.push(*p));
-    list.pad();
     let levels = levels();
     let names: Vec<&str> = levels.iter().map(|(name, _)| *name).collect();
     let mut inside = 0;
@@ -44,8 +43,7 @@ pub(crate) fn of<T: Evaluators>(
             assert_eq!(count, 0, "{what} at length {length} differs from the reference{shown}");
         };
         compare("scalar code", &|i| scalar::<T>(points[i], length));
-        let everything =
-            evaluated(&tape_of(tape), Level::fallback(), Ask::Everything, &list, length);
+        let everything = evaluated(tape, Level::fallback(), Ask::Everything, &list, length);
         compare("the tape", &|i| at(&everything, i));
         for (name, level) in &levels {
             let everything = evaluated(&tool, *level, Ask::Everything, &list, length);
@@ -68,11 +66,6 @@ pub(crate) fn of<T: Evaluators>(
     );
 }
 
-/// The tape sees a tool as any other caller does.
-fn tape_of(tape: &Interpreted) -> &dyn Tool {
-    tape
-}
-
 /// Every level of this machine, the best among them twice.
 fn levels() -> Vec<(&'static str, Level)> {
     let best = Level::new();
@@ -87,13 +80,7 @@ fn levels() -> Vec<(&'static str, Level)> {
     levels
 }
 
-fn evaluated(
-    tool: &(impl Tool + ?Sized),
-    level: Level,
-    ask: Ask,
-    points: &Points,
-    length: f64,
-) -> Felt {
+fn evaluated(tool: &dyn Tool, level: Level, ask: Ask, points: &Points, length: f64) -> Felt {
     let mut felt = Felt::default();
     tool.evaluate(level, ask, points, length, &mut felt);
     felt

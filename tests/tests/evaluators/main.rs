@@ -12,7 +12,7 @@ use std::path::Path;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile};
 use touchoff::tool::Interpreted;
-use touchoff_tests::oracle::{self, Oracle};
+use touchoff_tests::oracle;
 
 /// Lengths of the file's unit in the part's that are tried: the same unit, and mm in inches.
 const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];
