@@ -29,6 +29,10 @@
 //! # Ok(()) }
 //! ```
 
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
+
 // Generated code names this crate `::touchoff`, here as elsewhere.
 extern crate self as touchoff;
 

@@ -2,18 +2,59 @@
 //! region.
 
 use super::LENGTHS;
-use super::points::shown;
+use super::points::{scale, shown};
 use tool_dsl::Checked;
 use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
 use touchoff::tool::{Ask, Evaluators, Felt, Interpreted, Points, Tool};
+use touchoff_tests::oracle::Oracle;
 
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
 type Answer = Option<(usize, [u64; 9])>;
 
+/// Answers that differ.
+#[derive(Default)]
+struct Differing {
+    what: String,
+    count: usize,
+    /// The largest distance of such a point from the surface and all splitting curves, in ulp(S).
+    farthest: f64,
+    examples: Vec<String>,
+}
+
+/// Compares answers with others, point by point.
+fn compared(
+    what: &str,
+    oracle: &dyn Oracle,
+    points: &[[f64; 3]],
+    got: impl Fn(usize) -> Answer,
+    expected: impl Fn(usize) -> Answer,
+) -> Differing {
+    let ulp = scale(oracle) * f64::EPSILON;
+    let mut differing = Differing { what: what.to_owned(), ..Differing::default() };
+    for (i, p) in points.iter().enumerate() {
+        let (got, expected) = (got(i), expected(i));
+        if numbers(got) != numbers(expected) {
+            differing.count += 1;
+            let border = oracle.border(*p) / ulp;
+            if differing.examples.len() < 3 || border > differing.farthest {
+                let (got, expected) = (numbers(got), numbers(expected));
+                let example = format!(
+                    "{}, {border:.2} ulp(S) from a border\n  got {got:?}\n  not {expected:?}",
+                    shown(*p)
+                );
+                differing.examples.push(example);
+            }
+            differing.farthest = differing.farthest.max(border);
+        }
+    }
+    differing
+}
+
 /// Compares them all on some points.
 pub(crate) fn of<T: Evaluators>(
     tool: T,
+    oracle: &dyn Oracle,
     checked: &Checked,
     tape: &Interpreted,
     points: &[[f64; 3]],
@@ -21,49 +62,48 @@ pub(crate) fn of<T: Evaluators>(
     let mut list = Points::default();
     points.iter().for_each(|p| list.push(*p));
     let levels = levels();
-    let names: Vec<&str> = levels.iter().map(|(name, _)| *name).collect();
+    let mut all = Vec::new();
     let mut inside = 0;
+    let lost = points.iter().filter(|p| T::contains(**p) != T::owner(**p).is_some()).count();
     for length in LENGTHS {
         let mut reference = Interpreter::new(checked);
         let expected: Vec<Answer> =
             points.iter().map(|p| answer_of(reference.at(*p, length))).collect();
         inside = expected.iter().flatten().count();
-        let compare = |what: &str, got: &dyn Fn(usize) -> Answer| {
-            let differing: Vec<usize> =
-                (0..points.len()).filter(|i| got(*i) != expected[*i]).collect();
-            let shown: String = differing
-                .iter()
-                .take(5)
-                .map(|&i| {
-                    let (got, expected) = (numbers(got(i)), numbers(expected[i]));
-                    format!("\n{}\n  got {got:?}\n  not {expected:?}", shown(points[i]))
-                })
-                .collect();
-            let count = differing.len();
-            assert_eq!(count, 0, "{what} at length {length} differs from the reference{shown}");
-        };
-        compare("scalar code", &|i| scalar::<T>(points[i], length));
-        let everything = evaluated(tape, Level::fallback(), Ask::Everything, &list, length);
-        compare("the tape", &|i| at(&everything, i));
-        for (name, level) in &levels {
-            let everything = evaluated(&tool, *level, Ask::Everything, &list, length);
-            compare(name, &|i| at(&everything, i));
-            for ask in [Ask::Inside, Ask::Direction, Ask::Gradient] {
-                let part = evaluated(&tool, *level, ask, &list, length);
-                same(name, ask, &part, &everything, points.len());
-            }
-        }
+        let code: Vec<Answer> = points.iter().map(|p| scalar::<T>(*p, length)).collect();
+        all.push(compared("scalar - reference", oracle, points, |i| code[i], |i| expected[i]));
+        let felt = evaluated(tape, Level::fallback(), Ask::Everything, &list, length);
+        all.push(compared("tape - scalar", oracle, points, |i| at(&felt, i), |i| code[i]));
+        all.push(compared("tape - reference", oracle, points, |i| at(&felt, i), |i| expected[i]));
         for ask in [Ask::Inside, Ask::Direction, Ask::Gradient] {
             let part = evaluated(tape, Level::fallback(), ask, &list, length);
-            same("the tape", ask, &part, &everything, points.len());
+            same("the tape", ask, &part, &felt, points.len());
+        }
+        for (name, level) in &levels {
+            let felt = evaluated(&tool, *level, Ask::Everything, &list, length);
+            all.push(compared(name, oracle, points, |i| at(&felt, i), |i| code[i]));
+            for ask in [Ask::Inside, Ask::Direction, Ask::Gradient] {
+                let part = evaluated(&tool, *level, ask, &list, length);
+                same(name, ask, &part, &felt, points.len());
+            }
         }
     }
     println!(
-        "{:20} {:7} points, {inside:7} inside: scalar, tape, {} have the reference's bits",
+        "{:20} {:7} points, {inside:7} inside, contains and owner differ at {lost}",
         T::card().name,
-        points.len(),
-        names.join(", "),
+        points.len()
     );
+    for d in &all {
+        if d.count > 0 {
+            println!(
+                "   {} differs at {}, up to {:.3} ulp(S) from a border\n{}",
+                d.what,
+                d.count,
+                d.farthest,
+                d.examples.join("\n")
+            );
+        }
+    }
 }
 
 /// Every level of this machine, the best among them twice.
@@ -100,8 +140,7 @@ fn answer_of(felt: Option<tool_dsl::interpret::Felt>) -> Answer {
 
 fn scalar<T: Evaluators>(p: [f64; 3], length: f64) -> Answer {
     let owner = T::owner(p);
-    assert_eq!(T::contains(p), owner.is_some(), "inside and without an owner: {}", shown(p));
-    owner.map(|region| {
+    owner.filter(|_| T::contains(p)).map(|region| {
         let felt = bits(
             T::depth(p),
             T::magnitude(p, length),

@@ -47,7 +47,7 @@ macro_rules! suites {
                 let source = text($file);
                 let (checked, tape) = (checked(&source), interpreted(&source));
                 let points = points::all(&oracle, 1);
-                agreement::of(tools_library::$tool, &checked, &tape, &points);
+                agreement::of(tools_library::$tool, &oracle, &checked, &tape, &points);
             }
 
             #[test]

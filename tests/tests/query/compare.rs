@@ -126,13 +126,15 @@ impl<'a> Case<'a> {
         assert_eq!((wrench.law, wrench.weights), (law, weights));
         assert_eq!(probe.detect(pose), wrench.colliding > 0, "detect at {pose:?}");
         let contacts = probe.contacts(pose).to_vec();
+        let mut seen = self.seen;
         let asked = self.ask(pose, wrench, contacts, centre);
-        self.compare_points(&asked);
-        let bounds = self.compare_sums(&asked);
+        self.compare_points(&asked, &mut seen);
+        let bounds = self.compare_sums(&asked, &mut seen);
         consistent(&asked, &bounds);
-        self.seen.poses += 1;
-        self.seen.touching += usize::from(wrench.colliding > 0);
-        self.seen.contacts += wrench.colliding;
+        seen.poses += 1;
+        seen.touching += usize::from(wrench.colliding > 0);
+        seen.contacts += wrench.colliding;
+        self.seen = seen;
         wrench.colliding
     }
 
@@ -163,7 +165,7 @@ impl<'a> Case<'a> {
     }
 
     /// The points that touch, one by one; both sides list them in the tree's order.
-    fn compare_points(&mut self, asked: &Asked<'_>) {
+    fn compare_points(&self, asked: &Asked<'_>, seen: &mut Seen) {
         let place = |contact: &Contact| self.places[contact.triangle as usize];
         assert!(asked.contacts.is_sorted_by_key(place));
         let mut felt: BTreeMap<usize, &Contact> =
@@ -172,20 +174,20 @@ impl<'a> Case<'a> {
             let q = asked.query.in_tool(self.points[i]);
             match felt.remove(&i) {
                 Some(contact) => self.compare_point(asked, i, q, contact),
-                None => self.dispute(asked, q, "was not felt"),
+                None => self.dispute(asked, q, "was not felt", seen),
             }
         }
         for i in felt.into_keys() {
-            self.dispute(asked, asked.query.in_tool(self.points[i]), "should not be felt");
+            self.dispute(asked, asked.query.in_tool(self.points[i]), "should not be felt", seen);
         }
     }
 
     /// A point that only one side feels must be on the surface.
-    fn dispute(&mut self, asked: &Asked<'_>, q: [f64; 3], what: &str) {
+    fn dispute(&self, asked: &Asked<'_>, q: [f64; 3], what: &str, seen: &mut Seen) {
         let off = self.oracle.signed_distance(q);
         let (name, pose) = (self.oracle.name(), asked.query.pose);
         assert!(off.abs() <= asked.band, "{name}: {q:?} {what}, {off:e} outside; {pose:?}");
-        self.seen.disputed += 1;
+        seen.disputed += 1;
     }
 
     fn compare_point(&self, asked: &Asked<'_>, i: usize, q: [f64; 3], contact: &Contact) {
@@ -221,10 +223,10 @@ impl<'a> Case<'a> {
     }
 
     /// The wrench.
-    fn compare_sums(&mut self, asked: &Asked<'_>) -> Bounds {
+    fn compare_sums(&self, asked: &Asked<'_>, seen: &mut Seen) -> Bounds {
         let (answer, wrench) = (&asked.answer, &asked.wrench);
         let level = self.steep * asked.noise;
-        let (bounds, sizes) = self.bounds(asked);
+        let (bounds, sizes) = self.bounds(asked, seen);
         let name = self.oracle.name();
         let near = |got: f64, want: f64, bound: f64, what: &str| {
             assert!(
@@ -251,14 +253,14 @@ impl<'a> Case<'a> {
         }
         let relative = |error: f64, size: f64| if size > 0.0 { error / size } else { 0.0 };
         let errors = [depth / self.ulp, relative(force, sizes[0]), relative(torque, sizes[1])];
-        for (worst, error) in self.seen.worst.iter_mut().zip(errors) {
+        for (worst, error) in seen.worst.iter_mut().zip(errors) {
             *worst = worst.max(error);
         }
         bounds
     }
 
     /// What sums may be apart by, and the sums of the terms' sizes.
-    fn bounds(&mut self, asked: &Asked<'_>) -> (Bounds, [f64; 2]) {
+    fn bounds(&self, asked: &Asked<'_>, seen: &mut Seen) -> (Bounds, [f64; 2]) {
         let (query, noise) = (&asked.query, asked.noise);
         let tip = Point3::from(query.pose.tip);
         let lever = (Point3::from(query.centre) - tip).norm();
@@ -285,7 +287,7 @@ impl<'a> Case<'a> {
             bounds.nice |= doubt;
             sizes[0] += w * m * PUSH;
             sizes[1] += arm * w * m * PUSH;
-            self.seen.doubtful += usize::from(doubt);
+            seen.doubtful += usize::from(doubt);
         }
         // Points that only the probe feels: hardly inside, if at all.
         let tally = |contacts: &[Contact]| contacts.iter().map(|c| c.weight).sum::<f64>();

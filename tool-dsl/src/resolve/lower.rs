@@ -218,7 +218,13 @@ impl Lowering {
         span: Span,
         may: May,
     ) -> Lowered {
-        let (a, da) = self.lower(left, may)?;
+        let glued = operator == Binary::Sub && left.span.end + 1 == right.span.start;
+        let (a, da) = self.lower(left, may).map_err(|report| match &left.kind {
+            ExprKind::Name(word) if glued && !self.values.contains_key(word) => {
+                report.help("a name has no dash: write `_`; a difference has spaces about its `-`")
+            }
+            _ => report,
+        })?;
         let (b, db) = self.lower(right, may)?;
         let (dimension, verb) = match operator {
             Binary::Add | Binary::Sub => (da.alike(db), "adds"),

@@ -36,6 +36,9 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
     if let Some(report) = item(text, rest, at, offset) {
         return report;
     }
+    if let Some(report) = habit(rest, before, here) {
+        return report;
+    }
     let expected = match &error.variant {
         ErrorVariant::ParsingError { positives, .. } => expected(positives),
         ErrorVariant::CustomError { message } => message.clone(),
@@ -96,6 +99,31 @@ fn spelling(text: &str, rest: &str, before: &str, here: Span) -> Option<Report> 
     }
 }
 
+/// Habits from elsewhere: a unit apart from its number, `and`, a forgotten brace.
+fn habit(rest: &str, before: &str, here: Span) -> Option<Report> {
+    let next = word(rest);
+    let place = Span { end: here.start + next.len().max(here.end - here.start), ..here };
+    if ["mm", "inch", "m", "deg", "rad", "in"].contains(&next)
+        && before.ends_with(|c: char| c.is_ascii_digit())
+    {
+        let digits = before.rfind(|c: char| !(c.is_ascii_digit() || c == '.')).map_or(0, |i| i + 1);
+        let number = before.get(digits..).unwrap_or("6");
+        return Some(
+            Report::error(place, format!("a space before the unit `{next}`"))
+                .help(format!("write `{number}{next}`")),
+        );
+    }
+    if ["and", "or"].contains(&next) || rest.starts_with("&&") || rest.starts_with("||") {
+        return Some(Report::error(place, "conditions are not joined by a word").help(
+            "all hold that stand between commas: `a <= b, c <= d`; \"or\" is `min(a, b) <= 0`",
+        ));
+    }
+    if rest.trim().is_empty() && !before.is_empty() {
+        return Some(Report::error(here, "the text ends here").help("is a `}` or `;` missing?"));
+    }
+    None
+}
+
 /// An item or property that begins with a word that none does.
 fn item(text: &str, rest: &str, at: usize, offset: usize) -> Option<Report> {
     let whole = text.trim_start();
@@ -103,7 +131,14 @@ fn item(text: &str, rest: &str, at: usize, offset: usize) -> Option<Report> {
     if first.is_empty() {
         return None;
     }
-    if !text.trim_start().starts_with("tool") && !ITEMS.contains(&first) {
+    // A whole file comes with its header, an item without.
+    let header = offset == 0 && at == text.len() - whole.len();
+    if header && first != "tool" {
+        let span = Span { start: at, end: at + first.len() };
+        let report = Report::error(span, format!("a file does not begin with `{first}`"));
+        return Some(report.help("write `tool Name { … }`"));
+    }
+    if first != "tool" && !ITEMS.contains(&first) {
         let start = offset + text.len() - whole.len();
         let report = Report::error(
             Span { start, end: start + first.len() },

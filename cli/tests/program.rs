@@ -1,0 +1,304 @@
+//! The program as a user meets it: what it prints, and how it refuses.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Unit};
+
+fn touchoff(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_touchoff")).args(arguments).output().expect("the program runs")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("UTF-8")
+}
+
+fn rows(output: &Output) -> Vec<Value> {
+    assert!(output.status.success(), "{}", stderr(output));
+    stdout(output).lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
+}
+
+/// A folder with a block, 6 × 6 × 2 under z = 0, and a path into it.
+struct Bench {
+    folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Bench {
+        let bench = Bench { folder: tempfile::tempdir().expect("a folder") };
+        let low = nalgebra::Point3::new(-3.0, -3.0, -2.0);
+        let high = nalgebra::Point3::new(3.0, 3.0, 0.0);
+        bench.part("block.stl", &shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        bench.write("path.csv", "# a comment\n0,0,1,0,0,1\n0,0,-0.5,0,0,1\n");
+        bench
+    }
+
+    fn part(&self, name: &str, mesh: &Mesh) {
+        let mut bytes = Vec::new();
+        mesh.write_stl(&mut bytes).expect("memory");
+        self.write(name, bytes);
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        let path = self.folder.path().join(name);
+        std::fs::write(&path, content).expect("a writable folder");
+        path.display().to_string()
+    }
+
+    /// `touchoff run` with a part, a path and a tool of this folder, and more.
+    fn run(&self, part: &str, path: &str, tool: &str, more: &[&str]) -> Output {
+        let place = |name: &str| self.folder.path().join(name).display().to_string();
+        let (part, path) = (place(part), place(path));
+        let tool = if tool.ends_with(".tool") { place(tool) } else { tool.to_owned() };
+        let mut all = vec!["run", "--part", &part, "--path", &path, "--tool", &tool];
+        if !more.contains(&"--unit") {
+            all.extend(["--unit", "mm"]);
+        }
+        all.extend(more);
+        touchoff(&all)
+    }
+
+    /// A run that fails with status 1 and says all of `words`, and writes no row.
+    fn refused(&self, part: &str, path: &str, tool: &str, words: &[&str]) {
+        let output = self.run(part, path, tool, &["--json"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(output.stdout.is_empty(), "a row was written: {}", stdout(&output));
+        for word in words {
+            assert!(said.contains(word), "`{word}` is missing in:\n{said}");
+        }
+        assert!(!said.contains("panicked"), "{said}");
+    }
+}
+
+fn shared() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
+    if !folder.is_dir() {
+        eprintln!("skipped: {} is not there", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+#[test]
+fn a_run_writes_one_object_a_pose() {
+    let bench = Bench::new();
+    let output = bench.run("block.stl", "path.csv", "D2Ball", &["--json", "--points", "200000"]);
+    let rows = rows(&output);
+    assert_eq!(rows.len(), 2);
+    let keys = [
+        "pose",
+        "line",
+        "colliding",
+        "depth",
+        "force",
+        "torque",
+        "niceness",
+        "integral",
+        "energy",
+        "ns",
+    ];
+    for row in &rows {
+        for key in keys {
+            assert!(row.get(key).is_some(), "{key} is missing in {row}");
+        }
+    }
+    assert_eq!(rows[0]["line"], 2);
+    assert_eq!(rows[0]["colliding"], 0);
+    assert!(rows[0]["niceness"].is_null());
+    assert_eq!(rows[1]["pose"], 1);
+    // Closed form CF1 for r = 1, h = 0.5: I = 0.5236, and the plate pushes the ball up.
+    let integral = rows[1]["integral"].as_f64().expect("a number");
+    assert!((integral - 0.5236).abs() < 0.05, "{integral}");
+    assert!(rows[1]["force"][2].as_f64().expect("a number") > 0.8);
+    assert!((rows[1]["depth"].as_f64().expect("a number") - 0.5).abs() < 0.01);
+    let said = stderr(&output);
+    assert!(said.contains("1 of 2 poses in contact") && said.contains("ball"), "{said}");
+}
+
+#[test]
+fn a_tool_file_is_felt_like_the_compiled_tool() {
+    let bench = Bench::new();
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools/d2_ball.tool");
+    bench.write("own.tool", std::fs::read(file).expect("a tool of the library"));
+    let without_time = |output: Output| {
+        let mut rows = rows(&output);
+        rows.iter_mut().for_each(|row| row["ns"] = Value::Null);
+        rows
+    };
+    let compiled = bench.run("block.stl", "path.csv", "D2Ball", &["--json"]);
+    let loaded = bench.run("block.stl", "path.csv", "own.tool", &["--json"]);
+    assert_eq!(without_time(compiled), without_time(loaded));
+}
+
+#[test]
+fn laws_weights_and_centre_are_heard() {
+    let bench = Bench::new();
+    let row = |more: &[&str]| {
+        let all = [&["--json", "--points", "100000"], more].concat();
+        rows(&bench.run("block.stl", "path.csv", "D2Ball", &all)).swap_remove(1)
+    };
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let plain = row(&[]);
+    // In ideal contact the thesis's law is about twice the gradient's.
+    let gradient = row(&["--law", "gradient"]);
+    assert!(number(&plain["force"][2]) > 1.3 * number(&gradient["force"][2]));
+    let unit = row(&["--weights", "unit"]);
+    assert!(number(&unit["integral"]) > 10.0 * number(&plain["integral"]));
+    let moved = row(&["--center", "-1,0,0"]);
+    let expected = number(&plain["torque"][1]) - number(&plain["force"][2]);
+    assert!((number(&moved["torque"][1]) - expected).abs() < 1e-9);
+}
+
+#[test]
+fn the_demonstration_has_its_eight_rows() {
+    let rows = rows(&touchoff(&["demo", "--json"]));
+    assert_eq!(rows.len(), 8);
+    for row in &rows {
+        assert_eq!(row["poses"], 10_000);
+        for key in [
+            "points",
+            "path",
+            "colliding_avg",
+            "colliding_max",
+            "ns_avg",
+            "ns_p50",
+            "ns_p99",
+            "ns_max",
+        ] {
+            assert!(row.get(key).is_some(), "{key}");
+        }
+    }
+    let dense = &rows[6];
+    assert_eq!((&dense["points"], &dense["path"]), (&Value::from(20_000), &Value::from("outside")));
+    let colliding = dense["colliding_avg"].as_f64().expect("a number");
+    assert!((9.0..15.0).contains(&colliding), "{colliding}");
+}
+
+#[test]
+fn tools_are_listed() {
+    let rows = rows(&touchoff(&["tools", "--json"]));
+    let names: Vec<&str> = rows.iter().filter_map(|row| row["name"].as_str()).collect();
+    for name in ["UnitSphere", "Cylinder", "HalfSphereCylinder", "Fig73", "Fig73Exact", "D2Ball"] {
+        assert!(names.contains(&name), "{name} is not in {names:?}");
+    }
+}
+
+#[test]
+fn files_are_checked_and_expanded() {
+    let bench = Bench::new();
+    let good = bench.write("good.tool", "tool Good { units mm; region r where hypot(d, z - 1) <= 1 { depth: 1 - hypot(d, z - 1); } }");
+    let bad = bench.write(
+        "bad.tool",
+        "tool Bad {\n    units mm;\n    region r where hypot(d, z - 1) < 1 { depth: dept; }\n}",
+    );
+    let checked = touchoff(&["check", &good]);
+    assert!(checked.status.success() && stdout(&checked).contains("Good"), "{}", stderr(&checked));
+    let both = touchoff(&["check", &good, &bad]);
+    assert_eq!(both.status.code(), Some(1));
+    let said = stderr(&both);
+    assert!(said.contains("bad.tool:3:") && said.contains("`<=`") && said.contains('^'), "{said}");
+    let expanded = touchoff(&["expand", &good]);
+    assert!(stdout(&expanded).contains("impl Evaluators for Good"));
+    assert_eq!(touchoff(&["expand", &bad]).status.code(), Some(1));
+}
+
+#[test]
+fn wrong_usage_ends_with_two() {
+    let bench = Bench::new();
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    let (part, path) = (place("block.stl"), place("path.csv"));
+    let missing = touchoff(&["run", "--part", &part, "--path", &path, "--tool", "D2Ball"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(stderr(&missing).contains("--unit"), "{}", stderr(&missing));
+    for more in [["--unit", "cm"], ["--points", "0"], ["--law", "hooke"], ["--center", "1,2"]] {
+        let output = bench.run("block.stl", "path.csv", "D2Ball", &more);
+        assert_eq!(output.status.code(), Some(2), "{more:?}: {}", stderr(&output));
+    }
+    assert_eq!(touchoff(&["feel"]).status.code(), Some(2));
+}
+
+#[test]
+fn unknown_tools_and_missing_files_are_named() {
+    let bench = Bench::new();
+    bench.refused("block.stl", "path.csv", "D2Bal", &["D2Bal", "did you mean `D2Ball`?"]);
+    bench.refused("block.stl", "path.csv", "nowhere.tool", &["nowhere.tool"]);
+    bench.refused("nowhere.stl", "path.csv", "D2Ball", &["nowhere.stl"]);
+    bench.refused("block.stl", "nowhere.csv", "D2Ball", &["nowhere.csv"]);
+}
+
+#[test]
+fn parts_that_are_none_are_refused() {
+    let bench = Bench::new();
+    let whole = std::fs::read(bench.folder.path().join("block.stl")).expect("the block");
+    bench.write("short.stl", &whole[..whole.len() - 30]);
+    bench.refused("short.stl", "path.csv", "D2Ball", &["short.stl", "12 triangles"]);
+    bench.write("empty.stl", "");
+    bench.refused("empty.stl", "path.csv", "D2Ball", &["empty.stl"]);
+    bench.write("none.stl", "solid none\nendsolid none\n");
+    bench.refused("none.stl", "path.csv", "D2Ball", &["none.stl"]);
+    let facet = |vertex: &str| {
+        format!(
+            "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex {vertex}\nendloop\nendfacet\nendsolid s\n"
+        )
+    };
+    bench.write("nan.stl", facet("0 nan 0"));
+    bench.refused("nan.stl", "path.csv", "D2Ball", &["nan.stl", "6"]);
+    bench.write("words.stl", facet("0 one 0"));
+    bench.refused("words.stl", "path.csv", "D2Ball", &["words.stl", "6"]);
+    bench.write("flat.stl", facet("2 0 0"));
+    bench.refused("flat.stl", "path.csv", "D2Ball", &["flat.stl"]);
+    let mut infinite = whole.clone();
+    infinite[96..100].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    bench.write("infinite.stl", &infinite);
+    bench.refused("infinite.stl", "path.csv", "D2Ball", &["infinite.stl"]);
+}
+
+#[test]
+fn paths_that_are_none_are_refused() {
+    let bench = Bench::new();
+    let cases: [(&str, &str, &[&str]); 7] = [
+        ("zero.csv", "0,0,0,0,0,1\n0,0,0,0,0,0\n", &["zero.csv:2", "zero"]),
+        ("columns.csv", "0,0,0,0,0,1\n0,0,0,0,1\n", &["columns.csv:2", "5", "6"]),
+        ("nan.csv", "0,0,nan,0,0,1\n", &["nan.csv:1"]),
+        ("long.csv", "0,0,0,0,0,1.5\n", &["long.csv:1", "1.5"]),
+        ("cut.apt", "UNITS/MM\nMULTAX\nGOTO/0,0,0,0,0,1\nGOTO/0,0", &["cut.apt"]),
+        ("open.apt", "UNITS/MM\nMULTAX\nGOTO/0,0,0,0,0,1\n", &["open.apt", "FINI"]),
+        (
+            "inch.apt",
+            "UNITS/INCHES\nMULTAX\nGOTO/0,0,0,0,0,1\nFINI\n",
+            &["inch.apt:1", "inch", "mm"],
+        ),
+    ];
+    for (name, text, words) in cases {
+        bench.write(name, text);
+        bench.refused("block.stl", name, "D2Ball", words);
+    }
+}
+
+/// The impeller's program gouges: the ball by up to about 0.03, the flank by about 0.15.
+#[test]
+fn the_impeller_program_is_found_to_gouge() {
+    let Some(data) = shared() else { return };
+    let part = data.join("parts/impeller.stl").display().to_string();
+    let path = data.join("paths/impeller_flank.apt").display().to_string();
+    let output = touchoff(&[
+        "run", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &path, "--points",
+        "1000000", "--json",
+    ]);
+    let rows = rows(&output);
+    assert_eq!(rows.len(), 1302);
+    let deepest = |surface: &str, rows: &[Value]| {
+        rows.iter().filter_map(|row| row["surfaces"][surface].as_f64()).fold(0.0, f64::max)
+    };
+    let ball = deepest("ball", &rows);
+    assert!((0.025..0.045).contains(&ball), "{ball}");
+    let near_280 = deepest("flute", &rows[270..292]).max(deepest("shank", &rows[270..292]));
+    assert!((0.14..0.17).contains(&near_280), "{near_280}");
+    assert!(rows.iter().filter(|row| row["depth"].as_f64() > Some(0.01)).count() > 300);
+}
