@@ -99,7 +99,7 @@ fn deepest(probe: &Probe<'_>, pose: &Pose, totals: &Totals) -> Option<Deepest> {
     let found = totals.depth.iter().zip(&totals.deepest).filter(|(depth, _)| **depth >= 0.0);
     let (depth, index) = found.min_by(|(a, i), (b, j)| b.total_cmp(a).then(i.total_cmp(j)))?;
     let candidate = *index as usize;
-    let from_tip = probe.candidates.from_tip();
+    let from_tip = probe.candidates.relative();
     let point = pose.tip() + Vector3::from(from_tip.each_ref().map(|list| list[candidate]));
     let place = probe.candidates.indices()[candidate] as usize;
     let tree = probe.part.tree();
@@ -217,7 +217,7 @@ fn add<S: Simd>(
         force = along.simd_le(zero).select(push, zero);
     }
     accumulate(&mut sums.tool, -force, p, direction);
-    let from_tip = load_vector(simd, candidates.from_tip(), block, in_solid);
+    let from_tip = load_vector(simd, candidates.relative(), block, in_solid);
     accumulate(&mut sums.part, force, from_tip, normal);
 }
 

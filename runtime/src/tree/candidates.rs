@@ -24,7 +24,7 @@ impl Candidates {
     }
 
     /// The candidates from the tip, in the part's frame; behind the last, what fills the block.
-    pub(crate) fn from_tip(&self) -> &[Vec<f64>; 3] {
+    pub(crate) fn relative(&self) -> &[Vec<f64>; 3] {
         &self.from_tip
     }
 

@@ -6,9 +6,11 @@
 //!
 //! **Numbers.** Boxes are `f32` relative to the cloud's origin, points `f32` relative to the centre
 //! of their leaf's box, both in units of `scale`, a power of two near the part's size. The stored
-//! point *is* `origin + scale · (centre + offset)`, taken exactly; it differs from the given one by
-//! at most 2^-24 of its leaf's size. So a part far from the world's origin, tiny or huge loses
-//! nothing. A point takes 12 bytes and its share of the boxes, 1.6 bytes.
+//! point *is* `origin + scale · (centre + offset)`, and a query takes it so, unrounded; it differs
+//! from the given one by at most 2^-24 of its leaf's size. So a part far from the world's origin,
+//! tiny or huge loses nothing. (A leaf spans what its 16 points span: a few points far from all
+//! others make a large leaf, and move by 2^-24 of that.) A point takes 12 bytes and its share of the
+//! boxes, 1.6 bytes.
 
 mod build;
 mod candidates;
@@ -69,7 +71,8 @@ impl Tree {
         self.triangles.is_empty()
     }
 
-    /// A point as it is stored, by its place in the tree's order, rounded to `f64`.
+    /// A point as it is stored, by its place in the tree's order, rounded to the world's `f64`;
+    /// queries work with the unrounded one.
     pub fn point(&self, index: usize) -> Point3<f64> {
         let (leaf, lane) = (index / WIDTH, index % WIDTH);
         let centre = self.centre(leaf);

@@ -20,13 +20,13 @@ struct Worst {
 
 impl Worst {
     fn see(&mut self, error: f64, p: [f64; 3], more: impl FnOnce() -> String) {
-        // Not `>`, so that a NaN stays.
-        if !(error <= self.error) {
+        if error.is_nan() || error > self.error {
             *self = Worst { error, place: format!("{}; {}", shown(p), more()) };
         }
     }
 
     fn within(&self, bound: f64, what: &str) {
+        // A NaN is not within.
         assert!(self.error <= bound, "{what}: {} > {bound} at {}", self.error, self.place);
     }
 }
@@ -138,6 +138,10 @@ fn felt<T: Evaluators>(
     });
     let error = (niceness - sense.niceness).abs() / ulp;
     found.niceness.see(error, p, || format!("{niceness:e}, not {:e}", sense.niceness));
+    if rho == 0.0 {
+        // A distance has no gradient at a centre; the language fixes a direction only.
+        return;
+    }
     let slope = oracle.gradient(p).expect("the oracle has the point inside");
     for length in LENGTHS {
         let per = if magnitude_is_depth(oracle) { 1.0 } else { length };

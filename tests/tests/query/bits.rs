@@ -91,7 +91,10 @@ fn whatever_was_asked_first() {
             let listed = probe.contacts(pose).len();
             let wrench = probe.wrench(pose);
             assert_eq!((listed, listed > 0), (wrench.colliding, detected));
-            assert_eq!(format!("{wrench:?}"), format!("{:?}", Probe::new(&part, tool).wrench(pose)));
+            assert_eq!(
+                format!("{wrench:?}"),
+                format!("{:?}", Probe::new(&part, tool).wrench(pose))
+            );
         }
     }
 }
@@ -110,9 +113,7 @@ fn compiled_and_interpreted() {
         for part in parts() {
             for (k, pose) in some(&part, &*oracle, 60, 6).iter().enumerate() {
                 let (law, weights) = WAYS[k % 6];
-                let by = |tool| {
-                    said(&mut Probe::new(&part, tool).law(law).weights(weights), pose)
-                };
+                let by = |tool| said(&mut Probe::new(&part, tool).law(law).weights(weights), pose);
                 assert_eq!(by(tool), by(&interpreted), "{name}");
             }
         }

@@ -15,7 +15,7 @@ use touchoff_tests::oracle::brute::{self, Answer, Query};
 use touchoff_tests::oracle::{Oracle, all};
 
 /// The tools of the library, each with its oracle.
-pub fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
+pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
     all()
         .into_iter()
         .map(|oracle| (tools_library::find(oracle.name()).expect("in the library"), oracle))
@@ -23,7 +23,7 @@ pub fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
 }
 
 /// All laws with all weights.
-pub const WAYS: [(Law, Weights); 6] = [
+pub(crate) const WAYS: [(Law, Weights); 6] = [
     (Law::Thesis, Weights::Area),
     (Law::Gradient, Weights::Unit),
     (Law::Facing, Weights::Area),
@@ -34,20 +34,20 @@ pub const WAYS: [(Law, Weights); 6] = [
 
 /// What was seen over several poses.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
-    pub poses: usize,
-    pub touching: usize,
-    pub contacts: usize,
+pub(crate) struct Seen {
+    pub(crate) poses: usize,
+    pub(crate) touching: usize,
+    pub(crate) contacts: usize,
     /// Points that could be felt either way.
-    pub doubtful: usize,
+    pub(crate) doubtful: usize,
     /// Points that one side felt and the other did not.
-    pub disputed: usize,
+    pub(crate) disputed: usize,
     /// The largest errors: of depth in ulp(S), of force and torque relative to the sums of their terms' sizes.
-    pub worst: [f64; 3],
+    pub(crate) worst: [f64; 3],
 }
 
 /// A part and a tool.
-pub struct Case<'a> {
+pub(crate) struct Case<'a> {
     part: &'a Part,
     tool: &'a dyn Tool,
     oracle: &'a dyn Oracle,
@@ -63,7 +63,7 @@ pub struct Case<'a> {
     size: f64,
     ulp: f64,
     steep: f64,
-    pub seen: Seen,
+    pub(crate) seen: Seen,
 }
 
 /// One pose, asked about.
@@ -91,7 +91,7 @@ struct Bounds {
 const PUSH: f64 = 2.3;
 
 impl<'a> Case<'a> {
-    pub fn new(part: &'a Part, tool: &'a dyn Tool, oracle: &'a dyn Oracle) -> Case<'a> {
+    pub(crate) fn new(part: &'a Part, tool: &'a dyn Tool, oracle: &'a dyn Oracle) -> Case<'a> {
         let tree = part.tree();
         let places = 0..tree.len();
         let points: Vec<[f64; 3]> = places.clone().map(|i| tree.point(i).into()).collect();
@@ -106,7 +106,7 @@ impl<'a> Case<'a> {
             normals: places.clone().map(|i| tree.normal(i)).collect(),
             weights: places.map(|i| tree.weight(i)).collect(),
             ones: vec![1.0; points.len()],
-            places: ids.into_iter().map(|(_, place)| place).collect(),
+            places: ids.into_values().collect(),
             reach: points.iter().flatten().fold(0.0, |m, c| m.max(c.abs())),
             points,
             size,
@@ -117,7 +117,7 @@ impl<'a> Case<'a> {
     }
 
     /// Asks both about a pose, in the `k`th way of pushing, and compares all that they say. Returns how many points touch.
-    pub fn check(&mut self, pose: &Pose, k: usize) -> usize {
+    pub(crate) fn check(&mut self, pose: &Pose, k: usize) -> usize {
         // A compliance centre at the tip, up the tool, and beside it.
         let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3].into();
         let (law, weights) = WAYS[k % 6];
@@ -283,7 +283,7 @@ impl<'a> Case<'a> {
             bounds.force += force;
             bounds.torque += arm * force + noise * w * m * PUSH;
             bounds.integral += w * (level + rounding * m);
-            bounds.energy += w * m * (level + rounding * m);
+            bounds.energy += w * (m + level) * (level + rounding * m);
             bounds.nice |= doubt;
             sizes[0] += w * m * PUSH;
             sizes[1] += arm * w * m * PUSH;

@@ -43,7 +43,7 @@ fn moved_without_a_trace() {
                 let mut b = Probe::new(&there, tool).wrench(&at(tip + by));
                 if let Some(deepest) = &mut b.deepest {
                     let point = a.deepest.expect("as deep").point;
-                    assert!((deepest.point - by - point).coords.amax() <= 2f64.powi(power - 51));
+                    assert!((deepest.point - by - point).amax() <= 2f64.powi(power - 51));
                     deepest.point = point;
                 }
                 assert_eq!(a, b, "{} 2^{power}", oracle.name());
@@ -94,7 +94,8 @@ fn a_small_tool_on_a_large_part() {
         for off in [0.0, 0.6 * size] {
             let mut draw = Draw::new(25);
             let here = Point3::new(off, -off, 0.5 * off);
-            let close = (0..1_000).map(|_| here + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
+            let close =
+                (0..1_000).map(|_| here + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
             let wide = (0..1_000).map(|_| Point3::from(parts::vector(&mut draw, size)));
             let points: Vec<_> = close.into_iter().chain(wide).collect();
             let normals = (0..2_000).map(|_| parts::direction(&mut draw)).collect();

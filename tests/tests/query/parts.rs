@@ -6,42 +6,42 @@ use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Unit};
 use touchoff_tests::oracle::draw::Draw;
 
-pub const UNIT: Unit = Unit::Millimetre;
+pub(crate) const UNIT: Unit = Unit::Millimetre;
 
 /// A part of points, normals and weights.
-pub fn of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
+pub(crate) fn of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
     let ids = (0..points.len() as u32).collect();
     Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
 }
 
 /// A part of random points of a mesh, carried over by `at`.
-pub fn carried(mesh: &Mesh, count: usize, at: impl Fn(Point3<f64>) -> Point3<f64>) -> Part {
+pub(crate) fn carried(mesh: &Mesh, count: usize, at: impl Fn(Point3<f64>) -> Point3<f64>) -> Part {
     let cloud = Cloud::random(mesh, count, 1).expect("a cloud");
     let points = cloud.points().iter().copied().map(at).collect();
     of(points, cloud.normals().to_vec(), cloud.weights().to_vec())
 }
 
-pub fn tube_mesh() -> Mesh {
+pub(crate) fn tube_mesh() -> Mesh {
     shapes::tube(3.0, 5.0, touchoff::scenes::HEIGHT, 256, 4, UNIT).expect("a tube")
 }
 
 /// The tube of the scenes.
-pub fn tube(count: usize) -> Part {
+pub(crate) fn tube(count: usize) -> Part {
     carried(&tube_mesh(), count, |p| p)
 }
 
-pub fn sphere(radius: f64, count: usize) -> Part {
+pub(crate) fn sphere(radius: f64, count: usize) -> Part {
     carried(&shapes::sphere(radius, 4, UNIT).expect("a ball"), count, |p| p)
 }
 
-pub fn cuboid(half: f64, count: usize) -> Part {
+pub(crate) fn cuboid(half: f64, count: usize) -> Part {
     let corner = Vector3::new(half, 0.7 * half, 0.5 * half);
     let mesh = shapes::cuboid((-corner).into(), corner.into(), UNIT).expect("a box");
     carried(&mesh, count, |p| p)
 }
 
 /// Points anywhere in a cube, normals and weights at random.
-pub fn soup(half: f64, count: usize, seed: u64) -> Part {
+pub(crate) fn soup(half: f64, count: usize, seed: u64) -> Part {
     let mut draw = Draw::new(seed);
     let points = (0..count).map(|_| Point3::from(vector(&mut draw, half))).collect();
     let normals = (0..count).map(|_| direction(&mut draw)).collect();
@@ -50,17 +50,17 @@ pub fn soup(half: f64, count: usize, seed: u64) -> Part {
 }
 
 /// The same point `count` times.
-pub fn identical(at: Point3<f64>, count: usize) -> Part {
+pub(crate) fn identical(at: Point3<f64>, count: usize) -> Part {
     let mut draw = Draw::new(9);
     let normals = (0..count).map(|_| direction(&mut draw)).collect();
     of(vec![at; count], normals, vec![0.5; count])
 }
 
-pub fn vector(draw: &mut Draw, half: f64) -> Vector3<f64> {
+pub(crate) fn vector(draw: &mut Draw, half: f64) -> Vector3<f64> {
     Vector3::from_fn(|_, _| draw.between(-half, half))
 }
 
-pub fn direction(draw: &mut Draw) -> Vector3<f64> {
+pub(crate) fn direction(draw: &mut Draw) -> Vector3<f64> {
     loop {
         let v = vector(draw, 1.0);
         if (0.01..=1.0).contains(&v.norm()) {

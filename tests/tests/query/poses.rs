@@ -7,7 +7,7 @@ use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Draw;
 
 /// Any orientation at all.
-pub fn quaternion(draw: &mut Draw) -> [f64; 4] {
+pub(crate) fn quaternion(draw: &mut Draw) -> [f64; 4] {
     loop {
         let v = [0; 4].map(|_| draw.between(-1.0, 1.0));
         let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -18,7 +18,7 @@ pub fn quaternion(draw: &mut Draw) -> [f64; 4] {
 }
 
 /// The tool turned at random, its own point `in_tool` brought to `at`.
-pub fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, draw: &mut Draw) -> Pose {
+pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, draw: &mut Draw) -> Pose {
     let turned = Pose::from_quaternion(Point3::origin(), quaternion(draw)).expect("a pose");
     Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion_of(&turned)).expect("a pose")
 }
@@ -29,7 +29,7 @@ fn quaternion_of(pose: &Pose) -> [f64; 4] {
 }
 
 /// A pose about a part: one in eight far off, the others with some point of the part in the tool or hardly outside.
-pub fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Draw) -> Pose {
+pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Draw) -> Pose {
     let tree = part.tree();
     let point = tree.point(draw.bits() as usize % tree.len());
     let [width, height] = oracle.extent();

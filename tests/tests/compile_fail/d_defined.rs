@@ -1,0 +1,12 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        let d = 6;
+        region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+    }
+}
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Ball;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

@@ -1,0 +1,12 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        curve nose = hypot(d, z - 0.5) - .5;
+        region ball where nose <= 0 { depth: -nose; }
+    }
+}
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Ball;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

@@ -1,0 +1,13 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        let r = 3
+        curve nose = hypot(d, z - r) - r;
+        region ball where nose <= 0 { depth: -nose; }
+    }
+}
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Ball;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

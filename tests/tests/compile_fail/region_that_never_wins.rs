@@ -1,0 +1,13 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        curve nose = hypot(d, z - 3) - 3;
+        region ball where nose <= 0 { depth: -nose; }
+        region core where nose <= 0, z >= 3 { depth: -nose; }
+    }
+}
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Ball;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

@@ -1,0 +1,6 @@
+touchoff::include_tool!("mistakes/wrong_tip.tool");
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Ball;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

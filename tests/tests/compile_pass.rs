@@ -1,0 +1,93 @@
+//! Tools in a program: written in place and from a file, with all that the language has.
+
+use touchoff::tool::{Ask, Evaluators, Felt, Points, Tool};
+use touchoff::{Level, Unit};
+
+touchoff::include_tool!("../tools-library/tools/d2_ball.tool");
+
+touchoff::tool! {
+    /// A comment of Rust's in front of the tool means nothing.
+    tool Bull "torus end mill, 12 mm, corner 2 mm" {
+        //! And so does one inside.
+        units inch;
+        param D = 12mm;                       // a number may carry its own unit
+        param r = 2mm;
+        let   R = D/2 - r*tan(45deg);         /* out to the corner's centre */
+        tip   z = -1;
+
+        curve ring  = hypot(d - R, z + 1 - r) - r;
+        curve wall  = d - D/2;
+        curve floor = -1 - z;
+        curve end   = z - 1;
+
+        bsp { ring, end, }
+
+        region corner as edge cutting where d >= R, z <= r - 1, ring <= 0 {
+            depth:     -ring;
+            direction: away from (R, r - 1);
+        }
+        region bottom as edge cutting where d <= R, 0 >= floor, -floor <= min(-wall, -end) {
+            depth: -floor;
+        }
+        region side as shank where z >= r - 1, 0 >= wall >= max(floor, end) {
+            depth: -wall;
+        }
+        region above as shank where 0 >= end >= max(floor, wall), max(R - d, z + 1 - r) >= 0 {
+            depth: -end;
+        }
+        magnitude edge: 3*depth^1.5;
+        magnitude: 2*depth;
+        niceness cutting: 1 - depth;
+    }
+}
+
+/// What a tool says at one point.
+fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Felt)> {
+    let (mut points, mut felt) = (Points::default(), Felt::default());
+    points.push(point);
+    tool.evaluate(Level::new(), Ask::Everything, &points, length, &mut felt);
+    (felt.inside[0] == 1).then(|| (felt.region[0] as usize, felt))
+}
+
+#[test]
+fn a_tool_from_a_file_is_that_of_the_library() {
+    assert_eq!(D2Ball.card(), tools_library::D2Ball.card());
+    let p = [0.3, -0.4, 2.0];
+    assert_eq!(D2Ball::owner(p), Some(1));
+    assert_eq!(D2Ball::depth(p), tools_library::D2Ball::depth(p));
+}
+
+#[test]
+fn a_tool_in_place_is_what_it_says() {
+    let card = Bull.card();
+    assert_eq!((card.name.as_ref(), card.unit), ("Bull", Unit::Inch));
+    assert_eq!(card.title, "torus end mill, 12 mm, corner 2 mm");
+    let regions: Vec<&str> = card.regions.iter().map(|region| region.name.as_ref()).collect();
+    assert_eq!(regions, ["corner", "bottom", "side", "above"]);
+    let surfaces: Vec<(&str, bool)> =
+        card.surfaces.iter().map(|surface| (surface.name.as_ref(), surface.cutting)).collect();
+    assert_eq!(surfaces, [("edge", true), ("shank", false)]);
+    assert!((card.radius() - 6.0 / 25.4).abs() < 1e-4);
+    assert!((card.reach()[1] - 2.0).abs() < 1e-4);
+}
+
+#[test]
+fn laws_and_units_are_kept_apart() {
+    // Above the middle of the floor, 0.02 inch deep, and the part in mm: a magnitude that the
+    // file writes stays the file's number, and its slope is by the part's millimetre.
+    let (region, felt) = at(&Bull, [0.01, 0.0, 0.02], 25.4).expect("inside");
+    assert_eq!(region, 1);
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-14;
+    assert!(close(felt.depth[0], 0.02));
+    assert!(close(felt.magnitude[0], 3.0 * 0.02f64.powf(1.5)));
+    assert!(close(felt.niceness[0], 0.98));
+    assert!(close(felt.direction[2][0], -1.0));
+    assert!(close(felt.gradient[2][0], 4.5 * 0.02f64.sqrt() / 25.4));
+    // The shank has the law for all, and does not cut.
+    let (region, felt) = at(&Bull, [0.0, 0.23, 1.0], 25.4).expect("inside");
+    assert_eq!(region, 2);
+    let depth = 6.0 / 25.4 - 0.23;
+    assert!(close(felt.magnitude[0], 2.0 * depth));
+    assert_eq!(felt.niceness[0], 0.0);
+    assert!(at(&Bull, [0.24, 0.0, 1.0], 25.4).is_none());
+}

@@ -1,0 +1,86 @@
+//! Tools of many regions, made up here: the plan finds the owner that the list of regions has,
+//! however the regions lie.
+
+use tool_dsl::interpret::Interpreter;
+use tool_dsl::source::Source;
+use touchoff::Level;
+use touchoff::tool::{Ask, Felt, Points, Tool};
+use touchoff_tests::oracle::draw::Draw;
+
+/// A rod of radius 5 from z = 0 to 20 with these regions; what is felt is the same in all.
+fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
+    let mut text = format!("tool Rod {{ units mm; {curves}\n");
+    for (k, condition) in conditions.into_iter().enumerate() {
+        text += &format!("region r{k} where d <= 5, 0 <= z <= 20, {condition} ");
+        text += "{ depth: min(5 - d, min(z, 20 - z)); direction: (1, 0); }\n";
+    }
+    Source::new("rod", text + "}")
+}
+
+/// Compares the plan's owners with the list's.
+fn agree(source: &Source) {
+    let (checked, tape) = (super::checked(source), super::interpreted(source));
+    let mut reference = Interpreter::new(&checked);
+    let mut draw = Draw::new(9);
+    let (mut points, mut felt) = (Points::default(), Felt::default());
+    let mut list = Vec::new();
+    for _ in 0..20_000 {
+        let mut across = || draw.between(-5.5, 5.5);
+        let p = [across(), across(), draw.between(-1.0, 21.0)];
+        points.push(p);
+        list.push(p);
+    }
+    tape.evaluate(Level::fallback(), Ask::Everything, &points, 1.0, &mut felt);
+    for (i, p) in list.iter().enumerate() {
+        let inside = felt.inside[i / 8] >> (i % 8) & 1 == 1;
+        let owner = inside.then_some(felt.region[i] as usize);
+        assert_eq!(
+            owner,
+            reference.at(*p, 1.0).map(|felt| felt.region),
+            "{p:?} of {}",
+            source.text
+        );
+    }
+}
+
+#[test]
+fn slabs() {
+    agree(&rod(
+        "",
+        (0..40).map(|k| format!("{} <= z <= {}", k as f64 / 2.0, (k + 1) as f64 / 2.0)),
+    ));
+}
+
+#[test]
+fn a_grid() {
+    let cells = (0..5).flat_map(|i| (0..8).map(move |k| (i, k)));
+    agree(&rod(
+        "",
+        cells.map(|(i, k)| {
+            let (low, high) = (2.5 * f64::from(k), 2.5 * f64::from(k + 1));
+            format!("{i} <= d <= {}, {low} <= z <= {high}", i + 1)
+        }),
+    ));
+}
+
+#[test]
+fn shells() {
+    agree(&rod("", (0..16).map(|k| format!("{k} <= hypot(d, z - 5) <= {}", k + 1))));
+}
+
+/// The nearest of some corners: every pair of regions has a curve of its own.
+#[test]
+fn nearest_corners() {
+    const CORNERS: usize = 9;
+    let curves: String = (0..CORNERS)
+        .map(|k| {
+            let (d, z) = (1.0 + (k * 7 % 11) as f64 * 0.3, 1.0 + 2.0 * k as f64);
+            format!("curve p{k} = hypot(d - {d}, z - {z}); ")
+        })
+        .collect();
+    let nearest = |k: usize| {
+        let others = (0..CORNERS).filter(|j| *j != k);
+        others.map(|j| format!("p{k} <= p{j}")).collect::<Vec<_>>().join(", ")
+    };
+    agree(&rod(&curves, (0..CORNERS).map(nearest)));
+}

@@ -1,0 +1,268 @@
+//! One scene in millimetres, inches and metres: counts stay, lengths scale as lengths and areas as areas.
+
+use nalgebra::{Point3, Vector3};
+use touchoff::mesh::shapes;
+use touchoff::scenes::{HEIGHT, Path};
+use touchoff::{Cloud, Law, Part, Pose, Probe, Tool, Unit, Weights, Wrench};
+use touchoff_tests::oracle::brute::{self, Query};
+use touchoff_tests::oracle::{D2Ball, Fig73, Fig73Exact, Oracle};
+
+touchoff::tool! {
+    /// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
+    tool InchBall "2 mm ball end mill, written in inches" {
+        units inch;
+        let mm = 1/25.4;
+        let r = mm;
+
+        curve nose = hypot(d, z - r) - r;
+        curve side = r - d;
+        curve end  = 40*mm - z;
+
+        region ball as ball cutting where z <= r, nose <= 0 {
+            depth:     -nose;
+            direction: away from (0, r);
+        }
+        region flute as flute cutting where r <= z <= 5*mm, side >= 0 {
+            depth:     side;
+            direction: (1, 0);
+        }
+        region shank where z >= 5*mm, 0 <= side <= end {
+            depth:     side;
+            direction: (1, 0);
+        }
+        region end as shank where 0 <= end <= side {
+            depth:     end;
+            direction: (0, 1);
+        }
+        niceness cutting: 1 - depth/r;
+    }
+}
+
+touchoff::tool! {
+    /// The unit sphere with a magnitude of its own formula, a plain number of the file's unit.
+    tool Written "a ball of 1 inch with a written magnitude" {
+        units inch;
+        region ball where hypot(d, z - 1) <= 1 {
+            magnitude: 1 - hypot(d, z - 1);
+            direction: away from (0, 1);
+        }
+    }
+}
+
+const UNITS: [Unit; 3] = [Unit::Millimetre, Unit::Inch, Unit::Metre];
+
+fn tool(name: &str) -> &'static dyn Tool {
+    tools_library::find(name).expect("in the library")
+}
+
+/// The scenes' tube, given in mm and scaled to a unit.
+fn tube(unit: Unit, count: usize) -> Part {
+    let long = Unit::Millimetre.to(unit);
+    let mesh = shapes::tube(3.0, 5.0, HEIGHT, 256, 4, Unit::Millimetre).expect("a tube");
+    let cloud = Cloud::random(&mesh, count, 3).expect("a cloud");
+    let points = cloud.points().iter().map(|p| p * long).collect();
+    let weights = cloud.weights().iter().map(|w| w * long * long).collect();
+    let ids = (0..count as u32).collect();
+    let scaled = Cloud::new(points, cloud.normals().to_vec(), ids, weights, unit);
+    Part::from_cloud(&scaled.expect("a cloud"))
+}
+
+/// A pose given in mm.
+fn scaled(pose: &Pose, unit: Unit) -> Pose {
+    let long = Unit::Millimetre.to(unit);
+    Pose::from_axis(pose.tip() * long, pose.axis()).expect("a pose")
+}
+
+/// A compliance centre off the tip, mm.
+fn centre(unit: Unit) -> Point3<f64> {
+    Point3::new(1.5, -0.5, 2.0) * Unit::Millimetre.to(unit)
+}
+
+/// Poses of all scenes, in mm.
+fn poses() -> Vec<Pose> {
+    Path::ALL.into_iter().flat_map(|path| (0..150).map(move |k| path.pose(k, 150))).collect()
+}
+
+/// How each of a wrench's numbers grows with the unit's length, as powers: depth, integral, energy, force, torque.
+type Powers = [i32; 5];
+
+/// The wrench by one pose after another in a unit, felt by a tool.
+fn felt(part: &Part, tool: &dyn Tool, law: Law, weights: Weights) -> Vec<Wrench> {
+    let unit = part.unit();
+    let mut probe = Probe::new(part, tool).law(law).weights(weights).centre(centre(unit));
+    poses().iter().map(|pose| probe.wrench(&scaled(pose, unit))).collect()
+}
+
+/// `b` is `a` in units whose number for one of `a`'s is `long`. Points are stored to 2^-24 of their leaf, relative to a power of two that
+/// is another in another unit: that is `slack`, in mm, and sums differ by it for every unit of weight.
+fn scales(a: &Wrench, b: &Wrench, long: f64, powers: Powers, slack: f64, what: &str) {
+    let [depth, integral, energy, force, torque] = powers.map(|power| long.powi(power));
+    assert_eq!(a.colliding, b.colliding, "{what}");
+    let near = |got: f64, want: f64, bound: f64| {
+        assert!((got - want).abs() <= bound, "{what}: {got}, not {want} to {bound:e}");
+    };
+    near(b.depth() / depth, a.depth(), slack);
+    let size = 10.0 * a.colliding as f64 * slack;
+    near(b.integral / integral, a.integral, size);
+    near(b.energy / energy, a.energy, 5.0 * size);
+    near((b.force / force - a.force).norm(), 0.0, 5.0 * size);
+    near((b.torque / torque - a.torque).norm(), 0.0, 100.0 * size);
+    match (a.niceness, b.niceness) {
+        (Some(a), Some(b)) => near(b, a, 10.0 * slack),
+        (a, b) => assert_eq!(a, b),
+    }
+}
+
+const SLACK: f64 = 3e-7;
+
+#[test]
+fn one_scene_in_three_units() {
+    let parts = UNITS.map(|unit| tube(unit, 6_000));
+    // With depth for a magnitude, then with one that the file writes.
+    let lengths = ["Fig73Exact", "D2Ball", "Cylinder"].map(|name| (name, true));
+    for (name, depth) in lengths.into_iter().chain([("Fig73", false)]) {
+        for (law, weights) in [
+            (Law::Thesis, Weights::Area),
+            (Law::Gradient, Weights::Area),
+            (Law::Facing, Weights::Unit),
+            (Law::Gradient, Weights::Unit),
+        ] {
+            // Of a weight, of a magnitude, and of a push: a slope is the magnitude over a length.
+            let w = if weights == Weights::Area { 2 } else { 0 };
+            let m = i32::from(depth);
+            let push = if law == Law::Gradient { m - 1 } else { 0 };
+            let powers = [1, w + m, w + 2 * m, w + m + push, w + m + push + 1];
+            let first = felt(&parts[0], tool(name), law, weights);
+            let touching = first.iter().filter(|wrench| wrench.colliding > 0).count();
+            assert!(touching > 50, "{name} {touching}");
+            for part in &parts[1..] {
+                let unit = part.unit();
+                let long = Unit::Millimetre.to(unit);
+                for (a, b) in first.iter().zip(felt(part, tool(name), law, weights)) {
+                    scales(a, &b, long, powers, SLACK, &format!("{name} {law} {weights} {unit}"));
+                }
+            }
+        }
+    }
+}
+
+/// The same solid in inches and in mm is the same tool.
+#[test]
+fn one_tool_in_two_units() {
+    for unit in UNITS {
+        let part = tube(unit, 6_000);
+        let long = Unit::Millimetre.to(unit);
+        for law in [Law::Thesis, Law::Gradient, Law::Facing] {
+            let mm = felt(&part, tool("D2Ball"), law, Weights::Area);
+            let inch = felt(&part, &InchBall, law, Weights::Area);
+            for (a, b) in mm.iter().zip(&inch) {
+                // Points are the same; only lengths of the tool are rounded elsewhere.
+                let size = a.integral + long.powi(3) * 1e-9;
+                let near = |a: f64, b: f64, size: f64| {
+                    assert!((a - b).abs() <= 1e-9 * size, "{unit} {law}: {a} {b} {size}");
+                };
+                assert_eq!(a.colliding, b.colliding);
+                near(a.depth(), b.depth(), long);
+                near(a.integral, b.integral, size);
+                near(a.energy, b.energy, size * long);
+                near((a.force - b.force).norm(), 0.0, size);
+                near((a.torque - b.torque).norm(), 0.0, 40.0 * size * long);
+                assert_eq!(a.niceness.is_some(), b.niceness.is_some());
+                if let (Some(a), Some(b)) = (a.niceness, b.niceness) {
+                    near(a, b, 1.0);
+                }
+            }
+        }
+    }
+}
+
+/// A written magnitude is the file's number in every part; its depth is a length, its slope per length of the part.
+#[test]
+fn a_written_magnitude_stays() {
+    for unit in UNITS {
+        let inch = Unit::Inch.to(unit);
+        let at = Point3::new(7.0, 8.0, 9.0);
+        let ids = vec![0];
+        let cloud =
+            Cloud::new(vec![at], vec![Vector3::z()], ids, vec![3.0], unit).expect("a cloud");
+        let part = Part::from_cloud(&cloud);
+        // A quarter of an inch deep.
+        let pose = Pose::from_axis(at - 0.25 * inch * Vector3::z(), Vector3::z()).expect("a pose");
+        let wrench = Probe::new(&part, &Written).law(Law::Gradient).wrench(&pose);
+        let near = |got: f64, want: f64| {
+            assert!((got - want).abs() < 1e-12 * want.abs(), "{unit}: {got}, not {want}");
+        };
+        near(wrench.depth(), 0.25 * inch);
+        near(wrench.integral, 3.0 * 0.25);
+        near(wrench.energy, 0.5 * 3.0 * 0.0625);
+        near(wrench.force.z, 3.0 * 0.25 / inch);
+        let mut probe = Probe::new(&part, &Written);
+        near(probe.wrench(&pose).force.z, 3.0 * 0.25 * 2.0);
+        let contact = probe.contacts(&pose)[0];
+        near(contact.magnitude, 0.25);
+        near(contact.depth, 0.25 * inch);
+        near(contact.gradient.z, 1.0 / inch);
+    }
+}
+
+/// Against brute force, which knows of units by itself.
+#[test]
+fn in_every_unit_as_the_oracle_says() {
+    let tools: [(&dyn Tool, &dyn Oracle); 4] = [
+        (tool("Fig73"), &Fig73::default()),
+        (tool("Fig73Exact"), &Fig73Exact::default()),
+        (tool("D2Ball"), &D2Ball::default()),
+        // The oracle's file is in mm.
+        (&InchBall, &D2Ball::default()),
+    ];
+    for unit in UNITS {
+        let part = tube(unit, 1_500);
+        let tree = part.tree();
+        let places = 0..tree.len();
+        let points: Vec<[f64; 3]> = places.clone().map(|i| tree.point(i).into()).collect();
+        let normals: Vec<[f64; 3]> = places.clone().map(|i| tree.normal(i)).collect();
+        let weights: Vec<f64> = places.map(|i| tree.weight(i)).collect();
+        let long = Unit::Millimetre.to(unit);
+        for (tool, oracle) in tools {
+            for (law, same) in
+                [(Law::Thesis, brute::Law::Thesis), (Law::Gradient, brute::Law::Gradient)]
+            {
+                let mut probe = Probe::new(&part, tool).law(law).centre(centre(unit));
+                for pose in poses().iter().step_by(6).map(|pose| scaled(pose, unit)) {
+                    let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
+                    let there = brute::Pose { tip: pose.tip().into(), axes };
+                    let mut query = Query::new(oracle, there, &points, &normals, &weights);
+                    query.law = same;
+                    query.scale = unit.to(Unit::Millimetre);
+                    query.centre = (pose.tip() + pose.rotation() * centre(unit).coords).into();
+                    let (want, got) = (query.answer(), probe.wrench(&pose));
+                    let near = |error: f64, size: f64, what: &str| {
+                        let name = oracle.name();
+                        assert!(
+                            error.abs() <= 1e-9 * size,
+                            "{name} {unit} {what}: {error:e} {size:e}"
+                        );
+                    };
+                    assert_eq!(want.count, got.colliding, "{} {unit}", oracle.name());
+                    let depth = want.deepest.map_or(0.0, |(depth, _)| depth);
+                    near(got.depth() - depth, long, "depth");
+                    // Magnitudes near nothing err by the tool's rounding, not their own.
+                    let [force, torque] = want.size;
+                    let sum: f64 = want.contacts.iter().map(|&i| weights[i]).sum();
+                    let m = if query.magnitude_is_depth { long } else { 1.0 };
+                    near(got.integral - want.integral, want.integral + sum * m, "integral");
+                    near(got.energy - want.energy, want.energy + sum * m * m, "energy");
+                    let push = if law == Law::Gradient { m / long } else { 1.0 };
+                    let off = (got.force - Vector3::from(want.force)).norm();
+                    near(off, force + sum * m * push, "force");
+                    let off = (got.torque - Vector3::from(want.torque)).norm();
+                    near(off, torque + 20.0 * sum * m * push * long, "torque");
+                    assert_eq!(got.niceness.is_some(), want.niceness.is_some());
+                    if let (Some(got), Some(want)) = (got.niceness, want.niceness) {
+                        near(got - want, 1.0, "niceness");
+                    }
+                }
+            }
+        }
+    }
+}
