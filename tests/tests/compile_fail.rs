@@ -27,9 +27,6 @@ fn place_tools(cases: &Path) {
     }
 }
 
-/// Cases that say one mistake twice, which they should not.
-const TWICE: [&str; 1] = ["region_that_never_wins"];
-
 /// rustc's errors in a case's expected output.
 fn errors(stderr: &Path) -> usize {
     let text = std::fs::read_to_string(stderr).expect("each case has its expected output");
@@ -50,8 +47,7 @@ fn one_mistake_gives_one_error() {
     for entry in std::fs::read_dir(cases).expect("the folder of cases") {
         let path = entry.expect("the folder of cases").path();
         if path.extension().is_some_and(|extension| extension == "stderr") {
-            let twice = TWICE.iter().any(|name| path.file_stem().is_some_and(|stem| stem == *name));
-            assert_eq!(errors(&path), 1 + usize::from(twice), "{}", path.display());
+            assert_eq!(errors(&path), 1, "{}", path.display());
             seen += 1;
         }
     }

@@ -3,8 +3,9 @@
 //! Two ways to ask. [`Interpreter::at`] follows the text's own rule, region by region in the order
 //! of the list, and is the reference for everything that is generated. [`Tape`] is the plan as a
 //! list of operations, each done for a block of points before the next, for tools that are loaded
-//! at run time. Both perform the operations of the generated code, one rounding each, so that all
-//! agree to the last bit.
+//! at run time. Both perform the operations of the generated code, one rounding each: the tape has
+//! its bits everywhere, the reference but for corners, where a test that the plan left out because
+//! it cannot fail would fail by rounding (within an ulp of the tool's size).
 
 use crate::Checked;
 use crate::expr::value::{At, Evaluator, max, min, quotient};

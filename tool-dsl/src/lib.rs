@@ -57,11 +57,10 @@ pub struct Compiled {
 pub fn compile(source: &Source) -> Compiled {
     let (tree, mut reports) = syntax::parse(source);
     let Some(tree) = tree else { return Compiled { tool: None, name: None, reports } };
-    let name = Some(tree.name.word.clone());
+    let name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
     let (model, found) = resolve::resolve(&tree);
-    // What a broken item would have defined is missing below: say only what is sure.
     let broken = any_error(&reports);
-    reports.extend(found.into_iter().filter(|report| !broken || !about_a_missing_name(report)));
+    reports.extend(found.into_iter().filter(|report| !broken || !follows(report, &tree.broken)));
     let tool = match model {
         Some(model) if !any_error(&reports) => match check(model, &mut reports) {
             Ok(tool) => Some(Box::new(tool)),
@@ -90,8 +89,14 @@ fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
     Ok(Checked { model, extent, envelope, plan })
 }
 
-fn about_a_missing_name(report: &Report) -> bool {
-    ["unknown", "is never used", "has no region", "no unit", "is not the first item"]
-        .iter()
-        .any(|hint| report.message.contains(hint))
+/// Whether a report only says that what a broken item would have said is missing.
+fn follows(report: &Report, broken: &[String]) -> bool {
+    let has = |word: &str| broken.iter().any(|other| other == word);
+    let message = &report.message;
+    let missing_name = message.starts_with("unknown") && message.split('`').nth(1).is_some_and(has);
+    missing_name
+        || message.contains("is never used")
+        || message.ends_with("has no region")
+        || (message.starts_with("no unit") && has("units"))
+        || (message.starts_with("unknown surface") && has("region"))
 }

@@ -42,7 +42,10 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
             None => outside.push(point),
         }
     }
-    look.idle_regions();
+    // A region that overlaps another may well win nothing: once is enough.
+    if !any_error(&look.found) {
+        look.idle_regions();
+    }
     if !any_error(&look.found) {
         let pairs = inside.iter().cycle().step_by(7).zip(outside.iter().cycle().step_by(5));
         for (a, b) in pairs.take(if outside.is_empty() { 0 } else { CROSSINGS }) {

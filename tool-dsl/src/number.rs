@@ -16,7 +16,11 @@ const PRECISION: usize = 256;
 pub struct Number(FBig<HalfEven, 2>);
 
 impl Number {
+    /// Rounded to the precision; zero has no sign, so equal numbers are equal in every way.
     fn rounded(value: FBig<HalfEven, 2>) -> Number {
+        if value.repr().significand().is_zero() {
+            return Number(FBig::ZERO.with_precision(PRECISION).value());
+        }
         Number(value.with_precision(PRECISION).value())
     }
 
@@ -76,7 +80,7 @@ impl Number {
 
     /// The quotient; `None` for division by zero.
     pub fn over(&self, divisor: &Number) -> Option<Number> {
-        (!divisor.is_zero()).then(|| Number(&self.0 / &divisor.0))
+        (!divisor.is_zero()).then(|| self / divisor)
     }
 
     /// The sine of an angle in radians.
@@ -137,7 +141,7 @@ macro_rules! arithmetic {
         impl $trait<&Number> for &Number {
             type Output = Number;
             fn $method(self, other: &Number) -> Number {
-                Number($trait::$method(&self.0, &other.0))
+                Number::rounded($trait::$method(&self.0, &other.0))
             }
         }
     )*};
@@ -148,13 +152,13 @@ impl Div<&Number> for &Number {
     type Output = Number;
     /// Division by a constant that is known not to be zero.
     fn div(self, other: &Number) -> Number {
-        Number(&self.0 / &other.0)
+        Number::rounded(&self.0 / &other.0)
     }
 }
 
 impl Neg for &Number {
     type Output = Number;
     fn neg(self) -> Number {
-        Number(-self.0.clone())
+        Number::rounded(-self.0.clone())
     }
 }

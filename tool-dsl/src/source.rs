@@ -79,7 +79,8 @@ impl Source {
                     self.push(close, group.span_close(), true);
                 }
                 TokenTree::Punct(punct) => {
-                    let apart = punct.spacing() == Spacing::Alone;
+                    // `. 5` would not be seen to be `.5`.
+                    let apart = punct.spacing() == Spacing::Alone && punct.as_char() != '.';
                     self.push(&punct.as_char().to_string(), punct.span(), apart);
                 }
                 other => self.push(&other.to_string(), other.span(), true),

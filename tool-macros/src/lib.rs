@@ -29,7 +29,7 @@ pub fn tool(input: TokenStream) -> TokenStream {
     let mut tokens = proc_macro2::TokenStream::new();
     for report in compiled.reports.iter().filter(|r| r.severity == Severity::Error) {
         let span = source.token_at(report.span).unwrap_or_else(proc_macro2::Span::call_site);
-        let message = in_words(report);
+        let message = in_words(report, &source);
         tokens.extend(quote_spanned! { span => ::core::compile_error! { #message } });
     }
     tokens.extend(meaning(&compiled));
@@ -111,10 +111,8 @@ fn file(
         .reports
         .iter()
         .filter(|report| report.severity == Severity::Error)
-        .map(|report| {
-            let (line, column) = source.line_column(report.span.start);
-            format!("{shown}:{line}:{column}\n{}", report.render(&source, false))
-        })
+        // rustc says "error: " itself.
+        .map(|report| report.render(&source, false).trim_start_matches("error: ").to_owned())
         .collect();
     let mut tokens = meaning(&compiled);
     if !errors.is_empty() {
@@ -137,9 +135,14 @@ fn meaning(compiled: &Compiled) -> proc_macro2::TokenStream {
 }
 
 /// A report where rustc shows the place itself.
-fn in_words(report: &Report) -> String {
-    match &report.help {
-        Some(help) => format!("{}\nhelp: {help}", report.message),
-        None => report.message.clone(),
+fn in_words(report: &Report, source: &Source) -> String {
+    let mut text = report.message.clone();
+    if let Some((span, label)) = &report.second {
+        let place = source.text.get(span.start..span.end).unwrap_or_default();
+        text.push_str(&format!("\nnote: {label}: `{place}`"));
     }
+    if let Some(help) = &report.help {
+        text.push_str(&format!("\nhelp: {help}"));
+    }
+    text
 }

@@ -141,7 +141,7 @@ impl Oracle for Cylinder {
     }
 
     fn magnitude_is_depth(&self) -> bool {
-        false
+        true
     }
 
     fn corners(&self) -> Vec<[f64; 2]> {

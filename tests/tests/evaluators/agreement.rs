@@ -12,101 +12,56 @@ use touchoff_tests::oracle::Oracle;
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
 type Answer = Option<(usize, [u64; 9])>;
 
-/// How closely answers must agree.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Demand {
-    /// Any two zeros are alike; and a plan, which leaves out tests that in real arithmetic cannot
-    /// fail, may answer otherwise than the list of regions within 1 ulp(S) of a border: where three
-    /// of them meet, rounding has points that geometry has not.
-    Numbers,
-    /// Every bit at every point.
-    Bits,
-}
-
-/// The largest distance from a border at which [`Demand::Numbers`] lets answers differ, in ulp(S).
+/// The largest distance from a border, in ulp(S), at which the plan may answer otherwise than the
+/// list of regions: the plan leaves out tests that cannot fail in real arithmetic, and where three
+/// borders meet rounding has points that geometry has not.
 const CORNER: f64 = 1.0;
 
-/// Compares all evaluators on some points.
+/// Compares all evaluators on some points. What follows the plan (both forms of code, the tape) has
+/// the same bits everywhere; the reference too, but for [`CORNER`]s.
 pub(crate) fn of<T: Evaluators>(
     tool: T,
     oracle: &dyn Oracle,
     checked: &Checked,
     tape: &Interpreted,
     points: &[[f64; 3]],
-    demand: Demand,
 ) {
     let mut list = Points::default();
     points.iter().for_each(|p| list.push(*p));
-    let mut seen = Seen { oracle, points, demand, corner: 0, wrong: Vec::new() };
-    for (i, p) in points.iter().enumerate() {
-        let (contained, owned) = (T::contains(*p), T::owner(*p).is_some());
-        if contained != owned {
-            seen.differ(i, || format!("contains = {contained}, but an owner: {owned}"));
-        }
+    for p in points {
+        assert_eq!(T::contains(*p), T::owner(*p).is_some(), "at {}", shown(*p));
     }
+    let mut corners = 0;
     for length in LENGTHS {
         let mut reference = Interpreter::new(checked);
-        let expected: Vec<Answer> =
-            points.iter().map(|p| answer_of(reference.at(*p, length))).collect();
         let code: Vec<Answer> = points.iter().map(|p| scalar::<T>(*p, length)).collect();
-        let run = everything(tape, "the tape", Level::fallback(), &list, length);
-        seen.compare("scalar code against the reference", &code, &expected);
-        seen.compare("the tape against the reference", &run, &expected);
-        seen.compare("the tape against scalar code", &run, &code);
+        let alike = |what: &str, got: &[Answer]| {
+            for ((got, expected), p) in got.iter().zip(&code).zip(points) {
+                let said = || format!("{what} at {}: {:?}", shown(*p), numbers(*got));
+                assert_eq!(got, expected, "{}", said());
+            }
+        };
+        alike("tape", &everything(tape, "the tape", Level::fallback(), &list, length));
         for (name, level) in levels() {
-            // Lanes and scalar code are one plan: no corner and no zero excuses them.
-            let lanes = everything(&tool, name, level, &list, length);
-            let differing = (0..points.len()).find(|i| lanes[*i] != code[*i]);
-            if let Some(i) = differing {
-                let (got, expected) = (numbers(lanes[i]), numbers(code[i]));
-                panic!("{name}: {got:?}, not {expected:?} as scalar code at {}", shown(points[i]));
+            alike(name, &everything(&tool, name, level, &list, length));
+        }
+        for (p, code) in points.iter().zip(&code) {
+            let expected = answer_of(reference.at(*p, length));
+            if *code != expected {
+                let border = oracle.border(*p) / (scale(oracle) * f64::EPSILON);
+                let (code, expected) = (numbers(*code), numbers(expected));
+                let place = shown(*p);
+                assert!(border <= CORNER, "{code:?}, not {expected:?} as the reference at {place}");
+                corners += 1;
             }
         }
     }
     println!(
-        "{:20} {:7} points: scalar code, tape and reference agree but for {} answers at corners; lanes at {} too",
+        "{:20} {:7} points: code, tape and lanes at {} alike; reference too, but for {corners} answers at corners",
         T::card().name,
         points.len(),
-        seen.corner,
         levels().map(|(name, _)| name).collect::<Vec<_>>().join(", "),
     );
-    let count = seen.wrong.len();
-    assert_eq!(count, 0, "{}", seen.wrong[..count.min(6)].join("\n"));
-}
-
-/// What differs so far.
-struct Seen<'a> {
-    oracle: &'a dyn Oracle,
-    points: &'a [[f64; 3]],
-    demand: Demand,
-    /// Differences that are let pass.
-    corner: usize,
-    wrong: Vec<String>,
-}
-
-impl Seen<'_> {
-    fn compare(&mut self, what: &str, got: &[Answer], expected: &[Answer]) {
-        for (i, (got, expected)) in got.iter().zip(expected).enumerate() {
-            let alike = match self.demand {
-                Demand::Numbers => numbers(*got) == numbers(*expected),
-                Demand::Bits => got == expected,
-            };
-            if !alike {
-                let (got, expected) = (numbers(*got), numbers(*expected));
-                self.differ(i, || format!("{what}: {got:?}, not {expected:?}"));
-            }
-        }
-    }
-
-    fn differ(&mut self, i: usize, what: impl FnOnce() -> String) {
-        let p = self.points[i];
-        let border = self.oracle.border(p) / (scale(self.oracle) * f64::EPSILON);
-        if self.demand == Demand::Numbers && border <= CORNER {
-            self.corner += 1;
-        } else {
-            self.wrong.push(format!("{}, {border:.3} ulp(S) from a border; {}", shown(p), what()));
-        }
-    }
 }
 
 /// Every level of this machine, the best among them twice.

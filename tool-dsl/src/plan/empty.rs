@@ -127,8 +127,7 @@ impl<'m> Void<'m> {
 /// The conditions that remain when a variable may be anything; `None` if there are too many.
 fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Condition>> {
     let (mut upper, mut lower, mut rest) = (Vec::new(), Vec::new(), Vec::new());
-    for condition in conditions {
-        let condition = scaled(condition);
+    for condition in tightest(conditions) {
         match condition.factors[variable] {
             f if f > ROUNDING => upper.push(condition),
             f if f < -ROUNDING => lower.push(condition),
@@ -149,6 +148,23 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
         }
     }
     Some(rest)
+}
+
+/// Of conditions with the same factors, the one that says most.
+fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
+    let mut kept: Vec<Condition> = Vec::new();
+    for condition in conditions {
+        let condition = scaled(condition);
+        let same = |other: &&mut Condition| {
+            other.factors.iter().zip(&condition.factors).all(|(a, b)| (a - b).abs() <= ROUNDING)
+        };
+        match kept.iter_mut().find(same) {
+            Some(other) if condition.constant > other.constant => *other = condition,
+            Some(other) => other.strict |= condition.strict && condition.constant == other.constant,
+            None => kept.push(condition),
+        }
+    }
+    kept
 }
 
 /// A condition with its largest factor 1 and rounding's residues removed.

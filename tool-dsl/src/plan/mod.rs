@@ -2,8 +2,9 @@
 //!
 //! Every test takes a curve's zero to one side, that of the region listed earlier; where both
 //! sides want it, the curve is split once more. A side that provably has no point is not tested
-//! for ([`empty`]). So a tree gives every point its owner exactly as the regions' list does, and
-//! only the order of the tests is chosen: greedily by the information that they give about
+//! for ([`empty`]). So a tree gives every point its owner as the regions' list does (in real
+//! arithmetic; a test that is left out can no longer fail by rounding), and only the order of the
+//! tests is chosen: greedily by the information that they give about
 //! samples of the section, cheap curves first, `bsp` before all.
 
 mod empty;
@@ -96,9 +97,10 @@ pub fn plan(model: &Model, extent: &Extent) -> Result<Plan, Report> {
     let mut planner =
         Planner { model, samples: &samples, costs: &costs, void: Void::new(model), tests: 0 };
     let start = vec![ANY; model.curves.len()];
-    let owner = planner.tree(start.clone(), &all, &|owner| owner)?;
-    planner.tests = 0;
-    let inside = planner.tree(start, &all, &|owner: Option<usize>| owner.is_some())?;
+    let owner = planner.tree(start, &all)?;
+    // Of one tree, so that inside is where an owner is, to the last bit.
+    let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
+    let inside = inside.unwrap_or(Tree::Leaf(false));
     Ok(Plan { owner, inside })
 }
 
@@ -165,21 +167,17 @@ struct Planner<'m> {
 
 impl Planner<'_> {
     /// The tree for the points whose curves have these signs.
-    fn tree<L: Clone + PartialEq>(
+    fn tree(
         &mut self,
         mut signs: Vec<Signs>,
         samples: &[u32],
-        label: &impl Fn(Option<usize>) -> L,
-    ) -> Result<Tree<L>, Report> {
+    ) -> Result<Tree<Option<usize>>, Report> {
         loop {
             let possible = self.possible(&signs);
-            let labels: Vec<L> = possible.iter().map(|owner| label(*owner)).collect();
-            if let Some(first) = labels.first()
-                && labels.iter().all(|other| other == first)
-            {
-                return Ok(Tree::Leaf(first.clone()));
+            if let [only] = possible.as_slice() {
+                return Ok(Tree::Leaf(*only));
             }
-            let (curve, strict) = self.choose(&signs, &possible, samples, label);
+            let (curve, strict) = self.choose(&signs, &possible, samples);
             let (below, above) = sides(signs[curve], strict);
             let of = |side: Signs| -> Vec<u32> {
                 samples
@@ -211,8 +209,8 @@ impl Planner<'_> {
                 )
                 .help("divide the tool by fewer curves"));
             }
-            let below = self.tree(with(below), &low, label)?;
-            let above = self.tree(with(above), &high, label)?;
+            let below = self.tree(with(below), &low)?;
+            let above = self.tree(with(above), &high)?;
             return Ok(Tree::split(curve, strict, below, above));
         }
     }
@@ -235,12 +233,11 @@ impl Planner<'_> {
     }
 
     /// The next test: a curve, and whether its zeros go above.
-    fn choose<L: PartialEq>(
+    fn choose(
         &self,
         signs: &[Signs],
         possible: &[Option<usize>],
         samples: &[u32],
-        label: &impl Fn(Option<usize>) -> L,
     ) -> (CurveIndex, bool) {
         let mut atoms = Vec::new();
         for region in possible.iter().flatten() {
@@ -254,7 +251,7 @@ impl Planner<'_> {
                 continue;
             }
             tried.push(*curve);
-            let gain = self.gain(*curve, samples, label) - 0.01 * self.costs[*curve];
+            let gain = self.gain(*curve, samples) - 0.01 * self.costs[*curve];
             if best.is_none_or(|(most, _)| gain > most) {
                 best = Some((gain, *curve));
             }
@@ -270,18 +267,13 @@ impl Planner<'_> {
         (curve, strict)
     }
 
-    /// Bits of information that a curve's sign gives about the labels of samples.
-    fn gain<L: PartialEq>(
-        &self,
-        curve: CurveIndex,
-        samples: &[u32],
-        label: &impl Fn(Option<usize>) -> L,
-    ) -> f64 {
-        let mut counts: Vec<(L, [f64; 2])> = Vec::new();
+    /// Bits of information that a curve's sign gives about the owners of samples.
+    fn gain(&self, curve: CurveIndex, samples: &[u32]) -> f64 {
+        let mut counts: Vec<(Option<usize>, [f64; 2])> = Vec::new();
         let mut totals = [0.0; 2];
         for sample in samples {
             let sample = &self.samples[*sample as usize];
-            let own = label(sample.owner);
+            let own = sample.owner;
             let side = usize::from(sample.signs[curve] == POSITIVE);
             totals[side] += 1.0;
             match counts.iter_mut().find(|(l, _)| *l == own) {

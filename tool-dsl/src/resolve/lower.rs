@@ -39,7 +39,12 @@ pub(super) struct Lowering {
     pub(super) unit: Unit,
     pub(super) frame: Frame,
     pub(super) values: BTreeMap<String, Value>,
+    /// Where each name is defined, above or below.
+    pub(super) declared: BTreeMap<String, Span>,
 }
+
+/// The largest constant on the way to a length, 2^1000: powers of lengths fit.
+const LARGEST: f64 = 1.071508607186267e301;
 
 type Lowered = Result<(Id, Dimension), Report>;
 
@@ -107,6 +112,17 @@ impl Lowering {
 
     /// Any expression.
     pub(super) fn lower(&mut self, expr: &Expr, may: May) -> Lowered {
+        let (id, dimension) = self.node(expr, may)?;
+        // Constants are checked as they grow, before anything overflows.
+        let size = self.graph.constant(id).map_or(0.0, |value| value.to_f64().abs());
+        if size > LARGEST {
+            return Err(Report::error(expr.span, "this constant is out of range")
+                .help("lengths lie between 2^-300 and 2^300, their squares accordingly"));
+        }
+        Ok((id, dimension))
+    }
+
+    fn node(&mut self, expr: &Expr, may: May) -> Lowered {
         match &expr.kind {
             ExprKind::Number(value, None) => {
                 Ok((self.graph.number(value.clone()), Dimension::Bare))
@@ -188,6 +204,11 @@ impl Lowering {
             return Ok((id, LENGTH));
         }
         let Some(value) = self.values.get_mut(word) else {
+            if let Some(definition) = self.declared.get(word) {
+                return Err(Report::error(span, format!("`{word}` is used above its definition"))
+                    .and(*definition, "defined here")
+                    .help("move the definition up"));
+            }
             let report = Report::error(span, format!("unknown name `{word}`"));
             let known = self.values.keys().map(String::as_str).chain(["d", "z", "pi", "depth"]);
             return Err(match nearest(word, known) {
@@ -197,11 +218,6 @@ impl Lowering {
         };
         value.used = true;
         let value = value.clone();
-        if value.span.start > span.start {
-            return Err(Report::error(span, format!("`{word}` is used above its definition"))
-                .and(value.span, "defined here")
-                .help("move the definition up"));
-        }
         if let May::Constants(what) = may
             && self.graph.constant(value.id).is_none()
         {
@@ -344,10 +360,19 @@ impl Lowering {
             )
             .help(format!("write `{word}({value}deg)` or `{word}({value}rad)`")));
         }
+        if angle.to_f64().abs() > 1e6 {
+            return Err(Report::error(argument.span, "this angle is more than a million radians")
+                .help("angles are written in `deg` or `rad`"));
+        }
+        let cos = angle.cos();
         let value = match word {
             "sin" => angle.sin(),
-            "cos" => angle.cos(),
-            _ => angle.sin().over(&angle.cos()).unwrap_or_else(|| Number::int(0)),
+            "cos" => cos,
+            _ if cos.to_f64().abs() < 2f64.powi(-200) => {
+                return Err(Report::error(span, "`tan` of a right angle does not exist")
+                    .help("write the angle that is meant, less than 90deg"));
+            }
+            _ => &angle.sin() / &cos,
         };
         Ok((self.graph.number(value), Dimension::Bare))
     }

@@ -29,6 +29,9 @@ pub fn resolve(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         unit,
         frame: Frame { tip: Number::int(0), down: false },
         values: BTreeMap::new(),
+        declared: definitions(tool, |_| true)
+            .map(|definition| (definition.name.word.clone(), definition.name.span))
+            .collect(),
     };
     constants(tool, &mut lowering, &mut reports);
     if any_error(&reports) {
@@ -125,7 +128,8 @@ fn unit(tool: &Tool) -> Result<Unit, Report> {
             "in" | "inches" | "IN" => Some("inch"),
             "millimetre" | "millimeter" | "MM" => Some("mm"),
             "meter" | "metre" => Some("m"),
-            word => nearest(word, ["mm", "inch", "m"]),
+            word if word.len() > 2 => nearest(word, ["mm", "inch"]),
+            _ => None,
         };
         match meant {
             Some(meant) => report.help(format!("write `units {meant};`")),

@@ -339,7 +339,7 @@ impl Felt<'_> {
     fn direction(&mut self, direction: &Direction) -> Result<[Id; 2], Report> {
         match direction {
             Direction::Along(tuple) => {
-                let [d, z] = pair(tuple)?;
+                let [d, z] = pair(tuple, "a direction")?;
                 let (d, of_d) = self.lowering.lower(d, May::Coordinates)?;
                 let (z, of_z) = self.lowering.lower(z, May::Coordinates)?;
                 if of_d.alike(of_z).is_none_or(|d| d == Dimension::Angle) {
@@ -360,7 +360,7 @@ impl Felt<'_> {
 
     /// The vector from a point to where one feels.
     fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 2], Report> {
-        let [d, z] = pair(tuple)?;
+        let [d, z] = pair(tuple, "a point")?;
         let d = self.lowering.length(d, "a point")?;
         let z = self.lowering.length(z, "a point")?;
         let z = self.lowering.frame.to_tool(&z);
@@ -371,15 +371,17 @@ impl Felt<'_> {
     }
 }
 
-fn pair(tuple: &Tuple) -> Result<[&Expr; 2], Report> {
-    match tuple.parts.as_slice() {
-        [d, z] => Ok([d, z]),
-        parts => Err(Report::error(
-            tuple.span,
-            format!("a point in a tool has two numbers, this has {}", parts.len()),
-        )
-        .help("a decimal comma? write `0.5`")),
+fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
+    if let [d, z] = tuple.parts.as_slice() {
+        return Ok([d, z]);
     }
+    let count = tuple.parts.len();
+    let report =
+        Report::error(tuple.span, format!("{what} in a tool has two numbers, this has {count}"));
+    Err(match what {
+        "a point" => report.help("write `(d, z)`; a decimal comma? write `0.5`"),
+        _ => report.help("write `(radial, axial)`: across the axis, and along the file's z"),
+    })
 }
 
 /// Where an expression mentions a name.

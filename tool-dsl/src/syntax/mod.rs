@@ -8,7 +8,7 @@ mod parse;
 mod refuse;
 pub mod tree;
 
-pub use parse::parse;
+pub use parse::{is_type_name, parse};
 
 /// pest's generated parser, in a module of its own because it documents nothing.
 mod grammar {

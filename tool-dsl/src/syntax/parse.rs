@@ -13,10 +13,31 @@ use std::str::FromStr;
 const LONGEST: usize = 1 << 20;
 /// The deepest nesting of brackets.
 const DEEPEST: usize = 64;
+/// The most operands of one sum or product.
+const OPERANDS: usize = 64;
+/// Names that generated code, or Rust itself, has already given away.
+const TAKEN: [&str; 14] = [
+    "Box",
+    "Card",
+    "Err",
+    "Evaluators",
+    "Lane",
+    "None",
+    "Ok",
+    "Option",
+    "Region",
+    "Result",
+    "Self",
+    "Slab",
+    "Some",
+    "Surface",
+];
 
 /// Reads a tool. What could be read comes back even beside errors, so that later steps can report
 /// theirs; without a tool's name nothing can.
 pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
+    // With the tokens that would have fitted, not the rules alone.
+    pest::set_error_detail(true);
     let mut reports = Vec::new();
     if let Err(report) = within_limits(&source.text) {
         return (None, vec![report]);
@@ -25,9 +46,11 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
         Ok(pairs) => pairs,
         Err(error) => return (None, vec![refuse::syntax(&source.text, 0, &error)]),
     };
+    let mut broken = Vec::new();
     let tool = pairs.flatten().find(|pair| pair.as_rule() == Rule::tool);
-    let tool = tool.map(|pair| Reader { offset: 0, reports: &mut reports }.tool(pair));
-    (tool, reports)
+    let tool = tool
+        .map(|pair| Reader { offset: 0, reports: &mut reports, broken: &mut broken }.tool(pair));
+    (tool.map(|tool| Tool { broken, ..tool }), reports)
 }
 
 fn within_limits(text: &str) -> Result<(), Report> {
@@ -58,6 +81,8 @@ struct Reader<'a> {
     /// Where the parsed text begins in the source.
     offset: usize,
     reports: &'a mut Vec<Report>,
+    /// The first words of items that could not be read, and the names that they define.
+    broken: &'a mut Vec<String>,
 }
 
 impl Reader<'_> {
@@ -75,9 +100,12 @@ impl Reader<'_> {
             match pair.as_rule() {
                 Rule::name => {
                     name = self.name(&pair);
-                    if !name.word.starts_with(|c: char| c.is_ascii_uppercase())
-                        || name.word.contains('_')
-                    {
+                    if TAKEN.contains(&name.word.as_str()) {
+                        self.reports.push(
+                            Report::error(name.span, format!("the name `{}` is taken", name.word))
+                                .help("the name becomes a Rust type: take another"),
+                        );
+                    } else if !is_type_name(&name.word) {
                         self.reports.push(
                             Report::error(
                                 name.span,
@@ -93,7 +121,7 @@ impl Reader<'_> {
                 _ => items.extend(self.item(pair)),
             }
         }
-        Tool { name, title, items }
+        Tool { name, title, items, broken: Vec::new() }
     }
 
     /// An item that the grammar could not read is read again alone, for its own error.
@@ -103,10 +131,16 @@ impl Reader<'_> {
         match Grammar::parse(Rule::item, text) {
             Ok(mut pairs) => {
                 let inner = pairs.next()?.into_inner().next()?;
-                Reader { offset, reports: self.reports }.item(inner)
+                Reader { offset, reports: self.reports, broken: self.broken }.item(inner)
             }
             Err(error) => {
                 self.reports.push(refuse::syntax(text, offset, &error));
+                // What it would have defined, and what it swallowed for want of a `;`.
+                let words: Vec<&str> = text.split_whitespace().collect();
+                self.broken.extend(words.first().map(|word| (*word).to_owned()));
+                let defines = |word: &str| ["let", "param", "curve", "region"].contains(&word);
+                let defined = words.windows(2).filter(|pair| defines(pair[0]));
+                self.broken.extend(defined.map(|pair| pair[1].to_owned()));
                 None
             }
         }
@@ -278,7 +312,14 @@ impl Reader<'_> {
             Some(first) => self.expr(first),
             None => Expr { kind: ExprKind::Name(String::new()), span: Span { start: 0, end: 0 } },
         };
+        let mut operands = 1;
         while let (Some(operator), Some(right)) = (inner.next(), inner.next()) {
+            operands += 1;
+            if operands > OPERANDS {
+                let report = Report::error(self.span(&right), "this expression is too long");
+                self.reports.push(report.help("name a part of it with `let` or `curve`"));
+                break;
+            }
             let operator = match operator.as_str() {
                 "+" => Binary::Add,
                 "-" => Binary::Sub,
@@ -294,12 +335,15 @@ impl Reader<'_> {
 
     fn number(&mut self, text: &str, span: Span) -> ExprKind {
         let digits = digits(text);
-        let value = match Number::decimal(&text[..digits]) {
+        // Longer ones, and exponents that are out of all range, would take their time.
+        let exponent = text[..digits].rsplit_once(['e', 'E']).map_or("0", |(_, exponent)| exponent);
+        let sane = digits <= 400 && exponent.parse::<i32>().is_ok_and(|e| e.abs() <= 400);
+        let value = match sane.then(|| Number::decimal(&text[..digits])).flatten() {
             Some(value) if value.to_f64().is_finite() => value,
             _ => {
                 self.reports.push(
-                    Report::error(span, format!("`{text}` is too large for a number"))
-                        .help("lengths lie between 2^-300 and 2^300"),
+                    Report::error(span, "this number is out of range")
+                        .help("constants lie between 2^-300 and 2^300"),
                 );
                 Number::int(1)
             }
@@ -310,6 +354,13 @@ impl Reader<'_> {
         });
         ExprKind::Number(value, suffix)
     }
+}
+
+/// Whether a word will do as a Rust type.
+pub fn is_type_name(word: &str) -> bool {
+    word.starts_with(|c: char| c.is_ascii_uppercase())
+        && !word.contains('_')
+        && !TAKEN.contains(&word)
 }
 
 /// How much of a number token is the number; the rest is its unit.

@@ -23,9 +23,18 @@ pub(super) fn comparison(span: Span, written: &str) -> Report {
 
 /// A syntax error of pest's, at a place in a text that begins at `offset` of the source.
 pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
-    let at = match error.location {
+    let rule_at = match error.location {
         InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
     };
+    // Rules are tried where they begin; a token may have been missing further on.
+    let attempts = error.parse_attempts();
+    let token_at = attempts.as_ref().map_or(0, |attempts| attempts.max_position);
+    let at = rule_at.max(token_at);
+    let at = at + text[at..].len() - text[at..].trim_start().len();
+    let wants_end = attempts.is_some_and(|attempts| {
+        token_at >= rule_at
+            && attempts.expected_tokens().iter().any(|token| token.to_string() == ";")
+    });
     let rest = &text[at..];
     let before = text[..at].trim_end();
     let width = rest.chars().next().map_or(0, char::len_utf8);
@@ -39,7 +48,13 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
     if let Some(report) = habit(rest, before, here) {
         return report;
     }
+    if wants_end && ends_a_value(before) && (rest.starts_with('}') || starts_a_word(rest)) {
+        let end = offset + before.len();
+        let place = Span { start: end.saturating_sub(1), end };
+        return Report::error(place, "`;` is missing after this").help("write `;` here");
+    }
     let expected = match &error.variant {
+        _ if token_at > rule_at => String::new(),
         ErrorVariant::ParsingError { positives, .. } => expected(positives),
         ErrorVariant::CustomError { message } => message.clone(),
     };
@@ -48,10 +63,8 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
         Some(word) => format!("`{}` does not fit here", first_token(word)),
     };
     let report = Report::error(here, found);
-    if ends_a_value(before) && (rest.starts_with('}') || starts_a_word(rest)) {
-        let end = offset + before.len();
-        let place = Span { start: end.saturating_sub(1), end };
-        return Report { span: place, ..report }.label("after this").help("is a `;` missing?");
+    if wants_end {
+        return report.help("expected `;`");
     }
     if expected.is_empty() { report } else { report.help(format!("expected {expected}")) }
 }
@@ -117,6 +130,29 @@ fn habit(rest: &str, before: &str, here: Span) -> Option<Report> {
         return Some(Report::error(place, "conditions are not joined by a word").help(
             "all hold that stand between commas: `a <= b, c <= d`; \"or\" is `min(a, b) <= 0`",
         ));
+    }
+    let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+    if rest.starts_with(',') && digit(before.chars().last()) && digit(rest.chars().nth(1)) {
+        return Some(
+            Report::error(here, "a comma stands between things of a list")
+                .help("a decimal comma? write a point, as in `0.5`"),
+        );
+    }
+    if rest.starts_with(';') && before.is_empty() {
+        return Some(Report::error(here, "a `;` too many").help("drop it: a region ends with `}`"));
+    }
+    if rest.starts_with("/*") {
+        return Some(Report::error(here, "this comment does not end").help("close it with `*/`"));
+    }
+    if next == "tool" {
+        return Some(Report::error(place, "a second tool").help("write one tool a file"));
+    }
+    if rest.trim().is_empty() && before.matches("/*").count() > before.matches("*/").count() {
+        let start = here.start - before.len() + before.rfind("/*").unwrap_or(0);
+        return Some(
+            Report::error(Span { start, end: start + 2 }, "this comment does not end")
+                .help("close it with `*/`"),
+        );
     }
     if rest.trim().is_empty() && !before.is_empty() {
         return Some(Report::error(here, "the text ends here").help("is a `}` or `;` missing?"));

@@ -21,6 +21,9 @@ pub struct Tool {
     pub title: Option<String>,
     /// The items in order.
     pub items: Vec<Item>,
+    /// The first words of items that could not be read, and the names that they define: what they
+    /// would have said is missing.
+    pub broken: Vec<String>,
 }
 
 /// One item of a tool.
