@@ -1,7 +1,7 @@
 //! Expressions as one shared graph: the single statement of what a tool computes.
 //!
 //! Everything that is said about a tool is said about this graph: the derivative
-//! ([`derive`]) is more of it, an enclosure ([`interval`]) and a value ([`value`]) are walks over
+//! ([`mod@derive`]) is more of it, an enclosure ([`interval`]) and a value ([`value`]) are walks over
 //! it, the emitted Rust and the interpreter's tape are listings of it.
 //!
 //! A node's meaning is a real function of the point that is felt, in the tool's frame and the

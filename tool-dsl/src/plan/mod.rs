@@ -2,7 +2,7 @@
 //!
 //! Every test takes a curve's zero to one side, that of the region listed earlier; where both
 //! sides want it, the curve is split once more. A side that provably has no point is not tested
-//! for ([`empty`]). So a tree gives every point its owner as the regions' list does (in real
+//! for (`empty`). So a tree gives every point its owner as the regions' list does (in real
 //! arithmetic; a test that is left out can no longer fail by rounding), and only the order of the
 //! tests is chosen: greedily by the information that they give about
 //! samples of the section, cheap curves first, `bsp` before all.

@@ -1,7 +1,7 @@
 //! Text to syntax tree.
 //!
 //! The grammar accepts a little more than the language; what it accepts too much is refused by
-//! name, with a remedy ([`refuse`]). Items are parsed each for itself, so that one mistake does
+//! name, with a remedy (`refuse`). Items are parsed each for itself, so that one mistake does
 //! not hide the next.
 
 mod parse;
