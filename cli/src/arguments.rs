@@ -11,27 +11,19 @@ use touchoff::{Law, Unit, Weights};
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-    /// One JSON object a row (of the demonstration).
-    #[arg(long)]
+    /// One JSON object a row: a pose, a tool, a line of the table.
+    #[arg(long, global = true)]
     pub(crate) json: bool,
 }
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Table 7.1 of Ho (1999), measured here, beside the thesis's own figures.
-    Demo {
-        /// One JSON object a row.
-        #[arg(long)]
-        json: bool,
-    },
+    Demo,
     /// Feel a part with a tool along a path.
     Run(Box<Run>),
     /// List the compiled tools.
-    Tools {
-        /// One JSON object a tool.
-        #[arg(long)]
-        json: bool,
-    },
+    Tools,
     /// Look `.tool` files over.
     Check {
         /// The files.
@@ -75,9 +67,6 @@ pub(crate) struct Run {
     /// Compliance centre, in the tool's frame and the part's unit [default: the tip].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) center: Option<Point3<f64>>,
-    /// One JSON object a pose.
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
 /// `x,y,z`

@@ -4,6 +4,18 @@ use touchoff::mesh::MeshError;
 use touchoff::tool::ToolError;
 use touchoff::{CloudError, PartError, ProgramError};
 
+impl Failure {
+    /// Whether the reader of the output has closed it, which is no failure.
+    pub(crate) fn is_enough(&self) -> bool {
+        let kind = match self {
+            Failure::Output(error) => Some(error.kind()),
+            Failure::Json(error) => error.io_error_kind(),
+            _ => None,
+        };
+        kind == Some(std::io::ErrorKind::BrokenPipe)
+    }
+}
+
 /// What ends the program with exit status 1.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {

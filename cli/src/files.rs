@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use serde::Serialize;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use tool_dsl::report::Severity;
+use tool_dsl::report::{self, Severity};
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile, emit};
 use tools_library::TOOLS;
@@ -77,7 +77,7 @@ impl Found {
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             let tool = Interpreted::load(name)?;
             if !tool.warnings().is_empty() {
-                eprintln!("{}", tool.warnings());
+                say!("{}", tool.warnings());
             }
             return Ok(Found::File(Box::new(tool)));
         }
@@ -117,14 +117,14 @@ pub(crate) fn check(files: &[PathBuf]) -> Result<(), Failure> {
         let source = match read(file) {
             Ok(source) => source,
             Err(error) => {
-                eprintln!("error: {error}");
+                say!("error: {error}");
                 wrong += 1;
                 continue;
             }
         };
         let compiled = compile(&source);
         for report in &compiled.reports {
-            eprintln!("{}\n", report.render(&source, styled));
+            say!("{}\n", report.render(&source, styled));
         }
         match &compiled.tool {
             Some(tool) => {
@@ -144,12 +144,11 @@ fn described(tool: &Checked, warnings: usize) -> String {
     let unit = model.unit.word();
     let cutting: Vec<&str> =
         model.surfaces.iter().filter(|s| s.cutting).map(|s| s.name.as_str()).collect();
-    let rounded = |v: f64| (v * 1e6).round() / 1e6 + 0.0;
     format!(
         "{} is {} {unit} long and {} {unit} in radius; {} regions, {} curves, cutting: {}; {warnings} {}",
         model.name,
-        rounded(tool.extent.high - tool.extent.low),
-        rounded(tool.extent.radius),
+        report::figure(tool.extent.high - tool.extent.low),
+        report::figure(tool.extent.radius),
         model.regions.len(),
         model.curves.len(),
         if cutting.is_empty() { "nothing".to_owned() } else { cutting.join(", ") },
@@ -162,7 +161,7 @@ pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
     let source = read(file)?;
     let compiled = compile(&source);
     for report in &compiled.reports {
-        eprintln!("{}\n", report.render(&source, std::io::stderr().is_terminal()));
+        say!("{}\n", report.render(&source, std::io::stderr().is_terminal()));
     }
     let Some(tool) = &compiled.tool else {
         return Err(Failure::Files { wrong: 1, all: 1 });
@@ -175,5 +174,15 @@ pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
 
 /// A length with its unit.
 pub(crate) fn length(value: f64, unit: Unit) -> String {
-    format!("{value:.4} {unit}")
+    format!("{} {unit}", figure(value, unit))
+}
+
+/// A length to a tenth of a micrometre, or what comes near it in its unit.
+pub(crate) fn figure(value: f64, unit: Unit) -> String {
+    let decimals = match unit {
+        Unit::Millimetre => 4,
+        Unit::Inch => 5,
+        Unit::Metre => 7,
+    };
+    format!("{value:.decimals$}")
 }

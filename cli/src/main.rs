@@ -1,5 +1,13 @@
 //! The `touchoff` program: words for people over the libraries.
 
+/// A line on standard error; where that cannot be written, nobody is there to be told.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($words)*);
+    }};
+}
+
 mod arguments;
 mod demo;
 mod failure;
@@ -9,27 +17,23 @@ mod timing;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match arguments.command {
-        None => demo::demo(arguments.json),
-        Some(Command::Demo { json }) => demo::demo(json || arguments.json),
-        Some(Command::Run(wanted)) => run::run(&wanted),
-        Some(Command::Tools { json }) => files::tools(json),
+        None | Some(Command::Demo) => demo::demo(arguments.json),
+        Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
+        Some(Command::Tools) => files::tools(arguments.json),
         Some(Command::Check { files }) => files::check(&files),
         Some(Command::Expand { file }) => files::expand(&file),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
         // Whoever read the output has enough of it.
-        Err(Failure::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => {
-            ExitCode::SUCCESS
-        }
+        Err(failure) if failure.is_enough() => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            say!("error: {failure}");
             ExitCode::FAILURE
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::arguments::Run;
 use crate::failure::Failure;
-use crate::files::{Found, length};
+use crate::files::{Found, figure, length};
 use crate::timing::{Timing, nanoseconds};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -30,7 +30,7 @@ struct Row<'a> {
 }
 
 /// Runs a tool along a path.
-pub(crate) fn run(wanted: &Run) -> Result<(), Failure> {
+pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     // Everything that can be wrong is found before the first row is written.
     let found = Found::find(&wanted.tool)?;
     let tool = found.tool();
@@ -41,7 +41,7 @@ pub(crate) fn run(wanted: &Run) -> Result<(), Failure> {
     about(wanted, &part, &program, tool.card());
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-    if !wanted.json {
+    if !json {
         writeln!(out, "    line  points   depth ({})  by surface", wanted.unit)?;
     }
     let mut probe = Probe::new(&part, tool)
@@ -56,15 +56,18 @@ pub(crate) fn run(wanted: &Run) -> Result<(), Failure> {
         let contacts = if felt.colliding > 0 { probe.contacts(&stop.pose) } else { &[] };
         let surfaces = by_surface(contacts, tool.card());
         summary.add(stop.line, &felt, &surfaces, ns);
-        if wanted.json {
+        if json {
             let row = row(index, stop.line, &felt, ns, surfaces);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
         } else if felt.colliding > 0 {
-            let each: Vec<String> =
-                surfaces.iter().map(|(name, depth)| format!("{name} {depth:.4}")).collect();
-            let (line, points, depth) = (stop.line, felt.colliding, felt.depth());
-            writeln!(out, "{line:>8} {points:>7} {depth:>12.4}  {}", each.join(", "))?;
+            let each: Vec<String> = surfaces
+                .iter()
+                .map(|(name, depth)| format!("{name} {}", figure(*depth, wanted.unit)))
+                .collect();
+            let depth = figure(felt.depth(), wanted.unit);
+            let (line, points) = (stop.line, felt.colliding);
+            writeln!(out, "{line:>8} {points:>7} {depth:>12}  {}", each.join(", "))?;
         }
     }
     out.flush()?;
@@ -76,7 +79,7 @@ pub(crate) fn run(wanted: &Run) -> Result<(), Failure> {
 fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
     if let Some(survey) = part.survey() {
         for finding in survey.findings() {
-            eprintln!("{}: {finding}", wanted.part.display());
+            say!("{}: {finding}", wanted.part.display());
         }
     }
     let ignored: BTreeMap<&str, usize> =
@@ -85,9 +88,9 @@ fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
             words
         });
     for (word, times) in ignored {
-        eprintln!("{}: `{word}` means nothing here, {times} times", wanted.path.display());
+        say!("{}: `{word}` means nothing here, {times} times", wanted.path.display());
     }
-    eprintln!(
+    say!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
         card.name,
         part.tree().len(),
@@ -165,22 +168,19 @@ impl Summary {
 
     fn print(mut self, unit: Unit) {
         match self.deepest {
-            Some((depth, line)) => eprintln!(
+            Some((depth, line)) => say!(
                 "{} of {} poses in contact, deepest {} at line {line}",
                 self.in_contact,
                 self.poses,
                 length(depth, unit),
             ),
-            None => eprintln!("none of {} poses in contact", self.poses),
+            None => say!("none of {} poses in contact", self.poses),
         }
         for (name, (poses, depth, line)) in &self.surfaces {
-            eprintln!(
-                "  {name:<12} {poses:>6} poses, deepest {} at line {line}",
-                length(*depth, unit)
-            );
+            say!("  {name:<12} {poses:>6} poses, deepest {} at line {line}", length(*depth, unit));
         }
         let timing = Timing::of(&mut self.times);
-        eprintln!(
+        say!(
             "time a query: {:.2} µs on average, {:.2} median, {:.2} p99, {:.2} at most",
             timing.avg / 1e3,
             timing.p50 as f64 / 1e3,

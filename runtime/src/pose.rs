@@ -1,5 +1,6 @@
 //! Where a tool is: its tip, and which way it stands.
 
+use crate::mesh::LARGEST_COORDINATE;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
 /// How far the norm of a given axis may be from 1: published programs round their axes to four
@@ -17,8 +18,8 @@ pub struct Pose {
 /// A pose that cannot be one.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PoseError {
-    /// A coordinate is NaN or infinite.
-    #[error("the pose has a coordinate that is not a finite number")]
+    /// A coordinate is NaN, infinite, or beyond what a part's may be.
+    #[error("the pose has a coordinate that is not a number within {LARGEST_COORDINATE:e}")]
     NotFinite,
     /// The axis, or the quaternion, has no direction to take.
     #[error("the {what} has norm {norm}: give a unit vector (within {AXIS_TOLERANCE} of 1)")]
@@ -68,7 +69,7 @@ impl Pose {
     }
 
     fn finite(rotation: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
-        if tip.iter().all(|c| c.is_finite()) {
+        if tip.iter().all(|c| c.abs() <= LARGEST_COORDINATE) {
             Ok(Pose { rotation, tip })
         } else {
             Err(PoseError::NotFinite)

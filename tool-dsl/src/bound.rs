@@ -9,7 +9,8 @@ use crate::report::Report;
 
 /// The largest coordinate, 2^300.
 const LIMIT: f64 = 2.037035976334486e90;
-/// Boxes that one question may take.
+/// Boxes that one question may take: enough for a few percent where the expression mentions a
+/// coordinate several times, for rounding where it does so once.
 const BUDGET: usize = 100;
 /// The most slabs of an envelope.
 const SLABS: usize = 12;
@@ -194,6 +195,10 @@ pub fn extent(model: &Model) -> Result<Extent, Report> {
     let all = Interval::new(0.0, radius);
     let high = inward(size, -size, |z| prover.empty(Cell { d: all, z: Interval::new(z, size) }));
     let low = inward(-size, size, |z| prover.empty(Cell { d: all, z: Interval::new(-size, z) }));
+    // Between its ends the solid is easier to bound than along the whole axis.
+    let between = Interval::new(low.min(high), high.max(low));
+    let radius =
+        inward(radius, 0.0, |r| prover.empty(Cell { d: Interval::new(r, radius), z: between }));
     if low >= high || radius <= 0.0 {
         return Err(Report::error(model.name_span, "no point belongs to this tool")
             .help("the conditions of each region contradict one another"));
@@ -231,6 +236,10 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
         .collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup_by(|a, b| *a - *b < 1e-6 * (extent.high - extent.low));
+    // Of two ends that are nearly one the later is dropped, but never the last.
+    if let Some(last) = ends.last_mut() {
+        *last = extent.high;
+    }
     let mut slabs: Vec<Slab> =
         ends.windows(2).map(|pair| slab(pair[0], pair[1], extent.radius)).collect();
     // Halve where the halves are slimmer, as long as it saves most.

@@ -71,7 +71,8 @@ impl<'t> Interpreter<'t> {
     }
 }
 
-fn roots(outputs: &Outputs) -> Vec<Id> {
+/// The expressions that evaluators compute, in the order of [`Results`] behind the owner.
+pub(crate) fn roots(outputs: &Outputs) -> Vec<Id> {
     let mut roots = vec![outputs.depth, outputs.magnitude, outputs.niceness];
     roots.extend(outputs.direction);
     roots.extend(outputs.gradient);

@@ -77,16 +77,48 @@ pub fn compile(source: &Source) -> Compiled {
 }
 
 fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
-    let extent = bound::extent(&model)?;
+    finite(&model)?;
+    let extent = match bound::extent(&model) {
+        Ok(extent) => extent,
+        // A curve that has no value somewhere has no bound either: say so.
+        Err(report) => {
+            reports.extend(look::undefined(&model));
+            return if any_error(reports) { Ok(Checked::nothing(model)) } else { Err(report) };
+        }
+    };
     reports.extend(look::look(&model, &extent));
     if any_error(reports) {
         // The plan would only repeat what is wrong.
-        let plan = Plan { owner: plan::Tree::Leaf(None), inside: plan::Tree::Leaf(false) };
-        return Ok(Checked { model, extent, envelope: Vec::new(), plan });
+        return Ok(Checked::nothing(model));
     }
     let envelope = bound::envelope(&model, &extent);
     let plan = plan::plan(&model, &extent)?;
     Ok(Checked { model, extent, envelope, plan })
+}
+
+impl Checked {
+    /// A tool of which something is wrong: its errors stand beside it and it goes no further.
+    fn nothing(model: Model) -> Checked {
+        let plan = Plan { owner: plan::Tree::Leaf(None), inside: plan::Tree::Leaf(false) };
+        let extent = Extent { low: 0.0, high: 0.0, radius: 0.0 };
+        Checked { model, extent, envelope: Vec::new(), plan }
+    }
+}
+
+/// Every constant that code needs is a double.
+fn finite(model: &Model) -> Result<(), Report> {
+    let outputs = model.regions.iter().flat_map(|region| interpret::roots(&region.outputs));
+    let curves = model.curves.iter().map(|curve| curve.value);
+    let needed = model.graph.needed(outputs.chain(curves));
+    let beyond =
+        |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());
+    if needed.iter().any(beyond) {
+        return Err(Report::error(model.name_span, "a constant of this tool outgrows all numbers")
+            .help(
+                "powers upon powers of large constants do so: lengths lie between 2^-300 and 2^300",
+            ));
+    }
+    Ok(())
 }
 
 /// Whether a report only says that what a broken item would have said is missing.

@@ -7,32 +7,42 @@ use crate::expr::value::{At, Evaluator};
 use crate::formula::{CurveIndex, Formula};
 use crate::model::{Model, Region};
 use crate::plan::spread;
-use crate::report::{Report, any_error};
+use crate::report::{Report, any_error, figure};
 use crate::source::Span;
 
 /// Points of the section that are looked at.
 const POINTS: usize = 12_000;
 /// Ways from the inside to the outside along which the surface is sought.
 const CROSSINGS: usize = 1_500;
+/// Columns in which the tool's end is sought, and steps of each.
+const COLUMNS: i32 = 100;
 /// Lengths below this part of the tool's size are rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Curves that are undefined somewhere in the section's surroundings, for a tool of which nothing
+/// else is known yet.
+pub(crate) fn undefined(model: &Model) -> Vec<Report> {
+    let mut reports = Vec::new();
+    for power in -20..=20 {
+        let size = 2f64.powi(power);
+        let around = Extent { low: -size, high: size, radius: size };
+        let mut look = Look::new(model, &around);
+        for point in spread(&around, 50, 0.0) {
+            look.evaluator.set(At::meridian(point[0], point[1]));
+            look.undefined_curves(point);
+        }
+        reports = look.found;
+        if !reports.is_empty() {
+            break;
+        }
+    }
+    reports
+}
+
 /// Everything that is found, each kind once a region.
 pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
-    let roots = model
-        .regions
-        .iter()
-        .flat_map(|r| [r.depth, r.magnitude, r.niceness, r.course.0[0], r.course.0[1]])
-        .chain(model.curves.iter().map(|curve| curve.value));
-    let mut look = Look {
-        model,
-        size: extent.scale(),
-        evaluator: Evaluator::new(&model.graph, roots),
-        found: Vec::new(),
-        wins: vec![0; model.regions.len()],
-        holds: vec![0; model.regions.len()],
-        beaten: vec![None; model.regions.len()],
-    };
+    let mut look = Look::new(model, extent);
+    look.scale(extent);
     look.tip(extent);
     let mut inside = Vec::new();
     let mut outside = Vec::new();
@@ -64,14 +74,55 @@ struct Look<'m> {
     holds: Vec<usize>,
     /// Who owns a point that this region would have had.
     beaten: Vec<Option<usize>>,
+    /// The largest value of each curve over the section.
+    scales: Vec<f64>,
 }
 
-impl Look<'_> {
+impl<'m> Look<'m> {
+    fn new(model: &'m Model, extent: &Extent) -> Look<'m> {
+        let roots = model
+            .regions
+            .iter()
+            .flat_map(|r| {
+                [
+                    r.depth,
+                    r.magnitude,
+                    r.niceness,
+                    r.course.0[0],
+                    r.course.0[1],
+                    r.direction[0],
+                    r.direction[1],
+                ]
+            })
+            .chain(model.curves.iter().map(|curve| curve.value));
+        Look {
+            model,
+            size: extent.scale(),
+            evaluator: Evaluator::new(&model.graph, roots),
+            found: Vec::new(),
+            wins: vec![0; model.regions.len()],
+            holds: vec![0; model.regions.len()],
+            beaten: vec![None; model.regions.len()],
+            scales: vec![0.0; model.curves.len()],
+        }
+    }
+
+    /// Measures the curves.
+    fn scale(&mut self, extent: &Extent) {
+        for [d, z] in spread(extent, 500, 0.02) {
+            self.evaluator.set(At::meridian(d, z));
+            for curve in 0..self.scales.len() {
+                let size = self.value(curve).abs();
+                if size.is_finite() {
+                    self.scales[curve] = self.scales[curve].max(size);
+                }
+            }
+        }
+    }
+
     fn place(&self, [d, z]: [f64; 2]) -> String {
-        let digits = |v: f64| (v * 1e6 / self.size).round() * self.size / 1e6 + 0.0;
-        let tidy = |v: f64| {
-            format!("{:.6}", digits(v)).trim_end_matches('0').trim_end_matches('.').to_owned()
-        };
+        // What is rounding beside the tool's size is 0.
+        let tidy = |v: f64| figure(if v.abs() < ROUNDING * self.size { 0.0 } else { v });
         format!("({}, {})", tidy(d), tidy(self.model.frame.to_file(z)))
     }
 
@@ -92,18 +143,33 @@ impl Look<'_> {
         self.model.regions.iter().position(|region| region.inside.holds(&value))
     }
 
-    /// The tool's end is its tip.
+    /// The tool's end is its tip: the lowest point found inside is at 0.
     fn tip(&mut self, extent: &Extent) {
-        if extent.low.abs() > 1e-6 * self.size {
+        let mut end = f64::INFINITY;
+        for column in 0..=COLUMNS {
+            let d = extent.radius * f64::from(column) / f64::from(COLUMNS);
+            let steps = (extent.high - extent.low) / f64::from(COLUMNS);
+            let at = |step: i32| extent.low + steps * f64::from(step);
+            let inside = (0..=COLUMNS).find(|step| self.owner([d, at(*step)]).is_some());
+            let Some(step) = inside else { continue };
+            let (mut good, mut bad) = (at(step), at(step - 1));
+            for _ in 0..50 {
+                let middle = good / 2.0 + bad / 2.0;
+                if self.owner([d, middle]).is_some() { good = middle } else { bad = middle }
+            }
+            end = end.min(good);
+        }
+        if end.is_finite() && end.abs() > 1e-6 * self.size {
             let frame = &self.model.frame;
-            let end = frame.to_file(extent.low);
-            let rounded = (end * 1e6).round() / 1e6 + 0.0;
+            let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
             self.found.push(
                 Report::error(
                     self.model.name_span,
-                    format!("the tool ends at z = {rounded} and its tip is said to be at {}", frame.tip.to_f64()),
+                    format!("the tool ends at z = {end} and its tip is said to be at {tip}"),
                 )
-                .help(format!("write `tip z = {rounded};`, and `spindle -z;` if the spindle lies toward smaller z")),
+                .help(format!(
+                    "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
+                )),
             );
         }
     }
@@ -116,7 +182,7 @@ impl Look<'_> {
         let claims: Vec<usize> = (0..self.model.regions.len())
             .filter(|r| self.model.regions[*r].inside.holds(&value))
             .collect();
-        let deep = |r: usize| inner(&self.model.regions[r].inside, &value);
+        let deep = |r: usize| inner(&self.model.regions[r].inside, &value, &self.scales);
         let overlap = match claims.as_slice() {
             [first, second, ..] if deep(*first) && deep(*second) => Some((*first, *second)),
             _ => None,
@@ -152,7 +218,6 @@ impl Look<'_> {
     fn felt(&mut self, region: &Region, point: [f64; 2]) {
         let (name, place) = (&region.name, self.place(point));
         let get = |id: Id| self.evaluator.get(id);
-        let tidy = |v: f64| (v * 1e6).round() / 1e6;
         let sayings = [
             ("depth", region.depth, self.size * ROUNDING),
             ("magnitude", region.magnitude, ROUNDING),
@@ -170,7 +235,7 @@ impl Look<'_> {
             } else if value < -slack {
                 Report::error(
                     region.depth_span,
-                    format!("`{what}` of {name} is {} at {place}", tidy(value)),
+                    format!("`{what}` of {name} is {} at {place}", figure(value)),
                 )
                 .help("it is never negative inside: turn a sign, or bound the region")
             } else {
@@ -185,6 +250,15 @@ impl Look<'_> {
                 format!("the direction of {name} vanishes at {place}"),
             )
             .help("give a vector that is not (0, 0), or `toward` a point");
+            return self.report(report);
+        }
+        let [a, b] = region.direction.map(get);
+        if !(a.hypot(b) - 1.0).abs().is_finite() || (a.hypot(b) - 1.0).abs() > 1e-9 {
+            let report = Report::error(
+                region.course.1,
+                format!("the direction of {name} is too long to be made a unit vector at {place}"),
+            )
+            .help("divide it by its size");
             self.report(report);
         }
     }
@@ -251,7 +325,7 @@ impl Look<'_> {
         let region = &self.model.regions[owner];
         let depth = self.evaluator.get(region.depth);
         if depth.abs() > 1e-6 * self.size {
-            let value = (depth * 1e6).round() / 1e6;
+            let value = figure(depth);
             let report = Report::error(
                 region.depth_span,
                 format!(
@@ -266,12 +340,12 @@ impl Look<'_> {
     }
 }
 
-/// Whether a formula holds with room to spare.
-fn inner(formula: &Formula, value: &impl Fn(CurveIndex) -> f64) -> bool {
+/// Whether a formula holds with room to spare, measured by each curve's largest values.
+fn inner(formula: &Formula, value: &impl Fn(CurveIndex) -> f64, scales: &[f64]) -> bool {
     formula.holds(&|curve| {
         let value = value(curve);
         // What is nearly 0 is on no side.
-        if value.abs() < ROUNDING { f64::NAN } else { value }
+        if value.abs() < ROUNDING * scales[curve] { f64::NAN } else { value }
     })
 }
 

@@ -48,6 +48,11 @@ impl Report {
         Report { severity: Severity::Warning, ..Report::error(span, message) }
     }
 
+    /// An error that only follows from another, which is reported; this one is not.
+    pub fn follow_up(span: Span) -> Report {
+        Report::error(span, "")
+    }
+
     /// With a word at the place itself.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Report {
@@ -95,6 +100,21 @@ impl Report {
             group = group.element(Level::HELP.message(help.as_str()));
         }
         renderer.render(&[group])
+    }
+}
+
+/// A number for people: six significant digits.
+pub fn figure(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !(1e-4..1e15).contains(&size) {
+        return if size == 0.0 { "0".to_owned() } else { format!("{value:.5e}") };
+    }
+    let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
     }
 }
 

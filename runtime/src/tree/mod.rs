@@ -7,10 +7,10 @@
 //! **Numbers.** Boxes are `f32` relative to the cloud's origin, points `f32` relative to the centre
 //! of their leaf's box, both in units of `scale`, a power of two near the part's size. The stored
 //! point *is* `origin + scale · (centre + offset)`, and a query takes it so, unrounded; it differs
-//! from the given one by at most 2^-24 of its leaf's size. So a part far from the world's origin,
+//! from the given one by at most 2^-24 of its leaf's size and 2^-53 of the part's. So a part far from the world's origin,
 //! tiny or huge loses nothing. (A leaf spans what its 16 points span: a few points far from all
-//! others make a large leaf, and move by 2^-24 of that.) A point takes 12 bytes and its share of the
-//! boxes, 1.6 bytes.
+//! others make a large leaf, and move by 2^-24 of that.) What the descent reads of a point are
+//! 12 bytes and its share of the boxes, 1.6 bytes.
 
 mod build;
 mod candidates;

@@ -96,13 +96,13 @@ fn swallowed() {
     }
 }
 
-/// A pose beyond all measure: no contact, and no panic.
+/// A pose as far away as a pose may be: no contact, and no panic.
 #[test]
 fn at_the_end_of_the_world() {
     let part = parts::soup(6.0, 500, 8);
     for (tool, _) in tools() {
         let mut probe = Probe::new(&part, tool);
-        for far in [1e20, 1e39, 1e150, 1e200, 1e308] {
+        for far in [1e20, 1e38, 1e39, 1e50, 1e60] {
             for way in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
                 for axis in [Vector3::x(), Vector3::z(), Vector3::new(0.6, 0.0, -0.8)] {
                     let pose = Pose::from_axis(Point3::from(far * way), axis).expect("a pose");

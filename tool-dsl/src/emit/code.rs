@@ -17,6 +17,12 @@ pub(super) enum Form {
     Lanes,
 }
 
+/// One side of a comparison.
+enum Operand {
+    Node(Id),
+    Constant(f64),
+}
+
 /// Writes the body of one function.
 pub(super) struct Writer<'g> {
     graph: &'g Graph,
@@ -38,7 +44,7 @@ impl<'g> Writer<'g> {
         let mut writer = Writer { graph, curves, form, uses: BTreeMap::new() };
         let mut all: Vec<Id> = roots.to_vec();
         for (curve, _) in tested {
-            all.extend(writer.compared(*curve).into_iter().flatten());
+            all.extend(writer.compared(*curve));
         }
         for root in &all {
             *writer.uses.entry(*root).or_default() += 1;
@@ -62,41 +68,49 @@ impl<'g> Writer<'g> {
         }
     }
 
-    /// The two sides of `c ≤ 0` as `left ≤ right`; `None` is the constant 0. A sum has the sign of
-    /// its comparison exactly, so nothing is lost by not adding it up.
-    fn compared(&self, curve: CurveIndex) -> [Option<Id>; 2] {
-        match *self.graph.node(self.curves[curve].value) {
-            Node::Sub(a, b) => [Some(a), Some(b)],
-            Node::Neg(a) => [None, Some(a)],
-            Node::Add(a, _) => [Some(a), None],
-            _ => [Some(self.curves[curve].value), None],
+    /// The two sides of `c ≤ 0` as `left ≤ right`; a sum has the sign of its comparison exactly, so
+    /// nothing is lost by not adding it up.
+    fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
+        let value = self.curves[curve].value;
+        let operand = |id: Id| match self.graph.constant(id) {
+            Some(constant) => Operand::Constant(constant.to_f64()),
+            None => Operand::Node(id),
+        };
+        match *self.graph.node(value) {
+            Node::Sub(a, b) => [operand(a), operand(b)],
+            Node::Neg(a) => [Operand::Constant(0.0), operand(a)],
+            Node::Add(a, b) => match self.graph.constant(b) {
+                Some(shift) => [operand(a), Operand::Constant(-shift.to_f64())],
+                None => [operand(value), Operand::Constant(0.0)],
+            },
+            _ => [operand(value), Operand::Constant(0.0)],
         }
     }
 
-    /// The test of a curve, its operands already bound where they are shared.
+    /// The nodes that a curve's test needs.
+    fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
+        self.sides(curve).into_iter().filter_map(|operand| match operand {
+            Operand::Node(id) => Some(id),
+            Operand::Constant(_) => None,
+        })
+    }
+
+    /// The test of a curve, its operands already bound where they are shared. A constant stands on
+    /// the right.
     fn test(&self, curve: CurveIndex, strict: bool) -> TokenStream {
-        let value = self.curves[curve].value;
-        let (left, right, flipped) = match self.graph.node(value) {
-            Node::Sub(a, b) if self.graph.constant(*a).is_some() => {
-                (self.value(*b), self.literal_of(*a), true)
-            }
-            Node::Sub(a, b) => (self.value(*a), self.value(*b), false),
-            Node::Neg(a) => (self.value(*a), self.constant(0.0), true),
-            Node::Add(a, b) if self.graph.constant(*b).is_some() => {
-                let shift = self.graph.constant(*b).map_or(0.0, |c| -c.to_f64());
-                (self.value(*a), self.constant(shift), false)
-            }
-            _ => (self.value(value), self.constant(0.0), false),
-        };
+        let sides = self.sides(curve);
+        let flipped = matches!(sides[0], Operand::Constant(_));
+        let [left, right] = sides.map(|side| match side {
+            Operand::Node(id) => self.value(id),
+            Operand::Constant(value) => self.constant(value),
+        });
         match (self.form, strict, flipped) {
             (Form::Scalar, false, false) => quote! { #left <= #right },
             (Form::Scalar, true, false) => quote! { #left < #right },
-            (Form::Scalar, false, true) => quote! { #left >= #right },
-            (Form::Scalar, true, true) => quote! { #left > #right },
-            (Form::Lanes, false, false) => quote! { Lane::le(#left, #right) },
-            (Form::Lanes, true, false) => quote! { Lane::lt(#left, #right) },
-            (Form::Lanes, false, true) => quote! { Lane::le(#right, #left) },
-            (Form::Lanes, true, true) => quote! { Lane::lt(#right, #left) },
+            (Form::Scalar, false, true) => quote! { #right >= #left },
+            (Form::Scalar, true, true) => quote! { #right > #left },
+            (Form::Lanes, false, _) => quote! { Lane::le(#left, #right) },
+            (Form::Lanes, true, _) => quote! { Lane::lt(#left, #right) },
         }
     }
 
@@ -278,7 +292,7 @@ impl<'g> Writer<'g> {
             Tree::Leaf(leaf) => self.graph.needed(needs(leaf)).into_iter().collect(),
             Tree::Split { curve, below, above, .. } => {
                 let (below, above) = (self.always(below, needs), self.always(above, needs));
-                let compared = self.graph.needed(self.compared(*curve).into_iter().flatten());
+                let compared = self.graph.needed(self.compared(*curve));
                 below.intersection(&above).copied().chain(compared).collect()
             }
         }
@@ -290,7 +304,7 @@ impl<'g> Writer<'g> {
         roots: &[Id],
         tested: &BTreeSet<(CurveIndex, bool)>,
     ) -> TokenStream {
-        let compared = tested.iter().flat_map(|(curve, _)| self.compared(*curve)).flatten();
+        let compared = tested.iter().flat_map(|(curve, _)| self.compared(*curve));
         let mut code = self.lets(roots.iter().copied().chain(compared), &mut BTreeSet::new());
         for (curve, strict) in tested {
             let (mask, test) = (mask(*curve, *strict), self.test(*curve, *strict));

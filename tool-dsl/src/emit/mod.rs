@@ -7,6 +7,7 @@ use crate::Checked;
 use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
+use crate::report::figure;
 use code::{Form, Writer, literal, tested};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -84,9 +85,9 @@ fn documentation(tool: &Checked) -> String {
          | region | surface |\n|---|---|\n",
         model.title.as_deref().unwrap_or(&model.name),
         model.unit.word(),
-        short(tool.extent.low),
-        short(tool.extent.high),
-        short(tool.extent.radius),
+        figure(if tool.extent.low.abs() < 1e-9 * tool.extent.high { 0.0 } else { tool.extent.low }),
+        figure(tool.extent.high),
+        figure(tool.extent.radius),
     );
     for region in &model.regions {
         let surface = &model.surfaces[region.surface];
@@ -95,11 +96,6 @@ fn documentation(tool: &Checked) -> String {
         let _ = writeln!(text, "| {} | {}{cutting} |", region.name, surface.name);
     }
     text
-}
-
-/// A length for people.
-fn short(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6 + 0.0
 }
 
 fn card(tool: &Checked) -> TokenStream {

@@ -98,6 +98,8 @@ impl Node {
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
+    /// How many operations lie between a node and its farthest leaf.
+    heights: Vec<u32>,
     known: HashMap<Node, Id>,
 }
 
@@ -105,6 +107,11 @@ impl Graph {
     /// The node behind an id.
     pub fn node(&self, id: Id) -> &Node {
         &self.nodes[id.index()]
+    }
+
+    /// How many operations lie between a node and its farthest leaf.
+    pub fn height(&self, id: Id) -> u32 {
+        self.heights[id.index()]
     }
 
     /// All nodes, operands first.
@@ -145,6 +152,8 @@ impl Graph {
             return *id;
         }
         let id = Id(self.nodes.len() as u32);
+        let below = node.operands().map(|operand| self.heights[operand.index()]).max();
+        self.heights.push(below.map_or(0, |height| height + 1));
         self.nodes.push(node.clone());
         self.known.insert(node, id);
         id

@@ -29,6 +29,16 @@ impl Interval {
         Interval { low: low.next_down(), high: high.next_up() }
     }
 
+    /// The same, known not to be negative if `sure`: rounding outward does not make it so.
+    fn at_least_0(self, sure: bool) -> Interval {
+        if sure { Interval { low: self.low.max(0.0), ..self } } else { self }
+    }
+
+    fn plus(self, other: Interval) -> Interval {
+        let sum = Interval::out(self.low + other.low, self.high + other.high);
+        sum.at_least_0(self.low >= 0.0 && other.low >= 0.0)
+    }
+
     fn times(self, other: Interval) -> Interval {
         // 0 · ∞ stands for a product of finite numbers with a factor 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
@@ -42,6 +52,7 @@ impl Interval {
             ends.into_iter().fold(f64::INFINITY, f64::min),
             ends.into_iter().fold(f64::NEG_INFINITY, f64::max),
         )
+        .at_least_0(self.low >= 0.0 && other.low >= 0.0)
     }
 
     fn reciprocal(self) -> Interval {
@@ -67,8 +78,7 @@ impl Interval {
 
     fn square(self) -> Interval {
         let abs = self.abs();
-        let square = Interval::out(abs.low * abs.low, abs.high * abs.high);
-        Interval { low: square.low.max(0.0), high: square.high }
+        Interval::out(abs.low * abs.low, abs.high * abs.high).at_least_0(true)
     }
 }
 
@@ -119,7 +129,7 @@ impl<'g> Encloser<'g> {
                 }
                 Node::Coord(Coord::Length | Coord::PerLength) => EVERYTHING,
                 Node::Neg(a) => Interval { low: -v(*a).high, high: -v(*a).low },
-                Node::Add(a, b) => Interval::out(v(*a).low + v(*b).low, v(*a).high + v(*b).high),
+                Node::Add(a, b) => v(*a).plus(v(*b)),
                 Node::Sub(a, b) => Interval::out(v(*a).low - v(*b).high, v(*a).high - v(*b).low),
                 Node::Mul(a, b) if a == b => v(*a).square(),
                 Node::Mul(a, b) => v(*a).times(v(*b)),
@@ -131,9 +141,10 @@ impl<'g> Encloser<'g> {
                     Interval { low: v(*a).low.max(v(*b).low), high: v(*a).high.max(v(*b).high) }
                 }
                 Node::Abs(a) => v(*a).abs(),
+                // Undefined somewhere: then nothing is known.
+                Node::Sqrt(a) if v(*a).low < 0.0 => EVERYTHING,
                 Node::Sqrt(a) => {
-                    let root = Interval::out(v(*a).low.max(0.0).sqrt(), v(*a).high.max(0.0).sqrt());
-                    Interval { low: root.low.max(0.0), high: root.high }
+                    Interval::out(v(*a).low.sqrt(), v(*a).high.sqrt()).at_least_0(true)
                 }
                 Node::Select { low, high, then, other } => {
                     if v(*low).high <= v(*high).low {

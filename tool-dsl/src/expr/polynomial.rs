@@ -18,8 +18,17 @@ const DEGREE: u8 = 8;
 impl Polynomial {
     /// The polynomial that a node is, if it is one.
     pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
+        let mut known: BTreeMap<Id, Option<Polynomial>> = BTreeMap::new();
+        for id in graph.needed([id]) {
+            let polynomial = Polynomial::node(graph.node(id), |operand| known[operand].clone());
+            known.insert(id, polynomial);
+        }
+        known.remove(&id).flatten()
+    }
+
+    fn node(node: &Node, of: impl Fn(&Id) -> Option<Polynomial>) -> Option<Polynomial> {
         let single = |monomial, value: Number| Polynomial(BTreeMap::from([(monomial, value)]));
-        Some(match graph.node(id) {
+        Some(match node {
             Node::Const(value) => single([0; 4], value.clone()),
             Node::Coord(coord) => single(
                 match coord {
@@ -32,11 +41,10 @@ impl Polynomial {
                 },
                 Number::int(1),
             ),
-            Node::Neg(a) => Polynomial::of(graph, *a)?.scaled(&Number::int(-1)),
-            Node::Add(a, b) => Polynomial::of(graph, *a)?.plus(&Polynomial::of(graph, *b)?),
-            Node::Sub(a, b) => Polynomial::of(graph, *a)?
-                .plus(&Polynomial::of(graph, *b)?.scaled(&Number::int(-1))),
-            Node::Mul(a, b) => Polynomial::of(graph, *a)?.times(&Polynomial::of(graph, *b)?)?,
+            Node::Neg(a) => of(a)?.scaled(&Number::int(-1)),
+            Node::Add(a, b) => of(a)?.plus(&of(b)?),
+            Node::Sub(a, b) => of(a)?.plus(&of(b)?.scaled(&Number::int(-1))),
+            Node::Mul(a, b) => of(a)?.times(&of(b)?)?,
             _ => return None,
         })
     }

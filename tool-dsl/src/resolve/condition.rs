@@ -66,7 +66,7 @@ impl Curves {
     }
 
     fn side(&mut self, graph: &mut Graph, value: Id, below: bool, parts: &mut usize) -> Formula {
-        let lifted = if *parts > 0 { lift(graph, value) } else { None };
+        let lifted = if *parts > 0 && has_corner(graph, value) { lift(graph, value) } else { None };
         let Some((largest, a, b)) = lifted else {
             return self.atom(graph, value, below);
         };
@@ -75,6 +75,24 @@ impl Curves {
         // max(a, b) ≤ 0 wants both, max(a, b) ≥ 0 one of them.
         if largest == below { Formula::All(sides) } else { Formula::Any(sides) }
     }
+}
+
+/// Whether a sum has a `min`, `max` or `abs` among its terms.
+fn has_corner(graph: &Graph, value: Id) -> bool {
+    let mut corner = std::collections::BTreeSet::new();
+    for id in graph.needed([value]) {
+        let has = match graph.node(id) {
+            Node::Max(..) | Node::Min(..) | Node::Abs(_) => true,
+            Node::Neg(a) => corner.contains(a),
+            Node::Add(a, b) | Node::Sub(a, b) => corner.contains(a) || corner.contains(b),
+            Node::Mul(c, v) => graph.constant(*c).is_some() && corner.contains(v),
+            _ => false,
+        };
+        if has {
+            corner.insert(id);
+        }
+    }
+    corner.contains(&value)
 }
 
 /// A sum with a `min`, `max` or `abs` in it as the larger (`true`) or smaller of two sums.
@@ -88,14 +106,16 @@ fn lift(graph: &mut Graph, value: Id) -> Option<(bool, Id, Id)> {
             Some((!largest, graph.neg(a), graph.neg(b)))
         }
         Node::Add(u, v) => {
-            if let Some((largest, a, b)) = lift(graph, u) {
+            if has_corner(graph, u) {
+                let (largest, a, b) = lift(graph, u)?;
                 return Some((largest, graph.add(a, v), graph.add(b, v)));
             }
             let (largest, a, b) = lift(graph, v)?;
             Some((largest, graph.add(u, a), graph.add(u, b)))
         }
         Node::Sub(u, v) => {
-            if let Some((largest, a, b)) = lift(graph, u) {
+            if has_corner(graph, u) {
+                let (largest, a, b) = lift(graph, u)?;
                 return Some((largest, graph.sub(a, v), graph.sub(b, v)));
             }
             let (largest, a, b) = lift(graph, v)?;

@@ -46,6 +46,9 @@ pub(super) struct Lowering {
 /// The largest constant on the way to a length, 2^1000: powers of lengths fit.
 const LARGEST: f64 = 1.071508607186267e301;
 
+/// The most operations upon each other; whatever walks an expression goes as deep.
+const TALLEST: u32 = 300;
+
 type Lowered = Result<(Id, Dimension), Report>;
 
 impl Lowering {
@@ -118,6 +121,13 @@ impl Lowering {
         if size > LARGEST {
             return Err(Report::error(expr.span, "this constant is out of range")
                 .help("lengths lie between 2^-300 and 2^300, their squares accordingly"));
+        }
+        if self.graph.height(id) > TALLEST {
+            return Err(Report::error(
+                expr.span,
+                "this is built of too many steps upon each other",
+            )
+            .help(format!("at most {TALLEST} operations lie between a value and a coordinate")));
         }
         Ok((id, dimension))
     }
@@ -205,6 +215,9 @@ impl Lowering {
         }
         let Some(value) = self.values.get_mut(word) else {
             if let Some(definition) = self.declared.get(word) {
+                if definition.start < span.start {
+                    return Err(Report::follow_up(span));
+                }
                 return Err(Report::error(span, format!("`{word}` is used above its definition"))
                     .and(*definition, "defined here")
                     .help("move the definition up"));

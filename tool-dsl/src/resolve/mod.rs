@@ -19,6 +19,12 @@ use std::collections::BTreeMap;
 
 /// Resolves a tool. The model comes back only if nothing is wrong.
 pub fn resolve(tool: &Tool) -> (Option<Model>, Vec<Report>) {
+    let (model, mut reports) = settle(tool);
+    reports.retain(|report| !report.message.is_empty());
+    (model, reports)
+}
+
+fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
     let mut reports = Vec::new();
     let unit = match unit(tool) {
         Ok(unit) => unit,

@@ -11,8 +11,8 @@ use crate::report::{Report, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Direction, Expr, Item, Law, Quantity, Tool, Tuple};
 
-/// The most regions that a tool may have.
-const MOST: usize = 4096;
+/// The most regions that a tool may have: more take the planner minutes.
+const MOST: usize = 256;
 
 /// A tool's laws.
 pub(super) struct Laws<'t>(&'t [&'t Law]);

@@ -59,6 +59,22 @@ fn within_limits(text: &str) -> Result<(), Report> {
         return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
             .help(format!("a tool has at most {LONGEST} bytes")));
     }
+    let mut comments = 0usize;
+    for (at, pair) in text.as_bytes().windows(2).enumerate() {
+        match pair {
+            b"/*" => comments += 1,
+            b"*/" => comments = comments.saturating_sub(1),
+            _ => {}
+        }
+        if comments > DEEPEST {
+            let span = Span { start: at, end: at + 2 };
+            return Err(Report::error(
+                span,
+                format!("comments are nested more than {DEEPEST} deep"),
+            )
+            .help("close them with `*/`"));
+        }
+    }
     let mut depth = 0usize;
     for (at, byte) in text.bytes().enumerate() {
         match byte {

@@ -1,0 +1,101 @@
+//! Texts that once were taken wrongly, took forever or took the process down.
+
+use tool_dsl::report::any_error;
+use tool_dsl::source::Source;
+use tool_dsl::{Compiled, compile, emit};
+use touchoff::{Pose, PoseError};
+
+fn compiled(items: &str) -> Compiled {
+    compile(&Source::new("t.tool", format!("tool T {{ units mm; {items} }}")))
+}
+
+/// The messages of a text that must be refused.
+fn refused(items: &str) -> String {
+    let compiled = compiled(items);
+    assert!(any_error(&compiled.reports) && compiled.tool.is_none(), "{items} was taken");
+    compiled.reports.iter().map(|r| r.message.as_str()).collect::<Vec<_>>().join("; ")
+}
+
+/// A sum whose second part is no constant is computed before it is compared.
+#[test]
+fn an_expanded_sphere_compiles() {
+    let ball = "region ball where z*z - 6mm*z + d^2 <= 0 { depth: 3 - hypot(d, z - 3); }";
+    let tool = compiled(ball).tool.expect("a ball");
+    let code = emit::rust(&tool);
+    let contains = code.split("fn contains(").nth(1).expect("it has one");
+    assert!(
+        contains.split('}').next().is_some_and(|body| body.contains("let q = x * x + y * y")),
+        "{contains}"
+    );
+}
+
+/// A curve without a value beyond d = 3 has no side there.
+#[test]
+fn a_curve_that_is_undefined_somewhere_is_refused() {
+    let message = refused(
+        "curve s = sqrt(9 - d^2); region core where s >= 1, 0 <= z <= 5 { depth: min(z, 5 - z); }",
+    );
+    assert!(message.contains("undefined"), "{message}");
+}
+
+/// No part of the tool lies outside its slabs, even a last sliver.
+#[test]
+fn the_envelope_reaches_the_end() {
+    let tool = compiled(
+        "region a where d <= 1, 0 <= z <= 40 { depth: min(1 - d, min(z, 40.00003 - z)); direction: (1, 0); }
+         region b where d <= 1, 40 <= z <= 40.00003 { depth: min(1 - d, 40.00003 - z); direction: (1, 0); }",
+    );
+    let tool = tool.tool.expect("a cylinder in two");
+    assert!(tool.envelope.iter().any(|slab| slab.high >= 40.00003));
+}
+
+#[test]
+fn small_tools_are_looked_at_as_closely() {
+    let text = "tool T { units m; let r = 1e-5;
+        region a where hypot(d, z - r) <= r { depth: r - hypot(d, z - r); }
+        region b where hypot(d, z - 1.5*r) <= r { depth: r - hypot(d, z - 1.5*r); } }";
+    let compiled = compile(&Source::new("t.tool", text));
+    assert!(compiled.reports.iter().any(|report| report.message.contains("overlap")));
+}
+
+#[test]
+fn what_outgrows_its_means_is_refused() {
+    let chain = |first: &str, step: fn(usize) -> String, count: usize| {
+        let mut items = format!("curve c0 = {first};");
+        for k in 1..=count {
+            items += &format!("curve c{k} = {};", step(k - 1));
+        }
+        items
+            + &format!(
+                "region r where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c{count}; }}"
+            )
+    };
+    assert!(
+        refused(&chain("d*d", |k| format!("c{k} + d*d*{}", k + 1), 1000)).contains("too many steps")
+    );
+    assert!(refused(&format!("let a = 1{};", "+1".repeat(100_000))).contains("too long"));
+    assert!(refused("let a = 1e300000000;").contains("out of range"));
+    assert!(refused("let a = ((2^16)^16)^16;").contains("out of range"));
+    assert!(refused("let a = tan(90deg);").contains("right angle"));
+    assert!(refused(&"/*".repeat(100_000)).contains("nested"));
+    // Doubling is no growth: the polynomial of a shared sum is made once.
+    let doubled = "curve c0 = d;".to_owned()
+        + &(1..=28).map(|k| format!("curve c{k} = c{0} + c{0};", k - 1)).collect::<String>()
+        + "region r where hypot(d, z - 3) <= 3, c28 <= 4e9 { depth: 3 - hypot(d, z - 3); }";
+    assert!(compiled(&doubled).tool.is_some());
+}
+
+/// One mistake is said once, however often the name it defines is used.
+#[test]
+fn what_only_follows_is_not_said() {
+    let message = refused(
+        "let a = 1/0; let b = a + 1; region r where hypot(d, z - b) <= a { depth: a - d; }",
+    );
+    assert_eq!(message, "division by zero");
+}
+
+#[test]
+fn a_pose_beyond_all_parts_is_refused() {
+    let tip = nalgebra::Point3::new(0.0, 0.0, -1.7e308);
+    assert_eq!(Pose::from_axis(tip, nalgebra::Vector3::z()), Err(PoseError::NotFinite));
+}
