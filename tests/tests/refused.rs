@@ -71,7 +71,8 @@ fn what_outgrows_its_means_is_refused() {
             )
     };
     assert!(
-        refused(&chain("d*d", |k| format!("c{k} + d*d*{}", k + 1), 1000)).contains("too many steps")
+        refused(&chain("d*d", |k| format!("c{k} + d*d*{}", k + 1), 1000))
+            .contains("too many steps")
     );
     assert!(refused(&format!("let a = 1{};", "+1".repeat(100_000))).contains("too long"));
     assert!(refused("let a = 1e300000000;").contains("out of range"));

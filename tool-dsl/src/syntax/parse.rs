@@ -59,12 +59,15 @@ fn within_limits(text: &str) -> Result<(), Report> {
         return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
             .help(format!("a tool has at most {LONGEST} bytes")));
     }
-    let mut comments = 0usize;
-    for (at, pair) in text.as_bytes().windows(2).enumerate() {
+    let (mut comments, mut at) = (0usize, 0);
+    while let Some(pair) = text.as_bytes().get(at..at + 2) {
         match pair {
             b"/*" => comments += 1,
             b"*/" => comments = comments.saturating_sub(1),
-            _ => {}
+            _ => {
+                at += 1;
+                continue;
+            }
         }
         if comments > DEEPEST {
             let span = Span { start: at, end: at + 2 };
@@ -74,6 +77,7 @@ fn within_limits(text: &str) -> Result<(), Report> {
             )
             .help("close them with `*/`"));
         }
+        at += 2;
     }
     let mut depth = 0usize;
     for (at, byte) in text.bytes().enumerate() {
