@@ -18,6 +18,7 @@ mod look;
 pub mod model;
 pub mod number;
 pub mod plan;
+mod regionalise;
 pub mod report;
 pub mod resolve;
 pub mod source;

@@ -104,6 +104,11 @@ impl Polynomial {
         }
     }
 
+    /// The factor, if this is a multiple of d.
+    pub fn multiple_of_d(&self) -> Option<&Number> {
+        if self.0.len() == 1 { self.0.get(&[1, 0, 0, 0]) } else { None }
+    }
+
     /// The terms.
     pub fn terms(&self) -> impl Iterator<Item = (Monomial, &Number)> {
         self.0.iter().map(|(monomial, value)| (*monomial, value))

@@ -49,6 +49,14 @@ impl Curves {
         if let Some(constant) = polynomial.as_ref().and_then(Polynomial::constant) {
             return Formula::Const(constant.is_zero() || constant.is_negative() == below);
         }
+        // No point is nearer to the axis than 0.
+        if polynomial
+            .as_ref()
+            .and_then(Polynomial::multiple_of_d)
+            .is_some_and(|factor| factor.is_negative() == below)
+        {
+            return Formula::Const(true);
+        }
         let (curve, same) = self.find(graph, value).unwrap_or_else(|| {
             let opposite = graph.neg(value);
             let name = self.names.get(&value).or_else(|| self.names.get(&opposite)).cloned();

@@ -4,6 +4,7 @@ mod condition;
 mod dimension;
 mod lower;
 mod outputs;
+mod profile;
 mod region;
 
 use crate::expr::Graph;
@@ -11,7 +12,7 @@ use crate::model::{Frame, Model, Unit};
 use crate::number::Number;
 use crate::report::{Report, any_error, nearest};
 use crate::source::Span;
-use crate::syntax::tree::{Definition, Item, Law, Name, Quantity, Tool};
+use crate::syntax::tree::{Definition, Item, Law, Name, Profile, Quantity, Tool};
 use condition::Curves;
 use lower::{Lowering, May};
 use region::Laws;
@@ -69,8 +70,11 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let (surfaces, regions) =
-        region::regions(tool, &Laws::new(&laws), &mut lowering, &mut curves, &mut reports);
+    let laws = Laws::new(&laws);
+    let (surfaces, regions) = match profile_of(tool, &mut reports) {
+        Some(profile) => region::derived(profile, &laws, &mut lowering, &mut curves, &mut reports),
+        None => region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports),
+    };
     let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
     for (word, value) in &lowering.values {
         if !value.used {
@@ -95,6 +99,36 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         first,
     };
     (Some(model), reports)
+}
+
+/// The profile, if there is one, and what does not go with it.
+fn profile_of<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<&'t Profile> {
+    let mut profiles = tool.items.iter().filter_map(|item| match item {
+        Item::Profile(profile) => Some(profile),
+        _ => None,
+    });
+    let first = profiles.next();
+    if let (Some(first), Some(second)) = (first, profiles.next()) {
+        reports.push(
+            Report::error(second.span, "a second profile")
+                .and(first.span, "the first")
+                .help("drop one"),
+        );
+    }
+    for item in &tool.items {
+        match (item, first) {
+            (Item::Region(region), Some(_)) => reports.push(
+                Report::error(region.name.span, "a tool has a profile or regions by hand")
+                    .help("drop the regions: the profile's are derived"),
+            ),
+            (Item::Regions(span), None) => reports.push(
+                Report::error(*span, "there is no profile to derive regions of")
+                    .help("write `profile { … }`"),
+            ),
+            _ => {}
+        }
+    }
+    first
 }
 
 fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Item = &Definition> {

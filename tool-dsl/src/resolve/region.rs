@@ -3,10 +3,12 @@
 use super::condition::Curves;
 use super::dimension::Dimension;
 use super::lower::{Lowering, May};
-use super::{is, outputs};
+use super::{is, outputs, profile};
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{Region, Surface};
+use crate::regionalise::outline::Segment;
+use crate::regionalise::{self, Derived, Feature, Undivided};
 use crate::report::{Report, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Direction, Expr, Item, Law, Quantity, Tool, Tuple};
@@ -144,13 +146,22 @@ pub(super) fn regions(
 /// The surface of a region: the one it names, or one of its own name.
 fn surface(region: &tree::Region, surfaces: &mut Vec<Surface>, reports: &mut Vec<Report>) -> usize {
     let name = region.surface.as_ref().unwrap_or(&region.name);
+    named_surface(name, region.cutting.is_some(), surfaces, reports)
+}
+
+/// The surface of a name, known or new.
+pub(super) fn named_surface(
+    name: &tree::Name,
+    cutting: bool,
+    surfaces: &mut Vec<Surface>,
+    reports: &mut Vec<Report>,
+) -> usize {
     if name.word == "cutting" {
         reports.push(
             Report::error(name.span, "no surface is called `cutting`")
                 .help("write `as NAME cutting`"),
         );
     }
-    let cutting = region.cutting.is_some();
     match surfaces.iter().position(|surface| surface.name == name.word) {
         Some(at) => {
             if surfaces[at].cutting != cutting {
@@ -170,6 +181,88 @@ fn surface(region: &tree::Region, surfaces: &mut Vec<Surface>, reports: &mut Vec
     }
 }
 
+/// The regions of a profile, derived, and the surfaces that it names.
+pub(super) fn derived(
+    profile: &tree::Profile,
+    laws: &Laws<'_>,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+    reports: &mut Vec<Report>,
+) -> (Vec<Surface>, Vec<Region>) {
+    let Some((outline, surfaces)) = profile::outline(profile, lowering, reports) else {
+        return Default::default();
+    };
+    laws.check(&surfaces, reports);
+    let parts = match regionalise::nearest(&mut lowering.graph, &outline) {
+        Ok(parts) => parts,
+        Err(Undivided([d, z])) => {
+            let z = lowering.frame.to_file(z);
+            let report = Report::error(
+                profile.span,
+                format!(
+                    "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
+                ),
+            );
+            reports.push(report.help("is the profile degenerate there?"));
+            return Default::default();
+        }
+    };
+    let names = names(&outline, &surfaces, &parts);
+    let mut regions = Vec::new();
+    for (part, (name, owner, span)) in parts.iter().zip(names) {
+        let felt = Felt { laws, lowering, surface: &surfaces[owner] };
+        match felt.derived(part, &outline, (name, owner, span), curves) {
+            Ok(region) => regions.push(region),
+            Err(report) => reports.push(report),
+        }
+    }
+    (surfaces, regions)
+}
+
+/// The name, surface and place of each derived region: `nut.2` for the second piece of a surface
+/// of several, `shank/nut.1` for the fan of a reflex corner, which belongs to the neighbour that
+/// does not cut, else to the first.
+fn names(
+    outline: &[Segment],
+    surfaces: &[Surface],
+    parts: &[Derived],
+) -> Vec<(String, usize, Span)> {
+    let name = |piece: usize| {
+        let surface = outline[piece].surface;
+        let of_surface = |other: &&Segment| other.surface == surface;
+        let all = outline.iter().filter(of_surface).count();
+        let before = outline[..=piece].iter().filter(of_surface).count();
+        let word = &surfaces[surface].name;
+        if all > 1 { format!("{word}.{before}") } else { word.clone() }
+    };
+    let mut fans = std::collections::BTreeMap::new();
+    parts
+        .iter()
+        .map(|part| match part.feature {
+            Feature::Piece(piece) => (name(piece), outline[piece].surface, outline[piece].span),
+            Feature::Corner(behind) => {
+                let first = behind.unwrap_or(0);
+                let second = behind.map_or(0, |piece| (piece + 1).min(outline.len() - 1));
+                let [a, b] = [first, second].map(|piece| outline[piece].surface);
+                let owner = if surfaces[a].cutting && !surfaces[b].cutting { b } else { a };
+                let pair = format!("{}/{}", surfaces[a].name, surfaces[b].name);
+                let count: &mut usize = fans.entry(pair.clone()).or_default();
+                *count += 1;
+                (format!("{pair}.{count}"), owner, outline[second].span)
+            }
+        })
+        .collect()
+}
+
+/// What a region is, but for what is felt in it.
+struct Said {
+    name: String,
+    span: Span,
+    owner: usize,
+    inside: Formula,
+    depth_span: Span,
+}
+
 /// Settles what one region's evaluators compute.
 struct Felt<'a> {
     laws: &'a Laws<'a>,
@@ -178,6 +271,74 @@ struct Felt<'a> {
 }
 
 impl Felt<'_> {
+    /// A region that was derived.
+    fn derived(
+        mut self,
+        part: &Derived,
+        outline: &[Segment],
+        (name, owner, span): (String, usize, Span),
+        curves: &mut Curves,
+    ) -> Result<Region, Report> {
+        let zero = self.lowering.graph.int(0);
+        let graph = &mut self.lowering.graph;
+        let bound = |sides: &Vec<Id>, curves: &mut Curves, graph: &mut crate::expr::Graph| {
+            Formula::Any(sides.iter().map(|side| curves.at_most(graph, *side, zero)).collect())
+        };
+        let inside =
+            Formula::All(part.conditions.iter().map(|sides| bound(sides, curves, graph)).collect());
+        let course = regionalise::course(graph, outline, &part.feature).unwrap_or([zero, zero]);
+        let depth = part.depth;
+        let magnitude = self.law(Quantity::Magnitude, depth)?;
+        let niceness = match self.surface.cutting {
+            false => zero,
+            true => match self.law(Quantity::Niceness, depth)? {
+                Some(niceness) => niceness,
+                None => self.lowering.graph.int(1),
+            },
+        };
+        let felt = (depth, magnitude, niceness);
+        self.finish(Said { name, span, owner, inside, depth_span: span }, felt, (course, span))
+    }
+
+    /// The law for this surface, lowered.
+    fn law(&mut self, quantity: Quantity, depth: Id) -> Result<Option<Id>, Report> {
+        match self.laws.find(quantity, self.surface) {
+            Some(law) => self.quantity(&law.value, May::Depth(depth)).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// Makes the evaluators' expressions.
+    fn finish(
+        self,
+        said: Said,
+        (depth, magnitude, niceness): (Id, Option<Id>, Id),
+        (course, course_span): ([Id; 2], Span),
+    ) -> Result<Region, Report> {
+        let graph = &mut self.lowering.graph;
+        let direction = outputs::unit(graph, course, false).ok_or_else(|| {
+            Report::error(course_span, format!("the direction of {} vanishes", said.name))
+                .help("give a vector that is not (0, 0), or `toward` a point")
+        })?;
+        // A magnitude that the file writes is a number of its own, though depth be taken from it.
+        let is_depth = magnitude.is_none();
+        let magnitude = magnitude.unwrap_or(depth);
+        let outputs = outputs::outputs(graph, depth, (magnitude, is_depth), direction, niceness);
+        Ok(Region {
+            name: said.name,
+            span: said.span,
+            surface: said.owner,
+            inside: said.inside,
+            depth,
+            depth_span: said.depth_span,
+            magnitude,
+            direction,
+            course: (course, course_span),
+            niceness,
+            outputs,
+        })
+    }
+
     fn region(
         mut self,
         written: &tree::Region,
@@ -186,17 +347,14 @@ impl Felt<'_> {
     ) -> Result<Region, Report> {
         let inside = self.inside(written, curves)?;
         let (depth, depth_span) = self.depth(written)?;
-        let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
-        let said = self.said(written, Quantity::Magnitude)?.or(law);
-        let magnitude = match said {
-            Some(value) => self.quantity(value, May::Depth(depth))?,
-            None => depth,
+        let magnitude = match self.said(written, Quantity::Magnitude)? {
+            Some(value) => Some(self.quantity(value, May::Depth(depth))?),
+            None => self.law(Quantity::Magnitude, depth)?,
         };
-        // A magnitude that the file writes is a number of its own, though depth be taken from it.
-        let is_depth = magnitude == depth
-            && said.is_none_or(|value| mention(value, Quantity::Depth.word()).is_some());
+        // Unless it is written as `depth` itself.
+        let magnitude = magnitude.filter(|id| *id != depth || self.takes_depth(written));
         let niceness = self.niceness(written, depth)?;
-        let (course, course_span) = match written.direction.as_slice() {
+        let course = match written.direction.as_slice() {
             [] => (self.downhill(depth), depth_span),
             [(direction, span)] => (self.direction(direction)?, *span),
             [(_, first), (_, second), ..] => {
@@ -205,25 +363,17 @@ impl Felt<'_> {
                 );
             }
         };
-        let graph = &mut self.lowering.graph;
-        let direction = outputs::unit(graph, course, false).ok_or_else(|| {
-            Report::error(course_span, format!("the direction of {} vanishes", written.name.word))
-                .help("give a vector that is not (0, 0), or `toward` a point")
-        })?;
-        let outputs = outputs::outputs(graph, depth, (magnitude, is_depth), direction, niceness);
-        Ok(Region {
-            name: written.name.word.clone(),
-            span: written.name.span,
-            surface: owner,
-            inside,
-            depth,
-            depth_span,
-            magnitude,
-            direction,
-            course: (course, course_span),
-            niceness,
-            outputs,
-        })
+        let (name, span) = (written.name.word.clone(), written.name.span);
+        self.finish(
+            Said { name, span, owner, inside, depth_span },
+            (depth, magnitude, niceness),
+            course,
+        )
+    }
+
+    /// Whether a region's depth is taken from its magnitude.
+    fn takes_depth(&self, written: &tree::Region) -> bool {
+        written.scalars.iter().all(|scalar| scalar.quantity != Quantity::Depth)
     }
 
     fn inside(&mut self, written: &tree::Region, curves: &mut Curves) -> Result<Formula, Report> {
@@ -371,7 +521,7 @@ impl Felt<'_> {
     }
 }
 
-fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
+pub(super) fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
     if let [d, z] = tuple.parts.as_slice() {
         return Ok([d, z]);
     }

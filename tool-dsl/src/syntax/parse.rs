@@ -177,6 +177,8 @@ impl Reader<'_> {
             Rule::curve => Item::Curve(self.definition(inner)?),
             Rule::tip => Item::Tip(self.expr(inner.next()?)),
             Rule::spindle => Item::Spindle { down: inner.next()?.as_str() == "-", span },
+            Rule::profile => Item::Profile(self.profile(inner, span)?),
+            Rule::regions => Item::Regions(span),
             Rule::region => Item::Region(self.region(inner)?),
             Rule::bsp => Item::Bsp(inner.map(|pair| self.name(&pair)).collect()),
             Rule::law => {
@@ -216,15 +218,7 @@ impl Reader<'_> {
         for pair in inner {
             let span = self.span(&pair);
             match pair.as_rule() {
-                Rule::surface => {
-                    for part in pair.into_inner() {
-                        match part.as_rule() {
-                            Rule::name => region.surface = Some(self.name(&part)),
-                            Rule::cutting => region.cutting = Some(self.span(&part)),
-                            _ => {}
-                        }
-                    }
-                }
+                Rule::surface => (region.surface, region.cutting) = self.surface(pair),
                 Rule::where_ => {
                     for part in pair.into_inner().filter(|p| p.as_rule() == Rule::condition) {
                         let condition = self.condition(part);
@@ -250,6 +244,61 @@ impl Reader<'_> {
             }
         }
         Some(region)
+    }
+
+    /// `as NAME cutting`
+    fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
+        let (mut name, mut cutting) = (None, None);
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::name => name = Some(self.name(&part)),
+                Rule::cutting => cutting = Some(self.span(&part)),
+                _ => {}
+            }
+        }
+        (name, cutting)
+    }
+
+    fn profile<'i>(
+        &mut self,
+        inner: impl Iterator<Item = Pair<'i, Rule>>,
+        span: Span,
+    ) -> Option<Profile> {
+        let (mut start, mut pieces) = (None, Vec::new());
+        for pair in inner {
+            match pair.as_rule() {
+                Rule::start => start = self.inner_tuple(pair),
+                Rule::line | Rule::arc => self.pieces(pair, &mut pieces),
+                _ => {}
+            }
+        }
+        Some(Profile { start: start?, pieces, span })
+    }
+
+    fn pieces(&mut self, pair: Pair<'_, Rule>, pieces: &mut Vec<Piece>) {
+        let whole = self.span(&pair);
+        let (mut points, mut round, mut concave) = (Vec::new(), None, None);
+        let (mut surface, mut cutting) = (None, None);
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::tuple => points.push(self.tuple(part)),
+                Rule::center => round = self.inner_tuple(part).map(Round::Center),
+                Rule::radius => {
+                    let value = part.into_inner().find(|p| p.as_rule() == Rule::expr);
+                    round = value.map(|value| Round::Radius(self.expr(value)));
+                }
+                Rule::concave => concave = Some(self.span(&part)),
+                Rule::surface => (surface, cutting) = self.surface(part),
+                _ => {}
+            }
+        }
+        let Some(surface) = surface else { return };
+        let one = points.len() == 1;
+        for to in points {
+            let span = if one { whole } else { to.span };
+            let arc = round.clone().map(|round| Arc { round, concave });
+            pieces.push(Piece { to, arc, surface: surface.clone(), cutting, span });
+        }
     }
 
     fn inner_tuple(&mut self, pair: Pair<'_, Rule>) -> Option<Tuple> {
@@ -430,5 +479,7 @@ fn is_word(rule: Rule) -> bool {
             | Rule::k_where
             | Rule::k_direction
             | Rule::k_bsp
+            | Rule::k_profile
+            | Rule::k_regions
     )
 }

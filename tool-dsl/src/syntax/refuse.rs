@@ -5,8 +5,20 @@ use crate::report::{Report, nearest};
 use crate::source::Span;
 use pest::error::{Error, ErrorVariant, InputLocation};
 
-const ITEMS: [&str; 10] =
-    ["units", "let", "param", "curve", "tip", "spindle", "region", "bsp", "magnitude", "niceness"];
+const ITEMS: [&str; 12] = [
+    "units",
+    "let",
+    "param",
+    "curve",
+    "tip",
+    "spindle",
+    "profile",
+    "regions",
+    "region",
+    "bsp",
+    "magnitude",
+    "niceness",
+];
 const PROPERTIES: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
 
 /// A comparison that a closed region cannot have.

@@ -46,6 +46,10 @@ pub enum Item {
         /// The whole item.
         span: Span,
     },
+    /// `profile { … }`
+    Profile(Profile),
+    /// `regions nearest;`
+    Regions(Span),
     /// `region … { … }`
     Region(Region),
     /// `bsp { a, b }`
@@ -61,6 +65,50 @@ pub struct Definition {
     pub name: Name,
     /// The value.
     pub value: Expr,
+}
+
+/// The outline of the solid's section, from the axis to the axis.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// Where it begins.
+    pub start: Tuple,
+    /// Its pieces in order.
+    pub pieces: Vec<Piece>,
+    /// The whole item.
+    pub span: Span,
+}
+
+/// One segment of a profile.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Where it ends.
+    pub to: Tuple,
+    /// How it gets there, if not straight.
+    pub arc: Option<Arc>,
+    /// The surface that it belongs to.
+    pub surface: Name,
+    /// `cutting`, if given.
+    pub cutting: Option<Span>,
+    /// The segment; of a list of points, its own point.
+    pub span: Span,
+}
+
+/// `arc to P center C` or `arc to P radius R`, `concave` or not.
+#[derive(Clone, Debug)]
+pub struct Arc {
+    /// The centre, or else the radius.
+    pub round: Round,
+    /// `concave`, if given.
+    pub concave: Option<Span>,
+}
+
+/// What is said of an arc's circle.
+#[derive(Clone, Debug)]
+pub enum Round {
+    /// Its centre.
+    Center(Tuple),
+    /// Its radius.
+    Radius(Expr),
 }
 
 /// A region written by hand.

@@ -1,0 +1,349 @@
+//! A profile as geometry: pieces, their distance functions and what is wrong with them.
+//!
+//! Everything is in the tool's frame, `[d, z]`, counter-clockwise: the material lies on the left.
+
+use crate::expr::{Coord, Graph, Id};
+use crate::number::Number;
+use crate::report::Report;
+use crate::source::Span;
+
+/// A point by constants.
+pub(crate) type Place = [Number; 2];
+/// A point by doubles.
+pub(crate) type Point = [f64; 2];
+
+/// Two directions closer than this are tangent.
+const TANGENT: f64 = 1e-9;
+
+/// The circle of an arc.
+#[derive(Clone, Debug)]
+pub(crate) struct Circle {
+    pub(crate) centre: Place,
+    pub(crate) radius: Number,
+    /// Whether the material is inside.
+    pub(crate) convex: bool,
+}
+
+/// One segment of a profile.
+#[derive(Clone, Debug)]
+pub(crate) struct Segment {
+    pub(crate) from: Place,
+    pub(crate) to: Place,
+    pub(crate) circle: Option<Circle>,
+    pub(crate) surface: usize,
+    pub(crate) span: Span,
+}
+
+pub(crate) fn doubles(place: &Place) -> Point {
+    [place[0].to_f64(), place[1].to_f64()]
+}
+
+pub(crate) fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+pub(crate) fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(crate) fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(crate) fn norm(a: Point) -> f64 {
+    a[0].hypot(a[1])
+}
+
+fn unit(a: Point) -> Point {
+    let length = norm(a);
+    [a[0] / length, a[1] / length]
+}
+
+impl Segment {
+    /// The same piece, walked the other way and seen with z turned over.
+    pub(crate) fn turned(mut self) -> Segment {
+        std::mem::swap(&mut self.from, &mut self.to);
+        self
+    }
+
+    /// The direction of travel at its start or end.
+    pub(crate) fn tangent(&self, at_end: bool) -> Point {
+        match &self.circle {
+            None => unit(minus(doubles(&self.to), doubles(&self.from))),
+            Some(circle) => {
+                let at = doubles(if at_end { &self.to } else { &self.from });
+                let out = unit(minus(at, doubles(&circle.centre)));
+                let left = [-out[1], out[0]];
+                if circle.convex { left } else { [-left[0], -left[1]] }
+            }
+        }
+    }
+
+    /// How far a point is on the material's side of the piece's whole line or circle.
+    pub(crate) fn signed(&self, p: Point) -> f64 {
+        match &self.circle {
+            None => {
+                let along = self.tangent(false);
+                cross(along, minus(p, doubles(&self.from)))
+            }
+            Some(circle) => {
+                let out = norm(minus(p, doubles(&circle.centre)));
+                let radius = circle.radius.to_f64();
+                if circle.convex { radius - out } else { out - radius }
+            }
+        }
+    }
+
+    /// How far a point lies behind the normal at the start and before that at the end; both at
+    /// least 0 where the nearest point of the piece is not one of its ends.
+    pub(crate) fn sector(&self, p: Point) -> [f64; 2] {
+        let (from, to) = (doubles(&self.from), doubles(&self.to));
+        match &self.circle {
+            None => {
+                let along = self.tangent(false);
+                [dot(along, minus(p, from)), dot(along, minus(to, p))]
+            }
+            Some(circle) => {
+                let centre = doubles(&circle.centre);
+                let (a, b, q) = (minus(from, centre), minus(to, centre), minus(p, centre));
+                let sides = [cross(a, q) / norm(a), cross(q, b) / norm(b)];
+                if circle.convex { sides } else { sides.map(|side| -side) }
+            }
+        }
+    }
+
+    /// The expression of [`Segment::signed`].
+    pub(crate) fn depth(&self, graph: &mut Graph) -> Option<Id> {
+        match &self.circle {
+            None => {
+                let [tx, tz] = self.direction()?;
+                linear(graph, [-&tz, tx], &self.from)
+            }
+            Some(circle) => {
+                let out = distance(graph, &circle.centre)?;
+                let radius = graph.number(circle.radius.clone());
+                Some(if circle.convex { graph.sub(radius, out) } else { graph.sub(out, radius) })
+            }
+        }
+    }
+
+    /// The expressions of [`Segment::sector`], up to a positive factor.
+    pub(crate) fn sides(&self, graph: &mut Graph) -> Option<[Id; 2]> {
+        match &self.circle {
+            None => {
+                let [tx, tz] = self.direction()?;
+                let back = [-&tx, -&tz];
+                Some([linear(graph, [tx, tz], &self.from)?, linear(graph, back, &self.to)?])
+            }
+            Some(circle) => {
+                let radial = |place: &Place| -> Option<[Number; 2]> {
+                    let [d, z] = [0, 1].map(|k| &place[k] - &circle.centre[k]);
+                    Some([d.over(&circle.radius)?, z.over(&circle.radius)?])
+                };
+                let ([ad, az], [bd, bz]) = (radial(&self.from)?, radial(&self.to)?);
+                // cross(a, q) = a_d q_z - a_z q_d
+                let (first, last) = ([-&az, ad], [bz, -&bd]);
+                let turn = |way: [Number; 2]| {
+                    if circle.convex { way } else { way.map(|part| -&part) }
+                };
+                Some([
+                    linear(graph, turn(first), &circle.centre)?,
+                    linear(graph, turn(last), &circle.centre)?,
+                ])
+            }
+        }
+    }
+
+    /// The unit direction of a line, to 256 bits.
+    pub(crate) fn direction(&self) -> Option<[Number; 2]> {
+        let [d, z] = [0, 1].map(|k| &self.to[k] - &self.from[k]);
+        let length = (&(&d * &d) + &(&z * &z)).sqrt()?;
+        Some([d.over(&length)?, z.over(&length)?])
+    }
+}
+
+/// `way · (p - from)`
+pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &Place) -> Option<Id> {
+    let constant = -&(&(&way[0] * &from[0]) + &(&way[1] * &from[1]));
+    // What cancels in 256 bits is 0.
+    let tidy = |value: Number| if value.to_f64().abs() < 1e-60 { Number::int(0) } else { value };
+    let [wd, wz] = way.map(tidy);
+    let (d, z) = (graph.coord(Coord::D), graph.coord(Coord::Z));
+    let (wd, wz, constant) = (graph.number(wd), graph.number(wz), graph.number(constant));
+    let (d, z) = (graph.mul(wd, d), graph.mul(wz, z));
+    let sum = graph.add(d, z);
+    Some(graph.add(sum, constant))
+}
+
+/// The square of the distance from a place.
+pub(crate) fn squared(graph: &mut Graph, place: &Place) -> Id {
+    let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+    let squares = [0, 1].map(|k| {
+        let there = graph.number(place[k].clone());
+        let part = graph.sub(here[k], there);
+        graph.mul(part, part)
+    });
+    graph.add(squares[0], squares[1])
+}
+
+/// The distance from a place.
+pub(crate) fn distance(graph: &mut Graph, place: &Place) -> Option<Id> {
+    let square = squared(graph, place);
+    graph.sqrt(square)
+}
+
+/// The turn from one direction to the next: positive to the left, 0 if they are tangent.
+pub(crate) fn turn(incoming: Point, outgoing: Point) -> f64 {
+    let sine = cross(incoming, outgoing);
+    if sine.abs() < TANGENT && dot(incoming, outgoing) > 0.0 { 0.0 } else { sine }
+}
+
+/// What is wrong with a profile as a whole: where it begins and ends, its sense, crossings.
+pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Report> {
+    let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
+    let mut reports = Vec::new();
+    let ends = [(first, doubles(&first.from), "begins"), (last, doubles(&last.to), "ends")];
+    for (segment, [d, z], verb) in ends {
+        if d != 0.0 {
+            let place = show([d, z]);
+            let axis = show([0.0, z]);
+            reports.push(
+                Report::error(
+                    segment.span,
+                    format!("the profile {verb} at {place}, not on the axis"),
+                )
+                .help(format!("let it run from the axis to the axis: add `line to {axis}`")),
+            );
+        }
+    }
+    let points: Vec<Point> = outline.iter().flat_map(along).collect();
+    for (segment, at) in
+        outline.iter().zip(outline.iter().map(|s| (doubles(&s.from), doubles(&s.to))))
+    {
+        let lowest = along(segment).into_iter().map(|p| p[0]).fold(f64::INFINITY, f64::min);
+        if at.0[0] == 0.0 && at.1[0] == 0.0 {
+            reports.push(
+                Report::error(segment.span, "this segment lies on the axis")
+                    .help("leave it out: the axis closes the profile by itself"),
+            );
+        } else if lowest < -1e-12 {
+            reports.push(
+                Report::error(segment.span, "this segment crosses the axis")
+                    .help("`d` is a radius and never negative"),
+            );
+        }
+    }
+    if !reports.is_empty() {
+        return reports;
+    }
+    let area: f64 = points.windows(2).map(|pair| cross(pair[0], pair[1])).sum();
+    if area <= 0.0 {
+        reports.push(
+            Report::error(first.span, "the profile runs clockwise")
+                .help("start at its low end and keep the material on the left"),
+        );
+        return reports;
+    }
+    for (i, a) in outline.iter().enumerate() {
+        for (j, b) in outline.iter().enumerate().skip(i + 1) {
+            if let Some(at) = meeting(a, b, j == i + 1) {
+                reports.push(
+                    Report::error(b.span, format!("this segment meets that one at {}", show(at)))
+                        .and(a.span, "that one")
+                        .help("a profile never crosses or touches itself"),
+                );
+            }
+        }
+    }
+    reports
+}
+
+/// Points along a segment, its ends among them.
+pub(crate) fn along(segment: &Segment) -> Vec<Point> {
+    let (from, to) = (doubles(&segment.from), doubles(&segment.to));
+    let Some(circle) = &segment.circle else { return vec![from, to] };
+    let centre = doubles(&circle.centre);
+    let (a, b) = (minus(from, centre), minus(to, centre));
+    let mut angle = cross(a, b).atan2(dot(a, b));
+    if circle.convex && angle < 0.0 {
+        angle += 2.0 * std::f64::consts::PI;
+    }
+    if !circle.convex && angle > 0.0 {
+        angle -= 2.0 * std::f64::consts::PI;
+    }
+    const STEPS: usize = 32;
+    (0..=STEPS)
+        .map(|k| match k {
+            0 => from,
+            STEPS => to,
+            _ => {
+                let (sin, cos) = (angle * k as f64 / STEPS as f64).sin_cos();
+                [centre[0] + a[0] * cos - a[1] * sin, centre[1] + a[0] * sin + a[1] * cos]
+            }
+        })
+        .collect()
+}
+
+/// Where two segments meet, but for the end that neighbours share.
+fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
+    let candidates = match (&a.circle, &b.circle) {
+        (None, None) => line_line(a, b),
+        (None, Some(_)) => line_circle(a, b),
+        (Some(_), None) => line_circle(b, a),
+        (Some(_), Some(_)) => circle_circle(a, b),
+    };
+    let size = [&a.from, &a.to, &b.from, &b.to]
+        .into_iter()
+        .map(|place| norm(doubles(place)))
+        .fold(0.0, f64::max);
+    let slack = 1e-9 * size;
+    let on = |s: &Segment, p: Point| {
+        s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
+    };
+    let ends = [doubles(&a.from), doubles(&a.to), doubles(&b.from), doubles(&b.to)];
+    candidates.into_iter().chain(ends).find(|p| {
+        let shared = neighbours && norm(minus(*p, doubles(&b.from))) <= 2.0 * slack;
+        !shared && on(a, *p) && on(b, *p)
+    })
+}
+
+fn line_line(a: &Segment, b: &Segment) -> Vec<Point> {
+    let (p, r) = (doubles(&a.from), minus(doubles(&a.to), doubles(&a.from)));
+    let (q, s) = (doubles(&b.from), minus(doubles(&b.to), doubles(&b.from)));
+    let sine = cross(r, s);
+    if sine == 0.0 {
+        return Vec::new();
+    }
+    let t = cross(minus(q, p), s) / sine;
+    vec![[p[0] + t * r[0], p[1] + t * r[1]]]
+}
+
+fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
+    let Some(circle) = &arc.circle else { return Vec::new() };
+    let (centre, radius) = (doubles(&circle.centre), circle.radius.to_f64());
+    let along = line.tangent(false);
+    let from = minus(doubles(&line.from), centre);
+    let foot = -dot(along, from);
+    let off = cross(along, from);
+    let half = (radius * radius - off * off).max(0.0).sqrt();
+    [foot - half, foot + half]
+        .map(|t| [centre[0] + from[0] + t * along[0], centre[1] + from[1] + t * along[1]])
+        .to_vec()
+}
+
+fn circle_circle(a: &Segment, b: &Segment) -> Vec<Point> {
+    let (Some(ca), Some(cb)) = (&a.circle, &b.circle) else { return Vec::new() };
+    let (p, q) = (doubles(&ca.centre), doubles(&cb.centre));
+    let (r, s) = (ca.radius.to_f64(), cb.radius.to_f64());
+    let between = minus(q, p);
+    let apart = norm(between);
+    if apart == 0.0 {
+        return Vec::new();
+    }
+    let along = (apart * apart + r * r - s * s) / (2.0 * apart);
+    let half = (r * r - along * along).max(0.0).sqrt();
+    let way = [between[0] / apart, between[1] / apart];
+    [half, -half]
+        .map(|h| [p[0] + along * way[0] - h * way[1], p[1] + along * way[1] + h * way[0]])
+        .to_vec()
+}
