@@ -5,6 +5,7 @@ use crate::expr::interval::{Cell, Encloser, Interval};
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
+use crate::plan::empty::{Beyond, Void};
 use crate::report::Report;
 
 /// The largest coordinate, 2^300.
@@ -51,6 +52,8 @@ pub struct Prover<'m> {
     model: &'m Model,
     encloser: Encloser<'m>,
     signs: Vec<Signs>,
+    /// Regions that are not asked about.
+    passed_over: Vec<bool>,
 }
 
 impl<'m> Prover<'m> {
@@ -58,7 +61,12 @@ impl<'m> Prover<'m> {
     pub fn new(model: &'m Model) -> Prover<'m> {
         let values = model.curves.iter().map(|curve| curve.value);
         let encloser = Encloser::new(&model.graph, values);
-        Prover { model, encloser, signs: vec![ANY; model.curves.len()] }
+        Prover {
+            model,
+            encloser,
+            signs: vec![ANY; model.curves.len()],
+            passed_over: vec![false; model.regions.len()],
+        }
     }
 
     /// The signs that the curves can have in a box.
@@ -73,7 +81,10 @@ impl<'m> Prover<'m> {
     fn place(&mut self, cell: Cell) -> Place {
         self.signs(cell);
         let mut place = Place::Outside;
-        for region in &self.model.regions {
+        for (region, passed_over) in self.model.regions.iter().zip(&self.passed_over) {
+            if *passed_over {
+                continue;
+            }
             match region.inside.decided(&self.signs) {
                 Some(true) => return Place::Inside,
                 Some(false) => {}
@@ -85,8 +96,12 @@ impl<'m> Prover<'m> {
 
     /// Whether the solid provably does not reach into a box.
     fn empty(&mut self, cell: Cell) -> bool {
+        self.empty_within(cell, BUDGET)
+    }
+
+    fn empty_within(&mut self, cell: Cell, budget: usize) -> bool {
         let mut open = vec![cell];
-        let mut left = BUDGET;
+        let mut left = budget;
         while let Some(cell) = open.pop() {
             match self.place(cell) {
                 Place::Outside => {}
@@ -169,11 +184,32 @@ impl Extent {
 pub fn extent(model: &Model) -> Result<Extent, Report> {
     let mut prover = Prover::new(model);
     let whole = |size: f64| Interval::new(-size, size);
+    // Regions that linear curves bound need no boxes: their signs, and whether they are settled.
+    let void = Void::new(model);
+    let mut settled = vec![false; model.regions.len()];
+    let demands: Vec<Vec<Signs>> = model
+        .regions
+        .iter()
+        .map(|region| {
+            let mut signs = vec![ANY; model.curves.len()];
+            region.inside.demand(&mut signs);
+            signs
+        })
+        .collect();
     let mut beyond = |size: f64| {
         let (far, all) = (Interval::new(size, LIMIT), Interval::new(0.0, LIMIT));
-        prover.empty(Cell { d: far, z: whole(LIMIT) })
-            && prover.empty(Cell { d: all, z: far })
-            && prover.empty(Cell { d: all, z: Interval::new(-LIMIT, -size) })
+        let cells = [
+            (Beyond::Radius(size), Cell { d: far, z: whole(LIMIT) }),
+            (Beyond::Above(size), Cell { d: all, z: far }),
+            (Beyond::Below(size), Cell { d: all, z: Interval::new(-LIMIT, -size) }),
+        ];
+        cells.into_iter().all(|(beyond, cell)| {
+            for (settled, signs) in settled.iter_mut().zip(&demands) {
+                *settled = void.never_beyond(signs, beyond);
+            }
+            prover.passed_over.clone_from(&settled);
+            prover.empty_within(cell, 20 * BUDGET)
+        })
     };
     let mut power = 280;
     if !beyond(2f64.powi(power)) {
@@ -188,6 +224,7 @@ pub fn extent(model: &Model) -> Result<Extent, Report> {
             power -= step;
         }
     }
+    prover.passed_over.fill(false);
     let size = 2f64.powi(power);
     // From outside inward, as long as the rest stays provably empty.
     let radius =

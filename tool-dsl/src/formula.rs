@@ -64,6 +64,19 @@ impl Formula {
         }
     }
 
+    /// Narrows the signs to those that every point has for which this holds, as far as single
+    /// atoms say so.
+    pub fn demand(&self, signs: &mut [Signs]) {
+        match self {
+            Formula::Atom { curve, below } => {
+                signs[*curve] &= if *below { NEGATIVE | ZERO } else { POSITIVE | ZERO };
+            }
+            Formula::All(parts) => parts.iter().for_each(|part| part.demand(signs)),
+            Formula::Any(parts) if parts.len() == 1 => parts[0].demand(signs),
+            _ => {}
+        }
+    }
+
     /// The atoms whose curve is not yet decided, in order.
     pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {

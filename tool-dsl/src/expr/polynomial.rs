@@ -83,6 +83,22 @@ impl Polynomial {
         Some(product)
     }
 
+    /// The sum of its terms: what cancels is gone from it.
+    pub fn expression(&self, graph: &mut Graph) -> Id {
+        let mut sum = graph.int(0);
+        for (monomial, factor) in &self.0 {
+            let mut term = graph.number(factor.clone());
+            for (exponent, coord) in monomial.iter().zip([Coord::D, Coord::X, Coord::Y, Coord::Z]) {
+                let base = graph.coord(coord);
+                // Powers of a coordinate exist.
+                let power = graph.power(base, 2 * i32::from(*exponent)).unwrap_or(base);
+                term = graph.mul(term, power);
+            }
+            sum = graph.add(sum, term);
+        }
+        sum
+    }
+
     /// The factor by which `self` is `other`, if it is a multiple of it.
     pub fn ratio(&self, other: &Polynomial) -> Option<Number> {
         let factor = self.0.first_key_value()?.1.over(other.0.first_key_value()?.1)?;

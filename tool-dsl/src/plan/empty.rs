@@ -27,17 +27,29 @@ struct Condition {
     strict: bool,
 }
 
+/// A half plane that is far from the origin.
+#[derive(Clone, Copy)]
+pub(crate) enum Beyond {
+    /// Farther from the axis than this.
+    Radius(f64),
+    /// Higher than this.
+    Above(f64),
+    /// Lower than minus this.
+    Below(f64),
+}
+
 /// Proves sets of signs impossible.
-pub(super) struct Void<'m> {
+pub(crate) struct Void<'m> {
     /// Each curve as a linear form, if it is one.
     forms: Vec<Option<(Vec<f64>, f64)>>,
     variables: usize,
+    not_negative: Vec<usize>,
     prover: Prover<'m>,
 }
 
 impl<'m> Void<'m> {
-    pub(super) fn new(model: &'m Model) -> Void<'m> {
-        let mut variables = BTreeMap::from([([1, 0, 0, 0], 0)]);
+    pub(crate) fn new(model: &'m Model) -> Void<'m> {
+        let mut variables = BTreeMap::from([([1, 0, 0, 0], 0), ([0, 0, 0, 1], 1)]);
         let mut forms = Vec::new();
         for curve in &model.curves {
             let form = Polynomial::of(&model.graph, curve.value).map(|polynomial| {
@@ -62,19 +74,44 @@ impl<'m> Void<'m> {
         Void {
             forms: forms.into_iter().map(|form| form.map(dense)).collect(),
             variables: variables.len(),
+            not_negative: variables
+                .iter()
+                .filter(|(monomial, _)| monomial[1..].iter().all(|exponent| exponent % 2 == 0))
+                .map(|(_, variable)| *variable)
+                .collect(),
             prover: Prover::new(model),
         }
     }
 
     /// Whether provably no point has these signs.
     pub(super) fn proved(&mut self, signs: &[Signs]) -> bool {
-        self.contradictory(signs) || self.uncovered(signs)
+        self.contradictory(signs, None) || self.uncovered(signs)
     }
 
-    fn contradictory(&self, signs: &[Signs]) -> bool {
-        let mut radius = vec![0.0; self.variables];
-        radius[0] = -1.0;
-        let mut conditions = vec![Condition { factors: radius, constant: 0.0, strict: false }];
+    /// Whether, by the linear curves alone, no point has these signs and lies so far out.
+    pub(crate) fn never_beyond(&self, signs: &[Signs], beyond: Beyond) -> bool {
+        let (variable, factor, size) = match beyond {
+            Beyond::Radius(size) => (0, -1.0, size),
+            Beyond::Above(size) => (1, -1.0, size),
+            Beyond::Below(size) => (1, 1.0, size),
+        };
+        let mut factors = vec![0.0; self.variables];
+        factors[variable] = factor;
+        self.contradictory(signs, Some(Condition { factors, constant: size, strict: false }))
+    }
+
+    fn contradictory(&self, signs: &[Signs], more: Option<Condition>) -> bool {
+        // What is a square, or a distance from the axis, is not negative.
+        let mut conditions: Vec<Condition> = self
+            .not_negative
+            .iter()
+            .map(|variable| {
+                let mut factors = vec![0.0; self.variables];
+                factors[*variable] = -1.0;
+                Condition { factors, constant: 0.0, strict: false }
+            })
+            .collect();
+        conditions.extend(more);
         for (form, sign) in self.forms.iter().zip(signs) {
             let Some((factors, constant)) = form else { continue };
             // What would be lost as rounding must not take part: fewer conditions prove less.

@@ -7,7 +7,7 @@
 //! tests is chosen: greedily by the information that they give about
 //! samples of the section, cheap curves first, `bsp` before all.
 
-mod empty;
+pub(crate) mod empty;
 
 use crate::bound::Extent;
 use crate::expr::value::{At, Evaluator};

@@ -11,10 +11,14 @@
 //! distance to that feature grows by 1 and any other signed distance by at most 1, so a curve once
 //! crossed is not crossed back.
 
+mod curve;
 pub(crate) mod outline;
+mod samples;
 
 use crate::expr::{Coord, Graph, Id};
-use outline::{Place, Point, Segment, doubles, minus, norm, turn};
+use crate::number::Number;
+use curve::{Bound, Curve};
+use outline::{Place, Point, Segment, minus, norm, turn};
 
 /// What a point of the inside can be nearest to.
 #[derive(Clone, Debug)]
@@ -39,6 +43,9 @@ pub(crate) struct Derived {
 /// The most bounds that one region may need.
 const MOST: usize = 64;
 
+/// Distances that differ by less than this part of the tool's size tell no owner.
+const CLOSE: f64 = 1e-9;
+
 /// Why a profile could not be divided, with the place where it was noticed.
 pub(crate) struct Undivided(pub(crate) Point);
 
@@ -46,13 +53,21 @@ pub(crate) struct Undivided(pub(crate) Point);
 struct Section<'o> {
     outline: &'o [Segment],
     features: Vec<Feature>,
+    /// Every corner, and the feature that it is, if it is one.
+    corners: Vec<(Point, Option<usize>)>,
+    /// The diagonal of its box.
+    size: f64,
 }
 
 /// Divides the inside of an outline.
 pub(crate) fn nearest(graph: &mut Graph, outline: &[Segment]) -> Result<Vec<Derived>, Undivided> {
-    let section = Section { outline, features: features(outline) };
-    let samples: Vec<(Point, Option<usize>)> =
-        samples(outline).into_iter().map(|p| (p, section.owner(p))).collect();
+    if outline.is_empty() {
+        return Ok(Vec::new());
+    }
+    let section = Section::new(outline);
+    let mut samples: Vec<(Point, Option<usize>)> =
+        samples::scattered(outline).into_iter().filter_map(|p| section.sample(p)).collect();
+    section.refined(&mut samples);
     (0..section.features.len()).map(|feature| section.region(graph, feature, &samples)).collect()
 }
 
@@ -77,6 +92,25 @@ fn features(outline: &[Segment]) -> Vec<Feature> {
     features
 }
 
+impl<'o> Section<'o> {
+    fn new(outline: &'o [Segment]) -> Section<'o> {
+        let features = features(outline);
+        let all = std::iter::once(None).chain((0..outline.len()).map(Some));
+        let corners = all
+            .map(|behind| {
+                let place = match behind {
+                    Some(piece) => outline[piece].ends()[1],
+                    None => outline[0].ends()[0],
+                };
+                let is = |f: &Feature| matches!(f, Feature::Corner(other) if *other == behind);
+                (place, features.iter().position(is))
+            })
+            .collect();
+        let [low, high] = outline::reach(outline);
+        Section { outline, features, corners, size: norm(minus(high, low)) }
+    }
+}
+
 impl Section<'_> {
     fn corner(&self, behind: Option<usize>) -> &Place {
         match behind {
@@ -85,33 +119,41 @@ impl Section<'_> {
         }
     }
 
-    /// The feature that a point of the inside is nearest to; `None` outside. By distances alone.
-    fn owner(&self, p: Point) -> Option<usize> {
-        let mut best: Option<(f64, Option<usize>)> = None;
-        let mut offer = |distance: f64, owner: Option<usize>| {
-            // What is as near as a corner's own pieces is the corner's only if it is nearer.
-            if best.is_none_or(|(least, _)| distance < least) {
-                best = Some((distance, owner));
+    /// A point with its owner, if that is beyond doubt.
+    fn sample(&self, p: Point) -> Option<(Point, Option<usize>)> {
+        let (owner, clear) = self.owner(p);
+        clear.then_some((p, owner))
+    }
+
+    /// The feature that a point of the inside is nearest to, `None` outside, by distances alone;
+    /// and whether that is beyond doubt: no other is as near but for rounding.
+    fn owner(&self, p: Point) -> (Option<usize>, bool) {
+        let slack = CLOSE * self.size;
+        let (mut best, mut owner) = (f64::INFINITY, None);
+        let mut rival = f64::INFINITY;
+        let mut offer = |distance: f64, by: Option<usize>| {
+            if distance < best {
+                if by != owner {
+                    rival = best;
+                }
+                (best, owner) = (distance, by);
+            } else if by != owner {
+                rival = rival.min(distance);
             }
         };
         for (place, feature) in self.features.iter().enumerate() {
             if let Feature::Piece(index) = feature {
                 let segment = &self.outline[*index];
-                if segment.sector(p).iter().all(|side| *side >= 0.0) {
+                if segment.sector(p).iter().all(|side| *side >= -1e-3 * slack) {
                     let depth = segment.signed(p);
                     offer(depth.abs(), (depth >= 0.0).then_some(place));
                 }
             }
         }
-        let corners = std::iter::once(None).chain((0..self.outline.len()).map(Some));
-        for behind in corners {
-            let owner = self
-                .features
-                .iter()
-                .position(|feature| matches!(feature, Feature::Corner(other) if *other == behind));
-            offer(norm(minus(p, doubles(self.corner(behind)))), owner);
+        for (place, by) in &self.corners {
+            offer(norm(minus(p, *place)), *by);
         }
-        best.and_then(|(_, owner)| owner)
+        (owner, rival - best > slack && best > slack)
     }
 
     /// The piece whose outer side a point outside is on.
@@ -119,14 +161,12 @@ impl Section<'_> {
         let distance = |index: &usize| {
             let segment = &self.outline[*index];
             let [before, after] = segment.sector(p);
-            let end = if before < 0.0 {
-                Some(&segment.from)
-            } else if after < 0.0 {
-                Some(&segment.to)
-            } else {
-                None
-            };
-            end.map_or(segment.signed(p).abs(), |end| norm(minus(p, doubles(end))))
+            let [from, to] = segment.ends();
+            match (before < 0.0, after < 0.0) {
+                (true, _) => norm(minus(p, from)),
+                (_, true) => norm(minus(p, to)),
+                _ => segment.signed(p).abs(),
+            }
         };
         (0..self.outline.len())
             .filter(|index| self.outline[*index].signed(p) < 0.0)
@@ -143,7 +183,9 @@ impl Section<'_> {
     fn depth_at(&self, feature: &Feature, p: Point) -> f64 {
         match feature {
             Feature::Piece(index) => self.outline[*index].signed(p),
-            Feature::Corner(behind) => norm(minus(p, doubles(self.corner(*behind)))),
+            Feature::Corner(behind) => {
+                norm(minus(p, self.corners[behind.map_or(0, |piece| piece + 1)].0))
+            }
         }
     }
 
@@ -169,14 +211,19 @@ impl Section<'_> {
         let own: Vec<Point> =
             samples.iter().filter(|(_, owner)| *owner == Some(place)).map(|(p, _)| *p).collect();
         let mut bounds: Vec<Bound> = Vec::new();
-        if let Feature::Piece(_) = feature {
+        if let Feature::Piece(piece) = feature {
             bounds.push(Bound::one(Curve::Inside(feature.clone())));
+            // Behind a concave arc's centre one is outside its circle too.
+            if self.outline[piece].circle.as_ref().is_some_and(|circle| !circle.convex) {
+                bounds.extend([0, 1].map(|end| Bound::one(Curve::Before { piece, end })));
+            }
         } else if let Feature::Corner(behind) = feature {
             // A corner's fan lies between the normals of its pieces.
             for (piece, end) in self.beside(behind).into_iter().flatten() {
                 bounds.push(Bound::one(Curve::Past { piece, end }));
             }
         }
+        let sure = bounds.len();
         for (p, owner) in samples {
             if *owner == Some(place) || !bounds.iter().all(|bound| bound.holds(self, *p)) {
                 continue;
@@ -188,7 +235,7 @@ impl Section<'_> {
             }
         }
         // Later bounds may have made earlier ones idle.
-        for index in (0..bounds.len()).rev() {
+        for index in (sure..bounds.len()).rev() {
             let others = |p: Point| {
                 bounds.iter().enumerate().all(|(k, bound)| k == index || bound.holds(self, p))
             };
@@ -204,7 +251,37 @@ impl Section<'_> {
             .map(|bound| bound.0.iter().map(|curve| curve.side(self, graph)).collect())
             .collect::<Option<Vec<Vec<Id>>>>()
             .ok_or_else(undivided)?;
+        // A convex arc's region lies in its circle. Any other is kept in the outline's box, so that
+        // nothing is claimed where no sample was.
+        let mut conditions = conditions;
+        let in_circle = match feature {
+            Feature::Piece(piece) => self.outline[piece].circle.as_ref().is_some_and(|c| c.convex),
+            Feature::Corner(_) => false,
+        };
+        if !in_circle {
+            conditions.extend(self.box_sides(graph).into_iter().map(|side| vec![side]));
+        }
         Ok(Derived { feature, conditions, depth })
+    }
+
+    /// The sides of the outline's box, each at most 0 inside.
+    fn box_sides(&self, graph: &mut Graph) -> Vec<Id> {
+        let [low, high] = outline::reach(self.outline);
+        let (d, z) = (graph.coord(Coord::D), graph.coord(Coord::Z));
+        let mut number = |value: f64| graph.number(self.given(value));
+        let (radius, low, high) = (number(high[0]), number(low[1]), number(high[1]));
+        vec![graph.sub(d, radius), graph.sub(low, z), graph.sub(z, high)]
+    }
+
+    /// The constant of the outline that a double stands for, so that equal borders are one curve.
+    fn given(&self, value: f64) -> Number {
+        let places = self.outline.iter().flat_map(|segment| [&segment.from, &segment.to]);
+        places
+            .flatten()
+            .find(|part| part.to_f64() == value)
+            .cloned()
+            .or_else(|| Number::from_f64(value))
+            .unwrap_or_else(|| Number::int(0))
     }
 
     /// A bound that keeps a sample out and all own samples in.
@@ -227,6 +304,13 @@ impl Section<'_> {
         if owner.is_none() {
             choices.push(Curve::Inside(other.clone()));
         }
+        // Any other feature that the point is nearer to, or beyond, may do as well.
+        for rest in &self.features {
+            choices.push(Curve::Nearer { this: feature.clone(), other: rest.clone() });
+        }
+        if owner.is_none() {
+            choices.extend((0..self.outline.len()).map(|k| Curve::Inside(Feature::Piece(k))));
+        }
         choices.retain(|curve| !curve.holds(self, p));
         let keeps = |bound: &Bound| own.iter().all(|q| bound.holds(self, *q));
         if let Some(curve) = choices.iter().find(|curve| keeps(&Bound::one((*curve).clone()))) {
@@ -234,12 +318,14 @@ impl Section<'_> {
         }
         // Only where the other is in reach does it bound.
         let mut guards = Vec::new();
-        for some in [&other, feature] {
+        let near = [&other, feature].into_iter().chain(&self.features);
+        for some in near {
             if let Feature::Piece(piece) = *some {
                 guards.extend([0, 1].map(|end| Curve::Past { piece, end }));
                 guards.extend([0, 1].map(|end| Curve::Before { piece, end }));
             }
         }
+        guards.extend(choices.iter().cloned());
         for curve in &choices {
             for guard in guards.iter().filter(|guard| !guard.holds(self, p)) {
                 let bound = Bound(vec![curve.clone(), guard.clone()]);
@@ -282,96 +368,6 @@ impl Section<'_> {
     }
 }
 
-/// A side of a curve, by its meaning.
-#[derive(Clone, Debug)]
-enum Curve {
-    /// On the material's side of a piece's whole line or circle.
-    Inside(Feature),
-    /// Not beyond the normal at an end of a piece (0 its start, 1 its end).
-    Before { piece: usize, end: usize },
-    /// Beyond it.
-    Past { piece: usize, end: usize },
-    /// No nearer to another feature.
-    Nearer { this: Feature, other: Feature },
-}
-
-impl Curve {
-    fn holds(&self, section: &Section<'_>, p: Point) -> bool {
-        match self {
-            Curve::Inside(feature) => section.depth_at(feature, p) >= 0.0,
-            Curve::Before { piece, end } => section.outline[*piece].sector(p)[*end] >= 0.0,
-            Curve::Past { piece, end } => section.outline[*piece].sector(p)[*end] <= 0.0,
-            Curve::Nearer { this, other } => {
-                section.depth_at(this, p) <= section.depth_at(other, p)
-            }
-        }
-    }
-
-    /// The expression that is at most 0 on this side.
-    fn side(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Id> {
-        match self {
-            Curve::Inside(feature) => {
-                let depth = section.depth(graph, feature)?;
-                Some(graph.neg(depth))
-            }
-            Curve::Before { piece, end } => {
-                let side = section.outline[*piece].sides(graph)?[*end];
-                Some(graph.neg(side))
-            }
-            Curve::Past { piece, end } => Some(section.outline[*piece].sides(graph)?[*end]),
-            Curve::Nearer { this, other } => section.comparison(graph, this, other),
-        }
-    }
-}
-
-impl Section<'_> {
-    /// An expression that is at most 0 where one feature is no farther than another, inside. A
-    /// corner and a line, or two corners, need no root.
-    fn comparison(&self, graph: &mut Graph, this: &Feature, other: &Feature) -> Option<Id> {
-        let line = |feature: &Feature| match feature {
-            Feature::Piece(index) => self.outline[*index].circle.is_none(),
-            Feature::Corner(_) => false,
-        };
-        match (this, other) {
-            (Feature::Corner(a), Feature::Corner(b)) => {
-                let a = outline::squared(graph, self.corner(*a));
-                let b = outline::squared(graph, self.corner(*b));
-                Some(graph.sub(a, b))
-            }
-            (Feature::Corner(corner), piece) if line(piece) => {
-                let away = outline::squared(graph, self.corner(*corner));
-                let depth = self.depth(graph, piece)?;
-                let square = graph.mul(depth, depth);
-                Some(graph.sub(away, square))
-            }
-            (piece, Feature::Corner(corner)) if line(piece) => {
-                let away = outline::squared(graph, self.corner(*corner));
-                let depth = self.depth(graph, piece)?;
-                let square = graph.mul(depth, depth);
-                Some(graph.sub(square, away))
-            }
-            _ => {
-                let (this, other) = (self.depth(graph, this)?, self.depth(graph, other)?);
-                Some(graph.sub(this, other))
-            }
-        }
-    }
-}
-
-/// One of these sides holds.
-#[derive(Clone, Debug)]
-struct Bound(Vec<Curve>);
-
-impl Bound {
-    fn one(curve: Curve) -> Bound {
-        Bound(vec![curve])
-    }
-
-    fn holds(&self, section: &Section<'_>, p: Point) -> bool {
-        self.0.iter().any(|curve| curve.holds(section, p))
-    }
-}
-
 /// The direction to a feature's surface, before it is made a unit vector.
 pub(crate) fn course(graph: &mut Graph, outline: &[Segment], feature: &Feature) -> Option<[Id; 2]> {
     let from = |graph: &mut Graph, place: &Place| {
@@ -398,46 +394,4 @@ pub(crate) fn course(graph: &mut Graph, outline: &[Segment], feature: &Feature) 
             from(graph, place).map(|part| graph.neg(part))
         }
     })
-}
-
-/// Points of the section and its surroundings: spread evenly, and close to every piece and corner.
-fn samples(outline: &[Segment]) -> Vec<Point> {
-    const EVEN: usize = 6000;
-    let points: Vec<Point> = outline.iter().flat_map(outline::along).collect();
-    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for p in &points {
-        for k in 0..2 {
-            low[k] = low[k].min(p[k]);
-            high[k] = high[k].max(p[k]);
-        }
-    }
-    let size = norm(minus(high, low));
-    let (a, b) = (0.754_877_666_246_693, 0.569_840_290_998_053);
-    let mut samples: Vec<Point> = (1..=EVEN)
-        .map(|k| {
-            let (u, v) = ((a * k as f64).fract(), (b * k as f64).fract());
-            let margin = 0.15 * size;
-            [u * (high[0] + margin), low[1] - margin + v * (high[1] - low[1] + 2.0 * margin)]
-        })
-        .collect();
-    let around = points.windows(2).flat_map(|pair| {
-        let (from, way) = (pair[0], minus(pair[1], pair[0]));
-        (0..=24).map(move |k| {
-            let t = f64::from(k) / 24.0;
-            [from[0] + t * way[0], from[1] + t * way[1]]
-        })
-    });
-    for (k, p) in around.enumerate() {
-        for (step, power) in [-0.9, -1.6, -2.4, -3.3].into_iter().enumerate() {
-            let reach = size * 10f64.powf(power);
-            for turn in 0..6 {
-                let angle = (k * 7 + step * 3) as f64 * 0.618 + f64::from(turn) * 1.047_197_551;
-                let q = [p[0] + reach * angle.cos(), p[1] + reach * angle.sin()];
-                if q[0] >= 0.0 {
-                    samples.push(q);
-                }
-            }
-        }
-    }
-    samples
 }

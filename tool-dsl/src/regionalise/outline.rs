@@ -32,6 +32,28 @@ pub(crate) struct Segment {
     pub(crate) circle: Option<Circle>,
     pub(crate) surface: usize,
     pub(crate) span: Span,
+    /// The same in doubles.
+    flat: Flat,
+}
+
+/// A segment in doubles.
+#[derive(Clone, Debug)]
+struct Flat {
+    from: Point,
+    to: Point,
+    /// The direction of travel, of a line.
+    along: Point,
+    /// Centre and radius, of an arc.
+    circle: Option<(Point, f64, bool)>,
+}
+
+impl Flat {
+    fn new(from: &Place, to: &Place, circle: Option<&Circle>) -> Flat {
+        let [from, to] = [from, to].map(doubles);
+        let circle =
+            circle.map(|circle| (doubles(&circle.centre), circle.radius.to_f64(), circle.convex));
+        Flat { from, to, along: unit(minus(to, from)), circle }
+    }
 }
 
 pub(crate) fn doubles(place: &Place) -> Point {
@@ -60,36 +82,35 @@ fn unit(a: Point) -> Point {
 }
 
 impl Segment {
-    /// The same piece, walked the other way and seen with z turned over.
-    pub(crate) fn turned(mut self) -> Segment {
-        std::mem::swap(&mut self.from, &mut self.to);
-        self
+    pub(crate) fn new(
+        [from, to]: [Place; 2],
+        circle: Option<Circle>,
+        surface: usize,
+        span: Span,
+    ) -> Segment {
+        let flat = Flat::new(&from, &to, circle.as_ref());
+        Segment { from, to, circle, surface, span, flat }
+    }
+
+    /// Its ends.
+    pub(crate) fn ends(&self) -> [Point; 2] {
+        [self.flat.from, self.flat.to]
     }
 
     /// The direction of travel at its start or end.
     pub(crate) fn tangent(&self, at_end: bool) -> Point {
-        match &self.circle {
-            None => unit(minus(doubles(&self.to), doubles(&self.from))),
-            Some(circle) => {
-                let at = doubles(if at_end { &self.to } else { &self.from });
-                let out = unit(minus(at, doubles(&circle.centre)));
-                let left = [-out[1], out[0]];
-                if circle.convex { left } else { [-left[0], -left[1]] }
-            }
-        }
+        let Some((centre, _, convex)) = self.flat.circle else { return self.flat.along };
+        let out = unit(minus(self.ends()[usize::from(at_end)], centre));
+        if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
     }
 
     /// How far a point is on the material's side of the piece's whole line or circle.
     pub(crate) fn signed(&self, p: Point) -> f64 {
-        match &self.circle {
-            None => {
-                let along = self.tangent(false);
-                cross(along, minus(p, doubles(&self.from)))
-            }
-            Some(circle) => {
-                let out = norm(minus(p, doubles(&circle.centre)));
-                let radius = circle.radius.to_f64();
-                if circle.convex { radius - out } else { out - radius }
+        match self.flat.circle {
+            None => cross(self.flat.along, minus(p, self.flat.from)),
+            Some((centre, radius, convex)) => {
+                let out = norm(minus(p, centre));
+                if convex { radius - out } else { out - radius }
             }
         }
     }
@@ -97,17 +118,13 @@ impl Segment {
     /// How far a point lies behind the normal at the start and before that at the end; both at
     /// least 0 where the nearest point of the piece is not one of its ends.
     pub(crate) fn sector(&self, p: Point) -> [f64; 2] {
-        let (from, to) = (doubles(&self.from), doubles(&self.to));
-        match &self.circle {
-            None => {
-                let along = self.tangent(false);
-                [dot(along, minus(p, from)), dot(along, minus(to, p))]
-            }
-            Some(circle) => {
-                let centre = doubles(&circle.centre);
+        let [from, to] = self.ends();
+        match self.flat.circle {
+            None => [dot(self.flat.along, minus(p, from)), dot(self.flat.along, minus(to, p))],
+            Some((centre, radius, convex)) => {
                 let (a, b, q) = (minus(from, centre), minus(to, centre), minus(p, centre));
-                let sides = [cross(a, q) / norm(a), cross(q, b) / norm(b)];
-                if circle.convex { sides } else { sides.map(|side| -side) }
+                let sides = [cross(a, q) / radius, cross(q, b) / radius];
+                if convex { sides } else { sides.map(|side| -side) }
             }
         }
     }
@@ -260,15 +277,14 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
 
 /// Points along a segment, its ends among them.
 pub(crate) fn along(segment: &Segment) -> Vec<Point> {
-    let (from, to) = (doubles(&segment.from), doubles(&segment.to));
-    let Some(circle) = &segment.circle else { return vec![from, to] };
-    let centre = doubles(&circle.centre);
+    let [from, to] = segment.ends();
+    let Some((centre, _, convex)) = segment.flat.circle else { return vec![from, to] };
     let (a, b) = (minus(from, centre), minus(to, centre));
     let mut angle = cross(a, b).atan2(dot(a, b));
-    if circle.convex && angle < 0.0 {
+    if convex && angle < 0.0 {
         angle += 2.0 * std::f64::consts::PI;
     }
-    if !circle.convex && angle > 0.0 {
+    if !convex && angle > 0.0 {
         angle -= 2.0 * std::f64::consts::PI;
     }
     const STEPS: usize = 32;
@@ -282,6 +298,29 @@ pub(crate) fn along(segment: &Segment) -> Vec<Point> {
             }
         })
         .collect()
+}
+
+/// The box about an outline: its ends, and where an arc stands out farthest.
+pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
+    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    let mut widen = |p: Point| {
+        for k in 0..2 {
+            low[k] = low[k].min(p[k]);
+            high[k] = high[k].max(p[k]);
+        }
+    };
+    for segment in outline {
+        segment.ends().into_iter().for_each(&mut widen);
+        if let Some((centre, radius, _)) = segment.flat.circle {
+            for way in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]] {
+                let p = [centre[0] + radius * way[0], centre[1] + radius * way[1]];
+                if segment.sector(p).iter().all(|side| *side >= 0.0) {
+                    widen(p);
+                }
+            }
+        }
+    }
+    [low, high]
 }
 
 /// Where two segments meet, but for the end that neighbours share.

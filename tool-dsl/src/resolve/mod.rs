@@ -1,6 +1,7 @@
 //! The syntax tree to the model: names, dimensions, the frame, each region's rules.
 
 mod condition;
+mod derived;
 mod dimension;
 mod lower;
 mod outputs;
@@ -72,7 +73,7 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         .collect();
     let laws = Laws::new(&laws);
     let (surfaces, regions) = match profile_of(tool, &mut reports) {
-        Some(profile) => region::derived(profile, &laws, &mut lowering, &mut curves, &mut reports),
+        Some(profile) => derived::derived(profile, &laws, &mut lowering, &mut curves, &mut reports),
         None => region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports),
     };
     let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);

@@ -52,14 +52,19 @@ pub(super) fn outline(
     }
     // The turn into the tool's frame may turn the sense over; then the walk is turned too.
     let to_tool = |place: &Place| [place[0].clone(), frame.to_tool(&place[1])];
-    let moved = segments.into_iter().map(|segment| Segment {
-        from: to_tool(&segment.from),
-        to: to_tool(&segment.to),
-        circle: segment.circle.map(|circle| Circle { centre: to_tool(&circle.centre), ..circle }),
-        ..segment
-    });
-    let outline =
-        if frame.down { moved.rev().map(Segment::turned).collect() } else { moved.collect() };
+    let mut outline: Vec<Segment> = segments
+        .into_iter()
+        .map(|segment| {
+            let [from, to] = [to_tool(&segment.from), to_tool(&segment.to)];
+            let circle =
+                segment.circle.map(|circle| Circle { centre: to_tool(&circle.centre), ..circle });
+            let ends = if frame.down { [to, from] } else { [from, to] };
+            Segment::new(ends, circle, segment.surface, segment.span)
+        })
+        .collect();
+    if frame.down {
+        outline.reverse();
+    }
     Some((outline, surfaces))
 }
 
@@ -89,7 +94,7 @@ fn segment(
         None => None,
         Some(arc) => Some(circle(arc, [&from, &to], span, lowering)?),
     };
-    Ok(Segment { from, to, circle, surface, span })
+    Ok(Segment::new([from, to], circle, surface, span))
 }
 
 fn circle(

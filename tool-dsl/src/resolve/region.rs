@@ -3,12 +3,10 @@
 use super::condition::Curves;
 use super::dimension::Dimension;
 use super::lower::{Lowering, May};
-use super::{is, outputs, profile};
+use super::{is, outputs};
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{Region, Surface};
-use crate::regionalise::outline::Segment;
-use crate::regionalise::{self, Derived, Feature, Undivided};
 use crate::report::{Report, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Direction, Expr, Item, Law, Quantity, Tool, Tuple};
@@ -39,7 +37,7 @@ impl<'t> Laws<'t> {
     }
 
     /// What is wrong with the laws themselves.
-    fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
+    pub(super) fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
         let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
         for law in self.0 {
             let what = law.quantity.word();
@@ -181,127 +179,25 @@ pub(super) fn named_surface(
     }
 }
 
-/// The regions of a profile, derived, and the surfaces that it names.
-pub(super) fn derived(
-    profile: &tree::Profile,
-    laws: &Laws<'_>,
-    lowering: &mut Lowering,
-    curves: &mut Curves,
-    reports: &mut Vec<Report>,
-) -> (Vec<Surface>, Vec<Region>) {
-    let Some((outline, surfaces)) = profile::outline(profile, lowering, reports) else {
-        return Default::default();
-    };
-    laws.check(&surfaces, reports);
-    let parts = match regionalise::nearest(&mut lowering.graph, &outline) {
-        Ok(parts) => parts,
-        Err(Undivided([d, z])) => {
-            let z = lowering.frame.to_file(z);
-            let report = Report::error(
-                profile.span,
-                format!(
-                    "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
-                ),
-            );
-            reports.push(report.help("is the profile degenerate there?"));
-            return Default::default();
-        }
-    };
-    let names = names(&outline, &surfaces, &parts);
-    let mut regions = Vec::new();
-    for (part, (name, owner, span)) in parts.iter().zip(names) {
-        let felt = Felt { laws, lowering, surface: &surfaces[owner] };
-        match felt.derived(part, &outline, (name, owner, span), curves) {
-            Ok(region) => regions.push(region),
-            Err(report) => reports.push(report),
-        }
-    }
-    (surfaces, regions)
-}
-
-/// The name, surface and place of each derived region: `nut.2` for the second piece of a surface
-/// of several, `shank/nut.1` for the fan of a reflex corner, which belongs to the neighbour that
-/// does not cut, else to the first.
-fn names(
-    outline: &[Segment],
-    surfaces: &[Surface],
-    parts: &[Derived],
-) -> Vec<(String, usize, Span)> {
-    let name = |piece: usize| {
-        let surface = outline[piece].surface;
-        let of_surface = |other: &&Segment| other.surface == surface;
-        let all = outline.iter().filter(of_surface).count();
-        let before = outline[..=piece].iter().filter(of_surface).count();
-        let word = &surfaces[surface].name;
-        if all > 1 { format!("{word}.{before}") } else { word.clone() }
-    };
-    let mut fans = std::collections::BTreeMap::new();
-    parts
-        .iter()
-        .map(|part| match part.feature {
-            Feature::Piece(piece) => (name(piece), outline[piece].surface, outline[piece].span),
-            Feature::Corner(behind) => {
-                let first = behind.unwrap_or(0);
-                let second = behind.map_or(0, |piece| (piece + 1).min(outline.len() - 1));
-                let [a, b] = [first, second].map(|piece| outline[piece].surface);
-                let owner = if surfaces[a].cutting && !surfaces[b].cutting { b } else { a };
-                let pair = format!("{}/{}", surfaces[a].name, surfaces[b].name);
-                let count: &mut usize = fans.entry(pair.clone()).or_default();
-                *count += 1;
-                (format!("{pair}.{count}"), owner, outline[second].span)
-            }
-        })
-        .collect()
-}
-
 /// What a region is, but for what is felt in it.
-struct Said {
-    name: String,
-    span: Span,
-    owner: usize,
-    inside: Formula,
-    depth_span: Span,
+pub(super) struct Said {
+    pub(super) name: String,
+    pub(super) span: Span,
+    pub(super) owner: usize,
+    pub(super) inside: Formula,
+    pub(super) depth_span: Span,
 }
 
 /// Settles what one region's evaluators compute.
-struct Felt<'a> {
-    laws: &'a Laws<'a>,
-    lowering: &'a mut Lowering,
-    surface: &'a Surface,
+pub(super) struct Felt<'a> {
+    pub(super) laws: &'a Laws<'a>,
+    pub(super) lowering: &'a mut Lowering,
+    pub(super) surface: &'a Surface,
 }
 
 impl Felt<'_> {
-    /// A region that was derived.
-    fn derived(
-        mut self,
-        part: &Derived,
-        outline: &[Segment],
-        (name, owner, span): (String, usize, Span),
-        curves: &mut Curves,
-    ) -> Result<Region, Report> {
-        let zero = self.lowering.graph.int(0);
-        let graph = &mut self.lowering.graph;
-        let bound = |sides: &Vec<Id>, curves: &mut Curves, graph: &mut crate::expr::Graph| {
-            Formula::Any(sides.iter().map(|side| curves.at_most(graph, *side, zero)).collect())
-        };
-        let inside =
-            Formula::All(part.conditions.iter().map(|sides| bound(sides, curves, graph)).collect());
-        let course = regionalise::course(graph, outline, &part.feature).unwrap_or([zero, zero]);
-        let depth = part.depth;
-        let magnitude = self.law(Quantity::Magnitude, depth)?;
-        let niceness = match self.surface.cutting {
-            false => zero,
-            true => match self.law(Quantity::Niceness, depth)? {
-                Some(niceness) => niceness,
-                None => self.lowering.graph.int(1),
-            },
-        };
-        let felt = (depth, magnitude, niceness);
-        self.finish(Said { name, span, owner, inside, depth_span: span }, felt, (course, span))
-    }
-
     /// The law for this surface, lowered.
-    fn law(&mut self, quantity: Quantity, depth: Id) -> Result<Option<Id>, Report> {
+    pub(super) fn law(&mut self, quantity: Quantity, depth: Id) -> Result<Option<Id>, Report> {
         match self.laws.find(quantity, self.surface) {
             Some(law) => self.quantity(&law.value, May::Depth(depth)).map(Some),
             None => Ok(None),
@@ -309,7 +205,7 @@ impl Felt<'_> {
     }
 
     /// Makes the evaluators' expressions.
-    fn finish(
+    pub(super) fn finish(
         self,
         said: Said,
         (depth, magnitude, niceness): (Id, Option<Id>, Id),
