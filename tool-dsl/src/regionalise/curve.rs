@@ -61,17 +61,16 @@ impl Section<'_> {
                 let b = outline::squared(graph, self.corner(*b));
                 graph.sub(a, b)
             }
-            (Feature::Corner(corner), piece) if line(piece) => {
+            (Feature::Corner(corner), piece) | (piece, Feature::Corner(corner)) if line(piece) => {
                 let away = outline::squared(graph, self.corner(*corner));
                 let depth = self.depth(graph, piece)?;
                 let square = graph.mul(depth, depth);
-                graph.sub(away, square)
-            }
-            (piece, Feature::Corner(corner)) if line(piece) => {
-                let away = outline::squared(graph, self.corner(*corner));
-                let depth = self.depth(graph, piece)?;
-                let square = graph.mul(depth, depth);
-                graph.sub(square, away)
+                let from_corner = graph.sub(away, square);
+                if matches!(this, Feature::Corner(_)) {
+                    from_corner
+                } else {
+                    graph.neg(from_corner)
+                }
             }
             _ => {
                 let (this, other) = (self.depth(graph, this)?, self.depth(graph, other)?);
