@@ -114,6 +114,19 @@ fn the_half_sphere_is_derived() {
     agrees(HALF_SPHERE, &HalfSphereCylinder::default(), &[0, 1, 2, 3, 4]);
 }
 
+/// A magnitude that is the depth is a length and changes with the part's unit; a law of another
+/// form is the file's own number.
+#[test]
+fn a_law_that_is_the_depth_is_a_length() {
+    let felt = |law: &str| {
+        let tool = tool(&D2_BALL.replace("niceness cutting", &format!("{law} niceness cutting")));
+        Interpreter::new(&tool.expect("a good profile")).at([0.5, 0.0, 3.0], 0.25).expect("inside")
+    };
+    assert_eq!(felt("").magnitude, 0.125);
+    assert_eq!(felt("magnitude: depth;").magnitude, 0.125);
+    assert_eq!(felt("magnitude: 2*depth;").magnitude, 1.0);
+}
+
 /// A piece as the test draws it: its end, and the centre if it is an arc.
 type Piece = ([f64; 2], Option<[f64; 2]>);
 

@@ -111,8 +111,8 @@ impl Section<'_> {
         let mut owners: Vec<Option<usize>> = Vec::with_capacity(5);
         for [u, v] in PLACES {
             let p = [from[0] + u * size[0], from[1] + v * size[1]];
-            samples.extend(self.sample(p));
-            let (owner, _) = self.owner(p);
+            let (owner, clear) = self.owner(p);
+            samples.extend(clear.then_some((p, owner)));
             if !owners.contains(&owner) {
                 owners.push(owner);
             }

@@ -11,7 +11,7 @@ use crate::regionalise::outline::Segment;
 use crate::regionalise::{self, Derived, Feature, Undivided};
 use crate::report::Report;
 use crate::source::Span;
-use crate::syntax::tree::{self, Quantity};
+use crate::syntax::tree;
 
 /// The regions of a profile, derived, and the surfaces that it names.
 pub(super) fn derived(
@@ -104,14 +104,8 @@ impl Felt<'_> {
             Formula::All(part.conditions.iter().map(|sides| bound(sides, curves, graph)).collect());
         let course = regionalise::course(graph, outline, &part.feature).unwrap_or([zero, zero]);
         let depth = part.depth;
-        let magnitude = self.law(Quantity::Magnitude, depth)?;
-        let niceness = match self.surface.cutting {
-            false => zero,
-            true => match self.law(Quantity::Niceness, depth)? {
-                Some(niceness) => niceness,
-                None => self.lowering.graph.int(1),
-            },
-        };
+        let magnitude = self.magnitude(None, depth)?;
+        let niceness = self.niceness(None, depth)?;
         let felt = (depth, magnitude, niceness);
         self.finish(Said { name, span, owner, inside, depth_span: span }, felt, (course, span))
     }

@@ -196,12 +196,19 @@ pub(super) struct Felt<'a> {
 }
 
 impl Felt<'_> {
-    /// The law for this surface, lowered.
-    pub(super) fn law(&mut self, quantity: Quantity, depth: Id) -> Result<Option<Id>, Report> {
-        match self.laws.find(quantity, self.surface) {
-            Some(law) => self.quantity(&law.value, May::Depth(depth)).map(Some),
-            None => Ok(None),
-        }
+    /// The magnitude that a region or else the law for its surface writes; `None` if nobody does,
+    /// or if it is written as `depth`. Any other is a number of its own, though depth be taken
+    /// from it.
+    pub(super) fn magnitude(
+        &mut self,
+        own: Option<&Expr>,
+        depth: Id,
+    ) -> Result<Option<Id>, Report> {
+        let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
+        let Some(value) = own.or(law) else { return Ok(None) };
+        let id = self.quantity(value, May::Depth(depth))?;
+        let is_depth = id == depth && mention(value, Quantity::Depth.word()).is_some();
+        Ok((!is_depth).then_some(id))
     }
 
     /// Makes the evaluators' expressions.
@@ -216,7 +223,6 @@ impl Felt<'_> {
             Report::error(course_span, format!("the direction of {} vanishes", said.name))
                 .help("give a vector that is not (0, 0), or `toward` a point")
         })?;
-        // A magnitude that the file writes is a number of its own, though depth be taken from it.
         let is_depth = magnitude.is_none();
         let magnitude = magnitude.unwrap_or(depth);
         let outputs = outputs::outputs(graph, depth, (magnitude, is_depth), direction, niceness);
@@ -243,13 +249,8 @@ impl Felt<'_> {
     ) -> Result<Region, Report> {
         let inside = self.inside(written, curves)?;
         let (depth, depth_span) = self.depth(written)?;
-        let magnitude = match self.said(written, Quantity::Magnitude)? {
-            Some(value) => Some(self.quantity(value, May::Depth(depth))?),
-            None => self.law(Quantity::Magnitude, depth)?,
-        };
-        // Unless it is written as `depth` itself.
-        let magnitude = magnitude.filter(|id| *id != depth || self.takes_depth(written));
-        let niceness = self.niceness(written, depth)?;
+        let magnitude = self.magnitude(self.said(written, Quantity::Magnitude)?, depth)?;
+        let niceness = self.niceness(self.said(written, Quantity::Niceness)?, depth)?;
         let course = match written.direction.as_slice() {
             [] => (self.downhill(depth), depth_span),
             [(direction, span)] => (self.direction(direction)?, *span),
@@ -265,11 +266,6 @@ impl Felt<'_> {
             (depth, magnitude, niceness),
             course,
         )
-    }
-
-    /// Whether a region's depth is taken from its magnitude.
-    fn takes_depth(&self, written: &tree::Region) -> bool {
-        written.scalars.iter().all(|scalar| scalar.quantity != Quantity::Depth)
     }
 
     fn inside(&mut self, written: &tree::Region, curves: &mut Curves) -> Result<Formula, Report> {
@@ -361,8 +357,9 @@ impl Felt<'_> {
         Ok((id, value.span))
     }
 
-    fn niceness(&mut self, written: &tree::Region, depth: Id) -> Result<Id, Report> {
-        let own = self.said(written, Quantity::Niceness)?;
+    /// The niceness that a region or else the law for its surface writes; else 1, or 0 where
+    /// nothing cuts.
+    pub(super) fn niceness(&mut self, own: Option<&Expr>, depth: Id) -> Result<Id, Report> {
         if !self.surface.cutting {
             return match own {
                 Some(value) => Err(idle_niceness(value.span, &self.surface.name)),
