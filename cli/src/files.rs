@@ -5,10 +5,9 @@ use serde::Serialize;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::report::{self, Severity};
-use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile, emit};
 use tools_library::TOOLS;
-use touchoff::tool::{Card, Interpreted, ToolError};
+use touchoff::tool::{Card, Interpreted};
 use touchoff::{Tool, Unit};
 
 #[derive(Serialize)]
@@ -100,21 +99,13 @@ impl Found {
     }
 }
 
-fn read(file: &Path) -> Result<Source, ToolError> {
-    let name = file.display().to_string();
-    match std::fs::read_to_string(file) {
-        Ok(text) => Ok(Source::new(name, text)),
-        Err(source) => Err(ToolError::Unreadable { file: name, source }),
-    }
-}
-
 /// Shows what is wrong with files, and what those that are right are like.
 pub(crate) fn check(files: &[PathBuf]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let styled = std::io::stderr().is_terminal();
     let mut wrong = 0;
     for file in files {
-        let source = match read(file) {
+        let source = match Interpreted::source(file) {
             Ok(source) => source,
             Err(error) => {
                 say!("error: {error}");
@@ -158,7 +149,7 @@ fn described(tool: &Checked, warnings: usize) -> String {
 
 /// Prints a file's Rust.
 pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
-    let source = read(file)?;
+    let source = Interpreted::source(file)?;
     let compiled = compile(&source);
     for report in &compiled.reports {
         say!("{}\n", report.render(&source, std::io::stderr().is_terminal()));

@@ -1,5 +1,8 @@
 //! The text that a tool is written in, and places in it.
 
+use std::io;
+use std::path::Path;
+
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// A stretch of a source's text, in bytes.
@@ -32,6 +35,12 @@ impl Source {
     /// A source from the text of a file.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
         Source { name: name.into(), text: text.into(), tokens: Vec::new() }
+    }
+
+    /// A source from a file, known by its path.
+    pub fn read(path: impl AsRef<Path>) -> io::Result<Source> {
+        let text = std::fs::read_to_string(&path)?;
+        Ok(Source::new(path.as_ref().display().to_string(), text))
     }
 
     /// A source from the tokens inside `tool! { … }`: written out one space after each unless
@@ -101,12 +110,5 @@ impl Source {
     pub fn token_at(&self, span: Span) -> Option<proc_macro2::Span> {
         let after = self.tokens.partition_point(|(place, _)| place.end <= span.start);
         self.tokens.get(after).or(self.tokens.last()).map(|(_, token)| *token)
-    }
-
-    /// Line and column, counted from 1; the column in characters.
-    pub fn line_column(&self, offset: usize) -> (usize, usize) {
-        let before = &self.text[..self.text.floor_char_boundary(offset)];
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
     }
 }

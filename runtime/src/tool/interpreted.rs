@@ -36,10 +36,13 @@ pub enum ToolError {
 impl Interpreted {
     /// Loads a `.tool` file.
     pub fn load(path: impl AsRef<Path>) -> Result<Interpreted, ToolError> {
+        Interpreted::parse(&Interpreted::source(path)?)
+    }
+
+    /// The text of a `.tool` file.
+    pub fn source(path: impl AsRef<Path>) -> Result<Source, ToolError> {
         let file = path.as_ref().display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ToolError::Unreadable { file: file.clone(), source })?;
-        Interpreted::parse(&Source::new(file, text))
+        Source::read(path).map_err(|source| ToolError::Unreadable { file, source })
     }
 
     /// Compiles a tool's text.
