@@ -6,6 +6,7 @@ use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::empty::{Beyond, Void};
+use crate::regionalise::outline;
 use crate::report::Report;
 
 /// The largest coordinate, 2^300.
@@ -182,6 +183,10 @@ impl Extent {
 
 /// The reach of the solid, proved; an error if no bound is found.
 pub fn extent(model: &Model) -> Result<Extent, Report> {
+    if let Some(section) = &model.section {
+        let [low, high] = outline::reach(&section.outline);
+        return Ok(Extent { low: low[1], high: high[1], radius: high[0] });
+    }
     let mut prover = Prover::new(model);
     let whole = |size: f64| Interval::new(-size, size);
     // Regions that linear curves bound need no boxes: their signs, and whether they are settled.
@@ -257,6 +262,10 @@ fn inward(outer: f64, inner: f64, mut empty: impl FnMut(f64) -> bool) -> f64 {
 pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
     let mut prover = Prover::new(model);
     let mut slab = |low: f64, high: f64, widest: f64| {
+        if let Some(section) = &model.section {
+            let radius = outline::radius_between(&section.outline, low, high);
+            return Slab { low, high, radius };
+        }
         let z = Interval::new(low, high);
         let (mut good, mut bad) = (widest, 0.0);
         for _ in 0..12 {
@@ -268,7 +277,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
     };
     let mut ends: Vec<f64> = (0..=8)
         .map(|k| extent.low + (extent.high - extent.low) * f64::from(k) / 8.0)
-        .chain(model.curves.iter().filter_map(|curve| level(model, curve.value)))
+        .chain(levels(model))
         .filter(|z| (extent.low..=extent.high).contains(z))
         .collect();
     ends.sort_by(f64::total_cmp);
@@ -324,6 +333,14 @@ fn above(value: f64, steps: f64) -> f64 {
     let count = (value * steps).ceil();
     let short = if steps >= 1.0 { count / steps } else { count * (1.0 / steps) };
     if short >= value { short } else { (count + 1.0) / steps }
+}
+
+/// Heights at which the radius may jump.
+fn levels(model: &Model) -> Vec<f64> {
+    match &model.section {
+        Some(section) => section.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
+        None => model.curves.iter().filter_map(|curve| level(model, curve.value)).collect(),
+    }
 }
 
 /// The z of a curve that is a plane across the axis.

@@ -26,7 +26,7 @@ pub mod syntax;
 
 use bound::{Extent, Slab};
 use model::Model;
-use plan::Plan;
+use plan::{Plan, Tree};
 use report::{Report, any_error};
 use source::Source;
 
@@ -77,7 +77,7 @@ pub fn compile(source: &Source) -> Compiled {
     Compiled { tool, name, reports }
 }
 
-fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
+fn check(mut model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
     finite(&model)?;
     let extent = match bound::extent(&model) {
         Ok(extent) => extent,
@@ -93,14 +93,15 @@ fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
         return Ok(Checked::nothing(model));
     }
     let envelope = bound::envelope(&model, &extent);
-    let plan = plan::plan(&model, &extent)?;
+    let plan = plan::plan(&mut model, &extent)?;
     Ok(Checked { model, extent, envelope, plan })
 }
 
 impl Checked {
     /// A tool of which something is wrong: its errors stand beside it and it goes no further.
-    fn nothing(model: Model) -> Checked {
-        let plan = Plan { owner: plan::Tree::Leaf(None), inside: plan::Tree::Leaf(false) };
+    fn nothing(mut model: Model) -> Checked {
+        let outside = Tree::Leaf(model.graph.int(0));
+        let plan = Plan { owner: Tree::Leaf(None), inside: Tree::Leaf(false), outside };
         let extent = Extent { low: 0.0, high: 0.0, radius: 0.0 };
         Checked { model, extent, envelope: Vec::new(), plan }
     }

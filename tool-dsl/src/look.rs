@@ -42,8 +42,20 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
 /// Everything that is found, each kind once a region.
 pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
     let mut look = Look::new(model, extent);
+    if let Some(section) = &model.section {
+        // The regions are known; only what is felt in them was written.
+        look.tip(extent.low);
+        for cell in section.inner.cells(1) {
+            for (p, _) in &cell.samples {
+                look.evaluator.set(At::meridian(p[0], p[1]));
+                look.felt(&model.regions[cell.part], *p);
+            }
+        }
+        return look.found;
+    }
     look.scale(extent);
-    look.tip(extent);
+    let end = look.end(extent);
+    look.tip(end);
     let mut inside = Vec::new();
     let mut outside = Vec::new();
     for point in spread(extent, POINTS, 0.02) {
@@ -143,8 +155,8 @@ impl<'m> Look<'m> {
         self.model.regions.iter().position(|region| region.inside.holds(&value))
     }
 
-    /// The tool's end is its tip: the lowest point found inside is at 0.
-    fn tip(&mut self, extent: &Extent) {
+    /// The lowest point found inside.
+    fn end(&mut self, extent: &Extent) -> f64 {
         let mut end = f64::INFINITY;
         for column in 0..=COLUMNS {
             let d = extent.radius * f64::from(column) / f64::from(COLUMNS);
@@ -159,6 +171,11 @@ impl<'m> Look<'m> {
             }
             end = end.min(good);
         }
+        end
+    }
+
+    /// The tool's end is its tip, which is at 0.
+    fn tip(&mut self, end: f64) {
         if end.is_finite() && end.abs() > 1e-6 * self.size {
             let frame = &self.model.frame;
             let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));

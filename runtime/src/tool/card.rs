@@ -18,6 +18,9 @@ pub struct Card {
     pub regions: Cow<'static, [Region]>,
     /// The solid's largest radius along the axis, proved: no point of it lies outside all slabs.
     pub envelope: Cow<'static, [Slab]>,
+    /// Whether depth and clearance are true distances. Without a profile, depth is what the file
+    /// says and clearance a lower bound.
+    pub exact: bool,
 }
 
 impl Card {
@@ -29,6 +32,7 @@ impl Card {
         surfaces: &'static [Surface],
         regions: &'static [Region],
         envelope: &'static [Slab],
+        exact: bool,
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -37,6 +41,7 @@ impl Card {
             surfaces: Cow::Borrowed(surfaces),
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
+            exact,
         }
     }
 

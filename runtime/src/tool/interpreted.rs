@@ -13,6 +13,7 @@ use tool_dsl::{Checked, compile, model, report};
 pub struct Interpreted {
     card: Card,
     tape: Tape,
+    outside: Tape,
     warnings: String,
 }
 
@@ -54,6 +55,7 @@ impl Interpreted {
             Some(tool) if !report::any_error(&compiled.reports) => Ok(Interpreted {
                 card: card(&tool),
                 tape: Tape::new(&tool),
+                outside: Tape::outside(&tool),
                 warnings: said.join("\n\n"),
             }),
             _ => Err(ToolError::Wrong(said.join("\n\n"))),
@@ -87,12 +89,24 @@ fn card(tool: &Checked) -> Card {
             .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: r.surface })
             .collect(),
         envelope: tool.envelope.iter().map(|s| Slab::new(s.low, s.high, s.radius)).collect(),
+        exact: model.is_exact(),
     }
 }
 
 impl Tool for Interpreted {
     fn card(&self) -> &Card {
         &self.card
+    }
+
+    fn clearance(&self, point: [f64; 3]) -> f64 {
+        let block = point.map(|part| [part; BLOCK]);
+        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
+        self.tape.run(block.each_ref(), 1.0, &mut registers, &mut results);
+        if results[0][0] >= 0.0 {
+            return 0.0;
+        }
+        self.outside.run(block.each_ref(), 1.0, &mut registers, &mut results);
+        results[0][0]
     }
 
     fn evaluate(&self, _: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
@@ -112,7 +126,7 @@ impl Tool for Interpreted {
             for (part, list) in block.iter_mut().zip(coordinates) {
                 part[..count].copy_from_slice(&list[start..start + count]);
             }
-            self.tape.run(block.each_ref(), length, wanted, &mut felt.registers, &mut results);
+            self.tape.run(block.each_ref(), length, &mut felt.registers, &mut results[..wanted]);
             for (offset, owners) in results[0][..count].chunks(LANES).enumerate() {
                 let at = start / LANES + offset;
                 let bits = owners.iter().rev().fold(0, |bits, o| bits << 1 | u8::from(*o >= 0.0));

@@ -15,6 +15,7 @@ use crate::report::{Report, any_error, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{Definition, Item, Law, Name, Profile, Quantity, Tool};
 use condition::Curves;
+use derived::FromProfile;
 use lower::{Lowering, May};
 use region::Laws;
 use std::collections::BTreeMap;
@@ -72,9 +73,13 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
     let laws = Laws::new(&laws);
-    let (surfaces, regions) = match profile_of(tool, &mut reports) {
+    let FromProfile { surfaces, regions, section } = match profile_of(tool, &mut reports) {
         Some(profile) => derived::derived(profile, &laws, &mut lowering, &mut curves, &mut reports),
-        None => region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports),
+        None => {
+            let (surfaces, regions) =
+                region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports);
+            FromProfile { surfaces, regions, section: None }
+        }
     };
     let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
     for (word, value) in &lowering.values {
@@ -98,6 +103,7 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         surfaces,
         regions,
         first,
+        section,
     };
     (Some(model), reports)
 }
