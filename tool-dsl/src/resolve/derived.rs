@@ -2,7 +2,6 @@
 
 use super::condition::Curves;
 use super::lower::Lowering;
-use super::profile;
 use super::region::{Felt, Laws, Said};
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
@@ -11,26 +10,22 @@ use crate::regionalise::outline::Segment;
 use crate::regionalise::{self, Derived, Feature, Undivided};
 use crate::report::Report;
 use crate::source::Span;
-use crate::syntax::tree;
 
-/// The regions of a profile, derived, and the surfaces that it names.
+/// The regions of an outline, derived, and its surfaces.
 pub(super) fn derived(
-    profile: &tree::Profile,
+    (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
     reports: &mut Vec<Report>,
 ) -> (Vec<Surface>, Vec<Region>) {
-    let Some((outline, surfaces)) = profile::outline(profile, lowering, reports) else {
-        return Default::default();
-    };
     laws.check(&surfaces, reports);
     let parts = match regionalise::nearest(&mut lowering.graph, &outline) {
         Ok(parts) => parts,
         Err(Undivided([d, z])) => {
             let z = lowering.frame.to_file(z);
             let report = Report::error(
-                profile.span,
+                span,
                 format!(
                     "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
                 ),
