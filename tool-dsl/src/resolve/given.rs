@@ -88,15 +88,14 @@ impl Given<'_> {
         unit: Unit,
     ) -> Result<(Number, Dimension), Report> {
         let Definition { name: Name { word, .. }, value } = self.setting;
-        if of_default.alike(self.dimension).is_none() {
+        let Some(dimension) = of_default.alike(self.dimension) else {
             let message = format!("`{word}` is {of_default}, what is given is {}", self.dimension);
             return Err(Report::error(value.span, message).and(default.span, "its default"));
-        }
-        let power = match (self.dimension, of_default) {
-            (Dimension::Length(power), _) => power,
+        };
+        let power = match dimension {
             // Where a length is wanted a bare number is in the unit of the file that it stands in.
-            (Dimension::Bare, Dimension::Length(power)) => power,
-            (Dimension::Bare, _) if self.unit != unit && !self.value.is_zero() => {
+            Dimension::Length(power) => power,
+            Dimension::Bare if self.unit != unit && !self.value.is_zero() => {
                 let number = figure(self.value.to_f64());
                 let (here, there) = (self.unit.word(), unit.word());
                 let message = format!("is `{word}` {number}{here} or {number}{there}?");
@@ -107,7 +106,7 @@ impl Given<'_> {
             }
             _ => 0.0,
         };
-        Ok((&self.value * &scale(self.unit, unit, power), self.dimension))
+        Ok((&self.value * &scale(self.unit, unit, power), dimension))
     }
 }
 

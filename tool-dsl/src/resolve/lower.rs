@@ -1,13 +1,12 @@
 //! Expressions of the syntax tree to nodes of the graph, with their dimension.
 
-use super::definitions;
 use super::dimension::{Dimension, LENGTH};
 use crate::expr::{Coord, Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::report::{Report, nearest};
 use crate::source::Span;
-use crate::syntax::tree::{Binary, Definition, Expr, ExprKind, Name, Tool};
+use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 
 /// Names that belong to the language.
@@ -41,7 +40,7 @@ pub(super) struct Lowering {
     pub(super) unit: Unit,
     pub(super) frame: Frame,
     /// How many of the file's unit are one of the tool's: 1 but for a mounted file.
-    scale: Number,
+    pub(super) scale: Number,
     pub(super) values: BTreeMap<String, Value>,
     /// Where each name is defined, above or below.
     pub(super) declared: BTreeMap<String, Span>,
@@ -56,65 +55,6 @@ const TALLEST: u32 = 300;
 type Lowered = Result<(Id, Dimension), Report>;
 
 impl Lowering {
-    /// Of a text without names.
-    pub(super) fn new(unit: Unit) -> Lowering {
-        Lowering {
-            graph: Graph::default(),
-            unit,
-            frame: Frame { tip: Number::int(0), down: false },
-            scale: Number::int(1),
-            values: BTreeMap::new(),
-            declared: BTreeMap::new(),
-        }
-    }
-
-    /// Of a tool of which nothing is lowered yet.
-    pub(super) fn of(tool: &Tool, unit: Unit) -> Lowering {
-        let declared = definitions(tool, |_| true)
-            .map(|definition| (definition.name.word.clone(), definition.name.span))
-            .collect();
-        Lowering { declared, ..Lowering::new(unit) }
-    }
-
-    /// Works on a graph that is shared with other files.
-    pub(super) fn on<T>(&mut self, graph: &mut Graph, work: impl FnOnce(&mut Lowering) -> T) -> T {
-        std::mem::swap(graph, &mut self.graph);
-        let done = work(self);
-        std::mem::swap(graph, &mut self.graph);
-        done
-    }
-
-    /// Puts the file's tool somewhere else: its lengths multiplied, its tip moved along the axis.
-    pub(super) fn placed(&mut self, scale: &Number, by: &Number) {
-        self.scale = &self.scale / scale;
-        let by = &self.scale * by;
-        self.frame.tip =
-            if self.frame.down { &self.frame.tip + &by } else { &self.frame.tip - &by };
-    }
-
-    /// A length of the tool in the file's unit.
-    pub(super) fn length_here(&mut self, length: Id) -> Id {
-        let scale = self.graph.number(self.scale.clone());
-        self.graph.mul(scale, length)
-    }
-
-    /// A coordinate of the tool's in the file's unit and frame.
-    fn coordinate(&mut self, coordinate: Coord) -> Id {
-        let id = self.graph.coord(coordinate);
-        let id = self.length_here(id);
-        if coordinate == Coord::Z { self.frame.file_z(&mut self.graph, id) } else { id }
-    }
-
-    /// A function of the coordinates that gets a name.
-    pub(super) fn curve(&mut self, definition: &Definition) -> Result<(), Report> {
-        let value = self.lower(&definition.value, May::Coordinates)?;
-        if value.1 == Dimension::Angle {
-            let report = Report::error(definition.value.span, "a curve is no angle");
-            return Err(report.help("give a number or a power of length"));
-        }
-        self.define(&definition.name, value)
-    }
-
     /// Gives a value its name.
     pub(super) fn define(
         &mut self,

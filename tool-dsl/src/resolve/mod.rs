@@ -10,14 +10,17 @@ mod mount;
 mod outputs;
 mod profile;
 mod region;
+mod scope;
 
-use crate::model::{Model, Unit};
+use crate::model::{Model, Surface, Unit};
+use crate::regionalise::outline::Segment;
 use crate::report::{Report, any_error, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Quantity, Tool};
 use condition::Curves;
 use given::Given;
 use lower::Lowering;
+use mount::Along;
 use region::Laws;
 use std::collections::BTreeMap;
 
@@ -68,19 +71,22 @@ fn settle(
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let shape = shape(tool, &mut reports);
-    let outlined = shape.map(|shape| match shape {
+    let outlined = shape(tool, &mut reports).map(|shape| match shape {
         Shape::Profile(profile) => {
             let outline = profile::outline(profile, &mut lowering, &mut reports);
-            outline.map(|(outline, surfaces)| (outline, surfaces, BTreeMap::new(), profile.span))
+            outline.map(|(outline, surfaces)| Outlined {
+                outline,
+                surfaces,
+                along: BTreeMap::new(),
+                span: profile.span,
+            })
         }
         Shape::Mounts(mounts) => {
-            let whole = mount::assembled(&mounts, &mut lowering, sources, &mut reports);
-            whole.map(|(outline, surfaces, along)| (outline, surfaces, along, tool.name.span))
+            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, &mut reports)
         }
     });
     let (surfaces, regions) = match outlined {
-        Some(Some((outline, surfaces, along, span))) => {
+        Some(Some(Outlined { outline, surfaces, along, span })) => {
             let laws = Laws::new(&laws, along);
             let whole = (outline, surfaces, span);
             derived::derived(whole, &laws, &mut lowering, &mut curves, &mut reports)
@@ -121,6 +127,16 @@ fn settle(
 enum Shape<'t> {
     Profile(&'t Profile),
     Mounts(Vec<&'t Mount>),
+}
+
+/// A tool's outline in its frame and unit.
+struct Outlined {
+    outline: Vec<Segment>,
+    surfaces: Vec<Surface>,
+    /// The niceness that comes along with the surfaces of mounted files.
+    along: BTreeMap<String, Along>,
+    /// Where it is said.
+    span: Span,
 }
 
 /// The profile or the mounts, if there are any, and what does not go with them.

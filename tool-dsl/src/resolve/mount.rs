@@ -4,8 +4,9 @@ use super::given::{self, Given};
 use super::join::{Unjoined, join, moved};
 use super::lower::{Lowering, May};
 use super::region::{Laws, quantity};
-use super::{Shape, constants, definitions, frame, profile, shape, unit};
+use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
 use crate::expr::{Graph, Id};
+use crate::look;
 use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::outline::{Segment, check, reach};
@@ -54,13 +55,13 @@ impl Along {
 /// The one profile of mounted files, and the niceness that comes along with its surfaces.
 pub(super) fn assembled(
     mounts: &[&Mount],
+    span: Span,
     lowering: &mut Lowering,
     sources: &mut Sources,
     reports: &mut Vec<Report>,
-) -> Option<(Vec<Segment>, Vec<Surface>, BTreeMap<String, Along>)> {
+) -> Option<Outlined> {
     let mut mounting = Mounting { sources, reports, chain: Vec::new(), mounted: 0 };
-    let own = mounts.first()?.span;
-    mounting.chain.push(mounting.sources.locate(own).0.base);
+    mounting.chain.push(mounting.sources.own().base);
     let part = mounting.assemble(mounts, lowering)?;
     let mut scopes = Vec::new();
     for mut scope in part.scopes {
@@ -75,7 +76,8 @@ pub(super) fn assembled(
         let (scope, value) = law?;
         Some((surface.name.clone(), Along { lowering: scopes[scope].clone(), value }))
     });
-    Some((part.outline, part.surfaces.clone(), along.collect()))
+    let along = along.collect();
+    Some(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
 }
 
 /// What goes on while files are mounted.
@@ -107,7 +109,7 @@ impl Mounting<'_> {
             let given = given::from_mount(&mount.with, lowering, self.reports);
             let part = self.open(mount, &given, &mut lowering.graph);
             if let (Some(at), Some((part, unit))) = (at, part) {
-                parts.push((*mount, at, part.placed(mount, unit.to(lowering.unit))));
+                parts.push((*mount, at, part.placed(mount, &unit.to(lowering.unit))));
             }
         }
         if any_error(&self.reports[before..]) {
@@ -288,24 +290,15 @@ fn off_tip(outline: &[Segment], frame: &Frame, tree: &Tool) -> Option<Report> {
     if end.abs() <= OFF_TIP * radius.max(high - end) {
         return None;
     }
-    let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
-    Some(
-        Report::error(
-            tree.name.span,
-            format!("the tool ends at z = {end} and its tip is said to be at {tip}"),
-        )
-        .help(format!(
-            "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
-        )),
-    )
+    Some(look::off_tip(frame, end, tree.name.span))
 }
 
 impl Part {
     /// The part under its name and in the unit of the file that mounts it.
-    fn placed(mut self, mount: &Mount, scale: Number) -> Part {
+    fn placed(mut self, mount: &Mount, scale: &Number) -> Part {
         let zero = Number::int(0);
-        self.outline = moved(&self.outline, &scale, &zero, 0);
-        self.raised(&scale, &zero);
+        self.outline = moved(&self.outline, scale, &zero, 0);
+        self.raised(scale, &zero);
         for surface in &mut self.surfaces {
             surface.name = format!("{}.{}", mount.name.word, surface.name);
         }

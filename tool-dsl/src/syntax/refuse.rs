@@ -81,7 +81,8 @@ pub(super) fn given(text: &str, error: &Error<Rule>) -> Report {
     let (at, ..) = place(text, error);
     let (rest, before) = (&text[at..], text[..at].trim_end());
     let here = Span { start: at, end: at + rest.chars().next().map_or(0, char::len_utf8) };
-    spelling(text, rest, before, here).or_else(|| habit(rest, before, here)).unwrap_or_else(|| {
+    let habit = || habit(rest, before, here).filter(|_| !rest.is_empty());
+    spelling(text, rest, before, here).or_else(habit).unwrap_or_else(|| {
         let found = match rest.split_whitespace().next() {
             None => "the text ends here".to_owned(),
             Some(word) => format!("`{}` does not fit here", first_token(word)),
