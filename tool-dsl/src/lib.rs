@@ -104,8 +104,13 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     let tool = tool.filter(|_| !any_error(&reports));
     reports.sort_by_key(|report| report.span.start);
     // A file that is mounted twice has its mistakes once.
-    reports.dedup();
-    Compiled { tool, name, reports, sources }
+    let mut said: Vec<Report> = Vec::new();
+    for report in reports {
+        if !said.contains(&report) {
+            said.push(report);
+        }
+    }
+    Compiled { tool, name, reports: said, sources }
 }
 
 fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {

@@ -107,6 +107,35 @@ fn a_wide_part_below_keeps_the_ring() {
     assert_eq!(joined.model.surfaces[1].name, "pin.pin");
 }
 
+/// Of a face of several surfaces, what is in the part below is gone.
+#[test]
+fn a_face_of_two_surfaces_keeps_its_rim() {
+    let joined = |below: &str| {
+        let mounts = format!(
+            "mount \"pin.tool\" as pin with d0 = {below}; mount \"stepped.tool\" as s at z = 10;"
+        );
+        tool(&crate::mounts(&mounts))
+    };
+    let written = |pieces: &str| {
+        tool(&mounts(&format!(
+            "profile {{
+                start (0, 0);
+                {pieces}
+                line to (5, 19), (0, 19) as body;
+            }}",
+        )))
+    };
+    let thick = "line to (3, 0) as foot; line to (3, 10) as pin; line to (5, 10) as rim;";
+    same(&joined("6"), &written(thick), 0.0);
+    let thin = "line to (1, 0) as foot; line to (1, 10) as pin;
+                line to (2, 10) as bore; line to (5, 10) as rim;";
+    same(&joined("2"), &written(thin), 0.0);
+    let even = "line to (2, 0) as foot; line to (2, 10) as pin; line to (5, 10) as rim;";
+    same(&joined("4"), &written(even), 0.0);
+    let wide = "line to (6, 0) as foot; line to (6, 10), (5, 10) as pin;";
+    same(&joined("12"), &written(wide), 0.0);
+}
+
 /// Equal radii leave no ring, and a seam that is no corner.
 #[test]
 fn equal_radii_leave_no_ring() {

@@ -1,6 +1,7 @@
 //! Mounts that are refused, each with its place and its words.
 
 use crate::{mounts, said, source};
+use std::path::Path;
 use tool_dsl::compile;
 use tool_dsl::source::Source;
 
@@ -51,6 +52,15 @@ fn files_that_mount_themselves() {
         "mount \"ring_a.tool\" as a;",
         &["mounts itself", "ring_a.tool mounts ", "ring_b.tool mounts "],
     );
+}
+
+#[test]
+fn a_file_that_is_compiled_is_in_the_ring() {
+    let tools = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mounts/tools/ring_b.tool");
+    let compiled = compile(&Source::read(tools).expect("a file beside these tests"));
+    let said = said(&compiled);
+    assert!(said.contains("`ring_b.tool` mounts itself"), "{said}");
+    assert_eq!(said.matches(" mounts ").count(), 3, "{said}");
 }
 
 #[test]
