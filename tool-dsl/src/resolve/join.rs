@@ -5,6 +5,8 @@ use crate::regionalise::outline::{Circle, Place, Segment, doubles};
 
 /// Lengths below this part of the tool's size are rounding.
 const ROUNDING: f64 = 1e-12;
+/// How far a tool's end may be from the tip that it says, in sizes of the tool.
+pub(super) const OFF_TIP: f64 = 1e-6;
 
 /// Why two outlines cannot be joined at a plane.
 #[derive(Debug)]
@@ -54,10 +56,10 @@ pub(super) fn join(
     if radius.to_f64() <= slack {
         return Err(Unjoined::Point);
     }
-    let height = plane.to_f64();
+    let (height, off_tip) = (plane.to_f64(), OFF_TIP * size(upper));
     let flat = |segment: &&Segment| {
         let [[inner, a], [outer, b]] = segment.ends();
-        let level = (a - height).abs() <= slack && (b - height).abs() <= slack;
+        let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
         segment.circle.is_none() && level && inner < outer
     };
     let faces = upper.iter().take_while(flat).count();
@@ -92,8 +94,11 @@ fn size(outline: &[Segment]) -> f64 {
 /// The walk of an outline up to a plane, which it must cross once.
 fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>, Unjoined> {
     let height = plane.to_f64();
-    let side =
-        |z: f64| if (z - height).abs() <= slack { 0 } else { if z < height { -1 } else { 1 } };
+    let side = |z: f64| match z - height {
+        off if off.abs() <= slack => 0,
+        off if off < 0.0 => -1,
+        _ => 1,
+    };
     let mut walked: Vec<Segment> = Vec::new();
     let mut reached = false;
     for segment in outline {

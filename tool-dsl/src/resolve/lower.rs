@@ -210,7 +210,7 @@ impl Lowering {
             if let May::Constants(what) = may {
                 return Err(not_constant(span, word, what));
             }
-            return Ok((self.coordinate(coordinate), LENGTH));
+            return Ok((self.coordinate_here(coordinate), LENGTH));
         }
         let Some(value) = self.values.get_mut(word) else {
             if let Some(definition) = self.declared.get(word) {

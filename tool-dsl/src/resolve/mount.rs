@@ -1,7 +1,7 @@
 //! Several files joined into one profile.
 
 use super::given::{self, Given};
-use super::join::{Unjoined, join, moved};
+use super::join::{OFF_TIP, Unjoined, join, moved};
 use super::lower::{Lowering, May};
 use super::region::{Laws, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
@@ -18,8 +18,6 @@ use std::collections::BTreeMap;
 
 /// The most files that a tool mounts, those of mounted files among them.
 const MOST: usize = 64;
-/// How far a tool's end may be from its tip, in sizes of the tool.
-const OFF_TIP: f64 = 1e-9;
 
 /// A file's solid in its tool's frame and its unit, and the niceness that comes along.
 pub(super) struct Part {

@@ -57,7 +57,7 @@ impl Lowering {
     }
 
     /// A coordinate of the tool's in the file's unit and frame.
-    pub(super) fn coordinate(&mut self, coordinate: Coord) -> Id {
+    pub(super) fn coordinate_here(&mut self, coordinate: Coord) -> Id {
         let id = self.graph.coord(coordinate);
         let id = self.length_here(id);
         if coordinate == Coord::Z { self.frame.file_z(&mut self.graph, id) } else { id }
