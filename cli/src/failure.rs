@@ -44,6 +44,9 @@ pub(crate) enum Failure {
         /// `; did you mean …?`, or nothing.
         meant: String,
     },
+    /// What is compiled has its values.
+    #[error("`--set` is for `.tool` files: {0}")]
+    NothingToSet(&'static str),
     /// Some `.tool` files have errors, which were shown.
     #[error("{wrong} of {all} files {} errors", if *.wrong == 1 { "has" } else { "have" })]
     Files {

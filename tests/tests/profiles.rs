@@ -12,7 +12,8 @@ use touchoff_tests::oracle::{D2Ball, Fig73Exact, HalfSphereCylinder, Oracle};
 fn tool(text: &str) -> Result<Box<Checked>, String> {
     let source = Source::new("t.tool", text);
     let compiled = compile(&source);
-    let said: Vec<String> = compiled.reports.iter().map(|r| r.render(&source, false)).collect();
+    let said: Vec<String> =
+        compiled.reports.iter().map(|r| r.render(&compiled.sources, false)).collect();
     match compiled.tool {
         Some(tool) if said.is_empty() => Ok(tool),
         _ => Err(said.join("\n")),

@@ -5,7 +5,7 @@ use crate::bound::Extent;
 use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{CurveIndex, Formula};
-use crate::model::{Model, Region};
+use crate::model::{Frame, Model, Region};
 use crate::plan::spread;
 use crate::report::{Report, any_error, figure};
 use crate::source::Span;
@@ -37,6 +37,15 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
         }
     }
     reports
+}
+
+/// A tool that ends at a z which is not its tip.
+pub(crate) fn off_tip(frame: &Frame, end: f64, span: Span) -> Report {
+    let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
+    Report::error(span, format!("the tool ends at z = {end} and its tip is said to be at {tip}"))
+        .help(format!(
+            "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
+        ))
 }
 
 /// Everything that is found, each kind once a region.
@@ -177,17 +186,7 @@ impl<'m> Look<'m> {
     /// The tool's end is its tip, which is at 0.
     fn tip(&mut self, end: f64) {
         if end.is_finite() && end.abs() > 1e-6 * self.size {
-            let frame = &self.model.frame;
-            let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
-            self.found.push(
-                Report::error(
-                    self.model.name_span,
-                    format!("the tool ends at z = {end} and its tip is said to be at {tip}"),
-                )
-                .help(format!(
-                    "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
-                )),
-            );
+            self.found.push(off_tip(&self.model.frame, end, self.model.name_span));
         }
     }
 

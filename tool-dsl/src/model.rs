@@ -3,7 +3,7 @@
 //! All expressions are in the tool's frame (tip at the origin, +z toward the spindle) and the
 //! file's unit. A point belongs to the first region whose formula holds; elsewhere it is outside.
 
-use crate::expr::{Coord, Graph, Id};
+use crate::expr::{Graph, Id};
 use crate::formula::{CurveIndex, Formula};
 use crate::number::Number;
 use crate::regionalise::Partition;
@@ -123,8 +123,7 @@ impl Frame {
     }
 
     /// The file's z, as an expression in the tool's.
-    pub fn file_z(&self, graph: &mut Graph) -> Id {
-        let z = graph.coord(Coord::Z);
+    pub fn file_z(&self, graph: &mut Graph, z: Id) -> Id {
         let tip = graph.number(self.tip.clone());
         if self.down { graph.sub(tip, z) } else { graph.add(z, tip) }
     }

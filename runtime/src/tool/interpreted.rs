@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::path::Path;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape};
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile, model, report};
+use tool_dsl::{Checked, compile_with, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
@@ -48,9 +48,14 @@ impl Interpreted {
 
     /// Compiles a tool's text.
     pub fn parse(source: &Source) -> Result<Interpreted, ToolError> {
-        let compiled = compile(source);
+        Interpreted::parse_with(source, &[])
+    }
+
+    /// Compiles a tool's text with what its params are given, as `D = 0.25inch, flute = 18`.
+    pub fn parse_with(source: &Source, given: &[Source]) -> Result<Interpreted, ToolError> {
+        let compiled = compile_with(source, given);
         let said: Vec<String> =
-            compiled.reports.iter().map(|report| report.render(source, false)).collect();
+            compiled.reports.iter().map(|r| r.render(&compiled.sources, false)).collect();
         match compiled.tool {
             Some(tool) if !report::any_error(&compiled.reports) => Ok(Interpreted {
                 card: card(&tool),

@@ -2,7 +2,6 @@
 
 use super::condition::Curves;
 use super::lower::Lowering;
-use super::profile;
 use super::region::{Felt, Laws, Said};
 use crate::expr::Graph;
 use crate::formula::Formula;
@@ -11,7 +10,6 @@ use crate::regionalise::outline::Segment;
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::report::Report;
 use crate::source::Span;
-use crate::syntax::tree;
 
 /// What a profile makes of a tool.
 #[derive(Default)]
@@ -21,17 +19,14 @@ pub(super) struct FromProfile {
     pub(super) section: Option<Section>,
 }
 
-/// The regions of a profile, derived, and the surfaces that it names.
+/// The regions of an outline, derived, and its surfaces.
 pub(super) fn derived(
-    profile: &tree::Profile,
+    (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
     reports: &mut Vec<Report>,
 ) -> FromProfile {
-    let Some((outline, surfaces)) = profile::outline(profile, lowering, reports) else {
-        return FromProfile::default();
-    };
     laws.check(&surfaces, reports);
     let reversed: Vec<Segment> = outline.iter().rev().map(Segment::reversed).collect();
     let inner = Partition::new(outline.clone(), false);
@@ -43,7 +38,7 @@ pub(super) fn derived(
         Err(Undivided([d, z])) => {
             let z = lowering.frame.to_file(z);
             let report = Report::error(
-                profile.span,
+                span,
                 format!(
                     "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
                 ),

@@ -4,10 +4,12 @@
 //! name, with a remedy (`refuse`). Items are parsed each for itself, so that one mistake does
 //! not hide the next.
 
+mod mount;
 mod parse;
 mod refuse;
 pub mod tree;
 
+pub use mount::given;
 pub use parse::{is_type_name, parse};
 
 /// pest's generated parser, in a module of its own because it documents nothing.
