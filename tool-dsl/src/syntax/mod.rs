@@ -8,6 +8,7 @@ mod parse;
 mod refuse;
 pub mod tree;
 
+pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};
 
 /// pest's generated parser, in a module of its own because it documents nothing.
@@ -15,6 +16,7 @@ mod grammar {
     #![allow(missing_docs)]
     #[derive(pest_derive::Parser)]
     #[grammar = "syntax/grammar.pest"]
-    pub(super) struct Grammar;
+    pub(crate) struct Grammar;
 }
-use grammar::{Grammar, Rule};
+use grammar::Grammar;
+pub(crate) use grammar::Rule;
