@@ -12,6 +12,7 @@ mod arguments;
 mod demo;
 mod failure;
 mod files;
+mod fmt;
 mod run;
 mod timing;
 
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
         Some(Command::Tools) => files::tools(arguments.json),
         Some(Command::Check { files }) => files::check(&files),
+        Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
         Some(Command::Expand { file }) => files::expand(&file),
     };
     match done {
