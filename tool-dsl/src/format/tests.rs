@@ -117,6 +117,21 @@ fn the_library_stands_as_it_is_formatted() {
     }
 }
 
+/// The page on the language shows what it says of the layout.
+#[test]
+fn the_page_stands_as_it_is_formatted() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/language.md");
+    let page = std::fs::read_to_string(page).expect("the page on the language");
+    let mut count = 0;
+    for part in page.split("\n```tool").skip(1) {
+        let example = part.split_once('\n').and_then(|(_, rest)| rest.split_once("```\n"));
+        let (text, _) = example.expect("a fence closes");
+        assert_eq!(sound(text), text);
+        count += 1;
+    }
+    assert!(count > 10);
+}
+
 /// A statement at a tool's level, formatted; without the indent.
 fn statement(text: &str) -> String {
     let all = sound(&format!("tool T {{\n{text}\n}}"));
@@ -302,6 +317,21 @@ proptest! {
         let spread = spread(&code, &gaps);
         let laid = sound(&spread);
         prop_assert_eq!(rust_tokens(&code.join(" ")), rust_tokens(&laid.replace("///", "//")));
+    }
+
+    /// The tools that we have mean the same, however they were spaced.
+    #[test]
+    fn any_spacing_keeps_the_meaning(
+        file in prop::sample::select(tool_files()),
+        gaps in prop::collection::vec(between(), 600),
+    ) {
+        let text = std::fs::read_to_string(&file).expect("a readable file");
+        let (code, _) = content(&text);
+        let spread = spread(&code, &gaps);
+        if let Ok(formatted) = format(&Source::new("t.tool", spread.clone())) {
+            prop_assert_eq!(&formatted, &sound(&spread));
+            prop_assert_eq!(tree(&formatted), tree(&text), "{}", file.display());
+        }
     }
 
     /// Spaces alone decide nothing but where one-line regions stand.
