@@ -39,6 +39,15 @@ pub(crate) enum Command {
         #[command(flatten)]
         given: Given,
     },
+    /// Lay `.tool` files out as they are usually written.
+    Fmt {
+        /// Change nothing: name the files that would change, and fail if there are any.
+        #[arg(long)]
+        check: bool,
+        /// The files; `-` is standard input, laid out on standard output.
+        #[arg(required = true, value_name = "FILE.tool")]
+        files: Vec<PathBuf>,
+    },
     /// Print the Rust that a `.tool` file becomes.
     Expand {
         /// The file.

@@ -55,6 +55,14 @@ pub(crate) enum Failure {
         /// How many were looked at.
         all: usize,
     },
+    /// Some `.tool` files would be changed by `fmt`; they were named.
+    #[error("{changed} of {all} files would change: `touchoff fmt` lays them out")]
+    Unformatted {
+        /// How many would change.
+        changed: usize,
+        /// How many were looked at.
+        all: usize,
+    },
     /// Standard output could not be written.
     #[error("the output could not be written whole: {0}")]
     Output(#[from] std::io::Error),

@@ -12,6 +12,7 @@ mod arguments;
 mod demo;
 mod failure;
 mod files;
+mod fmt;
 mod run;
 mod timing;
 
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
         Some(Command::Check { files, given }) => files::check(&files, &given),
         Some(Command::Expand { file, given }) => files::expand(&file, &given),
+        Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

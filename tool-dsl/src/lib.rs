@@ -12,6 +12,7 @@
 pub mod bound;
 pub mod emit;
 pub mod expr;
+pub mod format;
 pub mod formula;
 pub mod interpret;
 mod look;

@@ -10,6 +10,7 @@ mod refuse;
 pub mod tree;
 
 pub use mount::given;
+pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};
 
 /// pest's generated parser, in a module of its own because it documents nothing.
@@ -17,6 +18,7 @@ mod grammar {
     #![allow(missing_docs)]
     #[derive(pest_derive::Parser)]
     #[grammar = "syntax/grammar.pest"]
-    pub(super) struct Grammar;
+    pub(crate) struct Grammar;
 }
-use grammar::{Grammar, Rule};
+use grammar::Grammar;
+pub(crate) use grammar::Rule;

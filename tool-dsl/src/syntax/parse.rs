@@ -467,6 +467,14 @@ fn quantity(pair: &Pair<'_, Rule>) -> Quantity {
     }
 }
 
+/// The text as it stands: its tokens and comments in order.
+pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Report> {
+    match Grammar::parse(Rule::tokens, text) {
+        Ok(mut pairs) => Ok(pairs.next().map_or(pairs, Pair::into_inner)),
+        Err(error) => Err(refuse::syntax(text, 0, &error)),
+    }
+}
+
 /// Whether a rule is a word of the language that carries nothing.
 pub(super) fn is_word(rule: Rule) -> bool {
     matches!(
