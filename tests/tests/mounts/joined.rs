@@ -220,7 +220,7 @@ fn the_plane_cuts_an_arc() {
 /// A concave arc rises on the other side of its centre.
 #[test]
 fn the_plane_cuts_a_concave_arc() {
-    let neck = "tool Neck { units mm; profile { start (0, 0); line to (8, 0) as face;
+    let neck = "tool Neck { units mm; profile { start (0, 0); line to (5, 0), (5, 1) as face;
         arc to (3, 5) center (8, 5) concave as neck; line to (3, 9), (0, 9) as stem; } }";
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("neck.tool"), neck).expect("a writable folder");
@@ -233,7 +233,7 @@ fn the_plane_cuts_a_concave_arc() {
     let written = tool(&mounts(
         "profile {
             start (0, 0);
-            line to (8, 0)                       as face;
+            line to (5, 0), (5, 1)               as face;
             arc  to (4, 2) center (8, 5) concave as neck;
             line to (12.9, 2), (14, 3.1), (14, 19.5), (0, 19.5)  as nut;
         }",

@@ -63,6 +63,34 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
+    /// The tree where a test is known to hold or to fail.
+    fn knowing(&self, known: CurveIndex, strictly: bool, holds: bool) -> Tree<L> {
+        match self {
+            Tree::Leaf(_) => self.clone(),
+            Tree::Split { curve, strict, below, above } if *curve == known => {
+                match (holds, strictly, *strict) {
+                    // c < 0 implies c ≤ 0, and c > 0 that neither holds.
+                    (true, true, _) | (true, false, false) => below.knowing(known, strictly, holds),
+                    (false, false, _) | (false, true, true) => {
+                        above.knowing(known, strictly, holds)
+                    }
+                    _ => Tree::split(
+                        *curve,
+                        *strict,
+                        below.knowing(known, strictly, holds),
+                        above.knowing(known, strictly, holds),
+                    ),
+                }
+            }
+            Tree::Split { curve, strict, below, above } => Tree::split(
+                *curve,
+                *strict,
+                below.knowing(known, strictly, holds),
+                above.knowing(known, strictly, holds),
+            ),
+        }
+    }
+
     /// How many tests there are.
     pub fn tests(&self) -> usize {
         match self {

@@ -14,6 +14,9 @@ use std::cmp::Ordering;
 /// Chords of a curved edge, at first and where so few misled.
 const CHORDS: [u32; 2] = [8, 40];
 
+/// Curves that are passed over because their points belong to both sides.
+const DOUBLES: usize = 6;
+
 type Owners = Tree<Option<usize>>;
 
 /// Bits that an addition must be worth.
@@ -154,7 +157,7 @@ impl Planner<'_> {
         if pieces.iter().all(|piece| piece.owner == first.owner) {
             return Ok(Tree::Leaf(first.owner));
         }
-        let Some((curve, halves)) = self.choose(&pieces, &samples, &mut open) else {
+        let Some((curve, halves, zeros)) = self.choose(&pieces, &samples, &mut open) else {
             return Ok(Tree::Leaf(self.settle(&pieces)));
         };
         self.used[curve] = true;
@@ -169,7 +172,6 @@ impl Planner<'_> {
         open.retain(|other| *other != curve);
         let (low, high): (Vec<u32>, Vec<u32>) =
             samples.into_iter().partition(|s| self.samples[*s as usize].below[curve]);
-        let zeros = self.zeros(curve, &halves);
         let on = match zeros {
             Zeros::Both => Some(self.touching(curve, &halves, &open)?),
             _ => None,
@@ -192,7 +194,7 @@ impl Planner<'_> {
         pieces: &[Piece],
         samples: &[u32],
         open: &mut Vec<CurveIndex>,
-    ) -> Option<(CurveIndex, Halves)> {
+    ) -> Option<(CurveIndex, Halves, Zeros)> {
         let mut ranked: Vec<(f64, CurveIndex)> = open
             .iter()
             .map(|curve| {
@@ -205,7 +207,7 @@ impl Planner<'_> {
             let order = |curve| listed(curve).unwrap_or(usize::MAX);
             order(a.1).cmp(&order(b.1)).then(b.0.total_cmp(&a.0))
         });
-        let mut fallback = None;
+        let (mut fallback, mut double, mut doubles) = (None, None, 0);
         for (_, curve) in ranked {
             let halves = self.halves(curve, pieces);
             if halves.below.is_empty() || halves.above.is_empty() {
@@ -220,12 +222,26 @@ impl Planner<'_> {
                 owners.len()
             };
             let all = owners(pieces);
-            if owners(&halves.below) < all || owners(&halves.above) < all {
-                return Some((curve, halves));
+            if owners(&halves.below) == all && owners(&halves.above) == all {
+                fallback = fallback.or(Some((curve, halves, Zeros::Below)));
+                continue;
             }
-            fallback = fallback.or(Some((curve, halves)));
+            // A curve whose points belong to both sides costs a tree of its own.
+            let zeros = self.zeros(curve, &halves);
+            if zeros != Zeros::Both {
+                return Some((curve, halves, zeros));
+            }
+            double.get_or_insert((curve, halves, zeros));
+            doubles += 1;
+            if doubles > DOUBLES {
+                break;
+            }
         }
-        fallback
+        let fallback = fallback.map(|(curve, halves, _)| {
+            let zeros = self.zeros(curve, &halves);
+            (curve, halves, zeros)
+        });
+        double.or(fallback)
     }
 
     /// Whose pieces are that no curve tells apart: slivers between a curve and its chord, but for
@@ -287,20 +303,10 @@ impl Planner<'_> {
     /// Which side the points on a curve go to: that of the solid, so that its surface is its own;
     /// where both are, that of the owner listed first, if one side is so all along.
     fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
-        let shape = &self.shapes[curve];
-        let on = |pieces: &[Piece]| -> Vec<(Point, usize)> {
-            let of = |piece: &Piece| {
-                let rank = piece.owner.unwrap_or(usize::MAX);
-                let on = piece.vertices.iter().filter(|p| shape.side(**p, self.size) == 0);
-                on.map(|p| (*p, rank)).collect::<Vec<_>>()
-            };
-            pieces.iter().flat_map(of).collect()
-        };
-        let (below, above) = (on(&halves.below), on(&halves.above));
+        let [below, above] = [&halves.below, &halves.above].map(|half| self.rim(curve, half));
         let (mut must, mut prefers) = ([false; 2], [false; 2]);
-        for (p, _) in below.iter().chain(&above) {
-            let b = self.best(*p, &below, curve, &halves.below);
-            let a = self.best(*p, &above, curve, &halves.above);
+        for p in below.points.iter().chain(&above.points) {
+            let [b, a] = [&below, &above].map(|rim| rim.first_at(p.0, 1e-9 * self.size));
             let inside = [b, a].map(|rank| rank != usize::MAX);
             match (inside, b.cmp(&a)) {
                 ([true, false], _) => must[0] = true,
@@ -317,30 +323,23 @@ impl Planner<'_> {
         }
     }
 
-    /// The first of the owners that a point on a curve touches on one side.
-    fn best(&self, p: Point, on: &[(Point, usize)], curve: CurveIndex, pieces: &[Piece]) -> usize {
-        let close = 1e-9 * self.size;
-        let at = on.iter().filter(|(q, _)| norm(minus(p, *q)) < close).map(|(_, rank)| *rank);
-        let along = pieces
-            .iter()
-            .filter(|piece| self.on_edge(p, piece, curve))
-            .map(|piece| piece.owner.unwrap_or(usize::MAX));
-        at.chain(along).min().unwrap_or(usize::MAX)
-    }
-
-    /// Whether a point lies on a straight edge of a piece along a curve.
-    fn on_edge(&self, p: Point, piece: &Piece, curve: CurveIndex) -> bool {
-        let count = piece.vertices.len();
-        (0..count).filter(|k| piece.edges[*k] == Edge::Straight).any(|k| {
-            let (a, b) = (piece.vertices[k], piece.vertices[(k + 1) % count]);
-            let (way, off) = (minus(b, a), minus(p, a));
-            let length = norm(way);
-            let along = (way[0] * off[0] + way[1] * off[1]) / length;
-            let across = (way[0] * off[1] - way[1] * off[0]) / length;
-            across.abs() < 1e-9 * self.size
-                && (0.0..=length).contains(&along)
-                && [a, b].iter().all(|q| self.shapes[curve].side(*q, self.size) == 0)
-        })
+    /// What of some pieces lies on a curve.
+    fn rim(&self, curve: CurveIndex, pieces: &[Piece]) -> Rim {
+        let shape = &self.shapes[curve];
+        let mut rim = Rim::default();
+        for piece in pieces {
+            let rank = piece.owner.unwrap_or(usize::MAX);
+            let on: Vec<bool> =
+                piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
+            for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| on[*k]) {
+                rim.points.push((*p, rank));
+                let next = (k + 1) % on.len();
+                if on[next] && piece.edges[k] == Edge::Straight {
+                    rim.edges.push(([*p, piece.vertices[next]], rank));
+                }
+            }
+        }
+        rim
     }
 
     /// The owners of the points on a curve: the first of both sides'.
@@ -361,6 +360,30 @@ impl Planner<'_> {
     }
 }
 
+/// Points and straight edges on a curve, with the rank of their owner: its place in the list.
+#[derive(Default)]
+struct Rim {
+    points: Vec<(Point, usize)>,
+    edges: Vec<([Point; 2], usize)>,
+}
+
+impl Rim {
+    /// The first of the owners that touch a point.
+    fn first_at(&self, p: Point, close: f64) -> usize {
+        let near = |q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
+        let points = self.points.iter().filter(|(q, _)| near(*q)).map(|(_, rank)| *rank);
+        let along = |[a, b]: [Point; 2]| {
+            let (way, off) = (minus(b, a), minus(p, a));
+            let length = norm(way);
+            let along = (way[0] * off[0] + way[1] * off[1]) / length;
+            let across = (way[0] * off[1] - way[1] * off[0]) / length;
+            across.abs() < close && (0.0..=length).contains(&along)
+        };
+        let edges = self.edges.iter().filter(|(edge, _)| along(*edge)).map(|(_, rank)| *rank);
+        points.chain(edges).min().unwrap_or(usize::MAX)
+    }
+}
+
 /// The side that a curve's own points go to.
 #[derive(Clone, Copy, PartialEq)]
 enum Zeros {
@@ -374,12 +397,14 @@ fn first(a: &Owners, b: &Owners) -> Owners {
     match a {
         Tree::Leaf(own) => {
             let rank = |owner: &Option<usize>| owner.unwrap_or(usize::MAX);
-            let least =
-                |other: &Option<usize>| Some(if rank(other) < rank(own) { *other } else { *own });
+            let least = |other: &Option<usize>| {
+                Some(if rank(other) < rank(own) { *other } else { *own })
+            };
             b.map(&least).unwrap_or(Tree::Leaf(*own))
         }
         Tree::Split { curve, strict, below, above } => {
-            Tree::split(*curve, *strict, first(below, b), first(above, b))
+            let [low, high] = [true, false].map(|holds| b.knowing(*curve, *strict, holds));
+            Tree::split(*curve, *strict, first(below, &low), first(above, &high))
         }
     }
 }

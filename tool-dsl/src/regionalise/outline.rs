@@ -292,6 +292,17 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         );
         return reports;
     }
+    for pair in outline.windows(2) {
+        let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
+        if cross(before, after).abs() < TANGENT && dot(before, after) < 0.0 {
+            let at = show(pair[0].ends()[1]);
+            reports.push(
+                Report::error(pair[1].span, format!("this segment turns straight back at {at}"))
+                    .and(pair[0].span, "from this one")
+                    .help("a needle without an angle is no solid: move a corner"),
+            );
+        }
+    }
     for (i, a) in outline.iter().enumerate() {
         for (j, b) in outline.iter().enumerate().skip(i + 1) {
             if let Some(at) = meeting(a, b, j == i + 1) {
