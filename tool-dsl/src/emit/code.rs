@@ -6,7 +6,7 @@ use crate::model::Curve;
 use crate::plan::Tree;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The two forms of generated code.
 #[derive(Clone, Copy, PartialEq)]
@@ -262,40 +262,64 @@ impl<'g> Writer<'g> {
         tree: &Tree<L>,
         needs: &impl Fn(&L) -> Vec<Id>,
         leaf: &impl Fn(&Self, &L) -> TokenStream,
-        scope: &BTreeSet<Id>,
     ) -> TokenStream {
+        let mut always = HashMap::new();
+        self.always(tree, needs, &mut always);
+        self.branch(tree, &always, leaf, &BTreeSet::new()).0
+    }
+
+    /// A tree's code, and whether it is nothing but an `if`.
+    fn branch<L>(
+        &self,
+        tree: &Tree<L>,
+        always: &HashMap<*const Tree<L>, BTreeSet<Id>>,
+        leaf: &impl Fn(&Self, &L) -> TokenStream,
+        scope: &BTreeSet<Id>,
+    ) -> (TokenStream, bool) {
         let mut scope = scope.clone();
-        let lets = self.lets(self.always(tree, needs), &mut scope);
+        let needed = always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
+        let lets = self.lets(needed, &mut scope);
         match tree {
             Tree::Leaf(own) => {
                 let value = leaf(self, own);
-                quote! { #lets #value }
+                (quote! { #lets #value }, false)
             }
             Tree::Split { curve, strict, below, above } => {
                 let test = self.test(*curve, *strict);
-                let below = self.nested(below, needs, leaf, &scope);
-                let above = self.nested(above, needs, leaf, &scope);
-                if below.to_string() == "true" && above.to_string() == "false" {
-                    quote! { #lets #test }
-                } else if above.to_string().starts_with("if ") {
-                    quote! { #lets if #test { #below } else #above }
+                let leaves = matches!((&**below, &**above), (Tree::Leaf(_), Tree::Leaf(_)));
+                let (below, _) = self.branch(below, always, leaf, &scope);
+                let (above, chained) = self.branch(above, always, leaf, &scope);
+                let bare = lets.is_empty();
+                if leaves && below.to_string() == "true" && above.to_string() == "false" {
+                    (quote! { #lets #test }, false)
+                } else if chained {
+                    (quote! { #lets if #test { #below } else #above }, bare)
                 } else {
-                    quote! { #lets if #test { #below } else { #above } }
+                    (quote! { #lets if #test { #below } else { #above } }, bare)
                 }
             }
         }
     }
 
-    /// The nodes that every way down a tree needs.
-    fn always<L>(&self, tree: &Tree<L>, needs: &impl Fn(&L) -> Vec<Id>) -> BTreeSet<Id> {
-        match tree {
+    /// Notes the nodes that every way down a tree needs, for each of its trees.
+    fn always<L>(
+        &self,
+        tree: &Tree<L>,
+        needs: &impl Fn(&L) -> Vec<Id>,
+        known: &mut HashMap<*const Tree<L>, BTreeSet<Id>>,
+    ) {
+        let own = match tree {
             Tree::Leaf(leaf) => self.graph.needed(needs(leaf)).into_iter().collect(),
             Tree::Split { curve, below, above, .. } => {
-                let (below, above) = (self.always(below, needs), self.always(above, needs));
+                self.always(below, needs, known);
+                self.always(above, needs, known);
+                let [below, above] =
+                    [below, above].map(|side| &known[&std::ptr::from_ref(&**side)]);
                 let compared = self.graph.needed(self.compared(*curve));
-                below.intersection(&above).copied().chain(compared).collect()
+                below.intersection(above).copied().chain(compared).collect()
             }
-        }
+        };
+        known.insert(std::ptr::from_ref(tree), own);
     }
 
     /// The definitions that lanes need for some roots and tests: shared nodes, then masks.

@@ -247,12 +247,9 @@ fn body(tool: &Checked, form: Form, tree: &Tree<Vec<Id>>) -> TokenStream {
         _ => quote! { [#(#values),*] },
     };
     let code = match form {
-        Form::Scalar => writer.nested(
-            tree,
-            &|ids: &Vec<Id>| ids.clone(),
-            &|w, ids| together(ids.iter().map(|id| w.leaf(*id)).collect()),
-            &BTreeSet::new(),
-        ),
+        Form::Scalar => writer.nested(tree, &|ids: &Vec<Id>| ids.clone(), &|w, ids| {
+            together(ids.iter().map(|id| w.leaf(*id)).collect())
+        }),
         Form::Lanes => {
             let lets = writer.straight(&roots, &tests);
             let values = together(separate.iter().map(|tree| writer.selects(tree)).collect());
@@ -294,8 +291,7 @@ fn contains(tool: &Checked, form: Form) -> TokenStream {
     let (name, _) = signature(form, "contains");
     match form {
         Form::Scalar => {
-            let code =
-                writer.nested(tree, &|_| vec![], &|_, inside| quote! { #inside }, &BTreeSet::new());
+            let code = writer.nested(tree, &|_| vec![], &|_, inside| quote! { #inside });
             function(form, &name, &quote! {}, &quote! { bool }, &quote! { #coordinates #code })
         }
         Form::Lanes => {
@@ -322,7 +318,7 @@ fn owner(tool: &Checked, form: Form) -> TokenStream {
                 Some(index) => quote! { Some(#index) },
                 None => quote! { None },
             };
-            let code = writer.nested(tree, &|_| vec![], &leaf, &BTreeSet::new());
+            let code = writer.nested(tree, &|_| vec![], &leaf);
             function(
                 form,
                 &name,

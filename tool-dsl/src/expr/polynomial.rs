@@ -101,13 +101,21 @@ impl Polynomial {
 
     /// The factor by which `self` is `other`, if it is a multiple of it.
     pub fn ratio(&self, other: &Polynomial) -> Option<Number> {
-        let factor = self.0.first_key_value()?.1.over(other.0.first_key_value()?.1)?;
-        let same = self.0.len() == other.0.len()
-            && self
-                .0
-                .iter()
-                .zip(&other.0)
-                .all(|((m, a), (n, b))| m == n && a.agrees(&(b * &factor)));
+        if !self.0.keys().eq(other.0.keys()) {
+            return None;
+        }
+        let leads = (self.0.first_key_value()?.1, other.0.first_key_value()?.1);
+        let about = leads.0.to_f64() / leads.1.to_f64();
+        let near = |(a, b): (&Number, &Number)| {
+            let (a, b) = (a.to_f64(), b.to_f64() * about);
+            (a - b).abs() <= 1e-9 * (a.abs() + b.abs())
+        };
+        // Most curves differ in the first digits.
+        if !self.0.values().zip(other.0.values()).all(near) {
+            return None;
+        }
+        let factor = leads.0.over(leads.1)?;
+        let same = self.0.values().zip(other.0.values()).all(|(a, b)| a.agrees(&(b * &factor)));
         same.then_some(factor)
     }
 

@@ -23,6 +23,8 @@ type Owners = Tree<Option<usize>>;
 const PRICE: f64 = 0.01;
 /// What a test costs that the tree does elsewhere too: lanes do it once.
 const AGAIN: f64 = 0.3;
+/// Additions that a side where several owners are left will cost at least.
+const TEST: f64 = 8.0;
 
 /// The owners' tree, and that of the features which are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Report> {
@@ -195,11 +197,13 @@ impl Planner<'_> {
         samples: &[u32],
         open: &mut Vec<CurveIndex>,
     ) -> Option<(CurveIndex, Halves, Zeros)> {
+        let mut counts = Vec::new();
         let mut ranked: Vec<(f64, CurveIndex)> = open
             .iter()
             .map(|curve| {
                 let again = if self.used[*curve] { AGAIN } else { 1.0 };
-                (self.gain(*curve, samples) - PRICE * again * self.costs[*curve], *curve)
+                let gain = self.gain(*curve, samples, &mut counts);
+                (gain - PRICE * again * self.costs[*curve], *curve)
             })
             .collect();
         let listed = |curve: CurveIndex| self.model.first.iter().position(|f| *f == curve);
@@ -282,22 +286,19 @@ impl Planner<'_> {
         halves
     }
 
-    /// Bits of information that a curve's side gives about the owners of samples.
-    fn gain(&self, curve: CurveIndex, samples: &[u32]) -> f64 {
-        let mut counts: Vec<(Option<usize>, [f64; 2])> = Vec::new();
+    /// What a curve's side tells about the owners of samples, in bits, less what is left to test.
+    fn gain(&self, curve: CurveIndex, samples: &[u32], counts: &mut Vec<[f64; 2]>) -> f64 {
+        counts.clear();
+        counts.resize(self.inside.len() + 1, [0.0; 2]);
         for sample in samples {
             let sample = &self.samples[*sample as usize];
-            let side = usize::from(!sample.below[curve]);
-            match counts.iter_mut().find(|(owner, _)| *owner == sample.owner) {
-                Some((_, count)) => count[side] += sample.weight,
-                None => {
-                    let mut count = [0.0; 2];
-                    count[side] = sample.weight;
-                    counts.push((sample.owner, count));
-                }
-            }
+            let owner = sample.owner.map_or(0, |owner| owner + 1);
+            counts[owner][usize::from(!sample.below[curve])] += sample.weight;
         }
-        super::information(counts.iter().map(|(_, count)| *count))
+        counts.retain(|count| count[0] + count[1] > 0.0);
+        let owners = |side: usize| counts.iter().filter(|count| count[side] > 0.0).count();
+        let open = [0, 1].map(|side| if owners(side) > 1 { PRICE * TEST } else { 0.0 });
+        super::information(counts.iter().copied()) - open[0] - open[1]
     }
 
     /// Which side the points on a curve go to: that of the solid, so that its surface is its own;
@@ -397,9 +398,8 @@ fn first(a: &Owners, b: &Owners) -> Owners {
     match a {
         Tree::Leaf(own) => {
             let rank = |owner: &Option<usize>| owner.unwrap_or(usize::MAX);
-            let least = |other: &Option<usize>| {
-                Some(if rank(other) < rank(own) { *other } else { *own })
-            };
+            let least =
+                |other: &Option<usize>| Some(if rank(other) < rank(own) { *other } else { *own });
             b.map(&least).unwrap_or(Tree::Leaf(*own))
         }
         Tree::Split { curve, strict, below, above } => {
