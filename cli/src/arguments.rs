@@ -36,6 +36,15 @@ pub(crate) enum Command {
         #[arg(value_name = "FILE.tool")]
         file: PathBuf,
     },
+    /// Draw a `.tool` file: its section, regions, surfaces and measures.
+    Draw {
+        /// The file.
+        #[arg(value_name = "FILE.tool")]
+        file: PathBuf,
+        /// Where the drawing goes, `.svg` or `.png` [default: SVG on standard output].
+        #[arg(short, long, value_name = "OUT.svg|OUT.png")]
+        output: Option<PathBuf>,
+    },
 }
 
 #[derive(Args)]

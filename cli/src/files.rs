@@ -147,18 +147,21 @@ fn described(tool: &Checked, warnings: usize) -> String {
     )
 }
 
-/// Prints a file's Rust.
-pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
+/// A file's tool; what there is to say of the file is said.
+pub(crate) fn checked(file: &Path) -> Result<Box<Checked>, Failure> {
     let source = Interpreted::source(file)?;
     let compiled = compile(&source);
     for report in &compiled.reports {
         say!("{}\n", report.render(&source, std::io::stderr().is_terminal()));
     }
-    let Some(tool) = &compiled.tool else {
-        return Err(Failure::Files { wrong: 1, all: 1 });
-    };
+    compiled.tool.ok_or(Failure::Files { wrong: 1, all: 1 })
+}
+
+/// Prints a file's Rust.
+pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
+    let tool = checked(file)?;
     let mut out = std::io::stdout().lock();
-    write!(out, "{}", emit::rust(tool))?;
+    write!(out, "{}", emit::rust(&tool))?;
     out.flush()?;
     Ok(())
 }

@@ -10,6 +10,7 @@ macro_rules! say {
 
 mod arguments;
 mod demo;
+mod draw;
 mod failure;
 mod files;
 mod run;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         Some(Command::Tools) => files::tools(arguments.json),
         Some(Command::Check { files }) => files::check(&files),
         Some(Command::Expand { file }) => files::expand(&file),
+        Some(Command::Draw { file, output }) => draw::draw(&file, output.as_deref()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
