@@ -103,7 +103,7 @@ impl<'m> Picture<'m> {
 fn title(tool: &Checked, sheet: &mut Sheet) {
     let model = &tool.model;
     let [low, high] = sheet.frame();
-    let room = (high[0] - low[0]).max(300.0);
+    let room = (high[0] - low[0]).max(400.0);
     let unit = model.unit.word();
     let mut lines = Vec::new();
     if let Some(title) = &model.title {

@@ -95,7 +95,7 @@ impl Sheet {
         }
         match self.lettering {
             Lettering::Strokes => self.strokes(text, [left, base], look),
-            Lettering::Page => self.letters(text, [left, base], look, wide),
+            Lettering::Page => self.letters(text, [at[0], base], look),
         }
     }
 
@@ -113,18 +113,22 @@ impl Sheet {
         );
     }
 
-    /// Whatever the font, the text is as wide as its strokes would be.
-    fn letters(&mut self, text: &str, [x, y]: Point, look: Look, wide: f64) {
+    /// How wide a page's font is nobody knows, so the text keeps to the end that it is held by.
+    fn letters(&mut self, text: &str, [x, y]: Point, look: Look) {
         let colour = coloured("fill", look.colour);
         let bold = if look.bold { " font-weight=\"bold\"" } else { "" };
-        // Capitals are 0.7 of what a font calls its size.
-        let size = short(look.size / 0.7);
+        let anchor = match look.anchor {
+            Anchor::Left => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::Right => " text-anchor=\"end\"",
+        };
+        // Capitals are some 0.72 of what a font calls its size.
+        let size = short(look.size / 0.72);
         let _ = write!(
             self.texts,
-            "<text x=\"{}\" y=\"{}\" font-size=\"{size}\" textLength=\"{}\"{colour}{bold}>{}</text>",
+            "<text x=\"{}\" y=\"{}\" font-size=\"{size}\"{anchor}{colour}{bold}>{}</text>",
             short(x),
             short(y),
-            short(wide),
             escaped(text),
         );
     }
