@@ -53,6 +53,20 @@ pub(crate) enum Command {
         /// The file.
         #[arg(value_name = "FILE.tool")]
         file: PathBuf,
+        /// Print the tree of splits in DOT, for Graphviz, instead of Rust.
+        #[arg(long)]
+        plan: bool,
+        #[command(flatten)]
+        given: Given,
+    },
+    /// Draw a `.tool` file: its section, regions, surfaces and measures.
+    Draw {
+        /// The file.
+        #[arg(value_name = "FILE.tool")]
+        file: PathBuf,
+        /// Where the drawing goes, `.svg` or `.png` [default: SVG on standard output].
+        #[arg(short, long, value_name = "OUT.svg|OUT.png")]
+        output: Option<PathBuf>,
         #[command(flatten)]
         given: Given,
     },

@@ -63,6 +63,25 @@ pub(crate) enum Failure {
         /// How many were looked at.
         all: usize,
     },
+    /// A drawing is wanted in a form that there is none of.
+    #[error("a drawing is an `.svg` or a `.png`, `{file}` is neither: write `-o {}`", .better.display())]
+    Form {
+        /// What was asked for.
+        file: String,
+        /// A name that would do.
+        better: std::path::PathBuf,
+    },
+    /// A drawing could not be made into pixels.
+    #[error("the drawing could not be made a PNG: {0}; an `.svg` needs no pixels")]
+    Pixels(String),
+    /// A file could not be written.
+    #[error("cannot write `{file}`: {source}; does its folder exist, and may you write there?")]
+    Unwritable {
+        /// The file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
     /// Standard output could not be written.
     #[error("the output could not be written whole: {0}")]
     Output(#[from] std::io::Error),

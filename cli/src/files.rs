@@ -162,18 +162,21 @@ fn described(tool: &Checked, warnings: usize) -> String {
     )
 }
 
-/// Prints a file's Rust.
-pub(crate) fn expand(file: &Path, given: &Given) -> Result<(), Failure> {
+/// A file's tool; what there is to say of the file is said.
+pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<Checked>, Failure> {
     let source = Interpreted::source(file)?;
     let compiled = compile_with(&source, &given.sources());
     for report in &compiled.reports {
         say!("{}\n", report.render(&compiled.sources, std::io::stderr().is_terminal()));
     }
-    let Some(tool) = &compiled.tool else {
-        return Err(Failure::Files { wrong: 1, all: 1 });
-    };
+    compiled.tool.ok_or(Failure::Files { wrong: 1, all: 1 })
+}
+
+/// Prints a file's Rust, or its plan as a graph.
+pub(crate) fn expand(file: &Path, plan: bool, given: &Given) -> Result<(), Failure> {
+    let tool = checked(file, given)?;
     let mut out = std::io::stdout().lock();
-    write!(out, "{}", emit::rust(tool))?;
+    write!(out, "{}", if plan { emit::dot(&tool) } else { emit::rust(&tool) })?;
     out.flush()?;
     Ok(())
 }

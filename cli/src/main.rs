@@ -10,6 +10,7 @@ macro_rules! say {
 
 mod arguments;
 mod demo;
+mod draw;
 mod failure;
 mod files;
 mod fmt;
@@ -27,8 +28,9 @@ fn main() -> ExitCode {
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
         Some(Command::Check { files, given }) => files::check(&files, &given),
-        Some(Command::Expand { file, given }) => files::expand(&file, &given),
+        Some(Command::Expand { file, plan, given }) => files::expand(&file, plan, &given),
         Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
+        Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -378,3 +378,39 @@ fn the_impeller_program_is_found_to_gouge() {
     assert!((0.14..0.17).contains(&near_280), "{near_280}");
     assert!(rows.iter().filter(|row| row["depth"].as_f64() > Some(0.01)).count() > 300);
 }
+
+#[test]
+fn files_are_drawn() {
+    let bench = Bench::new();
+    let good = bench.write(
+        "good.tool",
+        "tool Good \"a ball\" { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball \
+         cutting; line to (3, 9), (0, 9) as shank; } }",
+    );
+    let svg = touchoff(&["draw", &good]);
+    assert!(svg.status.success(), "{}", stderr(&svg));
+    assert!(stdout(&svg).starts_with("<svg "), "{}", stdout(&svg));
+    assert!(stdout(&svg).contains("ball R3"));
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    assert!(touchoff(&["draw", &good, "-o", &place("good.svg")]).status.success());
+    let written = std::fs::read_to_string(place("good.svg")).expect("the drawing");
+    assert_eq!(written, stdout(&svg).trim_end());
+    let png = touchoff(&["draw", &good, "--output", &place("good.PNG")]);
+    assert!(png.status.success() && png.stdout.is_empty(), "{}", stderr(&png));
+    let bytes = std::fs::read(place("good.PNG")).expect("the picture");
+    assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 10_000, "{} bytes", bytes.len());
+
+    let refused = |output: &str, words: &[&str]| {
+        let done = touchoff(&["draw", &good, "-o", output]);
+        let said = stderr(&done);
+        assert_eq!(done.status.code(), Some(1), "{said}");
+        for word in words {
+            assert!(said.contains(word), "`{word}` is missing in:\n{said}");
+        }
+    };
+    refused(&place("good.pdf"), &["`.svg`", "`.png`", "good.svg"]);
+    refused(&place("good"), &["is neither", "good.svg"]);
+    refused(&place("nowhere/good.svg"), &["cannot write", "nowhere", "folder"]);
+    let bad = bench.write("bad.tool", "tool Bad { units mm; }");
+    assert_eq!(touchoff(&["draw", &bad]).status.code(), Some(1));
+}

@@ -3,13 +3,14 @@
 //! ```text
 //! text ──syntax──▶ tree ──resolve──▶ model ──bound, look──▶ checked tool ──plan──▶ splits
 //!                                                                 │
-//!                                    Rust tokens ◀──emit──────────┼──────interpret──▶ values
+//!                             Rust tokens, SVG ◀──emit, draw──────┼──────interpret──▶ values
 //! ```
 //!
 //! A [`Checked`] tool has no error left in it: [`emit::emit`] and [`interpret::Interpreter`]
 //! cannot fail.
 
 pub mod bound;
+pub mod draw;
 pub mod emit;
 pub mod expr;
 pub mod format;

@@ -57,6 +57,17 @@ impl<'g> Writer<'g> {
         writer
     }
 
+    /// A curve's test as a person reads it.
+    pub(super) fn shown(
+        graph: &Graph,
+        curves: &[Curve],
+        curve: CurveIndex,
+        strict: bool,
+    ) -> String {
+        let writer = Writer { graph, curves, form: Form::Scalar, uses: BTreeMap::new() };
+        writer.test(curve, strict).to_string()
+    }
+
     /// The definitions of `d` and `q` where the function needs them.
     pub(super) fn coordinates(&self) -> TokenStream {
         let uses = |coord| self.uses.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord));

@@ -2,8 +2,12 @@
 //! forms of one plan. Emitting cannot fail, since everything is found before it.
 
 mod code;
+mod dot;
+
+pub use dot::dot;
 
 use crate::Checked;
+use crate::draw::{self, Lettering};
 use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
@@ -14,8 +18,15 @@ use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// The type and its evaluators.
+/// The type and its evaluators. Its documentation has the tool's drawing, which only rustdoc is
+/// shown: an editor that shows documentation as text is spared it.
 pub fn emit(tool: &Checked) -> TokenStream {
+    // One line within a block, so that nothing in it is read as Markdown.
+    let drawing = format!("<div>{}</div>", draw::svg(tool, Lettering::Page));
+    code(tool, &quote! { #[cfg_attr(doc, doc = "", doc = #drawing)] })
+}
+
+fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
     let name = Ident::new(&tool.model.name, Span::call_site());
     let docs = documentation(tool);
     let card = card(tool);
@@ -23,6 +34,7 @@ pub fn emit(tool: &Checked) -> TokenStream {
     let lanes = functions(tool, Form::Lanes);
     quote! {
         #[doc = #docs]
+        #drawing
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct #name;
 
@@ -350,9 +362,9 @@ fn owner_lanes(tree: &Tree<Option<usize>>) -> TokenStream {
     }
 }
 
-/// The code as a person reads it.
+/// The code as a person reads it, without the drawing in its documentation.
 pub fn rust(tool: &Checked) -> String {
-    let tokens = emit(tool);
+    let tokens = code(tool, &quote! {});
     match syn::parse2(tokens.clone()) {
         Ok(file) => prettyplease::unparse(&file),
         Err(_) => tokens.to_string(),

@@ -1,0 +1,51 @@
+//! A tool's drawing, as SVG or in pixels.
+
+use crate::arguments::Given;
+use crate::failure::Failure;
+use crate::files;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree};
+use std::io::Write;
+use std::path::Path;
+use tool_dsl::draw::{Lettering, svg};
+
+/// Pixels to one unit of the drawing, fine enough to print; fewer if the whole would need too many.
+const PIXELS: f32 = 2.0;
+const MOST: f32 = 5e7;
+
+/// Draws a file's tool into another file, or on standard output.
+pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<(), Failure> {
+    let Some(output) = output else {
+        let mut out = std::io::stdout().lock();
+        writeln!(out, "{}", drawing(file, given)?)?;
+        out.flush()?;
+        return Ok(());
+    };
+    let form = output.extension().map(|extension| extension.to_ascii_lowercase());
+    let bytes = match form.as_ref().and_then(|form| form.to_str()) {
+        Some("svg") => drawing(file, given)?.into_bytes(),
+        Some("png") => png(&drawing(file, given)?)?,
+        _ => {
+            let better = output.with_extension("svg");
+            return Err(Failure::Form { file: output.display().to_string(), better });
+        }
+    };
+    std::fs::write(output, bytes)
+        .map_err(|source| Failure::Unwritable { file: output.display().to_string(), source })
+}
+
+fn drawing(file: &Path, given: &Given) -> Result<String, Failure> {
+    Ok(svg(&*files::checked(file, given)?, Lettering::Strokes))
+}
+
+/// An SVG without text elements as a PNG.
+fn png(svg: &str) -> Result<Vec<u8>, Failure> {
+    let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
+    let tree = Tree::from_str(svg, &Options::default()).map_err(|error| pixels(&error))?;
+    let size = tree.size();
+    let scale = PIXELS.min((MOST / (size.width() * size.height())).sqrt());
+    let [wide, tall] = [size.width(), size.height()].map(|side| (side * scale).ceil() as u32);
+    let mut map = Pixmap::new(wide, tall).ok_or_else(|| pixels(&"it has no size"))?;
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut map.as_mut());
+    map.encode_png().map_err(|error| pixels(&error))
+}

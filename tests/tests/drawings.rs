@@ -1,0 +1,136 @@
+//! Drawings: every region is named, every surface explained, what is measured is what the file
+//! says, and the bytes are the same every time. One is kept as a snapshot.
+
+use std::path::Path;
+use tool_dsl::draw::{Lettering, svg};
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, compile, emit};
+
+fn tool(name: &str, text: &str) -> Box<Checked> {
+    let compiled = compile(&Source::new(name, text));
+    compiled.tool.unwrap_or_else(|| panic!("{name}: {:?}", compiled.reports))
+}
+
+fn library(file: &str) -> Box<Checked> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
+    tool(file, &std::fs::read_to_string(path).expect("the library has the file"))
+}
+
+fn profile(segments: &str) -> Box<Checked> {
+    tool(
+        "profile",
+        &format!("tool T \"a <profile> & more\" {{ units mm; profile {{ {segments} }} }}"),
+    )
+}
+
+/// The texts of a drawing, in the order of drawing.
+fn texts(svg: &str) -> Vec<String> {
+    let mut texts: Vec<String> = svg
+        .split("aria-label=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+        .map(|text| text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+        .collect();
+    texts.dedup();
+    texts
+}
+
+fn holds(tool: &Checked) {
+    let name = &tool.model.name;
+    let drawing = svg(tool, Lettering::Strokes);
+    assert_eq!(drawing, svg(tool, Lettering::Strokes), "{name}: other bytes");
+    let texts = texts(&drawing);
+    for region in &tool.model.regions {
+        assert!(texts.contains(&region.name), "{name}: no label {} in {texts:?}", region.name);
+    }
+    for surface in &tool.model.surfaces {
+        let words = if surface.cutting {
+            format!("{}, cutting", surface.name)
+        } else {
+            surface.name.clone()
+        };
+        assert!(texts.contains(&words), "{name}: no legend for {words} in {texts:?}");
+    }
+    assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{name}: {drawing}");
+    let page = svg(tool, Lettering::Page);
+    assert!(page.len() < 20_000, "{name}: {} bytes on a page", page.len());
+    assert!(!page.contains('\n'), "{name}: a blank line would end the block in rustdoc");
+}
+
+#[test]
+fn every_tool_of_the_library_is_drawn() {
+    for name in
+        ["cylinder", "d2_ball", "fig_7_3", "fig_7_3_exact", "half_sphere_cylinder", "unit_sphere"]
+    {
+        holds(&library(&format!("{name}.tool")));
+    }
+}
+
+#[test]
+fn profiles_are_drawn() {
+    // A bull nose, a lollipop, a flange's groove, a fillet, a needle and a saw.
+    let profiles = [
+        "start (0, 0); line to (3, 0) as face cutting; arc to (5, 2) center (3, 2) as torus cutting;
+         line to (5, 22) as flute cutting; line to (4.6, 23), (4.6, 40), (0, 40) as shank;",
+        "start (0, 0); arc to (3, 3) center (0, 3) as ball cutting;
+         arc to (1.8, 5.4) center (0, 3) as ball cutting; line to (1.8, 30), (0, 30) as neck;",
+        "start (0, 0); line to (16, 0), (16, 12), (31.5, 12), (31.5, 20), (26.5, 22.5),
+         (26.5, 27.5), (31.5, 30), (31.5, 38), (0, 38) as flange;",
+        "start (0, 0); line to (4, 0) as face cutting; line to (4, 20) as flute cutting;
+         arc to (8, 24) radius 4 concave as fillet; line to (12, 24), (12, 32), (0, 32) as collar;",
+        "start (0, 0); line to (0.45, 0), (0.5, 0.05), (0.5, 3) as flute cutting;
+         line to (0.5, 60), (0, 60) as shank;",
+        "start (0, 0); line to (8, 0), (8, 3), (20, 3) as arbor; line to (50, 3), (50, 4.6),
+         (20, 4.6) as rim cutting; line to (20, 9), (8, 9), (8, 60), (0, 60) as arbor;",
+    ];
+    for segments in profiles {
+        holds(&profile(segments));
+    }
+}
+
+#[test]
+fn measures_are_the_files() {
+    let tool = profile(
+        "start (0, 0); arc to (3, 3) center (0, 3) as ball cutting; line to (3, 20) as flute cutting;
+         line to (3, 30) as shank; line to (12.9, 30), (14, 31.1), (14, 47.5), (0, 47.5) as nut;",
+    );
+    let texts = texts(&svg(&tool, Lettering::Strokes));
+    let expected = ["ball R3", "flute ⌀6", "shank ⌀6", "nut ⌀28"];
+    for text in expected {
+        assert!(texts.iter().any(|own| own == text), "no {text} in {texts:?}");
+    }
+    let heights: Vec<&str> = texts
+        .iter()
+        .map(String::as_str)
+        .filter(|text| text.starts_with(|first: char| first.is_ascii_digit()))
+        .collect();
+    assert_eq!(heights, ["0", "3", "20", "30", "31.1", "47.5 mm"]);
+    assert!(texts.iter().any(|text| text == "a <profile> & more"), "{texts:?}");
+}
+
+/// A shortened needle says so, and still measures its true length.
+#[test]
+fn what_is_long_is_shortened() {
+    let needle = profile("start (0, 0); line to (0.5, 0), (0.5, 60), (0, 60) as shank;");
+    let texts = texts(&svg(&needle, Lettering::Strokes));
+    assert!(texts.iter().any(|text| text == "shortened"), "{texts:?}");
+    assert!(texts.iter().any(|text| text == "60 mm"), "{texts:?}");
+}
+
+#[test]
+fn the_type_shows_it_in_its_documentation() {
+    let tool = library("unit_sphere.tool");
+    assert!(
+        emit::emit(&tool).to_string().contains("cfg_attr (doc , doc = \"\" , doc = \"<div><svg")
+    );
+    assert!(!emit::rust(&tool).contains("svg"));
+}
+
+#[test]
+fn the_exact_fig_7_3() {
+    // A line for each element, so that a difference can be read.
+    let drawing = svg(&library("fig_7_3_exact.tool"), Lettering::Page).replace('>', ">\n");
+    insta::with_settings!({ omit_expression => true }, {
+        insta::assert_snapshot!("drawing_fig_7_3_exact", drawing);
+    });
+}

@@ -1,0 +1,192 @@
+//! Where one owner ends and the next begins: the pieces of the section welded to one map, and its
+//! lines with whoever is on their sides.
+
+use super::curves::Curves;
+use super::map::{Edge, edges};
+use super::section::Piece;
+use super::stroke::{Stroke, fitted, round};
+use crate::formula::CurveIndex;
+use crate::regionalise::outline::{Point, minus, norm};
+use std::collections::BTreeMap;
+
+/// What is on a side of a border.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Side {
+    /// A region, by its place in the list.
+    Region(usize),
+    /// Outside the tool.
+    Outside,
+    /// The mirror image, across the axis.
+    Axis,
+}
+
+/// A line between two joints of the map, with the same neighbours all along.
+#[derive(Clone, Debug)]
+pub(super) struct Border {
+    /// The joints at its ends.
+    pub(super) ends: [usize; 2],
+    /// On its left and its right. A region is on the left, of two the one listed first.
+    pub(super) sides: [Side; 2],
+    /// Its course in lines and arcs.
+    pub(super) strokes: Vec<Stroke>,
+    /// Whether its arcs are the true ones, rather than as good as one sees.
+    pub(super) exact: bool,
+}
+
+/// How near two corners are that are one, and how good the drawing is.
+#[derive(Clone, Copy)]
+pub(super) struct Nearness {
+    pub(super) weld: f64,
+    pub(super) seen: f64,
+    /// How far a corner may lie from where curves meet.
+    pub(super) reach: f64,
+}
+
+/// Finds the borders between pieces.
+pub(super) fn borders(curves: &mut Curves<'_>, pieces: &[Piece], near: Nearness) -> Vec<Border> {
+    let (mut points, mut edges) = edges(pieces, near);
+    let mut chains = chains(&edges, points.len());
+    contract(&mut edges, &mut chains, &points, 0.2 * near.seen);
+    polish(curves, &edges, &chains, &mut points, near.reach);
+    chains.iter().map(|chain| border(curves, &edges, chain, &points, near)).collect()
+}
+
+/// The edges in rows, each from one joint to the next.
+fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
+    let mut leaving: Vec<Vec<usize>> = vec![Vec::new(); corners];
+    let mut coming: Vec<Vec<usize>> = vec![Vec::new(); corners];
+    for (place, edge) in edges.iter().enumerate() {
+        leaving[edge.ends[0]].push(place);
+        coming[edge.ends[1]].push(place);
+    }
+    let next = |place: usize| {
+        let corner = edges[place].ends[1];
+        let ([after], [_]) = (leaving[corner].as_slice(), coming[corner].as_slice()) else {
+            return None;
+        };
+        let (a, b) = (&edges[place], &edges[*after]);
+        (a.sides == b.sides && a.curve == b.curve).then_some(*after)
+    };
+    let followed: Vec<bool> = {
+        let mut followed = vec![false; edges.len()];
+        (0..edges.len()).filter_map(next).for_each(|after| followed[after] = true);
+        followed
+    };
+    let mut taken = vec![false; edges.len()];
+    let mut chains = Vec::new();
+    // First what begins at a joint, then what is closed in itself.
+    let starts = (0..edges.len()).filter(|place| !followed[*place]).chain(0..edges.len());
+    for start in starts.collect::<Vec<_>>() {
+        if taken[start] {
+            continue;
+        }
+        let mut chain = vec![start];
+        taken[start] = true;
+        while let Some(after) = chain.last().and_then(|last| next(*last)) {
+            if taken[after] {
+                break;
+            }
+            taken[after] = true;
+            chain.push(after);
+        }
+        chains.push(chain);
+    }
+    chains
+}
+
+/// Draws together what is shorter than can be seen: where several bent curves meet in a point,
+/// their chords leave a speck.
+fn contract(edges: &mut [Edge], chains: &mut Vec<Vec<usize>>, points: &[Point], speck: f64) {
+    let mut joint: Vec<usize> = (0..points.len()).collect();
+    chains.retain(|chain| {
+        let length = |place: &usize| {
+            let [from, to] = edges[*place].ends;
+            norm(minus(points[to], points[from]))
+        };
+        if chain.iter().map(length).sum::<f64>() >= speck {
+            return true;
+        }
+        let [from, to] = ends(edges, chain).map(|end| joint[end]);
+        joint.iter_mut().filter(|other| **other == from).for_each(|other| *other = to);
+        false
+    });
+    for chain in chains {
+        let (first, last) = (chain[0], chain[chain.len() - 1]);
+        edges[first].ends[0] = joint[edges[first].ends[0]];
+        edges[last].ends[1] = joint[edges[last].ends[1]];
+    }
+}
+
+/// The joints at the ends of a row.
+fn ends(edges: &[Edge], chain: &[usize]) -> [usize; 2] {
+    [edges[chain[0]].ends[0], edges[chain[chain.len() - 1]].ends[1]]
+}
+
+/// Moves the joints to where their curves truly meet.
+fn polish(
+    curves: &mut Curves<'_>,
+    edges: &[Edge],
+    chains: &[Vec<usize>],
+    points: &mut [Point],
+    reach: f64,
+) {
+    let mut meeting: BTreeMap<usize, Vec<Option<CurveIndex>>> = BTreeMap::new();
+    for chain in chains {
+        let (first, last) = (edges[chain[0]], edges[chain[chain.len() - 1]]);
+        for (edge, joint) in [(first, first.ends[0]), (last, last.ends[1])] {
+            let constraint = match (edge.sides[1], edge.curve) {
+                (Side::Axis, _) => None,
+                (_, Some(curve)) => Some(curve),
+                _ => continue,
+            };
+            let known = meeting.entry(joint).or_default();
+            if !known.contains(&constraint) {
+                known.push(constraint);
+            }
+        }
+    }
+    for (joint, constraints) in meeting {
+        let mut best: Option<(f64, Point)> = None;
+        for (k, a) in constraints.iter().enumerate() {
+            for b in &constraints[k + 1..] {
+                if let Some(found) = curves.meet([*a, *b], points[joint], reach)
+                    && best.is_none_or(|(square, _)| found.0 > square + 1e-9)
+                {
+                    best = Some(found);
+                }
+            }
+        }
+        if let Some((_, p)) = best {
+            points[joint] = p;
+        }
+    }
+}
+
+/// The border that a row of edges is.
+fn border(
+    curves: &mut Curves<'_>,
+    edges: &[Edge],
+    chain: &[usize],
+    points: &[Point],
+    near: Nearness,
+) -> Border {
+    let first = edges[chain[0]];
+    let ends = ends(edges, chain);
+    let mut row: Vec<Point> = vec![points[ends[0]]];
+    row.extend(chain.iter().map(|place| points[edges[*place].ends[1]]));
+    let straight =
+        first.sides[1] == Side::Axis || first.curve.is_some_and(|curve| curves.straight(curve));
+    let (strokes, exact) = if straight && ends[0] != ends[1] {
+        (vec![Stroke::line(row[0], row[row.len() - 1])], true)
+    } else {
+        let foot = |p: Point| match first.curve {
+            Some(curve) => curves.foot(curve, p, near.reach),
+            None => p,
+        };
+        match round(&row, foot, near.weld) {
+            Some(strokes) => (strokes, true),
+            None => (fitted(&row, near.seen), false),
+        }
+    };
+    Border { ends, sides: first.sides, strokes, exact }
+}

@@ -1,0 +1,49 @@
+//! Colours that the colour-blind tell apart too: Paul Tol's "light" scheme for areas with dark
+//! text on them (SRON/EPS/TN/09-002, 2021), reds for what cuts, darks for what does not.
+
+use super::borders::{Border, Side};
+use crate::model::Model;
+
+const AREAS: [&str; 9] = [
+    "#77aadd", "#eedd88", "#ffaabb", "#99ddff", "#44bb99", "#ee8866", "#bbcc33", "#dddddd",
+    "#aaaa00",
+];
+const CUTTING: [&str; 4] = ["#c1121f", "#e8590c", "#a61e6b", "#ff5d5d"];
+const OTHER: [&str; 5] = ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5"];
+
+/// A colour for each region, so that no two neighbours have the same.
+pub(super) fn areas(regions: usize, borders: &[Border]) -> Vec<&'static str> {
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut used = [0; AREAS.len()];
+    for region in 0..regions {
+        let beside = |colour: usize| {
+            borders.iter().any(|border| match border.sides {
+                [Side::Region(a), Side::Region(b)] => {
+                    let other = if a == region { b } else { a };
+                    (a == region || b == region) && chosen.get(other) == Some(&colour)
+                }
+                _ => false,
+            })
+        };
+        let colour = (0..AREAS.len())
+            .filter(|colour| !beside(*colour))
+            .min_by_key(|colour| used[*colour])
+            .unwrap_or(region % AREAS.len());
+        used[colour] += 1;
+        chosen.push(colour);
+    }
+    chosen.into_iter().map(|colour| AREAS[colour]).collect()
+}
+
+/// The colour of each surface.
+pub(super) fn surfaces(model: &Model) -> Vec<&'static str> {
+    let (mut cutting, mut other) = (CUTTING.iter().cycle(), OTHER.iter().cycle());
+    let next = |cuts: bool| if cuts { cutting.next() } else { other.next() };
+    model
+        .surfaces
+        .iter()
+        .map(|s| s.cutting)
+        .map(next)
+        .map(|c| c.copied().unwrap_or("#000"))
+        .collect()
+}

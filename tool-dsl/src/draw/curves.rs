@@ -1,0 +1,166 @@
+//! The splitting curves as the drawing asks for them: one at a time, where it matters.
+
+use crate::bound::Extent;
+use crate::expr::interval::{Cell, Encloser, Interval};
+use crate::expr::polynomial::Polynomial;
+use crate::expr::value::{At, Evaluator};
+use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::model::Model;
+use crate::regionalise::outline::{Point, dot, minus, norm};
+
+/// A curve that can be asked for its value at a point and its signs in a box.
+enum Asked<'m> {
+    /// `a d + b z + c`
+    Line([f64; 3]),
+    /// Any other.
+    Bent(Box<(Evaluator<'m>, Encloser<'m>)>),
+}
+
+/// All curves of a tool. What is needed for one is made when it is first asked for.
+pub(super) struct Curves<'m> {
+    model: &'m Model,
+    asked: Vec<Option<Asked<'m>>>,
+    /// The step over which slopes are taken.
+    step: f64,
+}
+
+impl<'m> Curves<'m> {
+    pub(super) fn new(model: &'m Model, extent: &Extent) -> Curves<'m> {
+        let asked = model.curves.iter().map(|_| None).collect();
+        Curves { model, asked, step: 1e-6 * (extent.high - extent.low).max(extent.radius) }
+    }
+
+    fn asked(&mut self, curve: CurveIndex) -> &mut Asked<'m> {
+        let (model, value) = (self.model, self.model.curves[curve].value);
+        self.asked[curve].get_or_insert_with(|| match line(model, curve) {
+            Some(line) => Asked::Line(line),
+            None => Asked::Bent(Box::new((
+                Evaluator::new(&model.graph, [value]),
+                Encloser::new(&model.graph, [value]),
+            ))),
+        })
+    }
+
+    /// Whether a curve is a straight line.
+    pub(super) fn straight(&mut self, curve: CurveIndex) -> bool {
+        matches!(self.asked(curve), Asked::Line(_))
+    }
+
+    /// A curve's value at a point; where it has none, it is positive.
+    pub(super) fn value(&mut self, curve: CurveIndex, [d, z]: Point) -> f64 {
+        let id = self.model.curves[curve].value;
+        let value = match self.asked(curve) {
+            Asked::Line([a, b, c]) => *a * d + *b * z + *c,
+            Asked::Bent(bent) => {
+                bent.0.set(At::meridian(d, z));
+                bent.0.get(id)
+            }
+        };
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
+
+    /// The signs that a curve can have in a box.
+    pub(super) fn signs(&mut self, curve: CurveIndex, low: Point, high: Point) -> Signs {
+        let id = self.model.curves[curve].value;
+        let range = match self.asked(curve) {
+            Asked::Line([a, b, c]) => {
+                let of = |factor: f64, low: f64, high: f64| {
+                    if factor < 0.0 {
+                        (factor * high, factor * low)
+                    } else {
+                        (factor * low, factor * high)
+                    }
+                };
+                let (d, z) = (of(*a, low[0], high[0]), of(*b, low[1], high[1]));
+                Interval::new(d.0 + z.0 + *c, d.1 + z.1 + *c)
+            }
+            Asked::Bent(bent) => {
+                let side = |k: usize| Interval::new(low[k], high[k]);
+                bent.1.set(Cell { d: side(0), z: side(1) });
+                bent.1.get(id)
+            }
+        };
+        let mut signs = 0;
+        if range.low < 0.0 {
+            signs |= NEGATIVE;
+        }
+        if range.high > 0.0 {
+            signs |= POSITIVE;
+        }
+        if range.low <= 0.0 && range.high >= 0.0 {
+            signs |= ZERO;
+        }
+        if signs == 0 { ANY } else { signs }
+    }
+
+    /// A curve's slope at a point.
+    fn slope(&mut self, curve: CurveIndex, [d, z]: Point) -> Point {
+        let h = self.step;
+        if let Asked::Line([a, b, _]) = self.asked(curve) {
+            return [*a, *b];
+        }
+        // The axis is a mirror: d is not taken below it.
+        let low = (d - h).max(0.0);
+        let along = (self.value(curve, [d + h, z]) - self.value(curve, [low, z])) / (d + h - low);
+        let up = (self.value(curve, [d, z + h]) - self.value(curve, [d, z - h])) / (2.0 * h);
+        [along, up]
+    }
+
+    /// How far a point is from a curve, if that went on as it does at the point.
+    pub(super) fn distance(&mut self, curve: CurveIndex, p: Point) -> f64 {
+        self.value(curve, p).abs() / norm(self.slope(curve, p))
+    }
+
+    /// The point of a curve next to a point, no farther from it than `reach`.
+    pub(super) fn foot(&mut self, curve: CurveIndex, from: Point, reach: f64) -> Point {
+        let mut p = from;
+        for _ in 0..4 {
+            let slope = self.slope(curve, p);
+            let step = self.value(curve, p) / dot(slope, slope);
+            p = [p[0] - step * slope[0], p[1] - step * slope[1]];
+        }
+        if norm(minus(p, from)) <= reach { p } else { from }
+    }
+
+    /// Where two constraints meet, next to a point and no farther from it than `reach`; and how
+    /// squarely. `None` stands for the axis.
+    pub(super) fn meet(
+        &mut self,
+        pair: [Option<CurveIndex>; 2],
+        from: Point,
+        reach: f64,
+    ) -> Option<(f64, Point)> {
+        let mut p = from;
+        let mut square = 0.0;
+        for _ in 0..5 {
+            let [(u, gu), (v, gv)] = pair.map(|curve| match curve {
+                Some(curve) => (self.value(curve, p), self.slope(curve, p)),
+                None => (p[0], [1.0, 0.0]),
+            });
+            let sine = gu[0] * gv[1] - gu[1] * gv[0];
+            square = sine.abs() / (norm(gu) * norm(gv));
+            if square.is_nan() || square < 1e-3 {
+                return None;
+            }
+            p = [p[0] - (u * gv[1] - v * gu[1]) / sine, p[1] - (v * gu[0] - u * gv[0]) / sine];
+            p[0] = p[0].max(0.0);
+        }
+        (norm(minus(p, from)) <= reach).then_some((square, p))
+    }
+}
+
+/// The coefficients of a curve that is a straight line.
+fn line(model: &Model, curve: CurveIndex) -> Option<[f64; 3]> {
+    let polynomial = Polynomial::of(&model.graph, model.curves[curve].value)?;
+    let mut line = [0.0; 3];
+    for (monomial, factor) in polynomial.terms() {
+        let place = match monomial {
+            [1, 0, 0, 0] => 0,
+            [0, 0, 0, 1] => 1,
+            [0, 0, 0, 0] => 2,
+            _ => return None,
+        };
+        line[place] = factor.to_f64();
+    }
+    Some(line)
+}

@@ -1,0 +1,111 @@
+//! Below the section: what its lines and signs stand for.
+
+use super::Picture;
+use super::colours;
+use super::lettering::width;
+use super::marks::head;
+use super::regions::Marks;
+use super::sheet::{Anchor, INK, Look, Sheet, lines};
+use crate::regionalise::outline::Point;
+
+/// The height of capitals, and of a line.
+const SIZE: f64 = 7.5;
+const LINE: f64 = 16.0;
+/// How long a sample is.
+const SAMPLE: f64 = 24.0;
+
+/// A sign that is explained.
+enum Sign {
+    Surface { colour: &'static str, cutting: bool },
+    Split,
+    Singular,
+    Arrow,
+    Axis,
+    Break,
+}
+
+/// Draws the legend under everything that is there.
+pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
+    let [low, high] = sheet.frame();
+    let room = (high[0] - low[0]).max(300.0);
+    let mut at = [low[0], high[1] + 24.0];
+    for rows in [surfaces(picture), signs(picture, marks)] {
+        for (sign, text) in rows {
+            let wide = SAMPLE + 7.0 + width(&text, SIZE);
+            if at[0] > low[0] && at[0] + wide > low[0] + room {
+                at = [low[0], at[1] + LINE];
+            }
+            sample(&sign, at, sheet);
+            sheet.text(&text, [at[0] + SAMPLE + 7.0, at[1]], Look::plain(SIZE, Anchor::Left));
+            at[0] += wide + 18.0;
+        }
+        at = [low[0], at[1] + LINE];
+    }
+}
+
+fn surfaces(picture: &Picture<'_>) -> Vec<(Sign, String)> {
+    let colours = colours::surfaces(picture.model);
+    let surfaces = picture.model.surfaces.iter().zip(colours);
+    surfaces
+        .map(|(surface, colour)| {
+            let cutting = surface.cutting;
+            let text =
+                if cutting { format!("{}, cutting", surface.name) } else { surface.name.clone() };
+            (Sign::Surface { colour, cutting }, text)
+        })
+        .collect()
+}
+
+fn signs(picture: &Picture<'_>, marks: &Marks) -> Vec<(Sign, String)> {
+    let mut signs = vec![(Sign::Arrow, "direction to the surface")];
+    if marks.splits {
+        signs.push((Sign::Split, "border of regions"));
+    }
+    if !marks.singular.is_empty() {
+        signs.push((Sign::Singular, "no direction here"));
+    }
+    let axis = if marks.axis { "axis: radial directions are +x on it" } else { "axis" };
+    signs.push((Sign::Axis, axis));
+    if !picture.view.seams().is_empty() {
+        signs.push((Sign::Break, "shortened"));
+    }
+    signs.into_iter().map(|(sign, text)| (sign, text.to_owned())).collect()
+}
+
+fn sample(sign: &Sign, [x, y]: Point, sheet: &mut Sheet) {
+    let row = [[x, y], [x + SAMPLE, y]];
+    let line = |sheet: &mut Sheet, look: &str| {
+        sheet.path(&format!("fill=\"none\" {look}"), &lines([&row]));
+    };
+    match sign {
+        Sign::Surface { colour, cutting } => {
+            let wide = if *cutting { 3.0 } else { 2.0 };
+            line(sheet, &format!("stroke=\"{colour}\" stroke-width=\"{wide}\""));
+        }
+        Sign::Split => {
+            line(sheet, "stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"");
+        }
+        Sign::Axis => {
+            line(sheet, "stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"");
+        }
+        Sign::Singular => {
+            let middle = [x + SAMPLE / 2.0, y];
+            sheet.group(&format!("fill=\"#fff\" stroke=\"{INK}\""), |sheet| {
+                sheet.ring(middle, 4.0);
+            });
+            sheet.group(&format!("fill=\"{INK}\""), |sheet| sheet.ring(middle, 1.1));
+        }
+        Sign::Arrow => {
+            line(sheet, "stroke=\"#2b3440\"");
+            let [a, b, c] = head(row, 5.0);
+            sheet.path("fill=\"#2b3440\"", &lines([&[a, b, c, a]]));
+        }
+        Sign::Break => {
+            let wave = |shift: f64| -> Vec<Point> {
+                let turn = |k: i32| (f64::from(k) / 4.0 * std::f64::consts::PI).sin();
+                (0..=8).map(|k| [x + f64::from(k) * 3.0, y + shift + 2.5 * turn(k)]).collect()
+            };
+            sheet.path("fill=\"none\" stroke=\"#6b7280\"", &lines([wave(-2.5), wave(2.5)]));
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Text as strokes of a built-in alphabet, so that a drawing needs no font and looks the same
+//! everywhere, as SVG and as PNG.
+
+use super::glyphs::{Stroke, glyph, marked};
+use std::fmt::Write;
+
+/// The height of capitals in the alphabet's own units.
+const HEIGHT: f64 = 14.0;
+/// The space between two letters.
+const GAP: f32 = 3.4;
+
+/// What is drawn where no glyph is known.
+const UNKNOWN: &[Stroke] = &[(0.0, 0.0, "v-14h8v14z")];
+
+/// How wide a line of text is whose capitals are `size` high.
+pub(super) fn width(text: &str, size: f64) -> f64 {
+    let letters = text.chars().map(|letter| advance(letter) + GAP).sum::<f32>();
+    f64::from((letters - GAP).max(0.0)) * size / HEIGHT
+}
+
+/// The path data of a line of text in the alphabet's units, from (0, 0) to the right.
+pub(super) fn strokes(text: &str) -> String {
+    let mut data = String::new();
+    let mut pen = 0.0;
+    for letter in text.chars() {
+        let (base, mark) = marked(letter).unwrap_or((letter, &[]));
+        let strokes = glyph(base).map_or(UNKNOWN, |(_, strokes)| strokes);
+        let raised = if base.is_uppercase() { -4.0 } else { 0.0 };
+        // Writing to a String does not fail.
+        for (x, y, rest) in strokes {
+            let _ = write!(data, "M{} {}{rest}", short(pen + x), short(*y));
+        }
+        for (x, y, rest) in mark {
+            let _ = write!(data, "M{} {}{rest}", short(pen + x), short(y + raised));
+        }
+        pen += advance(letter) + GAP;
+    }
+    data
+}
+
+/// The factor from the alphabet's units to text whose capitals are `size` high.
+pub(super) fn scale(size: f64) -> f64 {
+    size / HEIGHT
+}
+
+/// Text in lines no wider than `room`, broken at spaces.
+pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line, size) + width(word, size) + size <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+fn advance(letter: char) -> f32 {
+    let base = marked(letter).map_or(letter, |(base, _)| base);
+    glyph(base).map_or(8.0, |(width, _)| width)
+}
+
+fn short(value: f32) -> f32 {
+    (value * 10.0).round() / 10.0
+}

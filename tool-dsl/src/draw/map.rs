@@ -1,0 +1,237 @@
+//! The pieces of the section welded to one map: which owners lie on the sides of each edge.
+
+use super::borders::{Nearness, Side};
+use super::section::Piece;
+use crate::formula::CurveIndex;
+use crate::regionalise::outline::{Point, cross, minus, norm};
+use std::collections::HashMap;
+
+/// A piece of a border, from one welded corner to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) ends: [usize; 2],
+    pub(super) sides: [Side; 2],
+    pub(super) curve: Option<CurveIndex>,
+}
+
+/// The side of a piece: which piece it is of, and its curve.
+type Half = (usize, Option<CurveIndex>);
+/// Sides by their corners, the smaller first: on the left and on the right of the way between.
+type Halves = HashMap<[usize; 2], [Option<Half>; 2]>;
+
+/// The welded corners, and the edges between two owners.
+pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
+    let mut weld = Weld { near: near.weld, points: Vec::new(), buckets: HashMap::new() };
+    let mut halves = Halves::new();
+    for (place, piece) in pieces.iter().enumerate() {
+        for (from, to, curve) in weld.around(piece) {
+            let (key, way) = if from < to { ([from, to], 0) } else { ([to, from], 1) };
+            halves.entry(key).or_default()[way].get_or_insert((place, curve));
+        }
+    }
+    let mut points = weld.points;
+    matched(&mut halves, &points);
+    // Of corners that are one, any may have come first: those on the axis are put on it.
+    points.iter_mut().filter(|p| p[0].abs() <= near.weld).for_each(|p| p[0] = 0.0);
+    let owners = without_specks(pieces, &halves, &points, near.seen);
+    let mut edges = Vec::new();
+    for (ends, pair) in halves {
+        if pair[0].map(|half| owners[half.0]) == pair[1].map(|half| owners[half.0]) {
+            continue;
+        }
+        let on_axis = ends.iter().all(|end| points[*end][0] == 0.0);
+        let side = |half: Option<Half>| match half.map(|(piece, _)| owners[piece]) {
+            Some(Some(region)) => Some(Side::Region(region)),
+            Some(None) => Some(Side::Outside),
+            None => on_axis.then_some(Side::Axis),
+        };
+        let (Some(left), Some(right)) = (side(pair[0]), side(pair[1])) else { continue };
+        let inside = matches!(left, Side::Region(_)) || matches!(right, Side::Region(_));
+        if inside {
+            let curve = pair.iter().find_map(|half| half.and_then(|(_, curve)| curve));
+            edges.push(if left < right {
+                Edge { ends, sides: [left, right], curve }
+            } else {
+                Edge { ends: [ends[1], ends[0]], sides: [right, left], curve }
+            });
+        }
+    }
+    // A hash map has another order every time.
+    edges.sort_unstable_by_key(|edge| edge.ends);
+    (points, edges)
+}
+
+/// Splits sides of cells that are cut on one side only, where the other found it needless: each then
+/// has its counterpart.
+fn matched(halves: &mut Halves, points: &[Point]) {
+    let mut lone: Vec<[usize; 2]> = halves
+        .iter()
+        .filter(|(_, pair)| pair.iter().any(Option::is_none))
+        .map(|(ends, _)| *ends)
+        .collect();
+    lone.sort_unstable();
+    // Cells' sides are level or upright, at places that are equal to the last bit.
+    let line = |ends: &[usize; 2]| {
+        let [a, b] = ends.map(|end| points[end]);
+        (0..2).find(|k| a[*k] == b[*k]).map(|k| (k, a[k].to_bits()))
+    };
+    let mut along: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
+    for ends in &lone {
+        if let Some(line) = line(ends) {
+            along.entry(line).or_default().extend(ends);
+        }
+    }
+    for (line, corners) in &mut along {
+        corners.sort_unstable_by(|a, b| {
+            points[*a][1 - line.0].total_cmp(&points[*b][1 - line.0]).then(a.cmp(b))
+        });
+        corners.dedup();
+    }
+    for ends in lone {
+        let Some(line) = line(&ends) else { continue };
+        let at = |corner: usize| points[corner][1 - line.0];
+        let up = at(ends[0]) < at(ends[1]);
+        let (low, high) = if up { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
+        let row: Vec<usize> = along
+            .get(&line)
+            .into_iter()
+            .flatten()
+            .copied()
+            .filter(|corner| (at(low)..=at(high)).contains(&at(*corner)))
+            .collect();
+        if row.len() <= 2 {
+            continue;
+        }
+        let Some(pair) = halves.remove(&ends) else { continue };
+        for part in row.windows(2) {
+            // The way from the smaller corner to the larger, against that of the whole.
+            let key = [part[0].min(part[1]), part[0].max(part[1])];
+            let same = (part[0] < part[1]) == up;
+            for (way, half) in pair.iter().enumerate() {
+                let way = if same { way } else { 1 - way };
+                if let Some(half) = half {
+                    halves.entry(key).or_default()[way].get_or_insert(*half);
+                }
+            }
+        }
+    }
+}
+
+/// Corners, those that are one put together.
+struct Weld {
+    near: f64,
+    points: Vec<Point>,
+    buckets: HashMap<[i64; 2], Vec<usize>>,
+}
+
+impl Weld {
+    fn corner(&mut self, p: Point) -> usize {
+        let key = p.map(|part| (part / (2.0 * self.near)).floor() as i64);
+        for i in [0, -1, 1] {
+            for j in [0, -1, 1] {
+                let known = self.buckets.get(&[key[0] + i, key[1] + j]);
+                let same = |place: &&usize| norm(minus(self.points[**place], p)) <= self.near;
+                if let Some(place) = known.into_iter().flatten().find(same) {
+                    return *place;
+                }
+            }
+        }
+        self.points.push(p);
+        self.buckets.entry(key).or_default().push(self.points.len() - 1);
+        self.points.len() - 1
+    }
+
+    /// The sides of a piece that have a length.
+    fn around(&mut self, piece: &Piece) -> Vec<(usize, usize, Option<CurveIndex>)> {
+        let corners: Vec<usize> =
+            piece.corners.iter().map(|corner| self.corner(corner.at)).collect();
+        let next = |k: usize| corners[(k + 1) % corners.len()];
+        let sides: Vec<_> = (0..corners.len())
+            .filter(|k| corners[*k] != next(*k))
+            .map(|k| (corners[k], next(k), piece.corners[k].curve))
+            .collect();
+        if sides.len() < 3 { Vec::new() } else { sides }
+    }
+}
+
+/// Who owns each piece. Where bent curves meet or nearly touch, their chords leave specks and
+/// slivers that nobody can see: those go to whom they border on most.
+fn without_specks(
+    pieces: &[Piece],
+    halves: &Halves,
+    points: &[Point],
+    seen: f64,
+) -> Vec<Option<usize>> {
+    let mut owners: Vec<Option<usize>> = pieces.iter().map(|piece| piece.owner).collect();
+    let mut rows: Vec<(&[usize; 2], &[Option<Half>; 2])> = halves.iter().collect();
+    rows.sort_unstable_by_key(|(ends, _)| **ends);
+    let shared: Vec<(usize, usize, f64)> = rows
+        .into_iter()
+        .filter_map(|(ends, pair)| {
+            let [Some((a, _)), Some((b, _))] = *pair else { return None };
+            Some((a, b, norm(minus(points[ends[1]], points[ends[0]]))))
+        })
+        .collect();
+    // Pieces of one owner that hang together, by their first.
+    let mut whole: Vec<usize> = (0..pieces.len()).collect();
+    for (a, b, _) in shared.iter().filter(|(a, b, _)| owners[*a] == owners[*b]) {
+        let (a, b) = (root(&mut whole, *a), root(&mut whole, *b));
+        whole[a.max(b)] = a.min(b);
+    }
+    let mut areas = vec![0.0; pieces.len()];
+    for (place, piece) in pieces.iter().enumerate() {
+        areas[root(&mut whole, place)] += area(piece);
+    }
+    let mut rims = vec![0.0; pieces.len()];
+    let mut beside: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
+    for (a, b, length) in shared.iter().filter(|(a, b, _)| owners[*a] != owners[*b]) {
+        for (own, other) in [(*a, *b), (*b, *a)] {
+            let (own, other) = (root(&mut whole, own), root(&mut whole, other));
+            rims[own] += length;
+            beside.entry(own).or_default().push((other, *length));
+        }
+    }
+    let largest = |owner: Option<usize>, whole: &[usize]| {
+        (0..pieces.len())
+            .filter(|k| whole[*k] == *k && pieces[*k].owner == owner)
+            .max_by(|a, b| areas[*a].total_cmp(&areas[*b]))
+    };
+    let specks: Vec<usize> = (0..pieces.len())
+        .filter(|k| whole[*k] == *k && rims[*k] > 0.0 && areas[*k] < 0.1 * seen * rims[*k])
+        .filter(|k| largest(pieces[*k].owner, &whole) != Some(*k))
+        .collect();
+    for speck in specks {
+        let near = beside.get(&speck).map_or(&[][..], Vec::as_slice);
+        let along = |other: usize| -> f64 {
+            near.iter().filter(|(own, _)| *own == other).map(|(_, length)| length).sum()
+        };
+        let most = near
+            .iter()
+            .map(|(other, _)| *other)
+            .max_by(|a, b| along(*a).total_cmp(&along(*b)).then(b.cmp(a)));
+        if let Some(other) = most {
+            for (place, owner) in owners.iter_mut().enumerate() {
+                if root(&mut whole, place) == speck {
+                    *owner = pieces[other].owner;
+                }
+            }
+        }
+    }
+    owners
+}
+
+/// The first piece of those that a piece hangs together with.
+fn root(whole: &mut [usize], mut place: usize) -> usize {
+    while whole[place] != place {
+        whole[place] = whole[whole[place]];
+        place = whole[place];
+    }
+    place
+}
+
+fn area(piece: &Piece) -> f64 {
+    let corners = &piece.corners;
+    let first = corners[0].at;
+    let twice = |k: usize| cross(minus(corners[k].at, first), minus(corners[k + 1].at, first));
+    (1..corners.len() - 1).map(twice).sum::<f64>() / 2.0
+}

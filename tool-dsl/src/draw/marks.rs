@@ -1,0 +1,144 @@
+//! What is marked inside regions: which way they push, and where that is undefined.
+
+use super::shape::{Frame, Shape};
+use super::view::View;
+use crate::expr::value::{At, Evaluator};
+use crate::model::Model;
+use crate::regionalise::outline::{Point, cross, minus, norm};
+
+/// An arrow on the sheet, from its tail to its head.
+pub(super) type Arrow = [Point; 2];
+
+/// The directions of a tool's regions.
+pub(super) struct Directions<'m> {
+    model: &'m Model,
+    evaluator: Evaluator<'m>,
+}
+
+impl<'m> Directions<'m> {
+    pub(super) fn new(model: &'m Model) -> Directions<'m> {
+        let roots = model.regions.iter().flat_map(|region| region.direction);
+        Directions { model, evaluator: Evaluator::new(&model.graph, roots) }
+    }
+
+    /// The direction to the surface at a point of a region, if there is one.
+    pub(super) fn at(&mut self, region: usize, [d, z]: Point) -> Option<Point> {
+        self.evaluator.set(At::meridian(d, z));
+        let way = self.model.regions[region].direction.map(|id| self.evaluator.get(id));
+        ((norm(way) - 1.0).abs() < 1e-3).then_some(way)
+    }
+
+    /// The point that a region's directions all lead away from or toward, if there is one: they
+    /// are undefined there. It is sought where lines along three of them meet.
+    pub(super) fn focus(&mut self, region: usize, shape: &Shape, view: &View) -> Option<Point> {
+        let [low, high] = shape.frame();
+        let (middle, _) = shape.pole(1.0);
+        let around = [[0.0, 0.0], [0.31, 0.17], [-0.23, 0.29], [0.19, -0.33], [-0.27, -0.21]];
+        let mut seen: Vec<(Point, Point)> = Vec::new();
+        // The smaller the region, the nearer.
+        for near in [1.0, 0.4, 0.1] {
+            seen.clear();
+            for [u, v] in around {
+                let [wide, tall] = [0, 1].map(|k| near * (high[k] - low[k]));
+                let at = [middle[0] + u * wide, middle[1] + v * tall];
+                let p = view.point(at);
+                if shape.room(at, 1.0) > 0.0
+                    && let Some(way) = self.at(region, p)
+                {
+                    seen.push((p, way));
+                }
+            }
+            if seen.len() >= 3 {
+                break;
+            }
+        }
+        let meet = |a: (Point, Point), b: (Point, Point)| {
+            let sine = cross(a.1, b.1);
+            let share = cross(minus(b.0, a.0), b.1) / sine;
+            (sine.abs() > 1e-6).then(|| [0, 1].map(|k| a.0[k] + share * a.1[k]))
+        };
+        let [a, b, c, ..] = seen.as_slice() else { return None };
+        let (p, q) = (meet(*a, *b)?, meet(*a, *c)?);
+        let near = norm(minus(p, q)) < 1e-6 * norm(minus(a.0, b.0)).max(norm(p));
+        let on_sheet = view.place(p);
+        (near && shape.room(on_sheet, 1.0) > -0.05).then_some(p)
+    }
+
+    /// A few arrows where there is room for them.
+    pub(super) fn arrows(
+        &mut self,
+        region: usize,
+        shape: &Shape,
+        view: &View,
+        taken: &[Frame],
+    ) -> Vec<Arrow> {
+        /// Between places that are looked at, and between arrows.
+        const STEP: f64 = 9.0;
+        const APART: f64 = 40.0;
+        let [low, high] = shape.frame();
+        let mut places: Vec<(f64, Point)> = Vec::new();
+        let [columns, rows] = [0, 1].map(|k| ((high[k] - low[k]) / STEP).floor() as usize + 1);
+        for i in 0..columns {
+            for j in 0..rows {
+                let at = |k: usize, n: usize, of: usize| {
+                    low[k] + (high[k] - low[k]) * (n as f64 + 0.5) / of as f64
+                };
+                let p = [at(0, i, columns), at(1, j, rows)];
+                let room = shape.room(p, 1.0).min(clear(p, taken));
+                if room > 3.5 {
+                    places.push((room, p));
+                }
+            }
+        }
+        let most = (shape.area() / 2600.0).ceil().clamp(1.0, 5.0) as usize;
+        let mut arrows: Vec<Arrow> = Vec::new();
+        let mut middles: Vec<Point> = Vec::new();
+        while arrows.len() < most {
+            // Where there is room, and away from the others.
+            let worth = |(room, p): &(f64, Point)| {
+                let apart =
+                    middles.iter().map(|m| norm(minus(*m, *p))).fold(f64::INFINITY, f64::min);
+                if apart < APART { -1.0 } else { room.min(24.0) + 0.3 * apart.min(90.0) }
+            };
+            let best = (0..places.len())
+                .rev()
+                .max_by(|a, b| worth(&places[*a]).total_cmp(&worth(&places[*b])));
+            let Some(best) = best.filter(|best| worth(&places[*best]) > 0.0) else { break };
+            let (_, p) = places.swap_remove(best);
+            let Some([d, z]) = self.at(region, view.point(p)) else { continue };
+            let fits = |length: &f64| {
+                let half = [d * length / 2.0, -z * length / 2.0];
+                let ends = [[p[0] - half[0], p[1] - half[1]], [p[0] + half[0], p[1] + half[1]]];
+                let clear =
+                    ends.iter().all(|end| shape.room(*end, 1.0) > 2.0 && clear(*end, taken) > 1.0);
+                clear.then_some(ends)
+            };
+            // Short ones only where there is nothing better.
+            let lengths =
+                if arrows.is_empty() { &[18.0, 14.0, 10.0, 7.0][..] } else { &[18.0, 14.0] };
+            if let Some(arrow) = lengths.iter().find_map(fits) {
+                arrows.push(arrow);
+                middles.push(p);
+            }
+        }
+        arrows
+    }
+}
+
+/// How far a point is from boxes.
+fn clear(p: Point, taken: &[Frame]) -> f64 {
+    let off = |frame: &Frame| {
+        let out = [0, 1].map(|k| (frame[0][k] - p[k]).max(p[k] - frame[1][k]));
+        if out[0].max(out[1]) < 0.0 { -1.0 } else { norm(out.map(|part| part.max(0.0))) }
+    };
+    taken.iter().map(off).fold(f64::INFINITY, f64::min)
+}
+
+/// An arrow's head as a filled triangle.
+pub(super) fn head([tail, head]: Arrow, length: f64) -> [Point; 3] {
+    let way = minus(head, tail);
+    let size = norm(way);
+    let [x, y] = [way[0] / size * length, way[1] / size * length];
+    let foot = [head[0] - x, head[1] - y];
+    [[foot[0] - 0.36 * y, foot[1] + 0.36 * x], head, [foot[0] + 0.36 * y, foot[1] - 0.36 * x]]
+}

@@ -1,0 +1,303 @@
+//! Beside the section: names and measures of faces on the left, names of small regions and heights
+//! on the right.
+
+use super::Picture;
+use super::colours;
+use super::contour::{Face, faces, heights, tidy};
+use super::lettering::width;
+use super::marks::head;
+use super::regions::Marks;
+use super::sheet::{Anchor, Look, Sheet, THIN, lines};
+use super::view::is_outline;
+use crate::regionalise::outline::{Point, minus, norm};
+
+/// The height of capitals.
+const SIZE: f64 = 7.5;
+/// Between lines of notes.
+const GAP: f64 = 13.5;
+/// From the section to where leaders turn, and on to the notes.
+const KNEE: f64 = 12.0;
+const AWAY: f64 = 30.0;
+
+/// Draws the notes on both sides.
+pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
+    left(picture, sheet);
+    let steps = steps(picture);
+    let edge = right(picture, marks, &steps, sheet);
+    levels(picture, &steps, edge, sheet);
+}
+
+/// A note with the place that it is about.
+struct Note {
+    text: String,
+    colour: &'static str,
+    /// Where its leader ends.
+    at: Point,
+    /// Where its leader leaves the level.
+    bend: Point,
+}
+
+/// The faces: their surface's name and their measure.
+fn left(picture: &Picture<'_>, sheet: &mut Sheet) {
+    let view = &picture.view;
+    let room = ((view.height + 60.0) / GAP) as usize;
+    let chosen = chosen(picture, room);
+    let colours = colours::surfaces(picture.model);
+    let mut notes: Vec<Note> = chosen
+        .iter()
+        .map(|face| {
+            let name = &picture.model.surfaces[face.surface].name;
+            let text = match face.figure(picture.model.unit) {
+                Some(figure) => format!("{name} {figure}"),
+                None => name.clone(),
+            };
+            let (at, bend) = pointed(picture, face);
+            Note { text, colour: colours[face.surface], at, bend }
+        })
+        .collect();
+    notes.sort_by(|a, b| a.bend[1].total_cmp(&b.bend[1]));
+    let wanted: Vec<f64> = notes.iter().map(|note| note.bend[1]).collect();
+    let (knee, text) = (-view.half - KNEE, -view.half - AWAY);
+    let mut leaders = Vec::new();
+    let mut heads = Vec::new();
+    for (note, y) in notes.iter().zip(spread(&wanted, GAP)) {
+        let look = Look { colour: note.colour, ..Look::plain(SIZE, Anchor::Right) };
+        sheet.text(&note.text, [text - 4.0, y], look);
+        let mut leader = vec![[text, y], [knee, note.bend[1]], note.bend];
+        if norm(minus(note.at, note.bend)) > 0.1 {
+            leader.push(note.at);
+        }
+        let before = leader[leader.len() - 2];
+        let [a, b, c] = head([before, note.at], 6.0);
+        heads.push([a, b, c, a]);
+        leaders.push(leader);
+    }
+    sheet.path(&format!("fill=\"none\" stroke=\"{THIN}\" stroke-width=\".8\""), &lines(&leaders));
+    sheet.path(&format!("fill=\"{THIN}\""), &lines(&heads));
+}
+
+/// The faces that are noted: cylinders and arcs, and something of every surface; the longest, if
+/// they are too many.
+fn chosen(picture: &Picture<'_>, room: usize) -> Vec<Face> {
+    let unit = picture.model.unit;
+    let all = faces(picture.model, &picture.borders, picture.size);
+    let mut chosen: Vec<Face> = Vec::new();
+    for face in &all {
+        let same =
+            |other: &Face| other.surface == face.surface && other.figure(unit) == face.figure(unit);
+        match chosen.iter_mut().find(|other| same(other)) {
+            Some(known) if face.length > known.length => *known = face.clone(),
+            Some(_) => {}
+            None => chosen.push(face.clone()),
+        }
+    }
+    // Of a surface without cylinder and arc, the longest face.
+    let best = |surface: usize| -> Option<usize> {
+        let of = |place: &usize| chosen[*place].surface == surface;
+        let told = (0..chosen.len()).filter(of).any(|place| chosen[place].is_telling());
+        let longer = |a: &usize, b: &usize| chosen[*a].length.total_cmp(&chosen[*b].length);
+        (0..chosen.len()).filter(of).max_by(longer).filter(|_| !told)
+    };
+    let only: Vec<usize> = (0..picture.model.surfaces.len()).filter_map(best).collect();
+    let mut place = 0;
+    chosen.retain(|face| {
+        place += 1;
+        face.is_telling() || only.contains(&(place - 1))
+    });
+    while chosen.len() > room.max(4) {
+        let alone =
+            |face: &Face| chosen.iter().filter(|other| other.surface == face.surface).count() == 1;
+        let least = (0..chosen.len())
+            .filter(|place| !alone(&chosen[*place]))
+            .min_by(|a, b| chosen[*a].length.total_cmp(&chosen[*b].length));
+        let Some(least) = least else { break };
+        chosen.remove(least);
+    }
+    chosen
+}
+
+/// Where a face's leader ends in the left half, and where it bends toward it.
+fn pointed(picture: &Picture<'_>, face: &Face) -> (Point, Point) {
+    let view = &picture.view;
+    let stroke = view.stroke(&face.longest);
+    let [mut x, mut y] = stroke.at(0.5);
+    if stroke.circle.is_none() {
+        // Not onto a break line.
+        for seam in view.seams() {
+            if (y - seam).abs() < 12.0 {
+                y = seam - 22.0;
+                let share = (y - stroke.from[1]) / (stroke.to[1] - stroke.from[1]);
+                x = stroke.at(share.clamp(0.0, 1.0))[0];
+            }
+        }
+    }
+    let at = [-x, y];
+    // Away from the material, which is on the left of a stroke as the tool has it: on the sheet,
+    // where heights grow downward, on its right.
+    let way = match stroke.circle {
+        None => minus(stroke.to, stroke.from),
+        Some((centre, _)) => {
+            let [u, v] = minus([x, y], centre);
+            if stroke.left() { [-v, u] } else { [v, -u] }
+        }
+    };
+    let length = norm(way);
+    let [dx, dy] = [way[1] / length, way[0] / length];
+    let [dx, dy] = if dx < -0.98 { [-1.0, 0.0] } else { [dx.min(-0.4), dy] };
+    if dy == 0.0 { (at, at) } else { (at, [at[0] + 15.0 * dx, at[1] + 15.0 * dy]) }
+}
+
+/// The names of regions that found no room inside; returns how far they reach.
+fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut Sheet) -> f64 {
+    let half = picture.view.half;
+    let mut rows: Vec<(&str, Point)> = marks
+        .unnamed
+        .iter()
+        .map(|(region, place)| (picture.model.regions[*region].name.as_str(), *place))
+        .collect();
+    rows.sort_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+    let levels: Vec<f64> = levels.iter().map(|level| picture.view.place(*level)[1]).collect();
+    let wanted: Vec<f64> = rows.iter().map(|(_, place)| off(place[1], &levels)).collect();
+    let places = spread(&wanted, GAP);
+    let mut edge = half + 4.0;
+    let mut leaders = Vec::new();
+    let mut first = 0;
+    while first < rows.len() {
+        // Those that stand close together begin at the same distance.
+        let close = |k: &usize| places[*k] - places[*k - 1] < 1.3 * GAP;
+        let end = (first + 1..rows.len()).take_while(close).last().unwrap_or(first) + 1;
+        let low = places[first].min(rows[first].1[1]) - SIZE;
+        let high = places[end - 1].max(rows[end - 1].1[1]) + SIZE;
+        let side = widest(picture, [low, high]);
+        for ((text, place), y) in rows[first..end].iter().zip(&places[first..end]) {
+            let left = side + AWAY;
+            let look = Look { halo: true, ..Look::plain(SIZE, Anchor::Left) };
+            sheet.text(text, [left + 4.0, *y], look);
+            leaders.push([*place, [side + KNEE, place[1]], [left, *y]]);
+            edge = edge.max(left + 4.0 + width(text, SIZE));
+        }
+        first = end;
+    }
+    sheet.path("fill=\"none\" stroke=\"#22272e\" stroke-width=\".7\"", &lines(&leaders));
+    sheet.group("fill=\"#22272e\"", |sheet| {
+        rows.iter().for_each(|(_, place)| sheet.ring(*place, 1.4));
+    });
+    edge
+}
+
+/// How wide the tool is between two heights of the sheet.
+fn widest(picture: &Picture<'_>, [low, high]: [f64; 2]) -> f64 {
+    picture
+        .borders
+        .iter()
+        .filter(|border| is_outline(border))
+        .flat_map(|border| &border.strokes)
+        .map(|stroke| picture.view.stroke(stroke))
+        .filter(|stroke| {
+            let [top, bottom] = stroke.span();
+            top <= high && bottom >= low
+        })
+        .map(|stroke| stroke.widest())
+        .fold(0.0, f64::max)
+}
+
+/// A height at which a note stands between lines rather than on one.
+fn off(y: f64, levels: &[f64]) -> f64 {
+    let nearest = levels.iter().copied().min_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
+    match nearest {
+        Some(level) if (level - y).abs() < 8.0 => level + if y < level { -8.0 } else { 8.0 },
+        _ => y,
+    }
+}
+
+/// The heights that are noted; of too many the more crowded are left out.
+fn steps(picture: &Picture<'_>) -> Vec<Point> {
+    let mut steps = heights(picture.model, &picture.borders, picture.size);
+    let most = ((picture.view.height + 80.0) / 11.5) as usize;
+    while steps.len() > most.max(3) {
+        let crowded = |k: &usize| steps[k + 1][1] - steps[k - 1][1];
+        let least =
+            (1..steps.len() - 1).min_by(|a, b| crowded(a).total_cmp(&crowded(b))).unwrap_or(1);
+        steps.remove(least);
+    }
+    steps
+}
+
+/// The heights, along one line from the tip.
+fn levels(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut Sheet) {
+    let view = &picture.view;
+    let Some(&[_, origin]) = steps.first() else { return };
+    let line = edge + 20.0;
+    let unit = picture.model.unit;
+    let places: Vec<Point> = steps.iter().map(|step| view.place(*step)).collect();
+    // From above, as `spread` wants it.
+    let wanted: Vec<f64> = places.iter().rev().map(|place| place[1]).collect();
+    let texts = spread(&wanted, 11.5);
+    let mut thin = Vec::new();
+    let mut heads = Vec::new();
+    let mut below = f64::INFINITY;
+    for (k, place) in places.iter().enumerate() {
+        let (y, text_y) = (place[1], texts[texts.len() - 1 - k]);
+        thin.push(vec![[place[0] + 3.0, y], [line + 4.0, y]]);
+        thin.push(vec![[line + 4.0, y], [line + 12.0, text_y]]);
+        let last = k + 1 == places.len();
+        if k > 0 && (below - y > 7.0 || last) {
+            let [a, b, c] = head([[line, y + 6.0], [line, y]], 6.0);
+            heads.push([a, b, c, a]);
+            below = y;
+        } else if k > 0 {
+            thin.push(vec![[line - 2.5, y + 2.5], [line + 2.5, y - 2.5]]);
+        } else {
+            below = y;
+        }
+        let mut figure = tidy(steps[k][1] - origin, unit);
+        if last {
+            figure = format!("{figure} {}", unit.word());
+        }
+        sheet.text(&figure, [line + 15.0, text_y], Look::plain(SIZE, Anchor::Left));
+    }
+    thin.push(vec![[line, places[0][1]], [line, places[places.len() - 1][1]]]);
+    sheet.path(&format!("fill=\"none\" stroke=\"{THIN}\" stroke-width=\".7\""), &lines(&thin));
+    sheet.path(&format!("fill=\"{THIN}\""), &lines(&heads));
+    sheet.group(&format!("fill=\"#fff\" stroke=\"{THIN}\" stroke-width=\".9\""), |sheet| {
+        sheet.ring([line, places[0][1]], 2.4);
+    });
+}
+
+/// Places for notes that would like to stand at `wanted`, which grow, no two nearer than `gap`:
+/// those that crowd stand about their middle.
+fn spread(wanted: &[f64], gap: f64) -> Vec<f64> {
+    // Each cluster: the sum of where its first note would be, and how many it has.
+    let mut clusters: Vec<(f64, usize)> = Vec::new();
+    for place in wanted {
+        let mut cluster = (*place, 1);
+        while let Some((sum, count)) = clusters.last().copied() {
+            let end = sum / count as f64 + gap * count as f64;
+            if end <= cluster.0 / cluster.1 as f64 {
+                break;
+            }
+            clusters.pop();
+            let shifted = cluster.0 - gap * (count * cluster.1) as f64;
+            cluster = (sum + shifted, count + cluster.1);
+        }
+        clusters.push(cluster);
+    }
+    clusters
+        .into_iter()
+        .flat_map(|(sum, count)| (0..count).map(move |k| sum / count as f64 + gap * k as f64))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::spread;
+
+    #[test]
+    fn notes_keep_apart_and_stay_near() {
+        assert_eq!(spread(&[0.0, 30.0, 60.0], 10.0), [0.0, 30.0, 60.0]);
+        assert_eq!(spread(&[0.0, 0.0], 10.0), [-5.0, 5.0]);
+        let places = spread(&[0.0, 1.0, 2.0, 3.0, 50.0], 10.0);
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] >= 10.0 - 1e-9));
+        assert_eq!(places[4], 50.0);
+    }
+}

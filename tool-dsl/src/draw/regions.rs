@@ -1,0 +1,250 @@
+//! The section itself: regions, surfaces, splitting curves, directions, singular points.
+
+use super::Picture;
+use super::borders::Side;
+use super::colours;
+use super::lettering::width;
+use super::marks::{Arrow, Directions, head};
+use super::shape::{Frame, Shape};
+use super::sheet::{Anchor, INK, Look, Sheet, data, lines};
+use super::stroke::Stroke;
+use super::view::{is_outline, mirrored};
+use crate::regionalise::outline::Point;
+
+/// What was marked, for those who note and explain it.
+pub(super) struct Marks {
+    /// Regions whose name found no room inside, with a place in each.
+    pub(super) unnamed: Vec<(usize, Point)>,
+    /// Where directions are undefined.
+    pub(super) singular: Vec<Point>,
+    /// Whether any region has a radial direction on the axis, which has none.
+    pub(super) axis: bool,
+    /// Whether there are borders between regions.
+    pub(super) splits: bool,
+}
+
+/// Sizes that a region's name is tried in.
+const SIZES: [f64; 3] = [8.5, 7.5, 6.5];
+/// The radius of the rings about singular points.
+const RING: f64 = 4.0;
+
+/// Draws the section about the axis.
+pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
+    let view = &picture.view;
+    let mut directions = Directions::new(picture.model);
+    let singular = singular(picture, &mut directions);
+    let rings: Vec<Frame> =
+        singular.iter().map(|[x, y]| [[x - RING, y - RING], [x + RING, y + RING]]).collect();
+    areas(picture, sheet);
+    let splits = splits(picture, sheet);
+    outline(picture, sheet);
+    seams(picture, sheet);
+    axis_line(picture, sheet);
+    let (mut arrows, mut unnamed) = (Vec::new(), Vec::new());
+    for (region, shape) in picture.shapes.iter().enumerate() {
+        if shape.is_empty() {
+            continue;
+        }
+        let mut draw = |about: &[Frame]| {
+            let taken: Vec<Frame> = rings.iter().chain(about).copied().collect();
+            directions.arrows(region, shape, view, &taken)
+        };
+        let (mut place, _) = shape.pole(1.0);
+        let dot = [[place[0] - 2.0, place[1] - 2.0], [place[0] + 2.0, place[1] + 2.0]];
+        // A name that leaves no room for an arrow goes outside, if that helps.
+        let name = name(picture, region, shape, &rings);
+        let mut own = draw(&[name.as_ref().map_or(dot, |name| name.frame)]);
+        let mut outside = name.is_none();
+        if own.is_empty() && !outside {
+            own = draw(&[dot]);
+            outside = !own.is_empty();
+        }
+        if own.is_empty() && outside {
+            // The leader begins where the arrow does.
+            own = draw(&[]);
+            place = own.first().map_or(place, |arrow| arrow[0]);
+        }
+        match name.filter(|_| !outside) {
+            Some(Name { size, at, .. }) => {
+                let text = &picture.model.regions[region].name;
+                sheet.text(text, at, Look::plain(size, Anchor::Middle));
+            }
+            None => unnamed.push((region, place)),
+        }
+        arrows.extend(own);
+    }
+    draw_arrows(&arrows, sheet);
+    sheet.group(&format!("fill=\"#fff\" stroke=\"{INK}\""), |sheet| {
+        singular.iter().for_each(|p| sheet.ring(*p, RING));
+    });
+    sheet.group(&format!("fill=\"{INK}\""), |sheet| {
+        singular.iter().for_each(|p| sheet.ring(*p, 1.1));
+    });
+    let axis = axis(picture, &mut directions);
+    for corner in [[-view.half, -view.height], [view.half, 0.0]] {
+        sheet.reach(corner);
+    }
+    Marks { unnamed, singular, axis, splits }
+}
+
+/// The regions' areas on the right, the hatched section on the left.
+fn areas(picture: &Picture<'_>, sheet: &mut Sheet) {
+    let colours = colours::areas(picture.shapes.len(), &picture.borders);
+    // A hair of its own colour about each area hides the seams between them.
+    sheet.group("fill-rule=\"evenodd\" stroke-width=\".6\" opacity=\".62\"", |sheet| {
+        for (shape, colour) in picture.shapes.iter().zip(colours) {
+            let all = data(shape.loops.iter().flatten());
+            sheet.path(&format!("fill=\"{colour}\" stroke=\"{colour}\""), &all);
+        }
+    });
+    let whole = Shape::new(&picture.borders, &picture.view, |side| matches!(side, Side::Region(_)));
+    let left: Vec<Stroke> = whole.loops.iter().flatten().map(mirrored).collect();
+    sheet.path("fill=\"#f4f5f7\" fill-rule=\"evenodd\"", &data(&left));
+    // What falls on the right rises on the left.
+    let hatches = whole.hatched(9.0);
+    let mirrored = hatches.iter().map(|row| row.map(|[x, y]| [-x, y]));
+    sheet.path("fill=\"none\" stroke=\"#c3c9d2\" stroke-width=\".6\"", &lines(mirrored));
+}
+
+/// The curves between regions, dashed; whether there are any.
+fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
+    let between: Vec<Stroke> = picture
+        .borders
+        .iter()
+        .filter(|border| matches!(border.sides, [Side::Region(_), Side::Region(_)]))
+        .flat_map(|border| border.strokes.iter().map(|stroke| picture.view.stroke(stroke)))
+        .collect();
+    let look = "fill=\"none\" stroke=\"#3f4650\" stroke-width=\".9\" stroke-dasharray=\"5 3\"";
+    sheet.path(look, &data(&between));
+    !between.is_empty()
+}
+
+/// The surfaces on both sides; what cuts lies on top.
+fn outline(picture: &Picture<'_>, sheet: &mut Sheet) {
+    let colours = colours::surfaces(picture.model);
+    let look = "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
+    sheet.group(look, |sheet| {
+        for cutting in [false, true] {
+            for (surface, about) in picture.model.surfaces.iter().enumerate() {
+                if about.cutting != cutting {
+                    continue;
+                }
+                let right: Vec<Stroke> = picture
+                    .borders
+                    .iter()
+                    .filter(|border| is_outline(border))
+                    .filter(|border| {
+                        matches!(border.sides[0], Side::Region(r) if picture.surface(r) == surface)
+                    })
+                    .flat_map(|border| border.strokes.iter().map(|s| picture.view.stroke(s)))
+                    .collect();
+                let left: Vec<Stroke> = right.iter().map(mirrored).collect();
+                let all = data(right.iter().chain(&left));
+                let (colour, wide) = (colours[surface], if cutting { 3.0 } else { 2.0 });
+                sheet.path(&format!("stroke=\"{colour}\" stroke-width=\"{wide}\""), &all);
+            }
+        }
+    });
+}
+
+/// The break lines where a long cylinder is shortened.
+fn seams(picture: &Picture<'_>, sheet: &mut Sheet) {
+    let half = picture.view.half + 7.0;
+    for y in picture.view.seams() {
+        let wave = |shift: f64| -> Vec<Point> {
+            (0..=24)
+                .map(|k| {
+                    let share = f64::from(k) / 12.0 - 1.0;
+                    [share * half, y + shift + 2.5 * (share * std::f64::consts::PI).sin()]
+                })
+                .collect()
+        };
+        let (above, below) = (wave(-3.0), wave(3.0));
+        let band: Vec<Point> = above.iter().chain(below.iter().rev()).copied().collect();
+        sheet.path("fill=\"#fff\"", &lines([&band]));
+        sheet
+            .path("fill=\"none\" stroke=\"#6b7280\" stroke-width=\".9\"", &lines([&above, &below]));
+    }
+}
+
+/// The axis, a little longer than the tool.
+fn axis_line(picture: &Picture<'_>, sheet: &mut Sheet) {
+    let row = [[0.0, 12.0], [0.0, -picture.view.height - 12.0]];
+    let look = "fill=\"none\" stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"";
+    sheet.path(look, &lines([&row]));
+    row.into_iter().for_each(|p| sheet.reach(p));
+}
+
+/// Where a region's name stands, how large, and the box about it.
+struct Name {
+    size: f64,
+    at: Point,
+    frame: Frame,
+}
+
+/// The place for a region's name inside, if there is one.
+fn name(picture: &Picture<'_>, region: usize, shape: &Shape, rings: &[Frame]) -> Option<Name> {
+    let text = &picture.model.regions[region].name;
+    let across = SIZES[1] / width(text, SIZES[1]).max(SIZES[1]);
+    let (place, _) = shape.pole(across);
+    // A ring is stepped around.
+    let tries = SIZES.into_iter().flat_map(|size| [0.0, 9.0, -9.0, 16.0, -16.0].map(|s| (size, s)));
+    tries
+        .map(|(size, shift)| {
+            let (wide, tall) = (width(text, size) / 2.0 + 3.0, size / 2.0 + 3.0);
+            let [x, y] = [place[0], place[1] + shift];
+            Name { size, at: [x, y], frame: [[x - wide, y - tall], [x + wide, y + tall]] }
+        })
+        .find(|Name { frame, .. }| {
+            let meets =
+                |ring: &Frame| (0..2).all(|k| ring[0][k] < frame[1][k] && ring[1][k] > frame[0][k]);
+            shape.holds(*frame) && !rings.iter().any(meets)
+        })
+}
+
+fn draw_arrows(arrows: &[Arrow], sheet: &mut Sheet) {
+    sheet.group("stroke=\"#2b3440\" stroke-width=\"1\" fill=\"#2b3440\"", |sheet| {
+        sheet.path("fill=\"none\"", &lines(arrows));
+        let heads: Vec<[Point; 4]> = arrows
+            .iter()
+            .map(|arrow| {
+                let [a, b, c] = head(*arrow, 5.0);
+                [a, b, c, a]
+            })
+            .collect();
+        sheet.path("stroke=\"none\"", &lines(&heads));
+    });
+}
+
+/// Where regions' directions are undefined, each place once; the axis is one by itself.
+fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point> {
+    let mut found: Vec<Point> = Vec::new();
+    for (region, shape) in picture.shapes.iter().enumerate() {
+        let Some(focus) =
+            (!shape.is_empty()).then(|| directions.focus(region, shape, &picture.view)).flatten()
+        else {
+            continue;
+        };
+        let p = picture.view.place(focus);
+        let near = |q: &Point| (p[0] - q[0]).hypot(p[1] - q[1]) < 0.5;
+        if !found.iter().any(near) {
+            found.push(p);
+        }
+    }
+    found
+}
+
+/// Whether directions next to the axis have a part away from it.
+fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
+    picture.borders.iter().any(|border| {
+        let ([Side::Region(region), Side::Axis], Some(stroke)) =
+            (border.sides, border.strokes.first())
+        else {
+            return false;
+        };
+        let [_, z] = stroke.at(0.5);
+        let way = directions.at(region, [1e-6 * picture.size, z]);
+        // A centre on the axis, seen from beside it, points along it.
+        way.is_some_and(|way| way[0].abs() > 1e-3)
+    })
+}

@@ -1,0 +1,375 @@
+//! The section divided among its owners: the half plane's box in cells, each cut by the splits
+//! that the plan still leaves open in it.
+//!
+//! A cell that provably has one owner stays whole. One that only straight lines divide is cut
+//! exactly, at any size. Where a curve bends, cells are halved until its chords are flat. Every
+//! side of a cell is cut at the same places from both sides, since what happens along it depends on
+//! the side alone.
+
+use super::curves::Curves;
+use crate::formula::{CurveIndex, NEGATIVE, ZERO};
+use crate::plan::Tree;
+use crate::regionalise::outline::{Point, cross, minus, norm};
+use std::collections::HashSet;
+
+/// The plan's tree of owners.
+pub(super) type Owners = Tree<Option<usize>>;
+
+/// A convex piece of the section with one owner, counter-clockwise.
+pub(super) struct Piece {
+    pub(super) owner: Option<usize>,
+    pub(super) corners: Vec<Corner>,
+}
+
+/// A corner of a piece, and the curve that the side after it lies on, if one does.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    pub(super) at: Point,
+    pub(super) curve: Option<CurveIndex>,
+}
+
+/// Lengths by which the division is judged.
+#[derive(Clone, Copy)]
+pub(super) struct Fineness {
+    /// The largest cell that a bent curve may cross.
+    pub(super) cell: f64,
+    /// How far a chord may be from its curve.
+    pub(super) flat: f64,
+    /// Places nearer to each other than this are one.
+    pub(super) same: f64,
+}
+
+/// How often a cell may be halved.
+const DEPTH: u32 = 24;
+/// Cells beyond which none is halved: two curves that nearly coincide would take any number.
+const CELLS: usize = 8_000;
+/// Splits that one cell may be cut by.
+const SPLITS: usize = 12;
+
+/// A cell by its place in a lattice of whole numbers, and its side.
+#[derive(Clone, Copy)]
+struct Cell {
+    corner: [u64; 2],
+    side: u64,
+}
+
+/// The box that is divided, with its lattice.
+struct Lattice {
+    low: Point,
+    unit: f64,
+}
+
+impl Lattice {
+    fn at(&self, [i, j]: [u64; 2]) -> Point {
+        [self.low[0] + i as f64 * self.unit, self.low[1] + j as f64 * self.unit]
+    }
+}
+
+/// Divides the box from the axis to `high`, up from `low`.
+pub(super) fn divide(
+    curves: &mut Curves<'_>,
+    owners: &Owners,
+    [low, high]: [Point; 2],
+    fineness: Fineness,
+) -> Vec<Piece> {
+    let (width, height) = (high[0] - low[0], high[1] - low[1]);
+    let root = width.min(height).max(width.max(height) / 64.0);
+    let lattice = Lattice { low, unit: root / f64::from(1 << DEPTH) };
+    let mut division =
+        Division { curves, lattice, fineness, cells: Vec::new(), corners: HashSet::new() };
+    let counts = [width, height].map(|side| (side / root).ceil() as u64);
+    for j in 0..counts[1] {
+        for i in 0..counts[0] {
+            let side = 1 << DEPTH;
+            division.cell(Cell { corner: [i * side, j * side], side }, owners);
+        }
+    }
+    let cells = std::mem::take(&mut division.cells);
+    cells.iter().flat_map(|(cell, tree)| division.pieces(*cell, tree)).collect()
+}
+
+struct Division<'c, 'm> {
+    curves: &'c mut Curves<'m>,
+    lattice: Lattice,
+    fineness: Fineness,
+    cells: Vec<(Cell, Owners)>,
+    /// Corners of all cells: a side may have some of its neighbours' on it.
+    corners: HashSet<[u64; 2]>,
+}
+
+impl Division<'_, '_> {
+    /// Cuts a cell's tree down to what is open in it, and halves it as long as that does not do.
+    fn cell(&mut self, cell: Cell, tree: &Owners) {
+        let [low, high] = self.ends(cell);
+        let tree = self.open(tree, low, high);
+        if cell.side == 1 || self.cells.len() > CELLS || self.fine(&tree, low, high) {
+            let [i, j] = cell.corner;
+            let s = cell.side;
+            self.corners.extend([[i, j], [i + s, j], [i + s, j + s], [i, j + s]]);
+            self.cells.push((cell, tree));
+            return;
+        }
+        let side = cell.side / 2;
+        for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let corner = [cell.corner[0] + i * side, cell.corner[1] + j * side];
+            self.cell(Cell { corner, side }, &tree);
+        }
+    }
+
+    fn ends(&self, cell: Cell) -> [Point; 2] {
+        let [i, j] = cell.corner;
+        [self.lattice.at([i, j]), self.lattice.at([i + cell.side, j + cell.side])]
+    }
+
+    /// What of a tree is open in a box.
+    fn open(&mut self, tree: &Owners, low: Point, high: Point) -> Owners {
+        let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
+        let signs = self.curves.signs(*curve, low, high);
+        let side = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
+        if signs & !side == 0 {
+            return self.open(below, low, high);
+        }
+        if signs & side == 0 {
+            return self.open(above, low, high);
+        }
+        let (below, above) = (self.open(below, low, high), self.open(above, low, high));
+        if below == above {
+            return below;
+        }
+        let (below, above) = (Box::new(below), Box::new(above));
+        Tree::Split { curve: *curve, strict: *strict, below, above }
+    }
+
+    /// Whether cutting a cell by this tree is as good as it need be.
+    fn fine(&mut self, tree: &Owners, low: Point, high: Point) -> bool {
+        let mut splits = Vec::new();
+        tested(tree, &mut splits);
+        let side = high[0] - low[0];
+        let bent: Vec<CurveIndex> =
+            splits.iter().copied().filter(|curve| !self.curves.straight(*curve)).collect();
+        if bent.is_empty() {
+            return splits.len() <= SPLITS || side < self.fineness.flat;
+        }
+        if side < 2.0 * self.fineness.flat {
+            return true;
+        }
+        // Where a bent curve meets another, the chord must not miss the place.
+        let alone = splits.len() == bent.len() && self.one(&bent, low, high);
+        alone && side < self.fineness.cell && self.flat(bent[0], low, high)
+    }
+
+    /// Whether bent curves are one and the same about a box, differently written.
+    fn one(&mut self, bent: &[CurveIndex], low: Point, high: Point) -> bool {
+        let side = high[0] - low[0];
+        let places = [[0.5, 0.5], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        bent.len() == 1
+            || places.into_iter().all(|share| {
+                let corner = [0, 1].map(|k| low[k] + share[k] * side);
+                let on = self.curves.foot(bent[0], corner, 2.0 * side);
+                bent[1..].iter().all(|other| {
+                    let foot = self.curves.foot(*other, on, side);
+                    norm(minus(foot, on)) <= self.fineness.same
+                })
+            })
+    }
+
+    /// Whether a curve is as good as its chord in a box.
+    fn flat(&mut self, curve: CurveIndex, low: Point, high: Point) -> bool {
+        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+        let mut crossings = Vec::new();
+        for k in 0..4 {
+            let (a, b) = (corners[k], corners[(k + 1) % 4]);
+            let (u, v) = (self.curves.value(curve, a), self.curves.value(curve, b));
+            if (u <= 0.0) != (v <= 0.0) {
+                crossings.push(self.crossing(curve, (a, u), (b, v)));
+            }
+        }
+        match crossings.as_slice() {
+            // It is not here, or too small to matter.
+            [] => {
+                let side = high[0] - low[0];
+                let middle = [low[0] + side / 2.0, low[1] + side / 2.0];
+                side < 4.0 * self.fineness.flat || self.curves.distance(curve, middle) > 1.2 * side
+            }
+            [a, b] => {
+                let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+                let foot = self.curves.foot(curve, middle, high[0] - low[0]);
+                norm(minus(foot, middle)) < self.fineness.flat
+            }
+            _ => false,
+        }
+    }
+
+    /// Where a curve crosses a side, from whichever end it is asked.
+    fn crossing(&mut self, curve: CurveIndex, a: (Point, f64), b: (Point, f64)) -> Point {
+        let (a, b) = if (a.0[1], a.0[0]) <= (b.0[1], b.0[0]) { (a, b) } else { (b, a) };
+        let between = |t: f64| [0, 1].map(|k| a.0[k] + t * (b.0[k] - a.0[k]));
+        let (mut low, mut high) = ((0.0, a.1), (1.0, b.1));
+        if !self.curves.straight(curve) {
+            for _ in 0..16 {
+                let t = (low.0 + high.0) / 2.0;
+                let value = self.curves.value(curve, between(t));
+                if (value <= 0.0) == (low.1 <= 0.0) { low = (t, value) } else { high = (t, value) }
+            }
+        }
+        let share = low.1 / (low.1 - high.1);
+        let share = if share.is_finite() { share } else { 0.5 };
+        between(low.0 + share * (high.0 - low.0))
+    }
+
+    /// The pieces of a cell.
+    fn pieces(&mut self, cell: Cell, tree: &Owners) -> Vec<Piece> {
+        let [i, j] = cell.corner;
+        let s = cell.side;
+        let ends = [[i, j], [i + s, j], [i + s, j + s], [i, j + s]];
+        let mut corners = Vec::new();
+        for k in 0..4 {
+            self.side(ends[k], ends[(k + 1) % 4], &mut corners);
+        }
+        let mut pieces = Vec::new();
+        self.cut(corners, tree, &mut pieces);
+        if pieces.len() > 2 {
+            joined(&mut pieces, 1e-9 * (s as f64) * self.lattice.unit);
+        }
+        pieces
+    }
+
+    /// The corners of a side but its last: its own, and its neighbours' between.
+    fn side(&self, a: [u64; 2], b: [u64; 2], corners: &mut Vec<Corner>) {
+        let middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+        let length = a[0].abs_diff(b[0]) + a[1].abs_diff(b[1]);
+        if length > 1 && self.corners.contains(&middle) {
+            self.side(a, middle, corners);
+            self.side(middle, b, corners);
+        } else {
+            corners.push(Corner { at: self.lattice.at(a), curve: None });
+        }
+    }
+
+    /// Cuts a convex polygon as a tree says.
+    fn cut(&mut self, corners: Vec<Corner>, tree: &Owners, pieces: &mut Vec<Piece>) {
+        match tree {
+            Tree::Leaf(owner) => pieces.push(Piece { owner: *owner, corners }),
+            Tree::Split { curve, below, above, .. } => {
+                let values = self.values(*curve, &corners);
+                let changes = changes(&values);
+                if changes > 2 {
+                    for triangle in fan(&corners) {
+                        self.cut(triangle, tree, pieces);
+                    }
+                    return;
+                }
+                for (sign, side) in [(-1.0, below), (1.0, above)] {
+                    let part = self.part(*curve, &corners, &values, sign);
+                    if part.len() >= 3 {
+                        self.cut(part, side, pieces);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The curve's values at corners; a value that only rounding tells from 0 is 0.
+    fn values(&mut self, curve: CurveIndex, corners: &[Corner]) -> Vec<f64> {
+        let values: Vec<f64> =
+            corners.iter().map(|corner| self.curves.value(curve, corner.at)).collect();
+        let largest = values.iter().map(|v| v.abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
+        values.into_iter().map(|v| if v.abs() < 1e-10 * largest { 0.0 } else { v }).collect()
+    }
+
+    /// The part of a polygon on one side of a curve.
+    fn part(
+        &mut self,
+        curve: CurveIndex,
+        corners: &[Corner],
+        values: &[f64],
+        sign: f64,
+    ) -> Vec<Corner> {
+        let mut part: Vec<Corner> = Vec::new();
+        if !values.iter().any(|value| value * sign > 0.0) {
+            return part;
+        }
+        for (k, corner) in corners.iter().enumerate() {
+            let next = (k + 1) % corners.len();
+            let (here, there) = (values[k] * sign, values[next] * sign);
+            // A corner on the curve at which the part ends is followed by the chord.
+            match (here >= 0.0, there >= 0.0) {
+                (true, _) if here == 0.0 && there < 0.0 => {
+                    part.push(Corner { at: corner.at, curve: Some(curve) });
+                }
+                (true, true) => part.push(*corner),
+                (true, false) => {
+                    let at = self.crossing(
+                        curve,
+                        (corner.at, values[k]),
+                        (corners[next].at, values[next]),
+                    );
+                    part.extend([*corner, Corner { at, curve: Some(curve) }]);
+                }
+                (false, true) if there > 0.0 => {
+                    let at = self.crossing(
+                        curve,
+                        (corner.at, values[k]),
+                        (corners[next].at, values[next]),
+                    );
+                    part.push(Corner { at, curve: corner.curve });
+                }
+                (false, _) => {}
+            }
+        }
+        part
+    }
+}
+
+/// The curves that a tree tests.
+fn tested(tree: &Owners, curves: &mut Vec<CurveIndex>) {
+    if let Tree::Split { curve, below, above, .. } = tree {
+        if !curves.contains(curve) {
+            curves.push(*curve);
+        }
+        tested(below, curves);
+        tested(above, curves);
+    }
+}
+
+/// How often the sign changes on the way around.
+fn changes(values: &[f64]) -> usize {
+    let signs: Vec<bool> = values.iter().filter(|v| **v != 0.0).map(|v| *v > 0.0).collect();
+    (0..signs.len()).filter(|k| signs[*k] != signs[(k + 1) % signs.len()]).count()
+}
+
+/// A polygon as triangles about its middle.
+fn fan(corners: &[Corner]) -> Vec<Vec<Corner>> {
+    let count = corners.len() as f64;
+    let at = [0, 1].map(|k| corners.iter().map(|corner| corner.at[k]).sum::<f64>() / count);
+    let middle = Corner { at, curve: None };
+    let next = |k: usize| Corner { curve: None, ..corners[(k + 1) % corners.len()] };
+    (0..corners.len()).map(|k| vec![middle, corners[k], next(k)]).collect()
+}
+
+/// Puts the corners of each piece on the sides of the others that they lie on.
+fn joined(pieces: &mut [Piece], near: f64) {
+    let all: Vec<Point> =
+        pieces.iter().flat_map(|piece| piece.corners.iter().map(|corner| corner.at)).collect();
+    for piece in pieces {
+        let mut corners = Vec::new();
+        for (k, corner) in piece.corners.iter().enumerate() {
+            corners.push(*corner);
+            let side = minus(piece.corners[(k + 1) % piece.corners.len()].at, corner.at);
+            let length = norm(side);
+            let mut between: Vec<(f64, Point)> = all
+                .iter()
+                .filter_map(|p| {
+                    let q = minus(*p, corner.at);
+                    let along = (q[0] * side[0] + q[1] * side[1]) / length;
+                    let on = cross(side, q).abs() <= near * length;
+                    (on && along > near && along < length - near).then_some((along, *p))
+                })
+                .collect();
+            between.sort_by(|a, b| a.0.total_cmp(&b.0));
+            between.dedup_by(|a, b| a.0 - b.0 <= near);
+            corners.extend(between.into_iter().map(|(_, at)| Corner { at, curve: corner.curve }));
+        }
+        piece.corners = corners;
+    }
+}

@@ -1,0 +1,196 @@
+//! A region on the sheet: what it is filled by, what is inside it, where there is most room.
+
+use super::borders::{Border, Side};
+use super::stroke::Stroke;
+use super::view::View;
+use crate::regionalise::outline::{Point, dot, minus, norm};
+
+/// How far the chords are from the curves by which room is measured.
+const FLAT: f64 = 0.3;
+
+/// An area of the sheet within closed loops of strokes.
+pub(super) struct Shape {
+    pub(super) loops: Vec<Vec<Stroke>>,
+    /// Its border in short lines.
+    lines: Vec<[Point; 2]>,
+}
+
+/// A box of the sheet by its corners of least and most coordinates.
+pub(super) type Frame = [Point; 2];
+
+impl Shape {
+    /// The area on whose borders' side `inside` holds.
+    pub(super) fn new(borders: &[Border], view: &View, inside: impl Fn(Side) -> bool) -> Shape {
+        let mut rest: Vec<([usize; 2], Vec<Stroke>)> = Vec::new();
+        for border in borders {
+            let strokes = border.strokes.iter().map(|stroke| view.stroke(stroke));
+            match border.sides.map(&inside) {
+                [true, false] => rest.push((border.ends, strokes.collect())),
+                [false, true] => {
+                    let strokes = strokes.rev().map(Stroke::reversed).collect();
+                    rest.push(([border.ends[1], border.ends[0]], strokes));
+                }
+                _ => {}
+            }
+        }
+        rest.reverse();
+        let mut loops = Vec::new();
+        while let Some(([start, mut end], mut strokes)) = rest.pop() {
+            while end != start {
+                let Some(next) = rest.iter().rposition(|(ends, _)| ends[0] == end) else { break };
+                let (ends, more) = rest.remove(next);
+                end = ends[1];
+                strokes.extend(more);
+            }
+            loops.push(strokes);
+        }
+        let mut lines = Vec::new();
+        for row in &loops {
+            let points: Vec<Point> = row.iter().flat_map(|stroke| stroke.points(FLAT)).collect();
+            lines.extend((0..points.len()).map(|k| [points[k], points[(k + 1) % points.len()]]));
+        }
+        Shape { loops, lines }
+    }
+
+    /// More lines that nothing shall cross, all of them level.
+    pub(super) fn keep_off(&mut self, lines: impl IntoIterator<Item = [Point; 2]>) {
+        self.lines.extend(lines);
+    }
+
+    /// Whether there is anything of it.
+    pub(super) fn is_empty(&self) -> bool {
+        self.loops.is_empty()
+    }
+
+    /// The box about it.
+    pub(super) fn frame(&self) -> Frame {
+        let mut frame = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for p in self.loops.iter().flatten().flat_map(|stroke| stroke.points(FLAT)) {
+            for k in 0..2 {
+                frame[0][k] = frame[0][k].min(p[k]);
+                frame[1][k] = frame[1][k].max(p[k]);
+            }
+        }
+        frame
+    }
+
+    /// Its area.
+    pub(super) fn area(&self) -> f64 {
+        let rows = self.loops.iter().map(|row| {
+            let points: Vec<Point> = row.iter().flat_map(|stroke| stroke.points(FLAT)).collect();
+            let next = |k: usize| points[(k + 1) % points.len()];
+            let twice = |k: usize| points[k][0] * next(k)[1] - points[k][1] * next(k)[0];
+            (0..points.len()).map(twice).sum::<f64>()
+        });
+        rows.sum::<f64>().abs() / 2.0
+    }
+
+    /// How far a point is from the border: positive inside. A step to the side counts `across`.
+    pub(super) fn room(&self, p: Point, across: f64) -> f64 {
+        let scaled = |q: Point| [q[0] * across, q[1]];
+        let mut nearest = f64::INFINITY;
+        let mut inside = false;
+        let at = scaled(p);
+        for line in &self.lines {
+            let [a, b] = line.map(scaled);
+            if (a[1] > at[1]) != (b[1] > at[1]) {
+                let crossing = a[0] + (at[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+                inside ^= at[0] < crossing;
+            }
+            nearest = nearest.min(distance(at, a, b));
+        }
+        if inside { nearest } else { -nearest }
+    }
+
+    /// The place with most room about it, to a unit of the sheet; where a step to the side counts
+    /// `across` (Mapbox's pole of inaccessibility).
+    pub(super) fn pole(&self, across: f64) -> (Point, f64) {
+        let [low, high] = self.frame();
+        let size = (high[0] - low[0]).min(high[1] - low[1]).max(1e-3);
+        let half = (size / 2.0).max((high[0] - low[0]).max(high[1] - low[1]) / 40.0);
+        // From a cell's middle to its corner.
+        let corner = (1.0 + across * across).sqrt();
+        let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
+        let mut best = (middle, self.room(middle, across));
+        let mut open: Vec<(f64, Point, f64)> = Vec::new();
+        let [columns, rows] =
+            [0, 1].map(|k| ((high[k] - low[k]) / (2.0 * half)).ceil().max(1.0) as usize);
+        let cells = (0..columns * rows).map(|n| [n % columns, n / columns]);
+        let mut asked: Vec<(Point, f64)> = cells
+            .map(|cell| ([0, 1].map(|k| low[k] + half * (2 * cell[k] + 1) as f64), half))
+            .collect();
+        for _ in 0..200 {
+            for (p, half) in asked.drain(..) {
+                let room = self.room(p, across);
+                if room > best.1 {
+                    best = (p, room);
+                }
+                open.push((room + half * corner, p, half));
+            }
+            let Some(place) = (0..open.len()).max_by(|a, b| open[*a].0.total_cmp(&open[*b].0))
+            else {
+                break;
+            };
+            let (most, p, half) = open.swap_remove(place);
+            if most <= best.1 + 0.5 {
+                break;
+            }
+            let h = half / 2.0;
+            let ways = [[-h, -h], [h, -h], [-h, h], [h, h]];
+            asked.extend(ways.map(|[i, j]| ([p[0] + i, p[1] + j], h)));
+        }
+        best
+    }
+
+    /// Whether a box lies wholly inside.
+    pub(super) fn holds(&self, [low, high]: Frame) -> bool {
+        let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
+        self.room(middle, 1.0) > 0.0 && !self.lines.iter().any(|line| crosses(*line, [low, high]))
+    }
+
+    /// Where lines that fall by one for each step to the right enter and leave it.
+    pub(super) fn hatched(&self, step: f64) -> Vec<[Point; 2]> {
+        let [low, high] = self.frame();
+        let mut c = ((low[0] + low[1]) / step).ceil() * step;
+        let mut hatches = Vec::new();
+        while c < high[0] + high[1] {
+            let mut crossings: Vec<f64> = Vec::new();
+            for [a, b] in &self.lines {
+                let (u, v) = (a[0] + a[1] - c, b[0] + b[1] - c);
+                if (u > 0.0) != (v > 0.0) {
+                    crossings.push(a[0] + u / (u - v) * (b[0] - a[0]));
+                }
+            }
+            crossings.sort_by(f64::total_cmp);
+            hatches.extend(crossings.chunks_exact(2).map(|x| [[x[0], c - x[0]], [x[1], c - x[1]]]));
+            c += step;
+        }
+        hatches
+    }
+}
+
+/// How far a point is from a line between two others.
+fn distance(p: Point, a: Point, b: Point) -> f64 {
+    let (way, q) = (minus(b, a), minus(p, a));
+    let share = (dot(q, way) / dot(way, way)).clamp(0.0, 1.0);
+    let share = if share.is_nan() { 0.0 } else { share };
+    norm([q[0] - share * way[0], q[1] - share * way[1]])
+}
+
+/// Whether a line meets a box (Liang and Barsky 1984).
+fn crosses([a, b]: [Point; 2], [low, high]: Frame) -> bool {
+    let way = minus(b, a);
+    let (mut enter, mut leave) = (0.0f64, 1.0f64);
+    for k in 0..2 {
+        if way[k] == 0.0 {
+            if a[k] < low[k] || a[k] > high[k] {
+                return false;
+            }
+            continue;
+        }
+        let (u, v) = ((low[k] - a[k]) / way[k], (high[k] - a[k]) / way[k]);
+        enter = enter.max(u.min(v));
+        leave = leave.min(u.max(v));
+    }
+    enter <= leave
+}

@@ -1,0 +1,255 @@
+//! The sheet: SVG, written so that it is small and the same every time.
+
+use super::lettering::{scale, strokes, width};
+use super::stroke::Stroke;
+use crate::regionalise::outline::Point;
+use std::fmt::Write;
+
+/// Which end of a line of text is at its place.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Anchor {
+    Left,
+    Middle,
+    Right,
+}
+
+/// Ink that is nearly black.
+pub(super) const INK: &str = "#22272e";
+/// Ink of dimensions and leaders.
+pub(super) const THIN: &str = "#6b7280";
+
+/// What text is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lettering {
+    /// Strokes of the built-in alphabet: it looks the same everywhere and needs no font.
+    Strokes,
+    /// SVG text in the font of the page that it stands in: it can be searched, and is smaller.
+    Page,
+}
+
+/// What is drawn so far. Text lies above all else.
+pub(super) struct Sheet {
+    lettering: Lettering,
+    drawn: String,
+    halos: String,
+    texts: String,
+    low: Option<Point>,
+    high: Option<Point>,
+}
+
+impl Sheet {
+    /// An empty sheet.
+    pub(super) fn new(lettering: Lettering) -> Sheet {
+        let empty = String::new;
+        Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), low: None, high: None }
+    }
+
+    /// Shapes that share attributes; nothing if there are none.
+    pub(super) fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Sheet)) {
+        let open = format!("<g {attributes}>");
+        self.drawn.push_str(&open);
+        let before = self.drawn.len();
+        draw(self);
+        if self.drawn.len() == before {
+            self.drawn.truncate(before - open.len());
+        } else {
+            self.drawn.push_str("</g>");
+        }
+    }
+
+    /// A path.
+    pub(super) fn path(&mut self, attributes: &str, data: &str) {
+        if !data.is_empty() {
+            let space = if attributes.is_empty() { "" } else { " " };
+            // Writing to a String does not fail.
+            let _ = write!(self.drawn, "<path{space}{attributes} d=\"{data}\"/>");
+        }
+    }
+
+    /// A ring.
+    pub(super) fn ring(&mut self, [x, y]: Point, radius: f64) {
+        let (x, y, radius) = (short(x), short(y), short(radius));
+        let _ = write!(self.drawn, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>");
+    }
+
+    /// A line of text whose middle height is at a place; `halo` keeps lines away from it.
+    pub(super) fn text(&mut self, text: &str, at: Point, look: Look) {
+        let wide = width(text, look.size);
+        let left = match look.anchor {
+            Anchor::Left => at[0],
+            Anchor::Middle => at[0] - wide / 2.0,
+            Anchor::Right => at[0] - wide,
+        };
+        let base = at[1] + look.size / 2.0;
+        self.reach([left - 2.0, base - look.size - 3.0]);
+        self.reach([left + wide + 2.0, base + 4.0]);
+        if look.halo {
+            let _ = write!(
+                self.halos,
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
+                short(left - 2.5),
+                short(base - look.size - 2.5),
+                short(wide + 5.0),
+                short(look.size + 5.0),
+            );
+        }
+        match self.lettering {
+            Lettering::Strokes => self.strokes(text, [left, base], look),
+            Lettering::Page => self.letters(text, [at[0], base], look),
+        }
+    }
+
+    fn strokes(&mut self, text: &str, [x, y]: Point, look: Look) {
+        let colour = coloured("stroke", look.colour);
+        let bold = if look.bold { " stroke-width=\"2.3\"" } else { "" };
+        let _ = write!(
+            self.texts,
+            "<path aria-label=\"{}\"{colour}{bold} transform=\"translate({} {})scale({})\" d=\"{}\"/>",
+            escaped(text),
+            short(x),
+            short(y),
+            short(scale(look.size)),
+            strokes(text),
+        );
+    }
+
+    /// How wide a page's font is nobody knows, so the text keeps to the end that it is held by.
+    fn letters(&mut self, text: &str, [x, y]: Point, look: Look) {
+        let colour = coloured("fill", look.colour);
+        let bold = if look.bold { " font-weight=\"bold\"" } else { "" };
+        let anchor = match look.anchor {
+            Anchor::Left => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::Right => " text-anchor=\"end\"",
+        };
+        // Capitals are some 0.72 of what a font calls its size.
+        let size = short(look.size / 0.72);
+        let _ = write!(
+            self.texts,
+            "<text x=\"{}\" y=\"{}\" font-size=\"{size}\"{anchor}{colour}{bold}>{}</text>",
+            short(x),
+            short(y),
+            escaped(text),
+        );
+    }
+
+    /// Makes the sheet large enough for a place.
+    pub(super) fn reach(&mut self, p: Point) {
+        let low = self.low.get_or_insert(p);
+        *low = [low[0].min(p[0]), low[1].min(p[1])];
+        let high = self.high.get_or_insert(p);
+        *high = [high[0].max(p[0]), high[1].max(p[1])];
+    }
+
+    /// The corners of what is drawn.
+    pub(super) fn frame(&self) -> [Point; 2] {
+        [self.low.unwrap_or_default(), self.high.unwrap_or_default()]
+    }
+
+    /// The whole as SVG, white below.
+    pub(super) fn finish(self, title: &str) -> String {
+        const MARGIN: f64 = 12.0;
+        let [low, high] = self.frame();
+        let [x, y] = low.map(|part| (part - MARGIN).floor());
+        let (wide, tall) = ((high[0] + MARGIN - x).ceil(), (high[1] + MARGIN - y).ceil());
+        let letters = match self.lettering {
+            Lettering::Strokes => format!(
+                "fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.6\" stroke-linecap=\"round\" \
+                 stroke-linejoin=\"round\""
+            ),
+            Lettering::Page => format!("fill=\"{INK}\""),
+        };
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{wide}\" height=\"{tall}\" \
+             viewBox=\"{x} {y} {wide} {tall}\" style=\"max-width:100%;height:auto\">\
+             <title>{}</title>\
+             <rect x=\"{x}\" y=\"{y}\" width=\"{wide}\" height=\"{tall}\" fill=\"#fff\"/>\
+             {}<g fill=\"#fff\" fill-opacity=\".85\">{}</g><g {letters}>{}</g></svg>",
+            escaped(title),
+            self.drawn,
+            self.halos,
+            self.texts,
+        )
+    }
+}
+
+/// How a line of text looks.
+#[derive(Clone, Copy)]
+pub(super) struct Look {
+    /// The height of its capitals.
+    pub(super) size: f64,
+    pub(super) anchor: Anchor,
+    pub(super) colour: &'static str,
+    pub(super) bold: bool,
+    pub(super) halo: bool,
+}
+
+impl Look {
+    /// Plain text.
+    pub(super) fn plain(size: f64, anchor: Anchor) -> Look {
+        Look { size, anchor, colour: INK, bold: false, halo: false }
+    }
+}
+
+/// Path data of strokes, in rows where each begins at the end of the one before.
+pub(super) fn data<'s>(strokes: impl IntoIterator<Item = &'s Stroke>) -> String {
+    let mut data = String::new();
+    let mut pen: Option<[String; 2]> = None;
+    for stroke in strokes {
+        let [from, to] = [stroke.from, stroke.to].map(|p| p.map(short));
+        if pen.as_ref() != Some(&from) {
+            let _ = write!(data, "M{} {}", from[0], from[1]);
+        }
+        if stroke.circle.is_none() && from == to {
+            continue;
+        }
+        let _ = match stroke.circle {
+            // y grows downward, so what turns left on paper turns right here.
+            Some((_, radius)) => {
+                let (radius, sweep) = (short(radius), u8::from(stroke.left()));
+                write!(data, "A{radius} {radius} 0 0 {sweep} {} {}", to[0], to[1])
+            }
+            None if from[0] == to[0] => write!(data, "V{}", to[1]),
+            None if from[1] == to[1] => write!(data, "H{}", to[0]),
+            None => write!(data, "L{} {}", to[0], to[1]),
+        };
+        pen = Some(to);
+    }
+    data
+}
+
+/// Path data of straight lines through rows of points.
+pub(super) fn lines<R: AsRef<[Point]>>(rows: impl IntoIterator<Item = R>) -> String {
+    let mut all = Vec::new();
+    for row in rows {
+        all.extend(row.as_ref().windows(2).map(|pair| Stroke::line(pair[0], pair[1])));
+    }
+    data(&all)
+}
+
+/// A number of the sheet: two decimals at most.
+pub(super) fn short(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// An attribute for a colour that is not the usual one.
+fn coloured(what: &str, colour: &str) -> String {
+    if colour == INK { String::new() } else { format!(" {what}=\"{colour}\"") }
+}
+
+fn escaped(text: &str) -> String {
+    let mut escaped = String::new();
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            letter if letter.is_control() => escaped.push(' '),
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}

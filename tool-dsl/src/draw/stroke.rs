@@ -1,0 +1,156 @@
+//! Lines and arcs, the strokes that everything is drawn with.
+
+use crate::regionalise::outline::{Point, cross, dot, minus, norm};
+use std::f64::consts::PI;
+
+/// A line, or an arc of less than half a circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stroke {
+    pub(super) from: Point,
+    pub(super) to: Point,
+    pub(super) circle: Option<(Point, f64)>,
+}
+
+impl Stroke {
+    pub(super) fn line(from: Point, to: Point) -> Stroke {
+        Stroke { from, to, circle: None }
+    }
+
+    /// The same the other way.
+    pub(super) fn reversed(self) -> Stroke {
+        Stroke { from: self.to, to: self.from, ..self }
+    }
+
+    /// Whether it turns left, as drawn with the second coordinate up.
+    pub(super) fn left(&self) -> bool {
+        self.circle.is_some_and(|(centre, _)| {
+            cross(minus(self.from, centre), minus(self.to, centre)) > 0.0
+        })
+    }
+
+    /// The angle that an arc turns by, 0 for a line.
+    fn turn(&self) -> f64 {
+        self.circle.map_or(0.0, |(centre, _)| {
+            let (a, b) = (minus(self.from, centre), minus(self.to, centre));
+            cross(a, b).atan2(dot(a, b))
+        })
+    }
+
+    /// The point at a share of its length.
+    pub(super) fn at(&self, share: f64) -> Point {
+        let Some((centre, _)) = self.circle else {
+            return [0, 1].map(|k| self.from[k] + share * (self.to[k] - self.from[k]));
+        };
+        let (sin, cos) = (share * self.turn()).sin_cos();
+        let a = minus(self.from, centre);
+        [centre[0] + a[0] * cos - a[1] * sin, centre[1] + a[0] * sin + a[1] * cos]
+    }
+
+    /// Its length.
+    pub(super) fn length(&self) -> f64 {
+        self.circle
+            .map_or(norm(minus(self.to, self.from)), |(_, radius)| radius * self.turn().abs())
+    }
+
+    /// Points along it but the last, from chords that are no farther from it than `flat`.
+    pub(super) fn points(&self, flat: f64) -> Vec<Point> {
+        let Some((_, radius)) = self.circle else { return vec![self.from] };
+        let most = 2.0 * (1.0 - flat / radius).clamp(0.0, 1.0).acos();
+        let count = (self.turn().abs() / most).ceil().clamp(1.0, 64.0) as usize;
+        (0..count).map(|k| self.at(k as f64 / count as f64)).collect()
+    }
+
+    /// The lowest and highest second coordinate.
+    pub(super) fn span(&self) -> [f64; 2] {
+        let mut span = [self.from[1].min(self.to[1]), self.from[1].max(self.to[1])];
+        if let Some((centre, radius)) = self.circle {
+            for (k, end) in [(0, centre[1] - radius), (1, centre[1] + radius)] {
+                let top = minus([centre[0], end], centre);
+                let (a, b) = (minus(self.from, centre), minus(self.to, centre));
+                let within = |a: Point, b: Point| cross(a, top) >= 0.0 && cross(top, b) >= 0.0;
+                if if self.left() { within(a, b) } else { within(b, a) } {
+                    span[k] = end;
+                }
+            }
+        }
+        span
+    }
+
+    /// The largest first coordinate.
+    pub(super) fn widest(&self) -> f64 {
+        let turned = |[d, z]: Point| [-z, d];
+        let circle = self.circle.map(|(centre, radius)| (turned(centre), radius));
+        let turned = Stroke { from: turned(self.from), to: turned(self.to), circle };
+        turned.span()[1]
+    }
+}
+
+/// The circle through three points, if they are not in a row.
+fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
+    let (u, v) = (minus(b, a), minus(c, a));
+    let twice = 2.0 * cross(u, v);
+    let (uu, vv) = (dot(u, u), dot(v, v));
+    let q = [(v[1] * uu - u[1] * vv) / twice, (u[0] * vv - v[0] * uu) / twice];
+    let radius = norm(q);
+    let flat = radius > 1e4 * norm(v).max(norm(u));
+    (radius.is_finite() && !flat).then_some(([a[0] + q[0], a[1] + q[1]], radius))
+}
+
+/// The strokes of a row of points that is an arc; `foot` leads to the true curve.
+pub(super) fn round(
+    row: &[Point],
+    mut foot: impl FnMut(Point) -> Point,
+    near: f64,
+) -> Option<Vec<Stroke>> {
+    let last = row.len() - 1;
+    let closed = row[0] == row[last];
+    let at = |share: f64| {
+        let place = (share * last as f64).min(last as f64);
+        let k = (place.floor() as usize).min(last - 1);
+        Stroke::line(row[k], row[k + 1]).at(place - k as f64)
+    };
+    // A circle's end is its beginning and tells nothing.
+    let step = if closed { 0.2 } else { 0.25 };
+    let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| foot(at(k * step)));
+    let (centre, radius) = circle([feet[0], feet[2], feet[4]])?;
+    let off = |p: &Point| (norm(minus(*p, centre)) - radius).abs() > 10.0 * near;
+    if feet.iter().any(off) {
+        return None;
+    }
+    let arc = |from: Point, to: Point| Stroke { from, to, circle: Some((centre, radius)) };
+    let swept: f64 = row.windows(2).map(|pair| arc(pair[0], pair[1]).turn()).sum();
+    let parts = ((swept.abs() / (0.9 * PI)).ceil() as usize).max(1);
+    if parts > last {
+        return None;
+    }
+    let ends: Vec<usize> = (0..=parts).map(|k| k * last / parts).collect();
+    Some(ends.windows(2).map(|pair| arc(row[pair[0]], row[pair[1]])).collect())
+}
+
+/// Lines and arcs along a row of points, no farther from any of them than `seen`.
+pub(super) fn fitted(row: &[Point], seen: f64) -> Vec<Stroke> {
+    let last = row.len() - 1;
+    let line = Stroke::line(row[0], row[last]);
+    let way = minus(row[last], row[0]);
+    let length = norm(way);
+    let off = |p: &Point| cross(way, minus(*p, row[0])).abs() > seen * length;
+    if last == 1 || (length > 0.0 && !row.iter().any(off)) {
+        return vec![line];
+    }
+    if length > 0.0
+        && let Some((centre, radius)) = circle([row[0], row[last / 2], row[last]])
+    {
+        let stroke = Stroke { circle: Some((centre, radius)), ..line };
+        let off = |p: Point| (norm(minus(p, centre)) - radius).abs() > seen;
+        let middles = row.windows(2).map(|pair| Stroke::line(pair[0], pair[1]).at(0.5));
+        let less_than_half = stroke.turn().abs() < 0.9 * PI
+            && norm(minus(stroke.at(0.5), row[last / 2])) < 0.5 * length + seen;
+        if less_than_half && !row.iter().copied().chain(middles).any(off) {
+            return vec![stroke];
+        }
+    }
+    let middle = last / 2;
+    let mut strokes = fitted(&row[..=middle], seen);
+    strokes.extend(fitted(&row[middle..], seen));
+    strokes
+}

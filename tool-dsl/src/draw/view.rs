@@ -1,0 +1,132 @@
+//! Where a point of the section lies on the sheet: the axis is x = 0, the lowest point y = 0, the
+//! spindle above. Long plain cylinders are shortened, as draughtsmen do, so that what is thin
+//! stays readable.
+
+use super::borders::{Border, Side};
+use super::stroke::Stroke;
+use crate::regionalise::outline::Point;
+
+/// The most room that the section takes on the sheet: its whole width, its height.
+const ROOM: [f64; 2] = [330.0, 500.0];
+/// The height of a section that is shortened, in its widths.
+const SLIM: f64 = 4.8;
+/// A shortened cylinder is at least this long, in widths of the section.
+const LEAST: f64 = 0.7;
+
+/// A stretch of the axis that is left out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    low: f64,
+    high: f64,
+}
+
+/// The section's place on the sheet.
+#[derive(Clone, Debug)]
+pub(super) struct View {
+    /// Sheet lengths to one of the tool's.
+    pub(super) scale: f64,
+    low: f64,
+    cuts: Vec<Cut>,
+    /// Half the section's width, and its height, on the sheet.
+    pub(super) half: f64,
+    pub(super) height: f64,
+}
+
+impl View {
+    pub(super) fn new(borders: &[Border]) -> View {
+        let strokes = || borders.iter().flat_map(|border| &border.strokes);
+        let radius = strokes().map(Stroke::widest).fold(0.0, f64::max);
+        let mut levels: Vec<f64> = strokes().flat_map(Stroke::span).collect();
+        levels.sort_by(f64::total_cmp);
+        let (low, high) = match (levels.first(), levels.last()) {
+            (Some(low), Some(high)) => (*low, *high),
+            _ => (0.0, 0.0),
+        };
+        let length = high - low;
+        levels.dedup_by(|a, b| *a - *b < 1e-6 * length);
+        let plain: Vec<[f64; 2]> = levels
+            .windows(2)
+            .map(|pair| [pair[0], pair[1]])
+            .filter(|[a, b]| {
+                let middle = a / 2.0 + b / 2.0;
+                strokes()
+                    .filter(|stroke| (stroke.span()[0]..stroke.span()[1]).contains(&middle))
+                    .all(|stroke| {
+                        let aside = (stroke.from[0] - stroke.to[0]).abs();
+                        stroke.circle.is_none() && aside < 1e-6 * radius
+                    })
+            })
+            .collect();
+        let cuts = cuts(&plain, length, 2.0 * radius);
+        let left = length - cuts.iter().map(|cut| cut.high - cut.low).sum::<f64>();
+        let scale = (ROOM[0] / (2.0 * radius)).min(ROOM[1] / left);
+        View { scale, low, cuts, half: radius * scale, height: left * scale }
+    }
+
+    /// The place of a point on the sheet, in the right half.
+    pub(super) fn place(&self, [d, z]: Point) -> Point {
+        let gone: f64 = self.cuts.iter().map(|cut| (z.min(cut.high) - cut.low).max(0.0)).sum();
+        [d * self.scale, -(z - self.low - gone) * self.scale]
+    }
+
+    /// The point at a place of the sheet.
+    pub(super) fn point(&self, [x, y]: Point) -> Point {
+        let mut z = self.low - y / self.scale;
+        for cut in &self.cuts {
+            if z > cut.low {
+                z += cut.high - cut.low;
+            }
+        }
+        [x / self.scale, z]
+    }
+
+    /// A stroke on the sheet.
+    pub(super) fn stroke(&self, stroke: &Stroke) -> Stroke {
+        let (from, to) = (self.place(stroke.from), self.place(stroke.to));
+        let circle = stroke.circle.map(|(centre, radius)| {
+            let [d, z] = [0, 1].map(|k| centre[k] - stroke.from[k]);
+            ([from[0] + d * self.scale, from[1] - z * self.scale], radius * self.scale)
+        });
+        Stroke { from, to, circle }
+    }
+
+    /// The heights at which something is left out.
+    pub(super) fn seams(&self) -> Vec<f64> {
+        self.cuts.iter().map(|cut| self.place([0.0, cut.low])[1]).collect()
+    }
+}
+
+/// What is left out of plain stretches, so that the whole is no longer than `SLIM` widths.
+fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
+    let wanted = SLIM * width;
+    if length <= 1.15 * wanted {
+        return Vec::new();
+    }
+    // The most that is kept of any stretch, by halving.
+    let (mut least, mut most) = (LEAST * width, length);
+    let left = |keep: f64| length - plain.iter().map(|[a, b]| (b - a - keep).max(0.0)).sum::<f64>();
+    for _ in 0..40 {
+        let keep = least / 2.0 + most / 2.0;
+        if left(keep) > wanted { most = keep } else { least = keep }
+    }
+    plain
+        .iter()
+        .filter(|[a, b]| b - a > 1.5 * least)
+        .map(|[a, b]| Cut { low: a + least / 2.0, high: b - least / 2.0 })
+        .collect()
+}
+
+/// The mirror image of a stroke.
+pub(super) fn mirrored(stroke: &Stroke) -> Stroke {
+    let turned = |[x, y]: Point| [-x, y];
+    Stroke {
+        from: turned(stroke.from),
+        to: turned(stroke.to),
+        circle: stroke.circle.map(|(centre, radius)| (turned(centre), radius)),
+    }
+}
+
+/// Whether a border is the tool's surface.
+pub(super) fn is_outline(border: &Border) -> bool {
+    border.sides[1] == Side::Outside
+}
