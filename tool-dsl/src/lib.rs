@@ -10,6 +10,7 @@
 //! cannot fail.
 
 pub mod bound;
+pub mod domain;
 pub mod emit;
 pub mod expr;
 pub mod formula;
@@ -101,7 +102,7 @@ impl Checked {
     /// A tool of which something is wrong: its errors stand beside it and it goes no further.
     fn nothing(model: Model) -> Checked {
         let plan = Plan { owner: plan::Tree::Leaf(None), inside: plan::Tree::Leaf(false) };
-        let extent = Extent { low: 0.0, high: 0.0, radius: 0.0 };
+        let extent = Extent::of(model.domain.whole(0.0), 0.0);
         Checked { model, extent, envelope: Vec::new(), plan }
     }
 }

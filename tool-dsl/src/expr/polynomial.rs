@@ -6,7 +6,19 @@ use crate::number::Number;
 use std::collections::BTreeMap;
 
 /// Exponents of (d, x, y, z); d² is the same as x² + y² only outside this module.
-type Monomial = [u8; 4];
+pub(crate) type Monomial = [u8; 4];
+
+/// The exponents of one coordinate alone; of the file's unit of length, none.
+pub(crate) fn monomial_of(coord: Coord) -> Monomial {
+    match coord {
+        Coord::D => [1, 0, 0, 0],
+        Coord::Q => [2, 0, 0, 0],
+        Coord::X => [0, 1, 0, 0],
+        Coord::Y => [0, 0, 1, 0],
+        Coord::Z => [0, 0, 0, 1],
+        Coord::Length | Coord::PerLength => [0; 4],
+    }
+}
 
 /// A sum of monomials.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,17 +42,8 @@ impl Polynomial {
         let single = |monomial, value: Number| Polynomial(BTreeMap::from([(monomial, value)]));
         Some(match node {
             Node::Const(value) => single([0; 4], value.clone()),
-            Node::Coord(coord) => single(
-                match coord {
-                    Coord::D => [1, 0, 0, 0],
-                    Coord::Q => [2, 0, 0, 0],
-                    Coord::X => [0, 1, 0, 0],
-                    Coord::Y => [0, 0, 1, 0],
-                    Coord::Z => [0, 0, 0, 1],
-                    Coord::Length | Coord::PerLength => return None,
-                },
-                Number::int(1),
-            ),
+            Node::Coord(Coord::Length | Coord::PerLength) => return None,
+            Node::Coord(coord) => single(monomial_of(*coord), Number::int(1)),
             Node::Neg(a) => of(a)?.scaled(&Number::int(-1)),
             Node::Add(a, b) => of(a)?.plus(&of(b)?),
             Node::Sub(a, b) => of(a)?.plus(&of(b)?.scaled(&Number::int(-1))),

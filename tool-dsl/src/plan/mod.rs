@@ -10,6 +10,7 @@
 pub(crate) mod empty;
 
 use crate::bound::Extent;
+use crate::domain::Domain;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
@@ -104,22 +105,32 @@ pub fn plan(model: &Model, extent: &Extent) -> Result<Plan, Report> {
     Ok(Plan { owner, inside })
 }
 
-/// A point of the section: the side of each curve, and the owner.
+/// A point: the side of each curve, and the owner.
 struct Sample {
     signs: Vec<Signs>,
     owner: Option<usize>,
 }
 
-/// Points spread evenly over the section's box by the additive recurrence R2 (Roberts 2018).
-pub(crate) fn spread(extent: &Extent, count: usize, around: f64) -> impl Iterator<Item = [f64; 2]> {
+/// Points spread evenly over the extent's box and what lies `around` it, by the additive
+/// recurrences R2 in the half plane and R3 in space (Roberts 2018).
+pub(crate) fn spread(extent: &Extent, count: usize, around: f64) -> impl Iterator<Item = [f64; 3]> {
+    // The real roots of x³ = x + 1 and x⁴ = x + 1.
     const PLASTIC: f64 = 1.324_717_957_244_746;
-    let (height, radius) = (extent.high - extent.low, extent.radius);
-    let low = extent.low - around * height;
-    let (a, b) = (1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC));
+    const IN_SPACE: f64 = 1.220_744_084_605_759_5;
+    let cell = extent.cell();
+    let step = |root: f64, power: i32| 1.0 / root.powi(power);
+    let (low_end, steps) = match Domain::of(&cell) {
+        // There is nothing beyond the axis.
+        Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
+        Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
+    };
+    let ends = [low_end, low_end, around].map(|below| [below, below + around]);
     (1..=count).map(move |k| {
-        let k = k as f64;
-        let (u, v) = ((0.5 + a * k).fract(), (0.5 + b * k).fract());
-        [u * radius * (1.0 + around), low + v * height * (1.0 + 2.0 * around)]
+        [0, 1, 2].map(|axis| {
+            let (side, [below, both]) = (cell.sides[axis], ends[axis]);
+            let (width, part) = (side.high - side.low, (0.5 + steps[axis] * k as f64).fract());
+            side.low - below * width + part * width * (1.0 + both)
+        })
     })
 }
 
@@ -127,8 +138,8 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     let values = model.curves.iter().map(|curve| curve.value);
     let mut evaluator = Evaluator::new(&model.graph, values);
     spread(extent, 2000, 0.05)
-        .map(|[d, z]| {
-            evaluator.set(At::meridian(d, z));
+        .map(|[x, y, z]| {
+            evaluator.set(At::point(x, y, z));
             let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
             let owner = model.regions.iter().position(|region| region.inside.holds(&value));
             let signs = (0..model.curves.len())
@@ -147,7 +158,7 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
 fn costs(model: &Model) -> Vec<f64> {
     use crate::expr::{Coord, Node};
     let cost = |node: &Node| match node {
-        Node::Const(_) | Node::Coord(Coord::Z) => 0.0,
+        Node::Const(_) | Node::Coord(Coord::X | Coord::Y | Coord::Z) => 0.0,
         Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
         _ => 1.0,
     };

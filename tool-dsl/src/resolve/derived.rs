@@ -4,6 +4,7 @@ use super::condition::Curves;
 use super::lower::Lowering;
 use super::profile;
 use super::region::{Felt, Laws, Said};
+use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::model::{Region, Surface};
@@ -103,6 +104,7 @@ impl Felt<'_> {
         let inside =
             Formula::All(part.conditions.iter().map(|sides| bound(sides, curves, graph)).collect());
         let course = regionalise::course(graph, outline, &part.feature).unwrap_or([zero, zero]);
+        let course = Domain::HalfPlane.vector(graph, &course);
         let depth = part.depth;
         let magnitude = self.magnitude(None, depth)?;
         let niceness = self.niceness(None, depth)?;

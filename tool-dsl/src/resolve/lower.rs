@@ -1,6 +1,7 @@
 //! Expressions of the syntax tree to nodes of the graph, with their dimension.
 
 use super::dimension::{Dimension, LENGTH};
+use crate::domain::Domain;
 use crate::expr::{Coord, Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
@@ -9,7 +10,7 @@ use crate::source::Span;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 
-/// Names that belong to the language.
+/// Names that belong to the language, whatever the file's own coordinates.
 const COORDINATES: [&str; 4] = ["d", "z", "x", "y"];
 const FUNCTIONS: [&str; 8] = ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
 
@@ -35,6 +36,7 @@ pub(super) enum May {
 
 /// Everything that lowering needs and fills.
 pub(super) struct Lowering {
+    pub(super) domain: Domain,
     pub(super) graph: Graph,
     pub(super) unit: Unit,
     pub(super) frame: Frame,
@@ -59,12 +61,13 @@ impl Lowering {
         (id, dimension): (Id, Dimension),
     ) -> Result<(), Report> {
         let word = name.word.as_str();
-        if word == "d" || word == "z" {
-            let what =
-                if word == "d" { "the distance from the axis" } else { "the place along the axis" };
+        if let Some(what) = self.coordinate(word) {
             let report =
                 Report::error(name.span, format!("`{word}` is {what} and cannot be defined"));
-            return Err(report.help("for a diameter use `D`"));
+            return Err(match self.domain {
+                Domain::HalfPlane => report.help("for a diameter use `D`"),
+                Domain::Space => report.help("take another name"),
+            });
         }
         if COORDINATES.contains(&word)
             || FUNCTIONS.contains(&word)
@@ -86,6 +89,16 @@ impl Lowering {
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
+    }
+
+    /// What a coordinate of the file is, in words.
+    fn coordinate(&self, word: &str) -> Option<&'static str> {
+        match (self.domain, word) {
+            (Domain::HalfPlane, "d") => Some("the distance from the axis"),
+            (Domain::HalfPlane, "z") => Some("the place along the axis"),
+            (Domain::Space, "x" | "y" | "z") => Some("a coordinate"),
+            _ => None,
+        }
     }
 
     /// An expression that must come out constant, for what.
@@ -170,10 +183,17 @@ impl Lowering {
             _ if COORDINATES.contains(&word) || self.values.contains_key(word) || word == "pi" => {
                 let number = value.to_f64();
                 let report = Report::error(span, format!("`{number}{word}` is not a number"));
-                let times =
-                    if word == "d" { " for two times the distance from the axis" } else { "" };
-                let times = if number == 2.0 { times } else { "" };
-                return Err(report.help(format!("write `{number}*{word}`{times}")));
+                let written = match (self.domain, word) {
+                    (Domain::Space, "d") => "hypot(x, y)",
+                    _ => word,
+                };
+                let times = match (self.domain, word) {
+                    (Domain::HalfPlane, "d") if number == 2.0 => {
+                        " for two times the distance from the axis"
+                    }
+                    _ => "",
+                };
+                return Err(report.help(format!("write `{number}*{written}`{times}")));
             }
             _ => Report::error(unit.span, format!("unknown unit `{word}`"))
                 .help("units are `mm`, `inch`, `m`, `deg` and `rad`, glued to the number"),
@@ -192,17 +212,12 @@ impl Lowering {
                     May::Constants(what) => Err(not_constant(span, word, what)),
                 };
             }
-            "d" => Some(Coord::D),
-            "z" => Some(Coord::Z),
-            "x" | "y" => {
-                return Err(Report::error(
-                    span,
-                    format!("`{word}` exists in a solid without an axis only"),
-                )
-                .help("in a `tool` the coordinates are `d`, the distance from the axis, and `z`"));
-            }
-            _ => None,
+            _ => self.domain.coordinates().iter().find(|(.., name)| *name == word),
         };
+        let coordinate = coordinate.map(|(coordinate, ..)| *coordinate);
+        if coordinate.is_none() && COORDINATES.contains(&word) {
+            return Err(self.elsewhere(word, span));
+        }
         if let Some(coordinate) = coordinate {
             if let May::Constants(what) = may {
                 return Err(not_constant(span, word, what));
@@ -223,7 +238,9 @@ impl Lowering {
                     .help("move the definition up"));
             }
             let report = Report::error(span, format!("unknown name `{word}`"));
-            let known = self.values.keys().map(String::as_str).chain(["d", "z", "pi", "depth"]);
+            let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
+            let known = self.values.keys().map(String::as_str).chain(coordinates);
+            let known = known.chain(["pi", "depth"]);
             return Err(match nearest(word, known) {
                 Some(meant) => report.help(format!("did you mean `{meant}`?")),
                 None => report.help(format!("define it above: `let {word} = …;`")),
@@ -237,6 +254,16 @@ impl Lowering {
             return Err(not_constant(span, word, what));
         }
         Ok((value.id, value.dimension))
+    }
+
+    /// A coordinate of the other kind of file.
+    fn elsewhere(&self, word: &str, span: Span) -> Report {
+        match self.domain {
+            Domain::HalfPlane => Report::error(span, format!("`{word}` exists in a `solid` only"))
+                .help("in a `tool` the coordinates are `d`, the distance from the axis, and `z`"),
+            Domain::Space => Report::error(span, format!("`{word}` exists in a `tool` only"))
+                .help("in a `solid` write `hypot(x, y)`"),
+        }
     }
 
     fn binary(

@@ -8,6 +8,7 @@ mod outputs;
 mod profile;
 mod region;
 
+use crate::domain::Domain;
 use crate::expr::Graph;
 use crate::model::{Frame, Model, Unit};
 use crate::number::Number;
@@ -33,6 +34,7 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         Err(report) => return (None, vec![report]),
     };
     let mut lowering = Lowering {
+        domain: tool.domain,
         graph: Graph::default(),
         unit,
         frame: Frame { tip: Number::int(0), down: false },
@@ -44,6 +46,9 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
     constants(tool, &mut lowering, &mut reports);
     if any_error(&reports) {
         return (None, reports);
+    }
+    if tool.domain == Domain::Space {
+        without_axis(tool, &mut reports);
     }
     frame(tool, &mut lowering, &mut reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
@@ -88,6 +93,7 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         return (None, reports);
     }
     let model = Model {
+        domain: tool.domain,
         name: tool.name.word.clone(),
         name_span: tool.name.span,
         title: tool.title.clone(),
@@ -100,6 +106,23 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         first,
     };
     (Some(model), reports)
+}
+
+/// What only a tool has, in a solid.
+fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
+    for item in &tool.items {
+        let (span, word, why) = match item {
+            Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
+            Item::Spindle { span, .. } => (*span, "spindle", "its file's frame is the pose's"),
+            Item::Profile(profile) => (profile.span, "profile", "it has regions by hand"),
+            Item::Regions(span) => (*span, "regions", "it has regions by hand"),
+            _ => continue,
+        };
+        reports.push(
+            Report::error(span, format!("`{word}` exists in a `tool` only"))
+                .help(format!("a `solid` has no axis: {why}")),
+        );
+    }
 }
 
 /// The profile, if there is one, and what does not go with it.

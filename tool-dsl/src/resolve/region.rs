@@ -4,7 +4,8 @@ use super::condition::Curves;
 use super::dimension::Dimension;
 use super::lower::{Lowering, May};
 use super::{is, outputs};
-use crate::expr::Id;
+use crate::domain::Domain;
+use crate::expr::{Coord, Id};
 use crate::formula::Formula;
 use crate::model::{Region, Surface};
 use crate::report::{Report, nearest};
@@ -216,16 +217,16 @@ impl Felt<'_> {
         self,
         said: Said,
         (depth, magnitude, niceness): (Id, Option<Id>, Id),
-        (course, course_span): ([Id; 2], Span),
+        (course, course_span): ([Id; 3], Span),
     ) -> Result<Region, Report> {
-        let graph = &mut self.lowering.graph;
-        let direction = outputs::unit(graph, course, false).ok_or_else(|| {
+        let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
+        let direction = outputs::unit(graph, course, 2).ok_or_else(|| {
             Report::error(course_span, format!("the direction of {} vanishes", said.name))
-                .help("give a vector that is not (0, 0), or `toward` a point")
+                .help("give a vector that is not 0, or `toward` a point")
         })?;
         let is_depth = magnitude.is_none();
-        let magnitude = magnitude.unwrap_or(depth);
-        let outputs = outputs::outputs(graph, depth, (magnitude, is_depth), direction, niceness);
+        let magnitude = (magnitude.unwrap_or(depth), is_depth);
+        let outputs = outputs::outputs(graph, domain, depth, magnitude, direction, niceness);
         Ok(Region {
             name: said.name,
             span: said.span,
@@ -233,7 +234,7 @@ impl Felt<'_> {
             inside: said.inside,
             depth,
             depth_span: said.depth_span,
-            magnitude,
+            magnitude: magnitude.0,
             direction,
             course: (course, course_span),
             niceness,
@@ -374,25 +375,14 @@ impl Felt<'_> {
     }
 
     /// −∇ of the depth.
-    fn downhill(&mut self, depth: Id) -> [Id; 2] {
-        let graph = &mut self.lowering.graph;
-        outputs::gradient(graph, depth).map(|part| graph.neg(part))
+    fn downhill(&mut self, depth: Id) -> [Id; 3] {
+        let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
+        outputs::gradient(graph, domain, depth).map(|part| graph.neg(part))
     }
 
-    fn direction(&mut self, direction: &Direction) -> Result<[Id; 2], Report> {
+    fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Report> {
         match direction {
-            Direction::Along(tuple) => {
-                let [d, z] = pair(tuple, "a direction")?;
-                let (d, of_d) = self.lowering.lower(d, May::Coordinates)?;
-                let (z, of_z) = self.lowering.lower(z, May::Coordinates)?;
-                if of_d.alike(of_z).is_none_or(|d| d == Dimension::Angle) {
-                    let message = format!("a direction of {of_d} and {of_z}");
-                    return Err(Report::error(tuple.span, message).help("both parts are alike"));
-                }
-                let down = self.lowering.frame.down;
-                let graph = &mut self.lowering.graph;
-                Ok([d, if down { graph.neg(z) } else { z }])
-            }
+            Direction::Along(tuple) => self.along(tuple),
             Direction::AwayFrom(tuple) => self.away_from(tuple),
             Direction::Toward(tuple) => {
                 let away = self.away_from(tuple)?;
@@ -401,30 +391,72 @@ impl Felt<'_> {
         }
     }
 
-    /// The vector from a point to where one feels.
-    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 2], Report> {
-        let [d, z] = pair(tuple, "a point")?;
-        let d = self.lowering.length(d, "a point")?;
-        let z = self.lowering.length(z, "a point")?;
-        let z = self.lowering.frame.to_tool(&z);
+    fn along(&mut self, tuple: &Tuple) -> Result<[Id; 3], Report> {
+        let domain = self.lowering.domain;
+        let (mut parts, mut dimension) = (Vec::new(), Dimension::Bare);
+        for part in components(tuple, domain, "a direction")? {
+            let (id, of_part) = self.lowering.lower(part, May::Coordinates)?;
+            let alike = dimension.alike(of_part).filter(|d| *d != Dimension::Angle);
+            dimension = alike.ok_or_else(|| {
+                let message = format!("a direction of {dimension} and {of_part}");
+                Report::error(tuple.span, message).help("all its parts are alike")
+            })?;
+            parts.push(id);
+        }
+        let down = self.lowering.frame.down;
         let graph = &mut self.lowering.graph;
-        let here = [crate::expr::Coord::D, crate::expr::Coord::Z].map(|c| graph.coord(c));
-        let there = [graph.number(d), graph.number(z)];
-        Ok([graph.sub(here[0], there[0]), graph.sub(here[1], there[1])])
+        let [x, y, z] = domain.vector(graph, &parts);
+        Ok([x, y, if down { graph.neg(z) } else { z }])
+    }
+
+    /// The vector from a point to where one feels.
+    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 3], Report> {
+        let domain = self.lowering.domain;
+        let mut parts = Vec::new();
+        for (part, (coord, ..)) in
+            components(tuple, domain, "a point")?.into_iter().zip(domain.coordinates())
+        {
+            let there = self.lowering.length(part, "a point")?;
+            let there = match coord {
+                Coord::Z => self.lowering.frame.to_tool(&there),
+                _ => there,
+            };
+            let graph = &mut self.lowering.graph;
+            let (here, there) = (graph.coord(*coord), graph.number(there));
+            parts.push(graph.sub(here, there));
+        }
+        Ok(domain.vector(&mut self.lowering.graph, &parts))
     }
 }
 
-pub(super) fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
-    if let [d, z] = tuple.parts.as_slice() {
-        return Ok([d, z]);
+/// The parts of a tuple, as many as the domain has coordinates.
+fn components<'t>(tuple: &'t Tuple, domain: Domain, what: &str) -> Result<Vec<&'t Expr>, Report> {
+    let (count, wanted) = (tuple.parts.len(), domain.coordinates().len());
+    if count == wanted {
+        return Ok(tuple.parts.iter().collect());
     }
-    let count = tuple.parts.len();
-    let report =
-        Report::error(tuple.span, format!("{what} in a tool has two numbers, this has {count}"));
-    Err(match what {
-        "a point" => report.help("write `(d, z)`; a decimal comma? write `0.5`"),
-        _ => report.help("write `(radial, axial)`: across the axis, and along the file's z"),
+    let (word, number) = (domain.word(), if wanted == 2 { "two" } else { "three" });
+    let report = Report::error(
+        tuple.span,
+        format!("{what} in a {word} has {number} numbers, this has {count}"),
+    );
+    Err(match (what, domain) {
+        ("a point", _) => {
+            let comma = if count > wanted { "; a decimal comma? write `0.5`" } else { "" };
+            report.help(format!("write `{}`{comma}", domain.tuple()))
+        }
+        (_, Domain::HalfPlane) => {
+            report.help("write `(radial, axial)`: across the axis, and along the file's z")
+        }
+        (_, Domain::Space) => report.help("write `(x, y, z)`"),
     })
+}
+
+/// The two parts of a point of a tool.
+pub(super) fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
+    let parts = components(tuple, Domain::HalfPlane, what)?;
+    // As many as the half plane has coordinates.
+    Ok([parts[0], parts[1]])
 }
 
 /// Where an expression mentions a name.
