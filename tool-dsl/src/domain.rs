@@ -62,9 +62,7 @@ impl Domain {
     pub(crate) fn ways(self) -> &'static [(usize, bool)] {
         match self {
             Domain::HalfPlane => &[(0, true), (2, true), (2, false)],
-            Domain::Space => {
-                &[(0, true), (0, false), (1, true), (1, false), (2, true), (2, false)]
-            }
+            Domain::Space => &[(0, true), (0, false), (1, true), (1, false), (2, true), (2, false)],
         }
     }
 

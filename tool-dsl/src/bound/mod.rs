@@ -264,8 +264,7 @@ pub fn extent(model: &Model) -> Result<Extent, Report> {
 fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
     let mut beyond = |size: f64| {
         domain.ways().iter().all(|&(axis, high)| {
-            let far =
-                if high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
+            let far = if high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
             prover.empty_within(domain.whole(LIMIT).with(axis, far), 20 * BUDGET, 0.0)
         })
     };
@@ -282,10 +281,8 @@ fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
 }
 
 fn endless(model: &Model) -> Report {
-    let report = Report::error(
-        model.name_span,
-        "the regions reach to infinity, as far as can be proved",
-    );
+    let report =
+        Report::error(model.name_span, "the regions reach to infinity, as far as can be proved");
     report.help(match model.domain {
         Domain::HalfPlane => {
             "bound every region in d and in z, toward the axis's ends and away from it"

@@ -7,9 +7,9 @@
 
 use crate::bound::{Prover, halves};
 use crate::domain::Domain;
-use crate::expr::{Coord, Graph, Id, Node};
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
 use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
+use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use std::collections::BTreeMap;
@@ -104,23 +104,27 @@ impl Linear {
             forms: forms.into_iter().map(|form| form.map(dense)).collect(),
             variables: count,
             axes,
-            facts: facts.map(|(factors, constant)| Condition { factors, constant, strict }).collect(),
+            facts: facts
+                .map(|(factors, constant)| Condition { factors, constant, strict })
+                .collect(),
         }
     }
 
     /// A box of which, by the linear curves alone, all points with these signs are.
     pub(crate) fn reach(&self, signs: &[Signs]) -> Cell {
-        Cell { sides: self.axes.map(|axis| axis.map_or(interval::ZERO, |axis| self.range(signs, axis))) }
+        Cell {
+            sides: self
+                .axes
+                .map(|axis| axis.map_or(interval::ZERO, |axis| self.range(signs, axis))),
+        }
     }
 
     fn range(&self, signs: &[Signs], wanted: usize) -> Interval {
-        let mut conditions: Vec<Condition> =
+        let conditions: Vec<Condition> =
             self.conditions(signs).into_iter().map(scaled).collect();
         let size = conditions.iter().fold(0f64, |m, c| m.max(c.constant.abs()));
-        for variable in (0..self.variables).filter(|variable| *variable != wanted) {
-            let Some(next) = eliminate(conditions, variable) else { return EVERYTHING };
-            conditions = next;
-        }
+        let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
+        let Some(conditions) = without(conditions, others) else { return EVERYTHING };
         let mut range = EVERYTHING;
         for condition in conditions.into_iter().map(scaled) {
             let (factor, constant) = (condition.factors[wanted], condition.constant);
@@ -168,12 +172,9 @@ impl Linear {
     }
 
     fn contradictory(&self, signs: &[Signs]) -> bool {
-        let mut conditions = self.conditions(signs);
-        for variable in 0..self.variables {
-            let Some(next) = eliminate(conditions, variable) else { return false };
-            conditions = next;
-        }
-        conditions.iter().any(|c| c.constant > if c.strict { -ROUNDING } else { ROUNDING })
+        let conditions = without(self.conditions(signs), (0..self.variables).collect());
+        let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
+        conditions.is_some_and(|conditions| conditions.iter().any(absurd))
     }
 }
 
@@ -257,10 +258,12 @@ impl Variables<'_> {
                     if monomial == RADIUS {
                         let across = [Coord::X, Coord::Y].map(monomial_of).map(Variable::Monomial);
                         let known = across.iter().filter_map(|v| self.known.get(v).copied());
-                        parts.extend(known.map(|v| Form {
-                            factors: BTreeMap::from([(v, 1.0)]),
-                            constant: 0.0,
-                        }));
+                        parts.extend(
+                            known.map(|v| Form {
+                                factors: BTreeMap::from([(v, 1.0)]),
+                                constant: 0.0,
+                            }),
+                        );
                     } else if monomial[1..].iter().any(|exponent| exponent % 2 == 1) {
                         continue;
                     }
@@ -296,6 +299,24 @@ fn squares(graph: &Graph, root: Id) -> Vec<Id> {
         }
     }
     parts
+}
+
+/// The conditions that remain when some variables may be anything, those first that leave fewest;
+/// `None` if there are too many.
+fn without(mut conditions: Vec<Condition>, mut variables: Vec<usize>) -> Option<Vec<Condition>> {
+    while !variables.is_empty() {
+        let growth = |variable: usize| {
+            let with = |sign: f64| {
+                let bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
+                conditions.iter().filter(bound).count()
+            };
+            let (upper, lower) = (with(1.0), with(-1.0));
+            (upper * lower).saturating_sub(upper + lower)
+        };
+        let place = (0..variables.len()).min_by_key(|place| growth(variables[*place]))?;
+        conditions = eliminate(conditions, variables.swap_remove(place))?;
+    }
+    Some(conditions)
 }
 
 /// The conditions that remain when a variable may be anything; `None` if there are too many.

@@ -114,8 +114,7 @@ impl Reader<'_> {
     }
 
     fn tool(&mut self, pair: Pair<'_, Rule>) -> Tool {
-        let domain =
-            if pair.as_rule() == Rule::solid { Domain::Space } else { Domain::HalfPlane };
+        let domain = if pair.as_rule() == Rule::solid { Domain::Space } else { Domain::HalfPlane };
         let mut name = Name { word: String::new(), span: self.span(&pair) };
         let mut title = None;
         let mut items = Vec::new();
