@@ -3,6 +3,7 @@
 
 use super::draw::Draw;
 use super::{Oracle, Sense};
+use std::sync::OnceLock;
 
 type P3 = [f64; 3];
 
@@ -190,7 +191,8 @@ macro_rules! ask_the_body {
             false
         }
         fn curve_points(&self) -> Vec<Vec<P3>> {
-            self.borders($low, $high)
+            static FOUND: OnceLock<Vec<Vec<P3>>> = OnceLock::new();
+            FOUND.get_or_init(|| self.borders($low, $high)).clone()
         }
         fn extent(&self) -> [f64; 2] {
             $extent
@@ -288,16 +290,14 @@ impl LBracket {
     fn bore() -> Patch {
         Patch::Bore { hole: HOLE, height: LEDGE }
     }
-    /// Each side is an L: two rectangles.
-    fn sides() -> [Patch; 4] {
-        let side = |y: f64, x: f64, z: f64| Patch::plate(1, y.signum(), [-10.0, y, 0.0], [x, y, z]);
-        [-10.0, 10.0]
-            .map(|y| [side(y, 20.0, LEDGE), side(y, WALL, 24.0)])
-            .concat()
-            .try_into()
-            .expect("four")
+    /// Each side is an L: two rectangles, of which one ends at some `x` and `z`.
+    fn sides([x, z]: [f64; 2]) -> [Patch; 2] {
+        [-10.0, 10.0].map(|y: f64| Patch::plate(1, y.signum(), [-10.0, y, 0.0], [x, y, z]))
     }
 }
+
+const LYING: [f64; 2] = [20.0, LEDGE];
+const STANDING: [f64; 2] = [WALL, 24.0];
 
 impl Body for LBracket {
     const REGIONS: &'static [&'static str] = &[
@@ -325,26 +325,27 @@ impl Body for LBracket {
     fn patches(&self) -> Vec<Patch> {
         let faces = [Self::bottom(), Self::ledge(), Self::end(), Self::back(), Self::wall()];
         let rest = [Self::top(), Self::bore()];
-        faces.into_iter().chain(rest).chain(Self::sides()).collect()
+        let sides = [LYING, STANDING].into_iter().flat_map(Self::sides);
+        faces.into_iter().chain(rest).chain(sides).collect()
     }
 
     fn candidates(&self, [x, _, z]: P3) -> Vec<(usize, Patch)> {
-        let sides = |region: usize| Self::sides().map(|side| (region, side));
+        let sides = |region: usize, leg| Self::sides(leg).map(|side| (region, side));
         let mut all = Vec::new();
         if x >= WALL {
             all.extend([(0, Self::bottom()), (1, Self::ledge()), (2, Self::end())]);
-            all.extend(sides(3));
+            all.extend(sides(3, LYING));
             all.push((4, Self::bore()));
         }
         if x <= WALL && z <= LEDGE {
             all.extend([(5, Self::bottom()), (6, Self::back())]);
-            all.extend(sides(7));
+            all.extend(sides(7, STANDING));
             // Both end in the inner edge.
             all.extend([(8, Self::ledge()), (8, Self::wall())]);
         }
         if x <= WALL && z >= LEDGE {
             all.extend([(9, Self::back()), (10, Self::wall())]);
-            all.extend(sides(11));
+            all.extend(sides(11, STANDING));
             all.push((12, Self::top()));
         }
         all

@@ -54,7 +54,8 @@ fn a_block_on_a_plane() {
             let up = h * (w - 2.0 * h) * (l - 2.0 * h);
             let push = there.rotation().transpose() * felt.force;
             assert!((push.z / up - 1.0).abs() < 0.03, "{push} {up}");
-            assert!(push.xy().norm() < 1e-3 * up && felt.torque.norm() < 1e-2 * up);
+            // All but the points of the hips themselves, which may fall to either side, cancels.
+            assert!(push.xy().norm() < 0.01 * up && felt.torque.norm() < 0.1 * up, "{push} {up}");
         }
         let clear = shifted(&there, Vector3::new(0.0, 0.0, 1e-3));
         assert!(!Probe::new(&part, &Block).detect(&clear));

@@ -120,8 +120,7 @@ impl Linear {
     }
 
     fn range(&self, signs: &[Signs], wanted: usize) -> Interval {
-        let conditions: Vec<Condition> =
-            self.conditions(signs).into_iter().map(scaled).collect();
+        let conditions: Vec<Condition> = self.conditions(signs).into_iter().map(scaled).collect();
         let size = conditions.iter().fold(0f64, |m, c| m.max(c.constant.abs()));
         let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
         let Some(conditions) = without(conditions, others) else { return EVERYTHING };
