@@ -4,7 +4,7 @@
 //! x ≥ 0, where x is the distance `d` from the axis; only what is emitted turns its vectors to
 //! where a point lies in space.
 
-use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::interval::{Cell, Interval};
 use crate::expr::{Coord, Graph, Id};
 use crate::report::figure;
 
@@ -79,8 +79,23 @@ impl Domain {
         format!("({})", names.join(", "))
     }
 
-    /// Whether a box lies in the half plane, which has no width along y.
-    pub(crate) fn of(cell: &Cell) -> Domain {
-        if cell.sides[1] == ZERO { Domain::HalfPlane } else { Domain::Space }
+    /// What a coordinate is, in words.
+    pub(crate) fn meaning(self, word: &str) -> Option<&'static str> {
+        match (self, word) {
+            (Domain::HalfPlane, "d") => Some("the distance from the axis"),
+            (Domain::HalfPlane, "z") => Some("the place along the axis"),
+            (Domain::Space, "x" | "y" | "z") => Some("a coordinate"),
+            _ => None,
+        }
+    }
+
+    /// What to write instead of a coordinate that only the other kind of file has.
+    pub(crate) fn instead(self) -> &'static str {
+        match self {
+            Domain::HalfPlane => {
+                "in a `tool` the coordinates are `d`, the distance from the axis, and `z`"
+            }
+            Domain::Space => "in a `solid` write `hypot(x, y)`",
+        }
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
         let size = 2f64.powi(power);
         let around = Extent::of(model.domain.whole(size), size);
         let mut look = Look::new(model, &around);
-        for point in spread(&around, 50, 0.0) {
+        for point in spread(model.domain, &around, 50, 0.0) {
             look.go(point);
             look.undefined_curves(point);
         }
@@ -49,7 +49,7 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
     }
     let mut inside = Vec::new();
     let mut outside = Vec::new();
-    for point in spread(extent, POINTS, 0.02) {
+    for point in spread(model.domain, extent, POINTS, 0.02) {
         match look.point(point) {
             Some(_) => inside.push(point),
             None => outside.push(point),
@@ -104,7 +104,7 @@ impl<'m> Look<'m> {
 
     /// Measures the curves.
     fn scale(&mut self, extent: &Extent) {
-        for point in spread(extent, 500, 0.02) {
+        for point in spread(self.model.domain, extent, 500, 0.02) {
             self.go(point);
             for curve in 0..self.scales.len() {
                 let size = self.value(curve).abs();

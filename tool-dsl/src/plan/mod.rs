@@ -1,11 +1,11 @@
-//! The order of splits: a binary space partition of the tool's section by its curves.
+//! The order of splits: a binary space partition of the tool's domain by its curves.
 //!
 //! Every test takes a curve's zero to one side, that of the region listed earlier; where both
 //! sides want it, the curve is split once more. A side that provably has no point is not tested
 //! for (`empty`). So a tree gives every point its owner as the regions' list does (in real
 //! arithmetic; a test that is left out can no longer fail by rounding), and only the order of the
 //! tests is chosen: greedily by the information that they give about
-//! samples of the section, cheap curves first, `bsp` before all.
+//! samples of the domain, cheap curves first, `bsp` before all.
 
 pub(crate) mod empty;
 
@@ -113,13 +113,18 @@ struct Sample {
 
 /// Points spread evenly over the extent's box and what lies `around` it, by the additive
 /// recurrences R2 in the half plane and R3 in space (Roberts 2018).
-pub(crate) fn spread(extent: &Extent, count: usize, around: f64) -> impl Iterator<Item = [f64; 3]> {
+pub(crate) fn spread(
+    domain: Domain,
+    extent: &Extent,
+    count: usize,
+    around: f64,
+) -> impl Iterator<Item = [f64; 3]> {
     // The real roots of x³ = x + 1 and x⁴ = x + 1.
     const PLASTIC: f64 = 1.324_717_957_244_746;
     const IN_SPACE: f64 = 1.220_744_084_605_759_5;
     let cell = extent.cell();
     let step = |root: f64, power: i32| 1.0 / root.powi(power);
-    let (low_end, steps) = match Domain::of(&cell) {
+    let (low_end, steps) = match domain {
         // There is nothing beyond the axis.
         Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
         Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
@@ -137,7 +142,7 @@ pub(crate) fn spread(extent: &Extent, count: usize, around: f64) -> impl Iterato
 fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     let values = model.curves.iter().map(|curve| curve.value);
     let mut evaluator = Evaluator::new(&model.graph, values);
-    spread(extent, 2000, 0.05)
+    spread(model.domain, extent, 2000, 0.05)
         .map(|[x, y, z]| {
             evaluator.set(At::point(x, y, z));
             let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);

@@ -61,7 +61,7 @@ impl Lowering {
         (id, dimension): (Id, Dimension),
     ) -> Result<(), Report> {
         let word = name.word.as_str();
-        if let Some(what) = self.coordinate(word) {
+        if let Some(what) = self.domain.meaning(word) {
             let report =
                 Report::error(name.span, format!("`{word}` is {what} and cannot be defined"));
             return Err(match self.domain {
@@ -89,16 +89,6 @@ impl Lowering {
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
-    }
-
-    /// What a coordinate of the file is, in words.
-    fn coordinate(&self, word: &str) -> Option<&'static str> {
-        match (self.domain, word) {
-            (Domain::HalfPlane, "d") => Some("the distance from the axis"),
-            (Domain::HalfPlane, "z") => Some("the place along the axis"),
-            (Domain::Space, "x" | "y" | "z") => Some("a coordinate"),
-            _ => None,
-        }
     }
 
     /// An expression that must come out constant, for what.
@@ -216,7 +206,9 @@ impl Lowering {
         };
         let coordinate = coordinate.map(|(coordinate, ..)| *coordinate);
         if coordinate.is_none() && COORDINATES.contains(&word) {
-            return Err(self.elsewhere(word, span));
+            let other = if word == "d" { "tool" } else { "solid" };
+            let report = Report::error(span, format!("`{word}` exists in a `{other}` only"));
+            return Err(report.help(self.domain.instead()));
         }
         if let Some(coordinate) = coordinate {
             if let May::Constants(what) = may {
@@ -254,16 +246,6 @@ impl Lowering {
             return Err(not_constant(span, word, what));
         }
         Ok((value.id, value.dimension))
-    }
-
-    /// A coordinate of the other kind of file.
-    fn elsewhere(&self, word: &str, span: Span) -> Report {
-        match self.domain {
-            Domain::HalfPlane => Report::error(span, format!("`{word}` exists in a `solid` only"))
-                .help("in a `tool` the coordinates are `d`, the distance from the axis, and `z`"),
-            Domain::Space => Report::error(span, format!("`{word}` exists in a `tool` only"))
-                .help("in a `solid` write `hypot(x, y)`"),
-        }
     }
 
     fn binary(

@@ -3,6 +3,7 @@
 mod condition;
 mod derived;
 mod dimension;
+mod direction;
 mod lower;
 mod outputs;
 mod profile;
