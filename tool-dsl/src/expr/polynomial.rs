@@ -30,12 +30,17 @@ const DEGREE: u8 = 8;
 impl Polynomial {
     /// The polynomial that a node is, if it is one.
     pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
+        Polynomial::of_parts(graph, id).remove(&id).flatten()
+    }
+
+    /// The polynomials that a node and all that it needs are, if they are.
+    pub(crate) fn of_parts(graph: &Graph, id: Id) -> BTreeMap<Id, Option<Polynomial>> {
         let mut known: BTreeMap<Id, Option<Polynomial>> = BTreeMap::new();
         for id in graph.needed([id]) {
             let polynomial = Polynomial::node(graph.node(id), |operand| known[operand].clone());
             known.insert(id, polynomial);
         }
-        known.remove(&id).flatten()
+        known
     }
 
     fn node(node: &Node, of: impl Fn(&Id) -> Option<Polynomial>) -> Option<Polynomial> {

@@ -12,7 +12,8 @@ use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
-use std::collections::BTreeMap;
+use crate::number::Number;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A residue below this, relative to the curve's largest coefficient, is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -194,6 +195,10 @@ struct Form {
 }
 
 impl Form {
+    fn variable(variable: usize) -> Form {
+        Form { factors: BTreeMap::from([(variable, 1.0)]), constant: 0.0 }
+    }
+
     fn plus(mut self, other: &Form, factor: f64) -> Form {
         for (variable, more) in &other.factors {
             *self.factors.entry(*variable).or_default() += factor * more;
@@ -216,33 +221,50 @@ impl Variables<'_> {
     }
 
     /// An expression as a linear form, if it is one.
-    fn form(&mut self, id: Id) -> Option<Form> {
-        if let Some(polynomial) = Polynomial::of(self.graph, id) {
-            let mut form = Form::default();
-            for (monomial, factor) in polynomial.terms() {
-                if monomial == [0; 4] {
-                    form.constant = factor.to_f64();
-                } else {
-                    let variable = self.of(Variable::Monomial(monomial));
-                    form.factors.insert(variable, factor.to_f64());
+    fn form(&mut self, root: Id) -> Option<Form> {
+        let polynomials = Polynomial::of_parts(self.graph, root);
+        let polynomial = |id: &Id| polynomials.get(id).and_then(Option::as_ref);
+        // What the form is summed up from; each once, however often it is shared.
+        let (mut open, mut parts) = (vec![root], BTreeSet::new());
+        while let Some(id) = open.pop() {
+            if parts.insert(id) && polynomial(&id).is_none() {
+                match *self.graph.node(id) {
+                    Node::Neg(a) => open.push(a),
+                    Node::Add(a, b) | Node::Sub(a, b) => open.extend([a, b]),
+                    Node::Mul(factor, b) if self.graph.constant(factor).is_some() => open.push(b),
+                    Node::Sqrt(_) => {}
+                    _ => return None,
                 }
             }
-            return Some(form);
         }
-        match *self.graph.node(id) {
-            Node::Neg(a) => Some(Form::default().plus(&self.form(a)?, -1.0)),
-            Node::Add(a, b) => Some(self.form(a)?.plus(&self.form(b)?, 1.0)),
-            Node::Sub(a, b) => Some(self.form(a)?.plus(&self.form(b)?, -1.0)),
-            Node::Mul(a, b) => {
-                let factor = self.graph.constant(a)?.to_f64();
-                Some(Form::default().plus(&self.form(b)?, factor))
-            }
-            Node::Sqrt(_) => {
-                let root = self.of(Variable::Root(id));
-                Some(Form { factors: BTreeMap::from([(root, 1.0)]), constant: 0.0 })
-            }
-            _ => None,
+        let mut forms: BTreeMap<Id, Form> = BTreeMap::new();
+        for id in parts {
+            let form = match (polynomial(&id), self.graph.node(id)) {
+                (Some(polynomial), _) => self.of_polynomial(polynomial),
+                (None, Node::Neg(a)) => Form::default().plus(&forms[a], -1.0),
+                (None, Node::Add(a, b)) => forms[a].clone().plus(&forms[b], 1.0),
+                (None, Node::Sub(a, b)) => forms[a].clone().plus(&forms[b], -1.0),
+                (None, Node::Mul(factor, b)) => {
+                    let factor = self.graph.constant(*factor).map_or(0.0, Number::to_f64);
+                    Form::default().plus(&forms[b], factor)
+                }
+                _ => Form::variable(self.of(Variable::Root(id))),
+            };
+            forms.insert(id, form);
         }
+        forms.remove(&root)
+    }
+
+    fn of_polynomial(&mut self, polynomial: &Polynomial) -> Form {
+        let mut form = Form::default();
+        for (monomial, factor) in polynomial.terms() {
+            if monomial == [0; 4] {
+                form.constant = factor.to_f64();
+            } else {
+                form.factors.insert(self.of(Variable::Monomial(monomial)), factor.to_f64());
+            }
+        }
+        form
     }
 
     /// What is nowhere above 0: minus a square, a distance or a root; and whatever is squared
@@ -250,19 +272,14 @@ impl Variables<'_> {
     fn facts(&mut self) -> Vec<Form> {
         let mut facts = Vec::new();
         for (variable, at) in self.known.clone() {
-            let minus = Form { factors: BTreeMap::from([(at, -1.0)]), constant: 0.0 };
+            let minus = Form::default().plus(&Form::variable(at), -1.0);
             let mut parts = Vec::new();
             match variable {
                 Variable::Monomial(monomial) => {
                     if monomial == RADIUS {
                         let across = [Coord::X, Coord::Y].map(monomial_of).map(Variable::Monomial);
                         let known = across.iter().filter_map(|v| self.known.get(v).copied());
-                        parts.extend(
-                            known.map(|v| Form {
-                                factors: BTreeMap::from([(v, 1.0)]),
-                                constant: 0.0,
-                            }),
-                        );
+                        parts.extend(known.map(Form::variable));
                     } else if monomial[1..].iter().any(|exponent| exponent % 2 == 1) {
                         continue;
                     }
@@ -293,7 +310,8 @@ fn squares(graph: &Graph, root: Id) -> Vec<Id> {
         match *graph.node(id) {
             Node::Add(a, b) => open.extend([a, b]),
             Node::Mul(a, b) if a == b => parts.push(a),
-            Node::Coord(Coord::Q) | Node::Const(_) => {}
+            Node::Coord(Coord::Q) => {}
+            Node::Const(ref value) if !value.is_negative() => {}
             _ => return Vec::new(),
         }
     }
