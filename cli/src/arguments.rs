@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use nalgebra::Point3;
 use std::path::PathBuf;
+use tool_dsl::source::Source;
 use touchoff::{Law, Unit, Weights};
 
 /// What a cutting tool feels of a workpiece, at any pose. Alone: `touchoff demo`.
@@ -22,11 +23,28 @@ pub(crate) enum Command {
     Demo,
     /// Feel a part with a tool along a path.
     Run(Box<Run>),
-    /// List the compiled tools.
-    Tools,
+    /// List the compiled tools, or those of files.
+    Tools {
+        /// Files to list in their place.
+        #[arg(value_name = "FILE.tool")]
+        files: Vec<PathBuf>,
+        #[command(flatten)]
+        given: Given,
+    },
     /// Look `.tool` files over.
     Check {
         /// The files.
+        #[arg(required = true, value_name = "FILE.tool")]
+        files: Vec<PathBuf>,
+        #[command(flatten)]
+        given: Given,
+    },
+    /// Lay `.tool` files out as they are usually written.
+    Fmt {
+        /// Change nothing: name the files that would change, and fail if there are any.
+        #[arg(long)]
+        check: bool,
+        /// The files; `-` is standard input, laid out on standard output.
         #[arg(required = true, value_name = "FILE.tool")]
         files: Vec<PathBuf>,
     },
@@ -35,7 +53,28 @@ pub(crate) enum Command {
         /// The file.
         #[arg(value_name = "FILE.tool")]
         file: PathBuf,
+        #[command(flatten)]
+        given: Given,
     },
+}
+
+/// What a file's params are given.
+#[derive(Args)]
+pub(crate) struct Given {
+    /// A value for a `param` of the `.tool` file, as the language writes it: `--set D=0.25inch`.
+    #[arg(long, value_name = "PARAM=VALUE", allow_hyphen_values = true)]
+    set: Vec<String>,
+}
+
+impl Given {
+    pub(crate) fn is_none(&self) -> bool {
+        self.set.is_empty()
+    }
+
+    /// The values as the compiler reads them.
+    pub(crate) fn sources(&self) -> Vec<Source> {
+        self.set.iter().map(|text| Source::new("--set", text)).collect()
+    }
 }
 
 #[derive(Args)]
@@ -49,6 +88,8 @@ pub(crate) struct Run {
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: String,
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// The path: a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, or APT-CL.
     #[arg(long, value_name = "FILE")]
     pub(crate) path: PathBuf,

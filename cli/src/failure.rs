@@ -44,11 +44,22 @@ pub(crate) enum Failure {
         /// `; did you mean …?`, or nothing.
         meant: String,
     },
+    /// What is compiled has its values.
+    #[error("`--set` is for `.tool` files: {0}")]
+    NothingToSet(&'static str),
     /// Some `.tool` files have errors, which were shown.
     #[error("{wrong} of {all} files {} errors", if *.wrong == 1 { "has" } else { "have" })]
     Files {
         /// How many have errors.
         wrong: usize,
+        /// How many were looked at.
+        all: usize,
+    },
+    /// Some `.tool` files would be changed by `fmt`; they were named.
+    #[error("{changed} of {all} files would change: `touchoff fmt` lays them out")]
+    Unformatted {
+        /// How many would change.
+        changed: usize,
         /// How many were looked at.
         all: usize,
     },

@@ -1,12 +1,13 @@
 //! Tools as files: listing, looking over, expanding.
 
+use crate::arguments::Given;
 use crate::failure::Failure;
 use serde::Serialize;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::domain::Domain;
 use tool_dsl::report::{self, Severity};
-use tool_dsl::{Checked, compile, emit};
+use tool_dsl::{Checked, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
 use touchoff::{Tool, Unit};
@@ -56,11 +57,17 @@ impl<'a> Listed<'a> {
     }
 }
 
-/// Lists the compiled tools.
-pub(crate) fn tools(json: bool) -> Result<(), Failure> {
+/// Lists the compiled tools, or those of files.
+pub(crate) fn tools(files: &[PathBuf], given: &Given, json: bool) -> Result<(), Failure> {
+    let files: Vec<Interpreted> =
+        files.iter().map(|file| load(file, given)).collect::<Result<_, _>>()?;
+    let cards: Vec<&Card> = match files.as_slice() {
+        [] if given.is_none() => TOOLS.iter().map(|tool| tool.card()).collect(),
+        [] => return Err(Failure::NothingToSet("name one")),
+        files => files.iter().map(Tool::card).collect(),
+    };
     let mut out = std::io::stdout().lock();
-    for tool in TOOLS {
-        let card = tool.card();
+    for card in cards {
         if json {
             serde_json::to_writer(&mut out, &Listed::of(card))?;
             writeln!(out)?;
@@ -72,6 +79,15 @@ pub(crate) fn tools(json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The tool of a file; what was to be warned of is said.
+fn load(file: &Path, given: &Given) -> Result<Interpreted, Failure> {
+    let tool = Interpreted::parse_with(&Interpreted::source(file)?, &given.sources())?;
+    if !tool.warnings().is_empty() {
+        say!("{}", tool.warnings());
+    }
+    Ok(tool)
+}
+
 /// A compiled tool by name, or a `.tool` file.
 pub(crate) enum Found {
     Compiled(&'static dyn Tool),
@@ -80,13 +96,12 @@ pub(crate) enum Found {
 
 impl Found {
     /// Finds what `--tool` says.
-    pub(crate) fn find(name: &str) -> Result<Found, Failure> {
+    pub(crate) fn find(name: &str, given: &Given) -> Result<Found, Failure> {
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
-            let tool = Interpreted::load(name)?;
-            if !tool.warnings().is_empty() {
-                say!("{}", tool.warnings());
-            }
-            return Ok(Found::File(Box::new(tool)));
+            return Ok(Found::File(Box::new(load(Path::new(name), given)?)));
+        }
+        if !given.is_none() {
+            return Err(Failure::NothingToSet("a compiled tool has its values"));
         }
         tools_library::find(name).map(Found::Compiled).ok_or_else(|| {
             let distance = |known: &str| {
@@ -108,7 +123,7 @@ impl Found {
 }
 
 /// Shows what is wrong with files, and what those that are right are like.
-pub(crate) fn check(files: &[PathBuf]) -> Result<(), Failure> {
+pub(crate) fn check(files: &[PathBuf], given: &Given) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let styled = std::io::stderr().is_terminal();
     let mut wrong = 0;
@@ -121,9 +136,9 @@ pub(crate) fn check(files: &[PathBuf]) -> Result<(), Failure> {
                 continue;
             }
         };
-        let compiled = compile(&source);
+        let compiled = compile_with(&source, &given.sources());
         for report in &compiled.reports {
-            say!("{}\n", report.render(&source, styled));
+            say!("{}\n", report.render(&compiled.sources, styled));
         }
         match &compiled.tool {
             Some(tool) => {
@@ -167,11 +182,11 @@ fn described(tool: &Checked, warnings: usize) -> String {
 }
 
 /// Prints a file's Rust.
-pub(crate) fn expand(file: &Path) -> Result<(), Failure> {
+pub(crate) fn expand(file: &Path, given: &Given) -> Result<(), Failure> {
     let source = Interpreted::source(file)?;
-    let compiled = compile(&source);
+    let compiled = compile_with(&source, &given.sources());
     for report in &compiled.reports {
-        say!("{}\n", report.render(&source, std::io::stderr().is_terminal()));
+        say!("{}\n", report.render(&compiled.sources, std::io::stderr().is_terminal()));
     }
     let Some(tool) = &compiled.tool else {
         return Err(Failure::Files { wrong: 1, all: 1 });

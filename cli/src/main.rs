@@ -12,6 +12,7 @@ mod arguments;
 mod demo;
 mod failure;
 mod files;
+mod fmt;
 mod run;
 mod timing;
 
@@ -24,9 +25,10 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
-        Some(Command::Tools) => files::tools(arguments.json),
-        Some(Command::Check { files }) => files::check(&files),
-        Some(Command::Expand { file }) => files::expand(&file),
+        Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
+        Some(Command::Check { files, given }) => files::check(&files, &given),
+        Some(Command::Expand { file, given }) => files::expand(&file, &given),
+        Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -32,7 +32,7 @@ struct Row<'a> {
 /// Runs a tool along a path.
 pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     // Everything that can be wrong is found before the first row is written.
-    let found = Found::find(&wanted.tool)?;
+    let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
     let program = Program::read(&wanted.path)?;
     program.check_unit(wanted.unit)?;

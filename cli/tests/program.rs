@@ -208,6 +208,82 @@ fn files_are_checked_and_expanded() {
     assert_eq!(touchoff(&["expand", &bad]).status.code(), Some(1));
 }
 
+const CUTTER: &str = "tool Cutter {
+    units mm;
+    param D = 2;
+    profile { start (0, 0); line to (D/2, 0), (D/2, 20), (0, 20) as body cutting; }
+}";
+
+#[test]
+fn params_are_set() {
+    let bench = Bench::new();
+    let cutter = bench.write("cutter.tool", CUTTER);
+    let radius = |set: &[&str]| {
+        let all = [&["tools", "--json", &cutter], set].concat();
+        rows(&touchoff(&all))[0]["radius"].as_f64().expect("a number")
+    };
+    assert!((radius(&[]) - 1.0).abs() < 1e-3);
+    assert!((radius(&["--set", "D=0.25inch"]) - 3.175).abs() < 1e-3);
+    let checked = touchoff(&["check", &cutter, "--set", "D = 3*2"]);
+    assert!(stdout(&checked).contains("3 mm in radius"), "{}", stderr(&checked));
+    let expanded = touchoff(&["expand", &cutter, "--set", "D=8"]);
+    assert!(stdout(&expanded).contains("4.0"), "{}", stderr(&expanded));
+    let depth = |more: &[&str]| {
+        let all = [&["--json", "--points", "200000"], more].concat();
+        let rows = rows(&bench.run("block.stl", "path.csv", "cutter.tool", &all));
+        rows[1]["colliding"].as_u64().expect("a number")
+    };
+    assert!(depth(&["--set", "D=4"]) > 3 * depth(&[]));
+}
+
+#[test]
+fn params_that_cannot_be_set_are_named() {
+    let bench = Bench::new();
+    let cutter = bench.write("cutter.tool", CUTTER);
+    let refused = |arguments: &[&str], words: &[&str]| {
+        let output = touchoff(arguments);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        for word in words {
+            assert!(said.contains(word), "`{word}` is missing in:\n{said}");
+        }
+    };
+    refused(
+        &["check", &cutter, "--set", "E=3"],
+        &["`Cutter` has no param `E`", "it has `D`", "--set:1:1"],
+    );
+    refused(
+        &["check", &cutter, "--set", "D=3deg"],
+        &["what is given is an angle", "cutter.tool:3:"],
+    );
+    refused(&["expand", &cutter, "--set", "D"], &["PARAM = VALUE"]);
+    refused(&["tools", "--set", "D=3"], &["`--set` is for `.tool` files"]);
+    let run = bench.run("block.stl", "path.csv", "D2Ball", &["--set", "D=3"]);
+    assert!(stderr(&run).contains("a compiled tool has its values"), "{}", stderr(&run));
+}
+
+#[test]
+fn mounted_files_are_found_and_shown() {
+    let bench = Bench::new();
+    bench.write("cutter.tool", CUTTER);
+    bench.write(
+        "open.tool",
+        "tool Open {\n    units mm;\n    profile { start (0, 0); line to (9, 0) as face; }\n}",
+    );
+    let mounts = |file: &str| {
+        format!(
+            "tool Whole {{ units mm; mount \"cutter.tool\" as cutter with D = 1;\n\
+             mount \"{file}\" as nut at z = 15; }}"
+        )
+    };
+    let good = bench.write("good.tool", mounts("cutter.tool"));
+    let checked = touchoff(&["check", &good]);
+    assert!(stdout(&checked).contains("Whole is 35 mm long"), "{}", stderr(&checked));
+    let bad = bench.write("bad.tool", mounts("open.tool"));
+    let said = stderr(&touchoff(&["check", &bad]));
+    assert!(said.contains("open.tool:3:29") && said.contains("not on the axis"), "{said}");
+}
+
 #[test]
 fn wrong_usage_ends_with_two() {
     let bench = Bench::new();

@@ -4,11 +4,11 @@ tool Ball "a ball of 3 mm radius on a straight shank" {
 
     curve nose = hypot(d, z - r) - r;
     curve side = r - d;
-    curve end  = 30 - z;
+    curve end = 30 - z;
 
     region ball as ball cutting where z <= r, nose <= 0 { depth: -nose; }
-    region shank where z >= r, 0 <= side <= end         { depth: side; }
-    region end as shank where 0 <= end <= side          { depth: end; }
+    region shank where z >= r, 0 <= side <= end { depth: side; }
+    region end as shank where 0 <= end <= side { depth: end; }
 
     niceness cutting: 1 - depth/r;
 }

@@ -1,11 +1,15 @@
 //! Solids without an axis: what the library's say at stated places, and what is refused of others.
 
+use std::path::Path;
+use tool_dsl::interpret::Interpreter;
 use tool_dsl::report::any_error;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile};
+use tool_dsl::{Checked, compile, compile_with};
 use tools_library::{Block, LBracket};
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, Shape};
+use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{self, Oracle};
 
 /// Region and depth.
 fn at<T: Evaluators>(p: [f64; 3]) -> Option<(&'static str, f64)> {
@@ -75,6 +79,47 @@ fn a_bracket_at_its_hole_and_edges() {
     let half = 0.5f64.sqrt();
     for (part, wanted) in LBracket::direction([-5.0, 0.0, 5.0]).into_iter().zip([half, 0.0, half]) {
         assert!((part - wanted).abs() < 1e-15);
+    }
+}
+
+/// Outside, clearance is the distance to the solid's box: of a block the true one, else a bound.
+#[test]
+fn clearance_is_that_of_the_box() {
+    for oracle in [&oracle::Block as &dyn Oracle, &oracle::LBracket] {
+        let tool = tools_library::find(oracle.name()).expect("in the library");
+        assert!(!tool.card().exact);
+        let mut draw = Draw::new(8);
+        for _ in 0..20_000 {
+            let p = [0; 3].map(|_| draw.between(-40.0, 40.0));
+            let (clearance, distance) = (tool.clearance(p), oracle.signed_distance(p));
+            assert!(clearance <= distance.max(0.0), "{clearance} > {distance} at {p:?}");
+            if oracle.name() == "Block" {
+                assert!((clearance - distance.max(0.0)).abs() < 1e-9, "{clearance} {distance}");
+            }
+        }
+    }
+}
+
+/// A block of any sides, given from outside, is divided as well.
+#[test]
+fn a_block_of_other_sides() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
+    let block = Source::read(folder.join("block.tool")).expect("the library has it");
+    for (w, l, h) in [(10, 50, 80), (30, 30, 30), (100, 1, 1)] {
+        let given = [("w", w), ("l", l), ("h", h)]
+            .map(|(name, value)| Source::new("a test", format!("{name} = {value}")));
+        let compiled = compile_with(&block, &given);
+        assert!(compiled.reports.is_empty(), "{:?}", compiled.reports);
+        let tool = compiled.tool.expect("a block");
+        let mut reference = Interpreter::new(&tool);
+        let mut draw = Draw::new(7);
+        let half = [w, l, h].map(|side| f64::from(side) / 2.0);
+        for _ in 0..2_000 {
+            let p = half.map(|half| draw.between(-half, half));
+            let depth = (0..3).map(|k| half[k] - p[k].abs()).fold(f64::INFINITY, f64::min);
+            let felt = reference.at([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
+            assert!((felt.depth - depth).abs() < 1e-13, "{p:?}: {}, not {depth}", felt.depth);
+        }
     }
 }
 

@@ -71,7 +71,7 @@ impl<'t> Interpreter<'t> {
     }
 }
 
-/// The expressions that evaluators compute, in the order of [`Results`] behind the owner.
+/// The expressions that evaluators compute, in the order of a tape's outputs behind the owner.
 pub(crate) fn roots(outputs: &Outputs) -> Vec<Id> {
     let mut roots = vec![outputs.depth, outputs.magnitude, outputs.niceness];
     roots.extend(outputs.direction);
@@ -85,11 +85,9 @@ pub const BLOCK: usize = 64;
 /// The numbers of a block of points.
 pub type Lanes = [f64; BLOCK];
 
-/// How many numbers a tape can compute for a point.
+/// How many numbers a tape can compute for a point: owner (-1 outside), depth, magnitude, niceness,
+/// direction, gradient.
 pub const OUTPUTS: usize = 10;
-
-/// A block's results: owner (-1 outside), depth, magnitude, niceness, direction, gradient.
-pub type Results = [Lanes; OUTPUTS];
 
 /// Where an operation finds an operand.
 type Slot = u32;
@@ -128,7 +126,7 @@ enum Operation {
 pub struct Tape {
     operations: Vec<Operation>,
     /// Where each output is found, and how much of the tape it needs.
-    outputs: [(Slot, usize); OUTPUTS],
+    outputs: Vec<(Slot, usize)>,
 }
 
 impl Tape {
@@ -136,7 +134,7 @@ impl Tape {
     pub fn new(tool: &Checked) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
         let owner = writer.owner(&tool.plan.owner);
-        let mut outputs = [(owner, writer.operations.len()); OUTPUTS];
+        let mut outputs = vec![(owner, writer.operations.len()); OUTPUTS];
         for (part, output) in outputs.iter_mut().enumerate().skip(1) {
             let tree = tool.plan.owner.map(&|owner: &Option<usize>| {
                 owner.map(|region| roots(&tool.model.regions[region].outputs)[part - 1])
@@ -147,27 +145,32 @@ impl Tape {
         Tape { operations: writer.operations, outputs }
     }
 
-    /// Evaluates the first `wanted` outputs at a block of points of the tool's frame, in the
+    /// The tape of the distance from points outside to the tool, its only output.
+    pub fn outside(tool: &Checked) -> Tape {
+        let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
+        let slot = writer.tree(&tool.plan.outside);
+        Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
+    }
+
+    /// Evaluates as many of the first outputs as there are results, at least one, at a block of points of the tool's frame, in the
     /// file's unit; `length` is the file's unit of length measured in the part's. Outputs of
     /// points outside, but for the owner, mean nothing. `registers` are kept between calls.
     pub fn run(
         &self,
         points: [&Lanes; 3],
         length: f64,
-        wanted: usize,
         registers: &mut Vec<Lanes>,
-        results: &mut Results,
+        results: &mut [Lanes],
     ) {
-        let wanted = wanted.clamp(1, OUTPUTS);
-        let end = self.outputs[wanted - 1].1;
+        let Some((_, end)) = self.outputs.iter().take(results.len()).last() else { return };
         registers.resize(self.operations.len(), [0.0; BLOCK]);
-        for (at, operation) in self.operations[..end].iter().enumerate() {
+        for (at, operation) in self.operations[..*end].iter().enumerate() {
             let (done, rest) = registers.split_at_mut(at);
             if let Some(result) = rest.first_mut() {
                 perform(operation, points, length, done, result);
             }
         }
-        for (result, (slot, _)) in results.iter_mut().zip(&self.outputs[..wanted]) {
+        for (result, (slot, _)) in results.iter_mut().zip(&self.outputs) {
             *result = registers[*slot as usize];
         }
     }

@@ -13,6 +13,7 @@ pub mod bound;
 pub mod domain;
 pub mod emit;
 pub mod expr;
+pub mod format;
 pub mod formula;
 pub mod interpret;
 mod look;
@@ -27,9 +28,9 @@ pub mod syntax;
 
 use bound::{Extent, Slab};
 use model::Model;
-use plan::Plan;
+use plan::{Plan, Tree};
 use report::{Report, any_error};
-use source::Source;
+use source::{Source, Sources};
 
 /// A tool that was looked over and found good, with everything that is emitted about it.
 #[derive(Clone, Debug)]
@@ -53,14 +54,43 @@ pub struct Compiled {
     pub name: Option<String>,
     /// Errors and warnings.
     pub reports: Vec<Report>,
+    /// The texts that these speak of.
+    pub sources: Sources,
 }
 
-/// Compiles a tool's text as far as a checked tool.
+impl Compiled {
+    /// The same tool as another Rust type.
+    #[must_use]
+    pub fn named(mut self, name: &str) -> Compiled {
+        if let Some(tool) = &mut self.tool {
+            name.clone_into(&mut tool.model.name);
+        }
+        self.name = self.name.map(|_| name.to_owned());
+        self
+    }
+}
+
+/// Compiles a tool's text as far as a checked tool. The files that it mounts are read beside the
+/// file that holds it.
 pub fn compile(source: &Source) -> Compiled {
-    let (tree, mut reports) = syntax::parse(source);
-    let Some(tree) = tree else { return Compiled { tool: None, name: None, reports } };
+    compile_with(source, &[])
+}
+
+/// Compiles a tool of which some params are given: `D = 0.25inch, flute = 18`, with constant
+/// expressions of the language. What is given replaces the default; a bare number is in the tool's
+/// unit.
+pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
+    let mut sources = Sources::new(source.clone(), given.iter().cloned());
+    let (tree, mut reports) = syntax::parse(sources.own());
+    let mut settings = Vec::new();
+    for source in &sources.all()[1..] {
+        let (given, found) = syntax::given(source);
+        settings.extend(given);
+        reports.extend(found);
+    }
+    let Some(tree) = tree else { return Compiled { tool: None, name: None, reports, sources } };
     let name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
-    let (model, found) = resolve::resolve(&tree);
+    let (model, found) = resolve::resolve(&tree, &settings, &mut sources);
     let broken = any_error(&reports);
     reports.extend(found.into_iter().filter(|report| !broken || !follows(report, &tree.broken)));
     let tool = match model {
@@ -75,10 +105,17 @@ pub fn compile(source: &Source) -> Compiled {
     };
     let tool = tool.filter(|_| !any_error(&reports));
     reports.sort_by_key(|report| report.span.start);
-    Compiled { tool, name, reports }
+    // A file that is mounted twice has its mistakes once.
+    let mut said: Vec<Report> = Vec::new();
+    for report in reports {
+        if !said.contains(&report) {
+            said.push(report);
+        }
+    }
+    Compiled { tool, name, reports: said, sources }
 }
 
-fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
+fn check(mut model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
     finite(&model)?;
     let extent = match bound::extent(&model) {
         Ok(extent) => extent,
@@ -94,14 +131,15 @@ fn check(model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
         return Ok(Checked::nothing(model));
     }
     let envelope = bound::envelope(&model, &extent);
-    let plan = plan::plan(&model, &extent)?;
+    let plan = plan::plan(&mut model, &extent)?;
     Ok(Checked { model, extent, envelope, plan })
 }
 
 impl Checked {
     /// A tool of which something is wrong: its errors stand beside it and it goes no further.
-    fn nothing(model: Model) -> Checked {
-        let plan = Plan { owner: plan::Tree::Leaf(None), inside: plan::Tree::Leaf(false) };
+    fn nothing(mut model: Model) -> Checked {
+        let outside = Tree::Leaf(model.graph.int(0));
+        let plan = Plan { owner: Tree::Leaf(None), inside: Tree::Leaf(false), outside };
         let extent = Extent::of(model.domain.whole(0.0), 0.0);
         Checked { model, extent, envelope: Vec::new(), plan }
     }

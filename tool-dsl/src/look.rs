@@ -6,7 +6,7 @@ use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{CurveIndex, Formula};
-use crate::model::{Model, Region};
+use crate::model::{Frame, Model, Region};
 use crate::plan::spread;
 use crate::report::{Report, any_error, figure};
 use crate::source::Span;
@@ -40,12 +40,34 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
     reports
 }
 
+/// A tool that ends at a z which is not its tip.
+pub(crate) fn off_tip(frame: &Frame, end: f64, span: Span) -> Report {
+    let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
+    Report::error(span, format!("the tool ends at z = {end} and its tip is said to be at {tip}"))
+        .help(format!(
+            "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
+        ))
+}
+
 /// Everything that is found, each kind once a region.
 pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
     let mut look = Look::new(model, extent);
+    if let Some(section) = &model.section {
+        // The regions are known; only what is felt in them was written.
+        look.tip(extent.low);
+        for cell in section.inner.cells(1) {
+            for (p, _) in &cell.samples {
+                let point = [p[0], 0.0, p[1]];
+                look.go(point);
+                look.felt(&model.regions[cell.part], point);
+            }
+        }
+        return look.found;
+    }
     look.scale(extent);
     if model.domain == Domain::HalfPlane {
-        look.tip(extent);
+        let end = look.end(extent);
+        look.tip(end);
     }
     let mut inside = Vec::new();
     let mut outside = Vec::new();
@@ -143,8 +165,8 @@ impl<'m> Look<'m> {
         self.model.regions.iter().position(|region| region.inside.holds(&value))
     }
 
-    /// The tool's end is its tip: the lowest point found inside is at 0.
-    fn tip(&mut self, extent: &Extent) {
+    /// The lowest point found inside.
+    fn end(&mut self, extent: &Extent) -> f64 {
         let mut end = f64::INFINITY;
         for column in 0..=COLUMNS {
             let d = extent.radius * f64::from(column) / f64::from(COLUMNS);
@@ -159,18 +181,13 @@ impl<'m> Look<'m> {
             }
             end = end.min(good);
         }
+        end
+    }
+
+    /// The tool's end is its tip, which is at 0.
+    fn tip(&mut self, end: f64) {
         if end.is_finite() && end.abs() > 1e-6 * self.size {
-            let frame = &self.model.frame;
-            let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
-            self.found.push(
-                Report::error(
-                    self.model.name_span,
-                    format!("the tool ends at z = {end} and its tip is said to be at {tip}"),
-                )
-                .help(format!(
-                    "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
-                )),
-            );
+            self.found.push(off_tip(&self.model.frame, end, self.model.name_span));
         }
     }
 

@@ -5,9 +5,11 @@
 //! elsewhere it is outside.
 
 use crate::domain::Domain;
-use crate::expr::{Coord, Graph, Id};
+use crate::expr::{Graph, Id};
 use crate::formula::{CurveIndex, Formula};
 use crate::number::Number;
+use crate::regionalise::Partition;
+use crate::regionalise::outline::Segment;
 use crate::source::Span;
 
 /// A unit of length that a file may state.
@@ -76,6 +78,37 @@ pub struct Model {
     pub regions: Vec<Region>,
     /// The curves that `bsp` wants tried first.
     pub first: Vec<CurveIndex>,
+    /// What is known of a tool with a profile.
+    pub(crate) section: Option<Section>,
+}
+
+/// A profile and the exact partition of both its sides by nearest features.
+#[derive(Clone, Debug)]
+pub(crate) struct Section {
+    /// The pieces, counter-clockwise in the tool's frame.
+    pub(crate) outline: Vec<Segment>,
+    /// The inside; its parts are the regions.
+    pub(crate) inner: Partition,
+    /// The outside, as far as 64 sizes; its parts are those of `outside`.
+    pub(crate) outer: Partition,
+    /// The features that are nearest outside.
+    pub(crate) outside: Vec<Outside>,
+}
+
+impl Model {
+    /// Whether depth and clearance are true distances.
+    pub fn is_exact(&self) -> bool {
+        self.section.is_some()
+    }
+}
+
+/// A part of the outside and the distance from the tool there.
+#[derive(Clone, Debug)]
+pub struct Outside {
+    /// Its points, of those outside the solid.
+    pub beside: Formula,
+    /// The distance to the tool in the file's unit.
+    pub clearance: Id,
 }
 
 /// `z_tool = z_file - tip`, or `tip - z_file` where the spindle lies toward smaller z.
@@ -94,8 +127,7 @@ impl Frame {
     }
 
     /// The file's z, as an expression in the tool's.
-    pub fn file_z(&self, graph: &mut Graph) -> Id {
-        let z = graph.coord(Coord::Z);
+    pub fn file_z(&self, graph: &mut Graph, z: Id) -> Id {
         let tip = graph.number(self.tip.clone());
         if self.down { graph.sub(tip, z) } else { graph.add(z, tip) }
     }

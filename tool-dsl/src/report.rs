@@ -1,8 +1,9 @@
 //! What the compiler says about a tool: errors and warnings that name the place, the reason and
 //! the remedy.
 
-use crate::source::{Source, Span};
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use crate::source::{Source, Sources, Span};
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
+use std::ops::Range;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,33 +75,55 @@ impl Report {
         self
     }
 
+    /// The same report of a text that begins at `base`.
+    pub(crate) fn behind(mut self, base: usize) -> Report {
+        self.span = self.span.behind(base);
+        self.second = self.second.map(|(span, label)| (span.behind(base), label));
+        self
+    }
+
     /// The report as text: the source's line, a caret, the remedy. `styled` adds terminal colours.
-    pub fn render(&self, source: &Source, styled: bool) -> String {
+    pub fn render(&self, sources: &Sources, styled: bool) -> String {
         let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let visible = |span: Span| {
-            let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
-            start..source.text.ceil_char_boundary(span.end.min(source.text.len())).max(start)
-        };
-        let mut primary = AnnotationKind::Primary.span(visible(self.span));
+        let (source, span) = sources.locate(self.span);
+        let mut primary = AnnotationKind::Primary.span(visible(source, span));
         if let Some(label) = &self.label {
             primary = primary.label(label.as_str());
         }
-        let mut snippet =
-            Snippet::source(source.text.as_str()).path(source.name.as_str()).annotation(primary);
+        let mut snippet = excerpt(source).annotation(primary);
+        let mut elsewhere = None;
         if let Some((span, label)) = &self.second {
-            snippet = snippet
-                .annotation(AnnotationKind::Context.span(visible(*span)).label(label.as_str()));
+            let (other, span) = sources.locate(*span);
+            let second = AnnotationKind::Context.span(visible(other, span)).label(label.as_str());
+            if std::ptr::eq(other, source) {
+                snippet = snippet.annotation(second);
+            } else {
+                elsewhere = Some(excerpt(other).annotation(second));
+            }
         }
         let mut group: Group<'_> = level.primary_title(self.message.as_str()).element(snippet);
+        if let Some(elsewhere) = elsewhere {
+            group = group.element(elsewhere);
+        }
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));
         }
         renderer.render(&[group])
     }
+}
+
+fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
+    Snippet::source(source.text.as_str()).path(source.name.as_str())
+}
+
+/// What can be shown of a place: whole characters of the text.
+fn visible(source: &Source, span: Span) -> Range<usize> {
+    let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
+    start..source.text.ceil_char_boundary(span.end.min(source.text.len())).max(start)
 }
 
 /// A number for people: six significant digits.

@@ -1,11 +1,11 @@
 //! The text that a tool is written in, and places in it.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
-/// A stretch of a source's text, in bytes.
+/// A stretch of text, in bytes: of a source's, or of all [`Sources`] one behind the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Span {
     /// Offset of the first byte.
@@ -19,6 +19,11 @@ impl Span {
     pub fn to(self, other: Span) -> Span {
         Span { start: self.start, end: other.end }
     }
+
+    /// The same stretch in a text that begins at `base`.
+    pub fn behind(self, base: usize) -> Span {
+        Span { start: self.start + base, end: self.end + base }
+    }
 }
 
 /// A tool's text with the name it is known by.
@@ -28,25 +33,40 @@ pub struct Source {
     pub name: String,
     /// The text itself.
     pub text: String,
-    tokens: Vec<(Span, proc_macro2::Span)>,
+    /// Where it begins among all sources of a tool.
+    pub(crate) base: usize,
+    /// The file that holds it.
+    path: Option<PathBuf>,
+    /// Where each token came from, if it was not a file.
+    tokens: Option<Vec<(Span, proc_macro2::Span)>>,
+    /// The `mount` that asked for it.
+    by: Option<Span>,
 }
 
 impl Source {
     /// A source from the text of a file.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
-        Source { name: name.into(), text: text.into(), tokens: Vec::new() }
+        Source { name: name.into(), text: text.into(), base: 0, path: None, tokens: None, by: None }
     }
 
     /// A source from a file, known by its path.
     pub fn read(path: impl AsRef<Path>) -> io::Result<Source> {
         let text = std::fs::read_to_string(&path)?;
-        Ok(Source::new(path.as_ref().display().to_string(), text))
+        Ok(Source::new(path.as_ref().display().to_string(), text).held_by(path.as_ref()))
+    }
+
+    /// With the file that holds the text: what it mounts is looked for beside that.
+    #[must_use]
+    pub fn held_by(mut self, path: impl Into<PathBuf>) -> Source {
+        self.path = Some(path.into());
+        self
     }
 
     /// A source from the tokens inside `tool! { … }`: written out one space after each unless
     /// punctuation is joined, each token remembering where it came from.
     pub fn from_tokens(tokens: TokenStream) -> Source {
         let mut source = Source::new("tool!", "");
+        source.tokens = Some(Vec::new());
         source.write_out(tokens);
         source
     }
@@ -100,7 +120,8 @@ impl Source {
     fn push(&mut self, token: &str, span: proc_macro2::Span, apart: bool) {
         let start = self.text.len();
         self.text.push_str(token);
-        self.tokens.push((Span { start, end: self.text.len() }, span));
+        let place = Span { start, end: self.text.len() };
+        self.tokens.get_or_insert_default().push((place, span));
         if apart {
             self.text.push(' ');
         }
@@ -108,7 +129,113 @@ impl Source {
 
     /// The span of the Rust token at a place, for a source made of tokens.
     pub fn token_at(&self, span: Span) -> Option<proc_macro2::Span> {
-        let after = self.tokens.partition_point(|(place, _)| place.end <= span.start);
-        self.tokens.get(after).or(self.tokens.last()).map(|(_, token)| *token)
+        let tokens = self.tokens.as_ref()?;
+        let after = tokens.partition_point(|(place, _)| place.end <= span.start);
+        tokens.get(after).or(tokens.last()).map(|(_, token)| *token)
+    }
+
+    /// The file that holds the text, if any does.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// A path that this text mentions: for people, and where it leads.
+    fn beside(&self, file: &str) -> Option<(String, PathBuf)> {
+        let near = |path: &Path| path.parent().unwrap_or(Path::new("")).join(file);
+        let shown = match self.tokens {
+            Some(_) => file.to_owned(),
+            None => near(Path::new(&self.name)).display().to_string(),
+        };
+        Some((shown, near(self.path.as_deref()?)))
+    }
+}
+
+/// All texts that a tool is made of: its own first, then what it is given from outside, then the
+/// files that it mounts. A [`Span`] means a stretch of all of them, one behind the other.
+#[derive(Clone, Debug)]
+pub struct Sources(Vec<Source>);
+
+impl Sources {
+    /// A tool's own text, and what it is given.
+    pub fn new(own: Source, given: impl IntoIterator<Item = Source>) -> Sources {
+        let mut sources = Sources(Vec::new());
+        for source in std::iter::once(own).chain(given) {
+            sources.add(source);
+        }
+        sources
+    }
+
+    fn add(&mut self, mut source: Source) -> &Source {
+        // One more, so that the place behind a text is its own.
+        source.base = self.0.last().map_or(0, |last| last.base + last.text.len() + 1);
+        let at = self.0.len();
+        self.0.push(source);
+        &self.0[at]
+    }
+
+    /// The tool's own text.
+    pub fn own(&self) -> &Source {
+        &self.0[0]
+    }
+
+    /// All of them, the own one first.
+    pub fn all(&self) -> &[Source] {
+        &self.0
+    }
+
+    /// The source of a place, and the place in that source's own text.
+    pub fn locate(&self, span: Span) -> (&Source, Span) {
+        let after = self.0.partition_point(|source| source.base <= span.start).max(1);
+        let source = &self.0[after - 1];
+        let start = span.start - source.base;
+        (source, Span { start, end: span.end.saturating_sub(source.base).max(start) })
+    }
+
+    /// The text of a place.
+    pub fn text(&self, span: Span) -> &str {
+        let (source, span) = self.locate(span);
+        source.text.get(span.start..span.end).unwrap_or_default()
+    }
+
+    /// The Rust token of a place; of a place in a mounted file, that of the mount which asked for
+    /// it. `None` if that stands in a file.
+    pub fn token_at(&self, mut span: Span) -> Option<proc_macro2::Span> {
+        loop {
+            let (source, inside) = self.locate(span);
+            match (source.token_at(inside), source.by) {
+                (None, Some(by)) => span = by,
+                (token, _) => return token,
+            }
+        }
+    }
+
+    /// The `.tool` files that were read.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let files = self.0.iter().filter(|source| source.tokens.is_none());
+        files.filter_map(|source| source.path.as_deref())
+    }
+
+    /// Where a file lies that is mentioned at a place; `None` for one that is mentioned in a text
+    /// from nowhere.
+    pub(crate) fn beside(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
+        self.locate(by).0.beside(file)
+    }
+
+    /// Reads a file that a `mount` mentions, unless it was read before.
+    pub(crate) fn read(
+        &mut self,
+        by: Span,
+        (shown, path): (String, PathBuf),
+    ) -> io::Result<&Source> {
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let wanted = real(&path);
+        let same = |source: &Source| {
+            source.tokens.is_none() && source.path().is_some_and(|path| real(path) == wanted)
+        };
+        if let Some(known) = self.0.iter().position(same) {
+            return Ok(&self.0[known]);
+        }
+        let text = std::fs::read_to_string(&path)?;
+        Ok(self.add(Source { by: Some(by), ..Source::new(shown, text).held_by(path) }))
     }
 }

@@ -1,39 +1,81 @@
 //! The macros that compile tools. They hand text to `tool-dsl` and its answer to Rust.
 
+mod said;
+
 use proc_macro::TokenStream;
-use quote::{quote, quote_spanned};
+use quote::quote;
 use std::path::{Path, PathBuf};
-use syn::LitStr;
-use tool_dsl::report::{Report, Severity};
+use syn::parse::{Parse, ParseStream};
+use syn::{Ident, LitStr, Token};
 use tool_dsl::source::Source;
-use tool_dsl::{Compiled, compile, emit};
+use tool_dsl::{Compiled, compile, compile_with, emit, syntax};
 
 /// `include_tool!("tools/ball.tool")`: the type that the file's tool describes. The path is
-/// relative to the package's folder; touching the file rebuilds.
+/// relative to the package's folder; touching the file, or one that it mounts, rebuilds.
+///
+/// `include_tool!("tools/ball.tool" as QuarterInchBall, D = 0.25inch, flute = 18)` gives the type
+/// another name, and values to the file's `param`s: constant expressions of the language, in
+/// the file's unit where they say none.
 #[proc_macro]
 pub fn include_tool(input: TokenStream) -> TokenStream {
-    let path = syn::parse_macro_input!(input as LitStr);
-    match at_root(&path)
-        .and_then(|root| Ok(file(&root.join(path.value()), &path.value(), &path)?.0))
-    {
+    let call = syn::parse_macro_input!(input as Call);
+    match call.tool() {
         Ok(tokens) => tokens.into(),
         Err(error) => error.into_compile_error().into(),
     }
 }
 
-/// `tool! { tool Ball { … } }`: a tool written in place. A mistake is shown where it stands.
+/// What `include_tool!` is told.
+struct Call {
+    path: LitStr,
+    name: Option<Ident>,
+    given: Option<Source>,
+}
+
+impl Parse for Call {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Call> {
+        let path = input.parse()?;
+        let name = match input.parse::<Option<Token![as]>>()? {
+            Some(_) => Some(input.parse()?),
+            None => None,
+        };
+        if !input.is_empty() {
+            input.parse::<Token![,]>()?;
+        }
+        let tokens: proc_macro2::TokenStream = input.parse()?;
+        let given = (!tokens.is_empty()).then(|| Source::from_tokens(tokens));
+        Ok(Call { path, name, given })
+    }
+}
+
+impl Call {
+    fn tool(&self) -> syn::Result<proc_macro2::TokenStream> {
+        if let Some(name) = &self.name
+            && !syntax::is_type_name(&name.to_string())
+        {
+            let message = format!("`{name}` is not a tool's name: write it as `UpperCamelCase`");
+            return Err(syn::Error::new(name.span(), message));
+        }
+        let shown = self.path.value();
+        let source = read(&at_root(&self.path)?.join(&shown), &shown, &self.path)?;
+        let mut compiled = compile_with(&source, self.given.as_slice());
+        if let Some(name) = &self.name {
+            compiled = compiled.named(&name.to_string());
+        }
+        Ok(meaning(&compiled, self.path.span()))
+    }
+}
+
+/// `tool! { tool Ball { … } }`: a tool written in place. A mistake is shown where it stands. What
+/// it mounts is looked for beside the source file.
 #[proc_macro]
 pub fn tool(input: TokenStream) -> TokenStream {
-    let source = Source::from_tokens(input.into());
-    let compiled = compile(&source);
-    let mut tokens = proc_macro2::TokenStream::new();
-    for report in compiled.reports.iter().filter(|r| r.severity == Severity::Error) {
-        let span = source.token_at(report.span).unwrap_or_else(proc_macro2::Span::call_site);
-        let message = in_words(report, &source);
-        tokens.extend(quote_spanned! { span => ::core::compile_error! { #message } });
+    let mut source = Source::from_tokens(input.into());
+    let here = proc_macro::Span::call_site().local_file();
+    if let Some(file) = here.and_then(|file| std::path::absolute(file).ok()) {
+        source = source.held_by(file);
     }
-    tokens.extend(meaning(&compiled));
-    tokens.into()
+    meaning(&compile(&source), proc_macro2::Span::call_site()).into()
 }
 
 /// `tool_library!("tools")`: the types of all `.tool` files of a folder, in the order of their
@@ -72,9 +114,10 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
     let mut names = Vec::new();
     for path in &files {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let (file, tool) = file(path, &format!("{}/{name}", folder.value()), folder)?;
-        tokens.extend(file);
-        if let Some(tool) = tool {
+        let source = read(path, &format!("{}/{name}", folder.value()), folder)?;
+        let compiled = compile(&source);
+        tokens.extend(meaning(&compiled, folder.span()));
+        if let Some(tool) = compiled.name {
             names.push(syn::Ident::new(&tool, folder.span()));
         }
     }
@@ -96,53 +139,26 @@ fn at_root(path: &LitStr) -> syn::Result<PathBuf> {
     }
 }
 
-/// A file's tool, and its name.
-fn file(
-    path: &Path,
-    shown: &str,
-    place: &LitStr,
-) -> syn::Result<(proc_macro2::TokenStream, Option<String>)> {
+/// The text of a file, by a path that is shown.
+fn read(path: &Path, shown: &str, place: &LitStr) -> syn::Result<Source> {
     let text = std::fs::read_to_string(path).map_err(|error| {
         syn::Error::new(place.span(), format!("cannot read `{shown}`: {error}"))
     })?;
-    let source = Source::new(shown, text);
-    let compiled = compile(&source);
-    let errors: Vec<String> = compiled
-        .reports
-        .iter()
-        .filter(|report| report.severity == Severity::Error)
-        // rustc says "error: " itself.
-        .map(|report| report.render(&source, false).trim_start_matches("error: ").to_owned())
-        .collect();
-    let mut tokens = meaning(&compiled);
-    if !errors.is_empty() {
-        let message = errors.join("\n\n");
-        tokens.extend(quote_spanned! { place.span() => ::core::compile_error! { #message } });
-    }
-    // Cargo rebuilds when a file that is included changes.
-    let absolute = path.display().to_string();
-    tokens.extend(quote! { const _: &[u8] = ::core::include_bytes!(#absolute); });
-    Ok((tokens, compiled.name))
+    Ok(Source::new(shown, text).held_by(path))
 }
 
-/// A tool's code; a stand-in for one that has errors.
-fn meaning(compiled: &Compiled) -> proc_macro2::TokenStream {
-    match (&compiled.tool, &compiled.name) {
+/// A tool's code, or a stand-in for one that has errors, and these.
+fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
+    let mut tokens = match (&compiled.tool, &compiled.name) {
         (Some(tool), _) => emit::emit(tool),
-        (None, Some(name)) if syn::parse_str::<syn::Ident>(name).is_ok() => emit::skeleton(name),
+        (None, Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::skeleton(name),
         _ => quote! {},
+    };
+    tokens.extend(said::errors(compiled, place));
+    // Cargo rebuilds when a file that is included changes.
+    for file in compiled.sources.files() {
+        let file = file.display().to_string();
+        tokens.extend(quote! { const _: &[u8] = ::core::include_bytes!(#file); });
     }
-}
-
-/// A report where rustc shows the place itself.
-fn in_words(report: &Report, source: &Source) -> String {
-    let mut text = report.message.clone();
-    if let Some((span, label)) = &report.second {
-        let place = source.text.get(span.start..span.end).unwrap_or_default();
-        text.push_str(&format!("\nnote: {label}: `{place}`"));
-    }
-    if let Some(help) = &report.help {
-        text.push_str(&format!("\nhelp: {help}"));
-    }
-    text
+    tokens
 }

@@ -4,11 +4,11 @@ tool Fig73 "ball end mill, spindle and housing (Ho 1999, fig. 7.3, eq. 7.1-7.3)"
     tip z = 20;
     spindle -z;
 
-    curve back     = z + d - 5;
+    curve back = z + d - 5;
     curve shoulder = z - d - 6;
-    curve corner   = z + d - 14;        // V | VII
-    curve cone     = z + d - 16;        // the taper itself, and VII | VIII
-    curve ball     = hypot(d, z - 19) - 1;
+    curve corner = z + d - 14; // V | VII
+    curve cone = z + d - 16; // the taper itself, and VII | VIII
+    curve ball = hypot(d, z - 19) - 1;
 
     region I as housing where z >= 0, back <= 0 {
         magnitude: z;
@@ -24,7 +24,7 @@ tool Fig73 "ball end mill, spindle and housing (Ho 1999, fig. 7.3, eq. 7.1-7.3)"
     }
     region IV as housing where d <= 3, 9 <= z <= 11 {
         magnitude: 14 - d - z;
-        direction: (1, 1);              // the thesis's; toward (3, 11) would be the exact one
+        direction: (1, 1); // the thesis's; toward (3, 11) would be the exact one
     }
     region V as spindle where d <= 3, 11 <= z <= max(13, 14 - d) {
         magnitude: 3 - d;
@@ -41,11 +41,11 @@ tool Fig73 "ball end mill, spindle and housing (Ho 1999, fig. 7.3, eq. 7.1-7.3)"
     region VIII as flute cutting where d <= 1, cone >= 0, z <= 19 {
         magnitude: 1 - d;
         direction: (1, 0);
-        niceness:  2*d^2;
+        niceness: 2*d^2;
     }
     region IX as nose cutting where z >= 19, ball <= 0 {
         magnitude: -ball;
         direction: away from (0, 19);
-        niceness:  2*d^2 + (z - 19)^2;
+        niceness: 2*d^2 + (z - 19)^2;
     }
 }

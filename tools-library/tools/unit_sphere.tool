@@ -5,7 +5,7 @@ tool UnitSphere "unit sphere (Ho 1999, eq. 4.1, 4.2)" {
     curve ball = hypot(d, z) - 1;
 
     region ball where ball <= 0 {
-        depth:     -ball;
+        depth: -ball;
         direction: away from (0, 0);
     }
 }

@@ -20,6 +20,9 @@ pub struct Card {
     pub envelope: Cow<'static, [Slab]>,
     /// Whether it has an axis.
     pub shape: Shape,
+    /// Whether depth and clearance are true distances. Without a profile, depth is what the file
+    /// says and clearance a lower bound.
+    pub exact: bool,
 }
 
 /// Whether a tool looks the same however it is turned about z.
@@ -43,6 +46,7 @@ impl Card {
         surfaces: &'static [Surface],
         regions: &'static [Region],
         envelope: &'static [Slab],
+        exact: bool,
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -52,6 +56,7 @@ impl Card {
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
             shape: Shape::Revolved,
+            exact,
         }
     }
 
@@ -73,6 +78,7 @@ impl Card {
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
             shape: Shape::Solid { across },
+            exact: false,
         }
     }
 

@@ -6,8 +6,8 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
 /// Points are finite, in the tool's frame and the file's unit; `length` is the length of the
-/// file's unit in the part's. All but `contains` and `owner` are for points of the solid and mean
-/// nothing elsewhere. Each comes twice: for one point with nested branches, and for lanes with
+/// file's unit in the part's. All but `contains`, `owner` and `clearance` are for points of the solid
+/// and mean nothing elsewhere. Each comes twice: for one point with nested branches, and for lanes with
 /// selects; both give the same bits.
 pub trait Evaluators: Copy + Send + Sync + 'static {
     /// Who the tool is.
@@ -28,6 +28,8 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn direction(point: [f64; 3]) -> [f64; 3];
     /// The magnitude's gradient by the position in the part's unit.
     fn gradient(point: [f64; 3], length: f64) -> [f64; 3];
+    /// Distance from a point outside to the tool, in the file's unit.
+    fn clearance(point: [f64; 3]) -> f64;
 
     /// [`Evaluators::contains`] for lanes.
     fn contains_lanes<L: Lane>(point: [L; 3]) -> L::Mask;
@@ -43,11 +45,17 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn direction_lanes<L: Lane>(point: [L; 3]) -> [L; 3];
     /// [`Evaluators::gradient`] for lanes.
     fn gradient_lanes<L: Lane>(point: [L; 3], length: L) -> [L; 3];
+    /// [`Evaluators::clearance`] for lanes.
+    fn clearance_lanes<L: Lane>(point: [L; 3]) -> L;
 }
 
 impl<T: Evaluators> Tool for T {
     fn card(&self) -> &Card {
         T::card()
+    }
+
+    fn clearance(&self, point: [f64; 3]) -> f64 {
+        if T::contains(point) { 0.0 } else { T::clearance(point) }
     }
 
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {

@@ -9,12 +9,13 @@ use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape};
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile, model, report};
+use tool_dsl::{Checked, compile_with, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
     card: Card,
     tape: Tape,
+    outside: Tape,
     warnings: String,
 }
 
@@ -49,13 +50,19 @@ impl Interpreted {
 
     /// Compiles a tool's text.
     pub fn parse(source: &Source) -> Result<Interpreted, ToolError> {
-        let compiled = compile(source);
+        Interpreted::parse_with(source, &[])
+    }
+
+    /// Compiles a tool's text with what its params are given, as `D = 0.25inch, flute = 18`.
+    pub fn parse_with(source: &Source, given: &[Source]) -> Result<Interpreted, ToolError> {
+        let compiled = compile_with(source, given);
         let said: Vec<String> =
-            compiled.reports.iter().map(|report| report.render(source, false)).collect();
+            compiled.reports.iter().map(|r| r.render(&compiled.sources, false)).collect();
         match compiled.tool {
             Some(tool) if !report::any_error(&compiled.reports) => Ok(Interpreted {
                 card: card(&tool),
                 tape: Tape::new(&tool),
+                outside: Tape::outside(&tool),
                 warnings: said.join("\n\n"),
             }),
             _ => Err(ToolError::Wrong(said.join("\n\n"))),
@@ -93,12 +100,24 @@ fn card(tool: &Checked) -> Card {
             Domain::HalfPlane => Shape::Revolved,
             Domain::Space => Shape::Solid { across: across(&tool.extent) },
         },
+        exact: model.is_exact(),
     }
 }
 
 impl Tool for Interpreted {
     fn card(&self) -> &Card {
         &self.card
+    }
+
+    fn clearance(&self, point: [f64; 3]) -> f64 {
+        let block = point.map(|part| [part; BLOCK]);
+        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
+        self.tape.run(block.each_ref(), 1.0, &mut registers, &mut results);
+        if results[0][0] >= 0.0 {
+            return 0.0;
+        }
+        self.outside.run(block.each_ref(), 1.0, &mut registers, &mut results);
+        results[0][0]
     }
 
     fn evaluate(&self, _: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
@@ -118,7 +137,7 @@ impl Tool for Interpreted {
             for (part, list) in block.iter_mut().zip(coordinates) {
                 part[..count].copy_from_slice(&list[start..start + count]);
             }
-            self.tape.run(block.each_ref(), length, wanted, &mut felt.registers, &mut results);
+            self.tape.run(block.each_ref(), length, &mut felt.registers, &mut results[..wanted]);
             for (offset, owners) in results[0][..count].chunks(LANES).enumerate() {
                 let at = start / LANES + offset;
                 let bits = owners.iter().rev().fold(0, |bits, o| bits << 1 | u8::from(*o >= 0.0));

@@ -25,6 +25,10 @@ pub trait Tool: Send + Sync {
     /// Who it is and how far it reaches.
     fn card(&self) -> &Card;
 
+    /// The distance from a point of the tool's frame to the tool, in the file's unit: 0 inside, a
+    /// lower bound where [`Card::exact`] says so.
+    fn clearance(&self, point: [f64; 3]) -> f64;
+
     /// Evaluates what is asked for at points of the tool's frame.
     ///
     /// `length` is the length of the file's unit in the part's, by which a magnitude that is the

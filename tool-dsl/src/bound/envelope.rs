@@ -4,6 +4,7 @@ use super::{Extent, Prover, inward};
 use crate::expr::interval::Interval;
 use crate::expr::polynomial::Polynomial;
 use crate::model::Model;
+use crate::regionalise::outline;
 
 /// The most slabs of an envelope.
 const SLABS: usize = 12;
@@ -35,13 +36,17 @@ impl Slab {
 pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
     let mut prover = Prover::of_regions(model);
     let mut slab = |low: f64, high: f64, widest: f64| {
+        if let Some(section) = &model.section {
+            let radius = outline::radius_between(&section.outline, low, high);
+            return Slab { low, high, radius };
+        }
         let within = extent.cell().with(2, Interval::new(low, high));
         let radius = inward(widest, 0.0, 12, |r| prover.none_beyond(r, widest, within));
         Slab { low, high, radius }
     };
     let mut ends: Vec<f64> = (0..=8)
         .map(|k| extent.low + (extent.high - extent.low) * f64::from(k) / 8.0)
-        .chain(model.curves.iter().filter_map(|curve| level(model, curve.value)))
+        .chain(levels(model))
         .filter(|z| (extent.low..=extent.high).contains(z))
         .collect();
     ends.sort_by(f64::total_cmp);
@@ -103,6 +108,14 @@ fn above(value: f64, steps: f64) -> f64 {
     let count = (value * steps).ceil();
     let short = if steps >= 1.0 { count / steps } else { count * (1.0 / steps) };
     if short >= value { short } else { (count + 1.0) / steps }
+}
+
+/// Heights at which the radius may jump.
+fn levels(model: &Model) -> Vec<f64> {
+    match &model.section {
+        Some(section) => section.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
+        None => model.curves.iter().filter_map(|curve| level(model, curve.value)).collect(),
+    }
 }
 
 /// The z of a curve that is a plane across the axis.

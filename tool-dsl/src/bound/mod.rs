@@ -10,6 +10,7 @@ use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval};
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::{Model, Region};
 use crate::plan::empty::Linear;
+use crate::regionalise::outline;
 use crate::report::Report;
 
 /// The largest coordinate, 2^300.
@@ -220,6 +221,11 @@ impl Extent {
 
 /// The reach of the solid, proved; an error if no bound is found.
 pub fn extent(model: &Model) -> Result<Extent, Report> {
+    if let Some(section) = &model.section {
+        let [low, high] = outline::reach(&section.outline);
+        let (d, z) = (Interval::new(0.0, high[0]), Interval::new(low[1], high[1]));
+        return Ok(Extent::of(Cell::half_plane(d, z), high[0]));
+    }
     let (domain, mut prover) = (model.domain, Prover::of_regions(model));
     let power = reach(domain, &mut prover).ok_or_else(|| endless(model))?;
     let whole = domain.whole(2f64.powi(power));

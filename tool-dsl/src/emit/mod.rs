@@ -56,6 +56,8 @@ pub fn skeleton(name: &str) -> TokenStream {
         };
         functions.extend(function(form, &contains, &quote! {}, &yes, &empty));
         functions.extend(function(form, &owner, &quote! {}, &whose, &empty));
+        let (clearance, _) = signature(form, "clearance");
+        functions.extend(function(form, &clearance, &quote! {}, &number, &empty));
         for output in &OUTPUTS {
             let (name, _) = signature(form, output.name);
             let (extra, _) = length(output.with_length, &number, &empty);
@@ -119,7 +121,7 @@ fn reach(tool: &Checked) -> String {
 
 fn card(tool: &Checked) -> TokenStream {
     let model = &tool.model;
-    let name = &model.name;
+    let (name, exact) = (&model.name, model.is_exact());
     let title = model.title.as_deref().unwrap_or("");
     let unit = Ident::new(&format!("{:?}", model.unit), Span::call_site());
     let surfaces = model.surfaces.iter().map(|surface| {
@@ -136,7 +138,7 @@ fn card(tool: &Checked) -> TokenStream {
     });
     let made = match model.domain {
         Domain::HalfPlane => quote! {
-            Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS)
+            Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, #exact)
         },
         Domain::Space => {
             let [x, y] = across(&tool.extent).map(|ends| {
@@ -200,6 +202,11 @@ fn functions(tool: &Checked, form: Form) -> TokenStream {
             number
         };
         all.extend(function(form, &name, &extra, &result, &quote! { #per #body }));
+    }
+    let outside = tool.plan.outside.map(&|id: &Id| Some(vec![*id]));
+    if let Some(tree) = outside {
+        let (name, number) = signature(form, "clearance");
+        all.extend(function(form, &name, &quote! {}, &number, &body(tool, form, &tree)));
     }
     all
 }

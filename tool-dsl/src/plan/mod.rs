@@ -8,12 +8,16 @@
 //! samples of the domain, cheap curves first, `bsp` before all.
 
 pub(crate) mod empty;
+mod section;
+mod shape;
 
 use crate::bound::Extent;
 use crate::domain::Domain;
 use crate::expr::value::{At, Evaluator};
+use crate::expr::{Coord, Id};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
+use crate::number::Number;
 use crate::report::Report;
 use empty::Void;
 
@@ -88,21 +92,55 @@ pub struct Plan {
     pub owner: Tree<Option<usize>>,
     /// Whether a point belongs to any.
     pub inside: Tree<bool>,
+    /// The distance to the tool of a point outside; without a profile, a lower bound.
+    pub outside: Tree<Id>,
 }
 
 /// Plans a tool's splits.
-pub fn plan(model: &Model, extent: &Extent) -> Result<Plan, Report> {
+pub fn plan(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
+    let (owner, outside) = match &model.section {
+        Some(section) => section::trees(model, section)?,
+        None => (by_signs(model, extent)?, Tree::Leaf(beside(model, extent))),
+    };
+    // Of one tree, so that inside is where an owner is, to the last bit.
+    let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
+    let inside = inside.unwrap_or(Tree::Leaf(false));
+    Ok(Plan { owner, inside, outside })
+}
+
+/// The distance to the box about the solid, of a tool to the cylinder.
+fn beside(model: &mut Model, extent: &Extent) -> Id {
+    let graph = &mut model.graph;
+    let zero = graph.int(0);
+    let mut square = zero;
+    for (coord, axis, _) in model.domain.coordinates().iter().rev() {
+        let here = graph.coord(*coord);
+        let side = extent.cell().sides[*axis];
+        let [low, high] = [side.low, side.high].map(|value| {
+            let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
+            graph.number(number)
+        });
+        let mut beyond = graph.sub(here, high);
+        // There is nothing beyond the axis.
+        if *coord != Coord::D {
+            let below = graph.sub(low, here);
+            beyond = graph.max(below, beyond);
+        }
+        let beyond = graph.max(zero, beyond);
+        let more = graph.mul(beyond, beyond);
+        square = graph.add(square, more);
+    }
+    graph.sqrt(square).unwrap_or(zero)
+}
+
+/// The owners' tree of written regions, of which only the conditions are known.
+fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Report> {
     let samples = samples(model, extent);
     let all: Vec<u32> = (0..samples.len() as u32).collect();
     let costs = costs(model);
     let mut planner =
         Planner { model, samples: &samples, costs: &costs, void: Void::new(model), tests: 0 };
-    let start = vec![ANY; model.curves.len()];
-    let owner = planner.tree(start, &all)?;
-    // Of one tree, so that inside is where an owner is, to the last bit.
-    let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
-    let inside = inside.unwrap_or(Tree::Leaf(false));
-    Ok(Plan { owner, inside })
+    planner.tree(vec![ANY; model.curves.len()], &all)
 }
 
 /// A point: the side of each curve, and the owner.
@@ -286,12 +324,10 @@ impl Planner<'_> {
     /// Bits of information that a curve's sign gives about the owners of samples.
     fn gain(&self, curve: CurveIndex, samples: &[u32]) -> f64 {
         let mut counts: Vec<(Option<usize>, [f64; 2])> = Vec::new();
-        let mut totals = [0.0; 2];
         for sample in samples {
             let sample = &self.samples[*sample as usize];
             let own = sample.owner;
             let side = usize::from(sample.signs[curve] == POSITIVE);
-            totals[side] += 1.0;
             match counts.iter_mut().find(|(l, _)| *l == own) {
                 Some((_, count)) => count[side] += 1.0,
                 None => {
@@ -301,17 +337,21 @@ impl Planner<'_> {
                 }
             }
         }
-        let bits =
-            |part: f64, whole: f64| if part > 0.0 { -part * (part / whole).log2() } else { 0.0 };
-        let all = totals[0] + totals[1];
-        if all == 0.0 {
-            return 0.0;
-        }
-        let before: f64 = counts.iter().map(|(_, c)| bits(c[0] + c[1], all)).sum();
-        let after: f64 =
-            counts.iter().map(|(_, c)| bits(c[0], totals[0]) + bits(c[1], totals[1])).sum();
-        (before - after) / all
+        information(counts.iter().map(|(_, count)| *count))
     }
+}
+
+/// Bits that a side gives about classes whose weights on the two sides are known.
+fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
+    let bits = |part: f64, whole: f64| if part > 0.0 { -part * (part / whole).log2() } else { 0.0 };
+    let totals = counts.clone().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
+    let all = totals[0] + totals[1];
+    if all == 0.0 {
+        return 0.0;
+    }
+    let before: f64 = counts.clone().map(|c| bits(c[0] + c[1], all)).sum();
+    let after: f64 = counts.map(|c| bits(c[0], totals[0]) + bits(c[1], totals[1])).sum();
+    (before - after) / all
 }
 
 /// The signs on the two sides of a test.

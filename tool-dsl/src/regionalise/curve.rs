@@ -1,100 +1,381 @@
-//! The curves between regions: what they mean, and what they are.
+//! The borders of cells: what they mean at a point, and the expressions that tell their sides.
 
-use super::outline::{self, Point};
-use super::{Feature, Section};
+use super::outline::{self, Circle, Place, Point, dot, minus};
+use super::section::{Feature, Seat, Section};
 use crate::expr::polynomial::Polynomial;
-use crate::expr::{Graph, Id};
+use crate::expr::{Coord, Graph, Id};
+use crate::number::Number;
 
-/// A side of a curve, by its meaning.
+/// A condition on expressions.
 #[derive(Clone, Debug)]
-pub(super) enum Curve {
-    /// On the material's side of a piece's whole line or circle.
-    Inside(Feature),
+pub(crate) enum Test {
+    /// The expression is at most 0.
+    AtMost(Id),
+    /// All hold.
+    All(Vec<Test>),
+    /// One holds.
+    Any(Vec<Test>),
+}
+
+/// A side of a border, by its meaning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Border {
+    /// On this side of a piece's whole line or circle.
+    Inside { piece: usize },
     /// Not beyond the normal at an end of a piece (0 its start, 1 its end).
     Before { piece: usize, end: usize },
     /// Beyond it.
     Past { piece: usize, end: usize },
-    /// No nearer to another feature.
-    Nearer { this: Feature, other: Feature },
+    /// No nearer to another feature's line, circle or corner.
+    Nearer { this: usize, other: usize },
+    /// Up to the normal of a feature at a parameter.
+    UpTo { feature: usize, at: f64 },
+    /// Beyond it.
+    From { feature: usize, at: f64 },
 }
 
-impl Curve {
+/// An arc is measured from a point of its own when its radius is so many sizes.
+const FLAT: f64 = 2.0;
+
+impl Border {
     pub(super) fn holds(&self, section: &Section<'_>, p: Point) -> bool {
-        match self {
-            Curve::Inside(feature) => section.depth_at(feature, p) >= 0.0,
-            Curve::Before { piece, end } => section.outline[*piece].sector(p)[*end] >= 0.0,
-            Curve::Past { piece, end } => section.outline[*piece].sector(p)[*end] <= 0.0,
-            Curve::Nearer { this, other } => {
+        match *self {
+            Border::Inside { piece } => section.outline[piece].signed(p) >= 0.0,
+            Border::Before { piece, end } => section.outline[piece].sector(p)[end] >= 0.0,
+            Border::Past { piece, end } => section.outline[piece].sector(p)[end] <= 0.0,
+            Border::Nearer { this, other } => {
                 section.depth_at(this, p) <= section.depth_at(other, p)
             }
+            Border::UpTo { feature, at } => section.beyond(feature, at, p) <= 0.0,
+            Border::From { feature, at } => section.beyond(feature, at, p) >= 0.0,
         }
     }
 
-    /// The expression that is at most 0 on this side.
-    pub(super) fn side(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Id> {
-        match self {
-            Curve::Inside(feature) => {
-                let depth = section.depth(graph, feature)?;
-                Some(graph.neg(depth))
+    /// How far along a normal a straight border is met; NaN for others.
+    pub(super) fn met(&self, section: &Section<'_>, seat: &Seat) -> f64 {
+        let value = |p: Point| match *self {
+            Border::Before { piece, end } | Border::Past { piece, end } => {
+                section.outline[piece].sector(p)[end]
             }
-            Curve::Before { piece, end } => {
-                let side = section.outline[*piece].sides(graph)?[*end];
-                Some(graph.neg(side))
+            Border::UpTo { feature, at } | Border::From { feature, at } => {
+                section.beyond(feature, at, p)
             }
-            Curve::Past { piece, end } => Some(section.outline[*piece].sides(graph)?[*end]),
-            Curve::Nearer { this, other } => section.comparison(graph, this, other),
+            Border::Inside { .. } | Border::Nearer { .. } => f64::NAN,
+        };
+        let (near, far) = (value(seat.at(0.0)), value(seat.at(section.size)));
+        section.size * near / (near - far)
+    }
+
+    /// Its condition; `None` where a constant has no value.
+    pub(super) fn test(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Test> {
+        let at_most = |id: Id| Some(Test::AtMost(id));
+        match *self {
+            Border::Inside { piece } => match &section.outline[piece].circle {
+                Some(circle) if !section.flat(circle) => {
+                    let square = graph.number(&circle.radius * &circle.radius);
+                    let away = outline::squared(graph, &circle.centre);
+                    at_most(if circle.convex {
+                        graph.sub(away, square)
+                    } else {
+                        graph.sub(square, away)
+                    })
+                }
+                _ => {
+                    let depth = section.piece_depth(graph, piece)?;
+                    at_most(graph.neg(depth))
+                }
+            },
+            Border::Before { piece, end } => {
+                let side = section.outline[piece].sides(graph)?[end];
+                at_most(graph.neg(side))
+            }
+            Border::Past { piece, end } => at_most(section.outline[piece].sides(graph)?[end]),
+            Border::Nearer { this, other } => section.nearer(graph, this, other),
+            Border::UpTo { feature, at } => at_most(section.spoke(graph, feature, at)?),
+            Border::From { feature, at } => {
+                let side = section.spoke(graph, feature, at)?;
+                at_most(graph.neg(side))
+            }
         }
     }
+}
+
+/// What a feature is to a comparison of distances.
+enum Kind<'o> {
+    Line(usize),
+    Point(&'o Place),
+    Arc(&'o Circle),
+    /// An arc too flat to be compared by squares.
+    Flat,
 }
 
 impl Section<'_> {
-    /// An expression that is at most 0 where one feature is no farther than another, inside. A
-    /// corner and a line, or two corners, need no root.
-    fn comparison(&self, graph: &mut Graph, this: &Feature, other: &Feature) -> Option<Id> {
-        let line = |feature: &Feature| match feature {
-            Feature::Piece(index) => self.outline[*index].circle.is_none(),
-            Feature::Corner(_) => false,
+    fn flat(&self, circle: &Circle) -> bool {
+        circle.radius.to_f64() > FLAT * self.size
+    }
+
+    fn corner(&self, behind: Option<usize>) -> &Place {
+        match behind {
+            Some(piece) => &self.outline[piece].to,
+            None => &self.outline[0].from,
+        }
+    }
+
+    fn kind(&self, feature: usize) -> Kind<'_> {
+        match self.features[feature] {
+            Feature::Corner(behind) => Kind::Point(self.corner(behind)),
+            Feature::Piece(piece) => match &self.outline[piece].circle {
+                None => Kind::Line(piece),
+                Some(circle) if self.flat(circle) => Kind::Flat,
+                Some(circle) => Kind::Arc(circle),
+            },
+        }
+    }
+
+    /// The expression of a feature's distance.
+    pub(super) fn depth(&self, graph: &mut Graph, feature: usize) -> Option<Id> {
+        match self.features[feature] {
+            Feature::Piece(piece) => self.piece_depth(graph, piece),
+            Feature::Corner(behind) => outline::distance(graph, self.corner(behind)),
+        }
+    }
+
+    /// The signed distance to a piece's line or circle. `r - |p - c|` loses the digits that `r` has
+    /// more than the tool is large; a flat arc is measured from its middle `m` instead, with `w`
+    /// from there and `e` the way out from the centre: `-(w² + 2 r e·w) / (r + |p - c|)`.
+    fn piece_depth(&self, graph: &mut Graph, piece: usize) -> Option<Id> {
+        let segment = &self.outline[piece];
+        let Some(circle) = segment.circle.as_ref().filter(|circle| self.flat(circle)) else {
+            return segment.depth(graph);
         };
-        let difference = match (this, other) {
-            (Feature::Corner(a), Feature::Corner(b)) => {
-                let a = outline::squared(graph, self.corner(*a));
-                let b = outline::squared(graph, self.corner(*b));
-                graph.sub(a, b)
+        let way = [0, 1]
+            .map(|k| &(&(&segment.from[k] + &segment.to[k]) / &Number::int(2)) - &circle.centre[k]);
+        let length = (&(&way[0] * &way[0]) + &(&way[1] * &way[1])).sqrt()?;
+        let out = way.map(|part| &part / &length);
+        let middle = [0, 1].map(|k| &circle.centre[k] + &(&out[k] * &circle.radius));
+        let square = outline::squared(graph, &middle);
+        let rise = outline::linear(graph, out, &middle)?;
+        let (per_radius, two) = (graph.number(Number::int(1).over(&circle.radius)?), graph.int(2));
+        let (scaled, rise) = (graph.mul(per_radius, square), graph.mul(two, rise));
+        let over = graph.add(scaled, rise);
+        let (away, one) = (outline::distance(graph, &circle.centre)?, graph.int(1));
+        let share = graph.mul(per_radius, away);
+        let share = graph.add(share, one);
+        let out = graph.div(over, share)?;
+        Some(if circle.convex { graph.neg(out) } else { out })
+    }
+
+    /// Whether one feature is no farther than another, inside: by squares instead of roots, in
+    /// coordinates about the corner or centre, so that nothing large cancels.
+    ///
+    /// With `A = |p - c|²`, `B` the same of the other, `l` the distance to a line, `r` a radius:
+    /// a corner is nearer than a line where `A ≤ l²`, a concave arc where `A ≤ (l + r)²`, a convex
+    /// one where `l ≥ r` or `(r - l)² ≤ A`, an arc is nearer than a corner where
+    /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as [`Section::arcs`] says.
+    fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
+        Some(match (self.kind(this), self.kind(other)) {
+            (Kind::Line(_), Kind::Line(_)) => {
+                let (a, b) = (self.depth(graph, this)?, self.depth(graph, other)?);
+                let difference = graph.sub(a, b);
+                Test::AtMost(expanded(graph, difference))
             }
-            (Feature::Corner(corner), piece) | (piece, Feature::Corner(corner)) if line(piece) => {
-                let away = outline::squared(graph, self.corner(*corner));
-                let depth = self.depth(graph, piece)?;
-                let square = graph.mul(depth, depth);
-                let from_corner = graph.sub(away, square);
-                if matches!(this, Feature::Corner(_)) {
-                    from_corner
-                } else {
-                    graph.neg(from_corner)
-                }
+            (Kind::Point(p), Kind::Point(q)) => {
+                let (a, b) = (outline::squared(graph, p), outline::squared(graph, q));
+                let difference = graph.sub(a, b);
+                Test::AtMost(expanded(graph, difference))
             }
-            _ => {
-                let (this, other) = (self.depth(graph, this)?, self.depth(graph, other)?);
-                graph.sub(this, other)
+            (Kind::Point(q), Kind::Line(line)) => Test::AtMost(self.parabola(graph, q, line)?),
+            (Kind::Line(line), Kind::Point(q)) => {
+                let parabola = self.parabola(graph, q, line)?;
+                Test::AtMost(graph.neg(parabola))
             }
-        };
-        // Expanded, so that squares which cancel are not subtracted at every point.
-        Some(match Polynomial::of(graph, difference) {
-            Some(polynomial) => polynomial.expression(graph),
-            None => difference,
+            (Kind::Arc(arc), Kind::Line(line)) => self.arc_line(graph, arc, line, true)?,
+            (Kind::Line(line), Kind::Arc(arc)) => self.arc_line(graph, arc, line, false)?,
+            (Kind::Arc(arc), Kind::Point(q)) => arc_point(graph, arc, q, true)?,
+            (Kind::Point(q), Kind::Arc(arc)) => arc_point(graph, arc, q, false)?,
+            (Kind::Arc(a), Kind::Arc(b)) => arcs(graph, a, b)?,
+            (Kind::Flat, _) | (_, Kind::Flat) => {
+                let (a, b) = (self.depth(graph, this)?, self.depth(graph, other)?);
+                Test::AtMost(graph.sub(a, b))
+            }
         })
+    }
+
+    /// `|p - q|² - l²`. Beside a line along a coordinate one square cancels.
+    fn parabola(&self, graph: &mut Graph, q: &Place, line: usize) -> Option<Id> {
+        let segment = &self.outline[line];
+        let [tx, tz] = segment.direction()?;
+        let ways = [-&tz, tx];
+        let off = [0, 1].map(|k| &q[k] - &segment.from[k]);
+        let here = &(&ways[0] * &off[0]) + &(&ways[1] * &off[1]);
+        let locals = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let locals = [0, 1].map(|k| {
+            let there = graph.number(q[k].clone());
+            graph.sub(locals[k], there)
+        });
+        for k in 0..2 {
+            if ways[1 - k].is_zero() {
+                // l = here ± u, so u² + v² - l² = v² - here · (here ± 2 u).
+                let square = graph.mul(locals[1 - k], locals[1 - k]);
+                let slope = graph.number(&(&here * &ways[k]) * &Number::int(2));
+                let (rise, constant) = (graph.mul(slope, locals[k]), graph.number(&here * &here));
+                let line = graph.add(rise, constant);
+                return Some(graph.sub(square, line));
+            }
+        }
+        let (away, depth) = (outline::squared(graph, q), segment.depth(graph)?);
+        let square = graph.mul(depth, depth);
+        Some(graph.sub(away, square))
+    }
+
+    fn arc_line(&self, graph: &mut Graph, arc: &Circle, line: usize, nearer: bool) -> Option<Test> {
+        let depth = self.outline[line].depth(graph)?;
+        let radius = graph.number(arc.radius.clone());
+        let away = outline::squared(graph, &arc.centre);
+        if !arc.convex {
+            let sum = graph.add(depth, radius);
+            let square = graph.mul(sum, sum);
+            return Some(Test::AtMost(ordered(graph, away, square, nearer)));
+        }
+        let rest = graph.sub(radius, depth);
+        let square = graph.mul(rest, rest);
+        Some(either(graph, rest, (square, away), nearer))
+    }
+
+    /// How far a point is beyond the normal of a feature at a parameter, in radii.
+    fn beyond(&self, feature: usize, at: f64, p: Point) -> f64 {
+        let (from, way) = self.spoke_line(feature, at);
+        dot(way, minus(p, from))
+    }
+
+    /// A point of a normal, and the direction across it toward larger parameters.
+    fn spoke_line(&self, feature: usize, at: f64) -> (Point, Point) {
+        let seat = self.seat(feature, at);
+        let way = match self.features[feature] {
+            Feature::Piece(piece) => match self.outline[piece].round() {
+                None => self.outline[piece].tangent(false),
+                Some((_, _, convex)) => {
+                    // Turning left about a convex arc's centre, right about a concave one's.
+                    let out = if convex { [-seat.normal[0], -seat.normal[1]] } else { seat.normal };
+                    if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
+                }
+            },
+            Feature::Corner(_) => [seat.normal[1], -seat.normal[0]],
+        };
+        (seat.foot, way)
+    }
+
+    fn spoke(&self, graph: &mut Graph, feature: usize, at: f64) -> Option<Id> {
+        let (from, way) = self.spoke_line(feature, at);
+        let number = |value: f64| Number::from_f64(value);
+        let (from, way) =
+            ([number(from[0])?, number(from[1])?], [number(way[0])?, number(way[1])?]);
+        outline::linear(graph, way, &from)
     }
 }
 
-/// One of these sides holds.
-#[derive(Clone, Debug)]
-pub(super) struct Bound(pub(super) Vec<Curve>);
-
-impl Bound {
-    pub(super) fn one(curve: Curve) -> Bound {
-        Bound(vec![curve])
+/// Expanded, so that squares which cancel are not subtracted at every point.
+fn expanded(graph: &mut Graph, difference: Id) -> Id {
+    match Polynomial::of(graph, difference) {
+        Some(polynomial) => polynomial.expression(graph),
+        None => difference,
     }
+}
 
-    pub(super) fn holds(&self, section: &Section<'_>, p: Point) -> bool {
-        self.0.iter().any(|curve| curve.holds(section, p))
+/// `a - b` or, the other way round, `b - a`.
+fn ordered(graph: &mut Graph, a: Id, b: Id, forward: bool) -> Id {
+    if forward { graph.sub(a, b) } else { graph.sub(b, a) }
+}
+
+/// `edge ≤ 0` or `a ≤ b`; the opposite: `edge ≥ 0` and `a ≥ b`.
+fn either(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test {
+    let curve = ordered(graph, a, b, positive);
+    let edge = if positive { edge } else { graph.neg(edge) };
+    let both = vec![Test::AtMost(edge), Test::AtMost(curve)];
+    if positive { Test::Any(both) } else { Test::All(both) }
+}
+
+/// `|p - a|² - |p - b|² + extra` as a linear expression.
+fn lead(graph: &mut Graph, a: &Place, b: &Place, extra: &Number) -> Option<Id> {
+    let two = Number::int(2);
+    let way = [0, 1].map(|k| &two * &(&b[k] - &a[k]));
+    let apart = &(&way[0] * &way[0]) + &(&way[1] * &way[1]);
+    let rise = outline::linear(graph, way, a)?;
+    let constant = graph.number(extra - &(&apart / &Number::int(4)));
+    Some(graph.add(rise, constant))
+}
+
+fn arc_point(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<Test> {
+    let square = &arc.radius * &arc.radius;
+    let lead = lead(graph, &arc.centre, q, &square)?;
+    let (left, right) = conic(graph, lead, &arc.radius, &arc.centre);
+    Some(either(graph, lead, (left, right), nearer))
+}
+
+/// The two sides of `lead² ≤ 4 t² |p - c|²`.
+fn conic(graph: &mut Graph, lead: Id, t: &Number, centre: &Place) -> (Id, Id) {
+    let left = graph.mul(lead, lead);
+    let factor = graph.number(&(t * t) * &Number::int(4));
+    let away = outline::squared(graph, centre);
+    (left, graph.mul(factor, away))
+}
+
+/// Whether one arc is no farther than another.
+///
+/// Both convex, `D = r₂ - r₁ ≥ 0`, `M = B - A - D²`: the second is nearer where `M ≥ 0` and
+/// `M² ≥ 4 D² A`. Both concave: where `M ≤ 0` or `M² ≤ 4 D² A`. The first convex, the second
+/// concave, `T = r₁ + r₂`, `L = T² + A - B`: where `L ≥ 0` and `L² ≥ 4 T² A`.
+fn arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
+    if this.convex != other.convex {
+        let (first, second) = if this.convex { (this, other) } else { (other, this) };
+        let sum = &first.radius + &second.radius;
+        let lead = lead(graph, &first.centre, &second.centre, &(&sum * &sum))?;
+        let (left, right) = conic(graph, lead, &sum, &first.centre);
+        // Where the first is nearer: L ≤ 0 or L² ≤ 4 T² A.
+        return Some(either(graph, lead, (left, right), this.convex));
     }
+    let swapped = this.radius > other.radius;
+    let (first, second) = if swapped { (other, this) } else { (this, other) };
+    let difference = &second.radius - &first.radius;
+    let square = &difference * &difference;
+    let lead = lead(graph, &second.centre, &first.centre, &-&square)?;
+    // Concave: the second is nearer where M ≤ 0; convex: the first is.
+    let positive = swapped != this.convex;
+    if difference.is_zero() {
+        return Some(Test::AtMost(if positive { lead } else { graph.neg(lead) }));
+    }
+    let (left, right) = conic(graph, lead, &difference, &first.centre);
+    Some(either(graph, lead, (left, right), positive))
+}
+
+/// The direction to a feature's surface, before it is made a unit vector.
+pub(crate) fn course(
+    graph: &mut Graph,
+    outline: &[outline::Segment],
+    feature: Feature,
+) -> Option<[Id; 2]> {
+    let from = |graph: &mut Graph, place: &Place| {
+        let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let there = place.clone().map(|part| graph.number(part));
+        [graph.sub(here[0], there[0]), graph.sub(here[1], there[1])]
+    };
+    Some(match feature {
+        Feature::Piece(index) => match &outline[index].circle {
+            None => {
+                let [d, z] = outline[index].direction()?;
+                [graph.number(z), graph.number(-&d)]
+            }
+            Some(circle) => {
+                let away = from(graph, &circle.centre);
+                if circle.convex { away } else { away.map(|part| graph.neg(part)) }
+            }
+        },
+        Feature::Corner(behind) => {
+            let place = match behind {
+                Some(piece) => &outline[piece].to,
+                None => &outline.first()?.from,
+            };
+            from(graph, place).map(|part| graph.neg(part))
+        }
+    })
 }

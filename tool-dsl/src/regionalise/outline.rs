@@ -2,6 +2,7 @@
 //!
 //! Everything is in the tool's frame, `[d, z]`, counter-clockwise: the material lies on the left.
 
+use super::crossing::meeting;
 use crate::expr::{Coord, Graph, Id};
 use crate::number::Number;
 use crate::report::Report;
@@ -95,6 +96,36 @@ impl Segment {
     /// Its ends.
     pub(crate) fn ends(&self) -> [Point; 2] {
         [self.flat.from, self.flat.to]
+    }
+
+    /// Centre, radius and whether the material is inside, of an arc.
+    pub(crate) fn round(&self) -> Option<(Point, f64, bool)> {
+        self.flat.circle
+    }
+
+    /// The angle at the start of an arc about its centre, and the turn to its end.
+    pub(crate) fn angles(&self) -> [f64; 2] {
+        let Some((centre, _, convex)) = self.flat.circle else { return [0.0; 2] };
+        let [a, b] = self.ends().map(|end| minus(end, centre));
+        let turn = cross(a, b).atan2(dot(a, b));
+        let full = 2.0 * std::f64::consts::PI;
+        let turn = match convex {
+            true if turn < 0.0 => turn + full,
+            false if turn > 0.0 => turn - full,
+            _ => turn,
+        };
+        [a[1].atan2(a[0]), turn]
+    }
+
+    /// The length from end to end.
+    pub(crate) fn chord(&self) -> f64 {
+        norm(minus(self.flat.to, self.flat.from))
+    }
+
+    /// The same piece walked the other way, with the other side's material.
+    pub(crate) fn reversed(&self) -> Segment {
+        let circle = self.circle.clone().map(|circle| Circle { convex: !circle.convex, ..circle });
+        Segment::new([self.to.clone(), self.from.clone()], circle, self.surface, self.span)
     }
 
     /// The direction of travel at its start or end.
@@ -278,15 +309,8 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
 /// Points along a segment, its ends among them.
 pub(crate) fn along(segment: &Segment) -> Vec<Point> {
     let [from, to] = segment.ends();
-    let Some((centre, _, convex)) = segment.flat.circle else { return vec![from, to] };
-    let (a, b) = (minus(from, centre), minus(to, centre));
-    let mut angle = cross(a, b).atan2(dot(a, b));
-    if convex && angle < 0.0 {
-        angle += 2.0 * std::f64::consts::PI;
-    }
-    if !convex && angle > 0.0 {
-        angle -= 2.0 * std::f64::consts::PI;
-    }
+    let Some((centre, ..)) = segment.flat.circle else { return vec![from, to] };
+    let (a, angle) = (minus(from, centre), segment.angles()[1]);
     const STEPS: usize = 32;
     (0..=STEPS)
         .map(|k| match k {
@@ -323,66 +347,43 @@ pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
     [low, high]
 }
 
-/// Where two segments meet, but for the end that neighbours share.
-fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
-    let candidates = match (&a.circle, &b.circle) {
-        (None, None) => line_line(a, b),
-        (None, Some(_)) => line_circle(a, b),
-        (Some(_), None) => line_circle(b, a),
-        (Some(_), Some(_)) => circle_circle(a, b),
-    };
-    let size = [&a.from, &a.to, &b.from, &b.to]
-        .into_iter()
-        .map(|place| norm(doubles(place)))
-        .fold(0.0, f64::max);
-    let slack = 1e-9 * size;
-    let on = |s: &Segment, p: Point| {
-        s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
-    };
-    let ends = [doubles(&a.from), doubles(&a.to), doubles(&b.from), doubles(&b.to)];
-    candidates.into_iter().chain(ends).find(|p| {
-        let shared = neighbours && norm(minus(*p, doubles(&b.from))) <= 2.0 * slack;
-        !shared && on(a, *p) && on(b, *p)
-    })
-}
-
-fn line_line(a: &Segment, b: &Segment) -> Vec<Point> {
-    let (p, r) = (doubles(&a.from), minus(doubles(&a.to), doubles(&a.from)));
-    let (q, s) = (doubles(&b.from), minus(doubles(&b.to), doubles(&b.from)));
-    let sine = cross(r, s);
-    if sine == 0.0 {
-        return Vec::new();
+/// The largest radius of an outline between two heights, rounded up where it is not a given one.
+pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
+    let up = |d: f64| d * (1.0 + 4.0 * f64::EPSILON);
+    let mut widest = 0.0f64;
+    for segment in outline {
+        for [d, z] in segment.ends() {
+            if (low..=high).contains(&z) {
+                widest = widest.max(d);
+            }
+        }
+        let [[d0, z0], [d1, z1]] = segment.ends();
+        match segment.flat.circle {
+            None => {
+                for z in [low, high] {
+                    if (z0.min(z1)..=z0.max(z1)).contains(&z) && z0 != z1 {
+                        widest = widest.max(up(d0 + (d1 - d0) * ((z - z0) / (z1 - z0))));
+                    }
+                }
+            }
+            Some((centre, radius, _)) => {
+                let half = |z: f64| (radius * radius - (z - centre[1]).powi(2)).max(0.0).sqrt();
+                let mut offer = |z: f64, d: f64| {
+                    if segment.sector([d, z]).iter().all(|side| *side >= -1e-12 * radius) {
+                        widest = widest.max(up(d));
+                    }
+                };
+                for z in [low, high] {
+                    if (z - centre[1]).abs() <= radius {
+                        offer(z, centre[0] + half(z));
+                        offer(z, centre[0] - half(z));
+                    }
+                }
+                if (low..=high).contains(&centre[1]) {
+                    offer(centre[1], centre[0] + radius);
+                }
+            }
+        }
     }
-    let t = cross(minus(q, p), s) / sine;
-    vec![[p[0] + t * r[0], p[1] + t * r[1]]]
-}
-
-fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
-    let Some(circle) = &arc.circle else { return Vec::new() };
-    let (centre, radius) = (doubles(&circle.centre), circle.radius.to_f64());
-    let along = line.tangent(false);
-    let from = minus(doubles(&line.from), centre);
-    let foot = -dot(along, from);
-    let off = cross(along, from);
-    let half = (radius * radius - off * off).max(0.0).sqrt();
-    [foot - half, foot + half]
-        .map(|t| [centre[0] + from[0] + t * along[0], centre[1] + from[1] + t * along[1]])
-        .to_vec()
-}
-
-fn circle_circle(a: &Segment, b: &Segment) -> Vec<Point> {
-    let (Some(ca), Some(cb)) = (&a.circle, &b.circle) else { return Vec::new() };
-    let (p, q) = (doubles(&ca.centre), doubles(&cb.centre));
-    let (r, s) = (ca.radius.to_f64(), cb.radius.to_f64());
-    let between = minus(q, p);
-    let apart = norm(between);
-    if apart == 0.0 {
-        return Vec::new();
-    }
-    let along = (apart * apart + r * r - s * s) / (2.0 * apart);
-    let half = (r * r - along * along).max(0.0).sqrt();
-    let way = [between[0] / apart, between[1] / apart];
-    [half, -half]
-        .map(|h| [p[0] + along * way[0] - h * way[1], p[1] + along * way[1] + h * way[0]])
-        .to_vec()
+    widest
 }

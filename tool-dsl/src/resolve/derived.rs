@@ -2,42 +2,50 @@
 
 use super::condition::Curves;
 use super::lower::Lowering;
-use super::profile;
 use super::region::{Felt, Laws, Said};
 use crate::domain::Domain;
-use crate::expr::{Graph, Id};
+use crate::expr::Graph;
 use crate::formula::Formula;
-use crate::model::{Region, Surface};
+use crate::model::{Outside, Region, Section, Surface};
 use crate::regionalise::outline::Segment;
-use crate::regionalise::{self, Derived, Feature, Undivided};
+use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::report::Report;
 use crate::source::Span;
-use crate::syntax::tree;
 
-/// The regions of a profile, derived, and the surfaces that it names.
+/// What a profile makes of a tool.
+#[derive(Default)]
+pub(super) struct FromProfile {
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) regions: Vec<Region>,
+    pub(super) section: Option<Section>,
+}
+
+/// The regions of an outline, derived, and its surfaces.
 pub(super) fn derived(
-    profile: &tree::Profile,
+    (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
     reports: &mut Vec<Report>,
-) -> (Vec<Surface>, Vec<Region>) {
-    let Some((outline, surfaces)) = profile::outline(profile, lowering, reports) else {
-        return Default::default();
-    };
+) -> FromProfile {
     laws.check(&surfaces, reports);
-    let parts = match regionalise::nearest(&mut lowering.graph, &outline) {
-        Ok(parts) => parts,
+    let reversed: Vec<Segment> = outline.iter().rev().map(Segment::reversed).collect();
+    let inner = Partition::new(outline.clone(), false);
+    let outer = Partition::new(reversed, true);
+    let graph = &mut lowering.graph;
+    let parts = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
+    let (parts, beside) = match parts {
+        Ok(both) => both,
         Err(Undivided([d, z])) => {
             let z = lowering.frame.to_file(z);
             let report = Report::error(
-                profile.span,
+                span,
                 format!(
                     "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
                 ),
             );
             reports.push(report.help("write this tool's regions by hand, as in docs/language.md"));
-            return Default::default();
+            return FromProfile::default();
         }
     };
     let names = names(&outline, &surfaces, &parts);
@@ -49,7 +57,25 @@ pub(super) fn derived(
             Err(report) => reports.push(report),
         }
     }
-    (surfaces, regions)
+    let outside = beside
+        .iter()
+        .map(|part| Outside {
+            beside: formula(&part.inside, curves, &mut lowering.graph),
+            clearance: part.depth,
+        })
+        .collect();
+    let section = Section { outline, inner, outer, outside };
+    FromProfile { surfaces, regions, section: Some(section) }
+}
+
+/// A test as a formula over curves.
+fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
+    let zero = graph.int(0);
+    match test {
+        Test::AtMost(value) => curves.at_most(graph, *value, zero),
+        Test::All(all) => Formula::All(all.iter().map(|t| formula(t, curves, graph)).collect()),
+        Test::Any(any) => Formula::Any(any.iter().map(|t| formula(t, curves, graph)).collect()),
+    }
 }
 
 /// The name, surface and place of each derived region: `nut.2` for the second piece of a surface
@@ -96,14 +122,10 @@ impl Felt<'_> {
         (name, owner, span): (String, usize, Span),
         curves: &mut Curves,
     ) -> Result<Region, Report> {
-        let zero = self.lowering.graph.int(0);
         let graph = &mut self.lowering.graph;
-        let bound = |sides: &Vec<Id>, curves: &mut Curves, graph: &mut Graph| {
-            Formula::Any(sides.iter().map(|side| curves.at_most(graph, *side, zero)).collect())
-        };
-        let inside =
-            Formula::All(part.conditions.iter().map(|sides| bound(sides, curves, graph)).collect());
-        let course = regionalise::course(graph, outline, &part.feature).unwrap_or([zero, zero]);
+        let zero = graph.int(0);
+        let inside = formula(&part.inside, curves, graph);
+        let course = regionalise::course(graph, outline, part.feature).unwrap_or([zero, zero]);
         let course = Domain::HalfPlane.vector(graph, &course);
         let depth = part.depth;
         let magnitude = self.magnitude(None, depth)?;

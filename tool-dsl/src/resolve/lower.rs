@@ -2,7 +2,7 @@
 
 use super::dimension::{Dimension, LENGTH};
 use crate::domain::Domain;
-use crate::expr::{Coord, Graph, Id};
+use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::report::{Report, nearest};
@@ -35,11 +35,14 @@ pub(super) enum May {
 }
 
 /// Everything that lowering needs and fills.
+#[derive(Clone)]
 pub(super) struct Lowering {
     pub(super) domain: Domain,
     pub(super) graph: Graph,
     pub(super) unit: Unit,
     pub(super) frame: Frame,
+    /// How many of the file's unit are one of the tool's: 1 but for a mounted file.
+    pub(super) scale: Number,
     pub(super) values: BTreeMap<String, Value>,
     /// Where each name is defined, above or below.
     pub(super) declared: BTreeMap<String, Span>,
@@ -214,11 +217,7 @@ impl Lowering {
             if let May::Constants(what) = may {
                 return Err(not_constant(span, word, what));
             }
-            let id = match coordinate {
-                Coord::Z => self.frame.file_z(&mut self.graph),
-                other => self.graph.coord(other),
-            };
-            return Ok((id, LENGTH));
+            return Ok((self.coordinate_here(coordinate), LENGTH));
         }
         let Some(value) = self.values.get_mut(word) else {
             if let Some(definition) = self.declared.get(word) {

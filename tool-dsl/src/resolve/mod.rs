@@ -4,47 +4,55 @@ mod condition;
 mod derived;
 mod dimension;
 mod direction;
+mod given;
+mod join;
 mod lower;
+mod mount;
 mod outputs;
 mod profile;
 mod region;
+mod scope;
 
 use crate::domain::Domain;
-use crate::expr::Graph;
-use crate::model::{Frame, Model, Unit};
-use crate::number::Number;
+use crate::model::{Model, Surface, Unit};
+use crate::regionalise::outline::Segment;
 use crate::report::{Report, any_error, nearest};
-use crate::source::Span;
-use crate::syntax::tree::{Definition, Item, Law, Name, Profile, Quantity, Tool};
+use crate::source::{Sources, Span};
+use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Quantity, Tool};
 use condition::Curves;
-use lower::{Lowering, May};
+use derived::FromProfile;
+use given::Given;
+use lower::Lowering;
+use mount::Along;
 use region::Laws;
 use std::collections::BTreeMap;
 
-/// Resolves a tool. The model comes back only if nothing is wrong.
-pub fn resolve(tool: &Tool) -> (Option<Model>, Vec<Report>) {
-    let (model, mut reports) = settle(tool);
+/// Resolves a tool with what its params are given; the files that it mounts are read on the way.
+/// The model comes back only if nothing is wrong.
+pub fn resolve(
+    tool: &Tool,
+    given: &[Definition],
+    sources: &mut Sources,
+) -> (Option<Model>, Vec<Report>) {
+    let (model, mut reports) = settle(tool, given, sources);
     reports.retain(|report| !report.message.is_empty());
     (model, reports)
 }
 
-fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
+fn settle(
+    tool: &Tool,
+    given: &[Definition],
+    sources: &mut Sources,
+) -> (Option<Model>, Vec<Report>) {
     let mut reports = Vec::new();
     let unit = match unit(tool) {
         Ok(unit) => unit,
         Err(report) => return (None, vec![report]),
     };
-    let mut lowering = Lowering {
-        domain: tool.domain,
-        graph: Graph::default(),
-        unit,
-        frame: Frame { tip: Number::int(0), down: false },
-        values: BTreeMap::new(),
-        declared: definitions(tool, |_| true)
-            .map(|definition| (definition.name.word.clone(), definition.name.span))
-            .collect(),
-    };
-    constants(tool, &mut lowering, &mut reports);
+    let mut lowering = Lowering::of(tool, unit);
+    let given = given::from_outside(given, (tool.domain, unit), &mut reports);
+    given::untaken(tool, &given, &mut reports);
+    constants(tool, &given, &mut lowering, &mut reports);
     if any_error(&reports) {
         return (None, reports);
     }
@@ -53,15 +61,7 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
     }
     frame(tool, &mut lowering, &mut reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
-        let value = lowering.lower(&definition.value, May::Coordinates);
-        let defined = value.and_then(|value| {
-            if value.1 == dimension::Dimension::Angle {
-                let report = Report::error(definition.value.span, "a curve is no angle");
-                return Err(report.help("give a number or a power of length"));
-            }
-            lowering.define(&definition.name, value)
-        });
-        reports.extend(defined.err());
+        reports.extend(lowering.curve(definition).err());
     }
     if any_error(&reports) {
         return (None, reports);
@@ -77,10 +77,33 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let laws = Laws::new(&laws);
-    let (surfaces, regions) = match profile_of(tool, &mut reports) {
-        Some(profile) => derived::derived(profile, &laws, &mut lowering, &mut curves, &mut reports),
-        None => region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports),
+    let outlined = shape(tool, &mut reports).map(|shape| match shape {
+        Shape::Profile(profile) => {
+            let outline = profile::outline(profile, &mut lowering, &mut reports);
+            outline.map(|(outline, surfaces)| Outlined {
+                outline,
+                surfaces,
+                along: BTreeMap::new(),
+                span: profile.span,
+            })
+        }
+        Shape::Mounts(mounts) => {
+            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, &mut reports)
+        }
+    });
+    let FromProfile { surfaces, regions, section } = match outlined {
+        Some(Some(Outlined { outline, surfaces, along, span })) => {
+            let laws = Laws::new(&laws, along);
+            let whole = (outline, surfaces, span);
+            derived::derived(whole, &laws, &mut lowering, &mut curves, &mut reports)
+        }
+        Some(None) => FromProfile::default(),
+        None => {
+            let laws = Laws::new(&laws, BTreeMap::new());
+            let (surfaces, regions) =
+                region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports);
+            FromProfile { surfaces, regions, section: None }
+        }
     };
     let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
     for (word, value) in &lowering.values {
@@ -105,6 +128,7 @@ fn settle(tool: &Tool) -> (Option<Model>, Vec<Report>) {
         surfaces,
         regions,
         first,
+        section,
     };
     (Some(model), reports)
 }
@@ -116,6 +140,7 @@ fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
             Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
             Item::Spindle { span, .. } => (*span, "spindle", "its file's frame is the pose's"),
             Item::Profile(profile) => (profile.span, "profile", "it has regions by hand"),
+            Item::Mount(mount) => (mount.span, "mount", "it has regions by hand"),
             Item::Regions(span) => (*span, "regions", "it has regions by hand"),
             _ => continue,
         };
@@ -126,8 +151,24 @@ fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
     }
 }
 
-/// The profile, if there is one, and what does not go with it.
-fn profile_of<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<&'t Profile> {
+/// What a tool's outline is made of.
+enum Shape<'t> {
+    Profile(&'t Profile),
+    Mounts(Vec<&'t Mount>),
+}
+
+/// A tool's outline in its frame and unit.
+struct Outlined {
+    outline: Vec<Segment>,
+    surfaces: Vec<Surface>,
+    /// The niceness that comes along with the surfaces of mounted files.
+    along: BTreeMap<String, Along>,
+    /// Where it is said.
+    span: Span,
+}
+
+/// The profile or the mounts, if there are any, and what does not go with them.
+fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
     let mut profiles = tool.items.iter().filter_map(|item| match item {
         Item::Profile(profile) => Some(profile),
         _ => None,
@@ -140,20 +181,42 @@ fn profile_of<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<&'t Profi
                 .help("drop one"),
         );
     }
+    let mounts: Vec<&Mount> = tool
+        .items
+        .iter()
+        .filter_map(|item| if let Item::Mount(mount) = item { Some(mount) } else { None })
+        .collect();
     for item in &tool.items {
-        match (item, first) {
-            (Item::Region(region), Some(_)) => reports.push(
-                Report::error(region.name.span, "a tool has a profile or regions by hand")
-                    .help("drop the regions: the profile's are derived"),
-            ),
-            (Item::Regions(span), None) => reports.push(
+        match item {
+            Item::Region(region) if first.is_some() || !mounts.is_empty() => {
+                let has = if first.is_some() { "a profile" } else { "mounts" };
+                reports.push(
+                    Report::error(region.name.span, format!("a tool has {has} or regions by hand"))
+                        .help("drop the regions: the profile's are derived"),
+                );
+            }
+            Item::Regions(span) if first.is_none() && mounts.is_empty() => reports.push(
                 Report::error(*span, "there is no profile to derive regions of")
                     .help("write `profile { … }`"),
             ),
+            Item::Mount(mount) if first.is_some() => reports.extend(first.map(|profile| {
+                Report::error(mount.span, "a tool has a profile or mounts")
+                    .and(profile.span, "the profile")
+                    .help("drop one, or mount the profile as a file of its own")
+            })),
+            Item::Tip(Expr { span, .. }) | Item::Spindle { span, .. } if !mounts.is_empty() => {
+                reports.push(
+                    Report::error(*span, "mounts bring their own tip and spindle")
+                        .help("drop it: the tip is the first mount's, at z = 0"),
+                );
+            }
             _ => {}
         }
     }
-    first
+    match first {
+        Some(profile) => Some(Shape::Profile(profile)),
+        None => (!mounts.is_empty()).then_some(Shape::Mounts(mounts)),
+    }
 }
 
 fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Item = &Definition> {
@@ -204,9 +267,18 @@ fn unit(tool: &Tool) -> Result<Unit, Report> {
 }
 
 /// `let` and `param`, in order.
-fn constants(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
-    for definition in definitions(tool, |item| matches!(item, Item::Let(_) | Item::Param(_))) {
+fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports: &mut Vec<Report>) {
+    for item in &tool.items {
+        let (definition, is_param) = match item {
+            Item::Let(definition) => (definition, false),
+            Item::Param(definition) => (definition, true),
+            _ => continue,
+        };
         let value = lowering.constant(&definition.value, "a `let`");
+        let value = value.and_then(|value| match is_param {
+            true => given::value_of(definition, value, given, lowering.unit),
+            false => Ok(value),
+        });
         let defined = value.and_then(|(value, dimension)| {
             let size = value.to_f64().abs();
             if size != 0.0 && !(2f64.powi(-300)..=2f64.powi(300)).contains(&size) {

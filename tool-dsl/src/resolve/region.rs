@@ -3,6 +3,7 @@
 use super::condition::Curves;
 use super::dimension::Dimension;
 use super::lower::{Lowering, May};
+use super::mount::Along;
 use super::{is, outputs};
 use crate::expr::Id;
 use crate::formula::Formula;
@@ -10,36 +11,41 @@ use crate::model::{Region, Surface};
 use crate::report::{Report, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Expr, Item, Law, Quantity, Tool};
+use std::collections::BTreeMap;
 
 /// The most regions that a tool may have: more take the planner minutes.
 const MOST: usize = 256;
 
 /// A tool's laws.
-pub(super) struct Laws<'t>(&'t [&'t Law]);
+pub(super) struct Laws<'t> {
+    own: &'t [&'t Law],
+    /// The niceness that comes along with the surfaces of mounted files.
+    along: BTreeMap<String, Along>,
+}
 
 impl<'t> Laws<'t> {
-    pub(super) fn new(laws: &'t [&'t Law]) -> Laws<'t> {
-        Laws(laws)
+    pub(super) fn new(own: &'t [&'t Law], along: BTreeMap<String, Along>) -> Laws<'t> {
+        Laws { own, along }
     }
 
     /// The law for a surface: for the surface itself, for `cutting`, for all.
-    fn find(&self, quantity: Quantity, surface: &Surface) -> Option<&'t Law> {
+    pub(super) fn find(&self, quantity: Quantity, surface: &Surface) -> Option<&'t Law> {
         let for_word = |word: &str| {
-            self.0
+            self.own
                 .iter()
                 .filter(is(quantity))
                 .find(|law| law.surfaces.iter().any(|name| name.word == word))
         };
         for_word(&surface.name)
             .or_else(|| if surface.cutting { for_word("cutting") } else { None })
-            .or_else(|| self.0.iter().filter(is(quantity)).find(|law| law.surfaces.is_empty()))
+            .or_else(|| self.own.iter().filter(is(quantity)).find(|law| law.surfaces.is_empty()))
             .copied()
     }
 
     /// What is wrong with the laws themselves.
     pub(super) fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
         let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
-        for law in self.0 {
+        for law in self.own {
             let what = law.quantity.word();
             if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
                 reports.push(
@@ -76,7 +82,7 @@ impl<'t> Laws<'t> {
                         let known = surfaces.iter().map(|s| s.name.as_str());
                         reports.push(match nearest(word, known) {
                             Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                            None => report.help("name a surface of a region: `region … as NAME`"),
+                            None => report.help(named(word, surfaces)),
                         });
                     }
                     Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
@@ -86,6 +92,20 @@ impl<'t> Laws<'t> {
                 }
             }
         }
+    }
+}
+
+/// Which surfaces there are: those of a mounted part, if it is named.
+fn named(word: &str, surfaces: &[Surface]) -> String {
+    let of = format!("{word}.");
+    let part: Vec<String> = surfaces
+        .iter()
+        .filter(|surface| surface.name.starts_with(&of))
+        .map(|surface| format!("`{}`", surface.name))
+        .collect();
+    match part.as_slice() {
+        [] => "name a surface of a region: `region … as NAME`".to_owned(),
+        part => format!("name a surface of the part: {}", part.join(", ")),
     }
 }
 
@@ -188,6 +208,16 @@ pub(super) struct Said {
     pub(super) depth_span: Span,
 }
 
+/// A magnitude or a niceness.
+pub(super) fn quantity(lowering: &mut Lowering, value: &Expr, may: May) -> Result<Id, Report> {
+    let (id, dimension) = lowering.lower(value, may)?;
+    if dimension == Dimension::Angle {
+        return Err(Report::error(value.span, "this is an angle")
+            .help("give a number or a power of length"));
+    }
+    Ok(id)
+}
+
 /// Settles what one region's evaluators compute.
 pub(super) struct Felt<'a> {
     pub(super) laws: &'a Laws<'a>,
@@ -206,7 +236,7 @@ impl Felt<'_> {
     ) -> Result<Option<Id>, Report> {
         let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
         let Some(value) = own.or(law) else { return Ok(None) };
-        let id = self.quantity(value, May::Depth(depth))?;
+        let id = quantity(self.lowering, value, May::Depth(depth))?;
         let is_depth = id == depth && mention(value, Quantity::Depth.word()).is_some();
         Ok((!is_depth).then_some(id))
     }
@@ -306,15 +336,6 @@ impl Felt<'_> {
         Ok(first.map(|scalar| &scalar.value))
     }
 
-    fn quantity(&mut self, value: &Expr, may: May) -> Result<Id, Report> {
-        let (id, dimension) = self.lowering.lower(value, may)?;
-        if dimension == Dimension::Angle {
-            return Err(Report::error(value.span, "this is an angle")
-                .help("give a number or a power of length"));
-        }
-        Ok(id)
-    }
-
     /// The depth: what the region says, else its magnitude.
     fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Report> {
         let (value, by) = match self.said(written, Quantity::Depth)? {
@@ -357,8 +378,8 @@ impl Felt<'_> {
         Ok((id, value.span))
     }
 
-    /// The niceness that a region or else the law for its surface writes; else 1, or 0 where
-    /// nothing cuts.
+    /// The niceness that a region or else the law for its surface writes, or else its mounted file;
+    /// else 1, or 0 where nothing cuts.
     pub(super) fn niceness(&mut self, own: Option<&Expr>, depth: Id) -> Result<Id, Report> {
         if !self.surface.cutting {
             return match own {
@@ -367,9 +388,10 @@ impl Felt<'_> {
             };
         }
         let law = self.laws.find(Quantity::Niceness, self.surface).map(|law| &law.value);
-        match own.or(law) {
-            Some(value) => self.quantity(value, May::Depth(depth)),
-            None => Ok(self.lowering.graph.int(1)),
+        match (own.or(law), self.laws.along.get(&self.surface.name)) {
+            (Some(value), _) => quantity(self.lowering, value, May::Depth(depth)),
+            (None, Some(along)) => along.lower(&mut self.lowering.graph, depth),
+            (None, None) => Ok(self.lowering.graph.int(1)),
         }
     }
 

@@ -4,10 +4,13 @@
 //! name, with a remedy (`refuse`). Items are parsed each for itself, so that one mistake does
 //! not hide the next.
 
+mod mount;
 mod parse;
 mod refuse;
 pub mod tree;
 
+pub use mount::given;
+pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};
 
 /// pest's generated parser, in a module of its own because it documents nothing.
@@ -15,6 +18,7 @@ mod grammar {
     #![allow(missing_docs)]
     #[derive(pest_derive::Parser)]
     #[grammar = "syntax/grammar.pest"]
-    pub(super) struct Grammar;
+    pub(crate) struct Grammar;
 }
-use grammar::{Grammar, Rule};
+use grammar::Grammar;
+pub(crate) use grammar::Rule;

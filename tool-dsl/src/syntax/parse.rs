@@ -41,20 +41,23 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
     pest::set_error_detail(true);
     let mut reports = Vec::new();
     if let Err(report) = within_limits(&source.text) {
-        return (None, vec![report]);
+        return (None, vec![report.behind(source.base)]);
     }
     let pairs = match Grammar::parse(Rule::file, &source.text) {
         Ok(pairs) => pairs,
-        Err(error) => return (None, vec![refuse::syntax(&source.text, 0, &error)]),
+        Err(error) => {
+            let report = refuse::syntax(&source.text, 0, &error);
+            return (None, vec![report.behind(source.base)]);
+        }
     };
     let mut broken = Vec::new();
     let tool = pairs.flatten().find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid));
-    let tool = tool
-        .map(|pair| Reader { offset: 0, reports: &mut reports, broken: &mut broken }.tool(pair));
+    let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
+    let tool = tool.map(|pair| reader.tool(pair));
     (tool.map(|tool| Tool { broken, ..tool }), reports)
 }
 
-fn within_limits(text: &str) -> Result<(), Report> {
+pub(super) fn within_limits(text: &str) -> Result<(), Report> {
     if text.len() > LONGEST {
         let end = Span { start: 0, end: 1 };
         return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
@@ -98,16 +101,16 @@ fn within_limits(text: &str) -> Result<(), Report> {
     Ok(())
 }
 
-struct Reader<'a> {
-    /// Where the parsed text begins in the source.
-    offset: usize,
-    reports: &'a mut Vec<Report>,
+pub(super) struct Reader<'a> {
+    /// Where the parsed text begins among all sources.
+    pub(super) offset: usize,
+    pub(super) reports: &'a mut Vec<Report>,
     /// The first words of items that could not be read, and the names that they define.
-    broken: &'a mut Vec<String>,
+    pub(super) broken: &'a mut Vec<String>,
 }
 
 impl Reader<'_> {
-    fn span(&self, pair: &Pair<'_, Rule>) -> Span {
+    pub(super) fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let text = pair.as_str().trim_end();
         let start = pair.as_span().start() + self.offset;
         Span { start, end: start + text.len() }
@@ -180,6 +183,7 @@ impl Reader<'_> {
             Rule::tip => Item::Tip(self.expr(inner.next()?)),
             Rule::spindle => Item::Spindle { down: inner.next()?.as_str() == "-", span },
             Rule::profile => Item::Profile(self.profile(inner, span)?),
+            Rule::mount => Item::Mount(self.mount(inner, span)?),
             Rule::regions => Item::Regions(span),
             Rule::region => Item::Region(self.region(inner)?),
             Rule::bsp => Item::Bsp(inner.map(|pair| self.name(&pair)).collect()),
@@ -188,7 +192,7 @@ impl Reader<'_> {
                 let mut surfaces = Vec::new();
                 let mut next = inner.next()?;
                 if next.as_rule() == Rule::which {
-                    surfaces = next.into_inner().map(|pair| self.name(&pair)).collect();
+                    surfaces = next.into_inner().map(|pair| self.path(pair)).collect();
                     next = inner.next()?;
                 }
                 Item::Law(Law { quantity, surfaces, value: self.expr(next), span })
@@ -197,11 +201,11 @@ impl Reader<'_> {
         })
     }
 
-    fn name(&self, pair: &Pair<'_, Rule>) -> Name {
+    pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
         Name { word: pair.as_str().to_owned(), span: self.span(pair) }
     }
 
-    fn definition<'i>(
+    pub(super) fn definition<'i>(
         &mut self,
         mut inner: impl Iterator<Item = Pair<'i, Rule>>,
     ) -> Option<Definition> {
@@ -249,7 +253,7 @@ impl Reader<'_> {
     }
 
     /// `as NAME cutting`
-    fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
+    pub(super) fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
         let (mut name, mut cutting) = (None, None);
         for part in pair.into_inner() {
             match part.as_rule() {
@@ -333,7 +337,7 @@ impl Reader<'_> {
         Some(Condition { first, rest, span })
     }
 
-    fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
+    pub(super) fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
         let span = self.span(&pair);
         let kind = match pair.as_rule() {
             Rule::expr | Rule::product => return self.chain(pair.into_inner()),
@@ -465,8 +469,16 @@ fn quantity(pair: &Pair<'_, Rule>) -> Quantity {
     }
 }
 
+/// The text as it stands: its tokens and comments in order.
+pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Report> {
+    match Grammar::parse(Rule::tokens, text) {
+        Ok(mut pairs) => Ok(pairs.next().map_or(pairs, Pair::into_inner)),
+        Err(error) => Err(refuse::syntax(text, 0, &error)),
+    }
+}
+
 /// Whether a rule is a word of the language that carries nothing.
-fn is_word(rule: Rule) -> bool {
+pub(super) fn is_word(rule: Rule) -> bool {
     matches!(
         rule,
         Rule::k_units
@@ -483,5 +495,8 @@ fn is_word(rule: Rule) -> bool {
             | Rule::k_bsp
             | Rule::k_profile
             | Rule::k_regions
+            | Rule::k_mount
+            | Rule::k_with
+            | Rule::k_at
     )
 }

@@ -7,7 +7,7 @@ use pest::error::{Error, ErrorVariant, InputLocation};
 
 /// What a file is.
 const FILES: [&str; 2] = ["tool", "solid"];
-const ITEMS: [&str; 12] = [
+const ITEMS: [&str; 13] = [
     "units",
     "let",
     "param",
@@ -15,6 +15,7 @@ const ITEMS: [&str; 12] = [
     "tip",
     "spindle",
     "profile",
+    "mount",
     "regions",
     "region",
     "bsp",
@@ -37,14 +38,8 @@ pub(super) fn comparison(span: Span, written: &str) -> Report {
 
 /// A syntax error of pest's, at a place in a text that begins at `offset` of the source.
 pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
-    let rule_at = match error.location {
-        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
-    };
-    // Rules are tried where they begin; a token may have been missing further on.
+    let (at, rule_at, token_at) = place(text, error);
     let attempts = error.parse_attempts();
-    let token_at = attempts.as_ref().map_or(0, |attempts| attempts.max_position);
-    let at = rule_at.max(token_at);
-    let at = at + text[at..].len() - text[at..].trim_start().len();
     let wants_end = attempts.is_some_and(|attempts| {
         token_at >= rule_at
             && attempts.expected_tokens().iter().any(|token| token.to_string() == ";")
@@ -83,6 +78,32 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
     if expected.is_empty() { report } else { report.help(format!("expected {expected}")) }
 }
 
+/// A syntax error in what a tool's params are given.
+pub(super) fn given(text: &str, error: &Error<Rule>) -> Report {
+    let (at, ..) = place(text, error);
+    let (rest, before) = (&text[at..], text[..at].trim_end());
+    let here = Span { start: at, end: at + rest.chars().next().map_or(0, char::len_utf8) };
+    let habit = || habit(rest, before, here).filter(|_| !rest.is_empty());
+    spelling(text, rest, before, here).or_else(habit).unwrap_or_else(|| {
+        let found = match rest.split_whitespace().next() {
+            None => "the text ends here".to_owned(),
+            Some(word) => format!("`{}` does not fit here", first_token(word)),
+        };
+        Report::error(here, found).help("write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`")
+    })
+}
+
+/// Where a text stopped to fit: the place itself, and how far rules and tokens came.
+fn place(text: &str, error: &Error<Rule>) -> (usize, usize, usize) {
+    let rule_at = match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+    };
+    // Rules are tried where they begin; a token may have been missing further on.
+    let token_at = error.parse_attempts().map_or(0, |attempts| attempts.max_position);
+    let at = rule_at.max(token_at);
+    (at + text[at..].len() - text[at..].trim_start().len(), rule_at, token_at)
+}
+
 /// Mistakes that a character gives away.
 fn spelling(text: &str, rest: &str, before: &str, here: Span) -> Option<Report> {
     let next = rest.chars().next()?;
@@ -114,8 +135,8 @@ fn spelling(text: &str, rest: &str, before: &str, here: Span) -> Option<Report> 
             report("this text does not end".into(), "close it with `\"` on the same line")
         }
         '"' => report(
-            "text stands only behind the tool's name".into(),
-            "write it as in `tool Name \"what it is\" { … }`",
+            "text stands only behind the tool's name and `mount`".into(),
+            "write it as in `tool Name \"what it is\" { … }` or `mount \"file.tool\" as NAME`",
         ),
         '_' => report("a name begins with a letter".into(), "drop the `_`"),
         _ if !next.is_ascii() => report(
@@ -273,6 +294,9 @@ fn describe(rule: Rule) -> Option<&'static str> {
         Rule::condition => "a condition",
         Rule::surface => "`as`",
         Rule::where_ => "`where`",
+        Rule::with | Rule::k_with => "`with`",
+        Rule::at | Rule::k_at => "`at`",
+        Rule::setting => "`PARAM = VALUE`",
         Rule::cutting | Rule::k_cutting => "`cutting`",
         Rule::scalar | Rule::direction => "`depth:`, `magnitude:`, `direction:`, `niceness:`",
         Rule::sign => "`+` or `-`",
@@ -280,7 +304,7 @@ fn describe(rule: Rule) -> Option<&'static str> {
         Rule::k_tool | Rule::tool => "`tool Name { … }`",
         Rule::k_solid | Rule::solid => "`solid Name { … }`",
         Rule::k_from => "`from`",
-        Rule::which => "a surface's name",
+        Rule::which | Rule::path => "a surface's name",
         Rule::EOI => "the end",
         Rule::stray | Rule::tool_item | Rule::units => "an item",
         _ => return None,

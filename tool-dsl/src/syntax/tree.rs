@@ -51,6 +51,8 @@ pub enum Item {
     },
     /// `profile { … }`
     Profile(Profile),
+    /// `mount "er16.tool" as nut at z = 30;`
+    Mount(Mount),
     /// `regions nearest;`
     Regions(Span),
     /// `region … { … }`
@@ -112,6 +114,23 @@ pub enum Round {
     Center(Tuple),
     /// Its radius.
     Radius(Expr),
+}
+
+/// Another file's tool, as a part of this one.
+#[derive(Clone, Debug)]
+pub struct Mount {
+    /// The file, as it is written.
+    pub file: Name,
+    /// What the part is called.
+    pub name: Name,
+    /// `cutting`, if given.
+    pub cutting: Option<Span>,
+    /// What its params are given.
+    pub with: Vec<Definition>,
+    /// Where its tip is, if not at the tool's.
+    pub at: Option<Expr>,
+    /// The whole item.
+    pub span: Span,
 }
 
 /// A region written by hand.
@@ -209,7 +228,7 @@ pub struct Tuple {
 pub struct Law {
     /// Magnitude or niceness.
     pub quantity: Quantity,
-    /// The surfaces it is for; none means all.
+    /// The surfaces it is for, those of a part as `part.surface`; none means all.
     pub surfaces: Vec<Name>,
     /// Its value.
     pub value: Expr,

@@ -1,0 +1,6 @@
+touchoff::include_tool!("mistakes/pin.tool", D = diameter);
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Pin;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

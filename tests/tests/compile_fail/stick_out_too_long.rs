@@ -1,0 +1,12 @@
+touchoff::tool! {
+    tool Mill {
+        units mm;
+        mount "pin.tool" as cutter with long = 8;
+        mount "pin.tool" as nut with D = 20 at z = 10;
+    }
+}
+
+fn main() {
+    let tool: &dyn touchoff::Tool = &Mill;
+    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+}

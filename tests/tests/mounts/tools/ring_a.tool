@@ -1,0 +1,4 @@
+tool RingA {
+    units mm;
+    mount "ring_b.tool" as b;
+}

@@ -1,0 +1,4 @@
+tool RingB {
+    units mm;
+    mount "ring_a.tool" as a;
+}

@@ -1,0 +1,195 @@
+//! Statements, their blocks, and the comments around them.
+
+use super::token::{Kind, Token};
+use super::{STEP, WIDTH, line};
+
+/// What stands in a block, one below the other.
+pub(super) enum Node<'t> {
+    /// Comments on a line of their own.
+    Comments(Comments<'t>),
+    /// An item, a property, a segment.
+    Statement(Statement<'t>),
+}
+
+pub(super) struct Comments<'t> {
+    /// Whether a blank line stands before.
+    blank: bool,
+    run: &'t [Token<'t>],
+}
+
+pub(super) struct Statement<'t> {
+    /// Whether a blank line stands before.
+    blank: bool,
+    /// As far as its `;` or `{`.
+    code: &'t [Token<'t>],
+    /// Comments behind that on the same line.
+    beside: &'t [Token<'t>],
+    body: Option<Body<'t>>,
+}
+
+struct Body<'t> {
+    nodes: Vec<Node<'t>>,
+    /// Its `}`; nothing where the text ends before.
+    close: &'static str,
+    /// Comments behind its `}` on the same line.
+    beside: &'t [Token<'t>],
+    /// Whether it was written on one line and may stay there.
+    one_line: bool,
+}
+
+/// The nodes of a whole text.
+pub(super) fn nodes<'t>(tokens: &'t [Token<'t>]) -> Vec<Node<'t>> {
+    Reader { tokens, at: 0 }.nodes(false)
+}
+
+struct Reader<'t> {
+    tokens: &'t [Token<'t>],
+    at: usize,
+}
+
+impl<'t> Reader<'t> {
+    fn nodes(&mut self, nested: bool) -> Vec<Node<'t>> {
+        let mut nodes = Vec::new();
+        while let Some(next) = self.tokens.get(self.at) {
+            if nested && next.is("}") {
+                break;
+            }
+            let blank = next.newlines > 1 && !nodes.is_empty();
+            let run = self.comments();
+            if run.iter().any(|comment| comment.kind == Kind::Ending) || self.ends_behind(run) {
+                self.at += run.len();
+                nodes.push(Node::Comments(Comments { blank, run }));
+            } else {
+                nodes.push(Node::Statement(self.statement(blank)));
+            }
+        }
+        nodes
+    }
+
+    /// The comments that come next and stand on one line.
+    fn comments(&self) -> &'t [Token<'t>] {
+        let rest = &self.tokens[self.at..];
+        let belongs = |(at, token): (usize, &Token<'_>)| {
+            token.is_comment() && (at == 0 || token.newlines == 0)
+        };
+        &rest[..rest.iter().enumerate().take_while(|next| belongs(*next)).count()]
+    }
+
+    /// Whether there are comments and nothing but a `}` stands behind them on their line.
+    fn ends_behind(&self, run: &[Token<'_>]) -> bool {
+        let behind = self.tokens.get(self.at + run.len());
+        !run.is_empty() && behind.is_none_or(|token| token.newlines > 0 || token.is("}"))
+    }
+
+    /// Takes the comments that stand on the same line as what was read last.
+    fn beside(&mut self) -> &'t [Token<'t>] {
+        let run = match self.tokens.get(self.at) {
+            Some(next) if next.newlines == 0 => self.comments(),
+            _ => &[],
+        };
+        let run = if self.ends_behind(run) { run } else { &[] };
+        self.at += run.len();
+        run
+    }
+
+    fn statement(&mut self, blank: bool) -> Statement<'t> {
+        let start = self.at;
+        let mut list = false;
+        let mut opens = false;
+        while let Some(token) = self.tokens.get(self.at) {
+            let alone = self.at == start;
+            if token.is("}") && !list && !alone {
+                break;
+            }
+            self.at += 1;
+            list |= token.is("bsp") && token.kind == Kind::Word;
+            opens = token.is("{") && !list;
+            if opens || token.is(";") || token.is("}") {
+                break;
+            }
+        }
+        let code = &self.tokens[start..self.at];
+        let beside = self.beside();
+        let body = opens.then(|| self.body(code, beside));
+        Statement { blank, code, beside, body }
+    }
+
+    fn body(&mut self, head: &[Token<'_>], beside: &[Token<'_>]) -> Body<'t> {
+        let start = self.at;
+        let nodes = self.nodes(true);
+        let close = if self.at < self.tokens.len() { "}" } else { "" };
+        self.at += close.len();
+        let inside = &self.tokens[start..self.at];
+        let plain = |token: &Token<'_>| token.newlines == 0 && !token.is_comment();
+        let one_line = head.first().is_some_and(|word| word.is("region"))
+            && nodes.len() == 1
+            && !close.is_empty()
+            && beside.is_empty()
+            && inside.iter().all(plain);
+        Body { nodes, close, beside: self.beside(), one_line }
+    }
+}
+
+/// The text of nodes.
+pub(super) fn write(nodes: &[Node<'_>]) -> String {
+    let mut page = String::new();
+    write_at(nodes, 0, &mut page);
+    page
+}
+
+fn write_at(nodes: &[Node<'_>], indent: usize, page: &mut String) {
+    for node in nodes {
+        let (Node::Comments(Comments { blank, .. }) | Node::Statement(Statement { blank, .. })) =
+            node;
+        if *blank {
+            page.push('\n');
+        }
+        match node {
+            Node::Comments(comments) => line::write(comments.run, indent, page),
+            Node::Statement(statement) => statement.write(indent, page),
+        }
+        page.push('\n');
+    }
+}
+
+impl Statement<'_> {
+    fn write(&self, indent: usize, page: &mut String) {
+        if let Some(line) = self.on_one_line()
+            && indent + line.chars().count() <= WIDTH
+        {
+            page.extend(std::iter::repeat_n(' ', indent));
+            page.push_str(&line);
+        } else {
+            line::write(self.code, indent, page);
+            beside(self.beside, page);
+            if let Some(body) = &self.body {
+                if !(body.nodes.is_empty() && self.beside.is_empty()) {
+                    page.push('\n');
+                    write_at(&body.nodes, indent + STEP, page);
+                    page.extend(std::iter::repeat_n(' ', indent));
+                }
+                page.push_str(body.close);
+            }
+        }
+        if let Some(body) = &self.body {
+            beside(body.beside, page);
+        }
+    }
+
+    /// A region of one property that was written on one line.
+    fn on_one_line(&self) -> Option<String> {
+        let body = self.body.as_ref().filter(|body| body.one_line)?;
+        let [Node::Statement(property)] = body.nodes.as_slice() else { return None };
+        if self.code.iter().any(|token| token.kind == Kind::Ending) || property.body.is_some() {
+            return None;
+        }
+        Some(format!("{} {} }}", line::joined(self.code), line::joined(property.code)))
+    }
+}
+
+fn beside(comments: &[Token<'_>], page: &mut String) {
+    for comment in comments {
+        page.push(' ');
+        page.push_str(comment.text);
+    }
+}

@@ -1,0 +1,97 @@
+//! Tokens with what a layout has to know of each.
+
+use crate::report::Report;
+use crate::syntax::{self, Rule};
+
+/// What a token is to its neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A word of the language, where it is one.
+    Word,
+    /// A name, a number or a text.
+    Value,
+    /// A plus or minus before a single operand.
+    Sign,
+    /// An operator or other punctuation.
+    Mark,
+    /// A comment that the line may go on behind.
+    Inline,
+    /// A comment that ends its line: `// …`, or one of several lines.
+    Ending,
+}
+
+/// A token or a comment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Token<'t> {
+    pub(super) text: &'t str,
+    pub(super) kind: Kind,
+    /// Line ends between it and what stands before.
+    pub(super) newlines: usize,
+}
+
+impl Token<'_> {
+    pub(super) fn is(&self, text: &str) -> bool {
+        self.text == text
+    }
+
+    pub(super) fn is_comment(&self) -> bool {
+        matches!(self.kind, Kind::Inline | Kind::Ending)
+    }
+}
+
+/// Words that no name, point or value follows at once; all others are followed by one.
+const COMPLETE: [&str; 7] = ["arc", "away", "concave", "cutting", "line", "nearest", "regions"];
+
+/// What was read last, of which the kind of the next token follows: an operand never stands beside
+/// an operand, so a word that does is one of the language.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Last {
+    Nothing,
+    Operand,
+    Operator,
+    DirectionColon,
+}
+
+/// The tokens of a text.
+pub(super) fn tokens(text: &str) -> Result<Vec<Token<'_>>, Report> {
+    let (mut last, mut first, mut end) = (Last::Nothing, "", 0);
+    let mut tokens = Vec::new();
+    for pair in syntax::tokens(text)? {
+        let (written, span) = (pair.as_str(), pair.as_span());
+        let (kind, next) = match pair.as_rule() {
+            Rule::EOI => break,
+            Rule::line_comment => (Kind::Ending, last),
+            Rule::block_comment if written.contains('\n') => (Kind::Ending, last),
+            Rule::block_comment => (Kind::Inline, last),
+            Rule::name => name(written, last),
+            Rule::number | Rule::text => (Kind::Value, Last::Operand),
+            _ => match written {
+                "+" | "-" if last != Last::Operand => (Kind::Sign, Last::Operator),
+                ")" => (Kind::Mark, Last::Operand),
+                ";" | "{" | "}" => (Kind::Mark, Last::Nothing),
+                ":" if first == "direction" => (Kind::Mark, Last::DirectionColon),
+                _ => (Kind::Mark, Last::Operator),
+            },
+        };
+        if last == Last::Nothing && kind == Kind::Word {
+            first = written;
+        }
+        let newlines = text[end..span.start()].matches('\n').count();
+        tokens.push(Token { text: written.trim_end(), kind, newlines });
+        (last, end) = (next, span.end());
+    }
+    Ok(tokens)
+}
+
+fn name(written: &str, last: Last) -> (Kind, Last) {
+    let is_word = match last {
+        Last::Nothing | Last::Operand => true,
+        Last::Operator => false,
+        Last::DirectionColon => ["away", "toward"].contains(&written),
+    };
+    match is_word {
+        true if COMPLETE.contains(&written) => (Kind::Word, Last::Operand),
+        true => (Kind::Word, Last::Operator),
+        false => (Kind::Value, Last::Operand),
+    }
+}

@@ -1,0 +1,296 @@
+//! Curves and polygons of the section in doubles, and the cutting of the ones by the others.
+
+use crate::expr::polynomial::Polynomial;
+use crate::expr::value::{At, Evaluator};
+use crate::expr::{Graph, Id};
+use crate::formula::CurveIndex;
+use crate::regionalise::outline::{Point, cross, minus, norm};
+
+/// What is closer to a curve than this part of the section's size lies on it.
+const ON: f64 = 1e-10;
+/// Rounding of a polynomial's value, in parts of the sum of its terms' sizes.
+const ROUNDING: f64 = 2e-14;
+
+/// A curve as a function of the section's points.
+pub(super) enum Shape<'g> {
+    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, `u` and `v` from the section's middle.
+    Conic { middle: Point, factors: [f64; 6] },
+    /// Anything else.
+    Other(std::cell::RefCell<Evaluator<'g>>, Id),
+}
+
+/// A curve's value at a point, its gradient, and the size of its terms.
+struct Value {
+    value: f64,
+    gradient: Point,
+    terms: f64,
+}
+
+/// What a polygon's edge is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Edge {
+    Straight,
+    /// A chord of one of the tool's curves.
+    Along(CurveIndex),
+    /// A chord of something else.
+    Chord,
+}
+
+impl<'g> Shape<'g> {
+    pub(super) fn new(graph: &'g Graph, id: Id, middle: Point) -> Shape<'g> {
+        let other = || Shape::Other(Evaluator::new(graph, [id]).into(), id);
+        let Some(polynomial) = Polynomial::of(graph, id) else { return other() };
+        let mut factors = [0.0; 6];
+        let [m, n] = middle;
+        for (monomial, factor) in polynomial.terms() {
+            let c = factor.to_f64();
+            match monomial {
+                [0, 0, 0, 0] => factors[0] += c,
+                [1, 0, 0, 0] => add(&mut factors, &[(0, c * m), (1, c)]),
+                [0, 0, 0, 1] => add(&mut factors, &[(0, c * n), (2, c)]),
+                [2, 0, 0, 0] => add(&mut factors, &[(0, c * m * m), (1, 2.0 * c * m), (3, c)]),
+                [0, 0, 0, 2] => add(&mut factors, &[(0, c * n * n), (2, 2.0 * c * n), (5, c)]),
+                [1, 0, 0, 1] => {
+                    add(&mut factors, &[(0, c * m * n), (1, c * n), (2, c * m), (4, c)]);
+                }
+                _ => return other(),
+            }
+        }
+        Shape::Conic { middle, factors }
+    }
+
+    fn is_line(&self) -> bool {
+        matches!(self, Shape::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
+    }
+
+    fn at(&self, p: Point) -> Value {
+        match self {
+            Shape::Conic { middle, factors: c } => {
+                let [u, v] = minus(p, *middle);
+                let terms = [c[0], c[1] * u, c[2] * v, c[3] * u * u, c[4] * u * v, c[5] * v * v];
+                let gradient = [c[1] + 2.0 * c[3] * u + c[4] * v, c[2] + c[4] * u + 2.0 * c[5] * v];
+                Value {
+                    value: terms.iter().sum(),
+                    gradient,
+                    terms: terms.iter().map(|term| term.abs()).sum(),
+                }
+            }
+            Shape::Other(evaluator, id) => {
+                let mut evaluator = evaluator.borrow_mut();
+                let mut value = |d: f64, z: f64| {
+                    evaluator.set(At::meridian(d, z));
+                    evaluator.get(*id)
+                };
+                let here = value(p[0], p[1]);
+                let step = 1e-6 * (norm(p) + 1e-3);
+                let gradient = [0, 1].map(|k| {
+                    let (mut a, mut b) = (p, p);
+                    a[k] -= step;
+                    b[k] += step;
+                    (value(b[0], b[1]) - value(a[0], a[1])) / (2.0 * step)
+                });
+                Value { value: here, gradient, terms: norm(p) * norm(gradient) }
+            }
+        }
+    }
+
+    /// -1, 0 or 1: the side of the curve that a point is on, 0 for what is as good as on it.
+    pub(super) fn side(&self, p: Point, size: f64) -> i8 {
+        let Value { value, gradient, terms } = self.at(p);
+        if value.abs() <= ON * size * norm(gradient) || value.abs() <= ROUNDING * terms {
+            return 0;
+        }
+        if value < 0.0 { -1 } else { 1 }
+    }
+
+    pub(super) fn value(&self, p: Point) -> f64 {
+        self.at(p).value
+    }
+
+    /// The sign, without tolerance.
+    pub(super) fn below(&self, p: Point) -> bool {
+        self.at(p).value <= 0.0
+    }
+}
+
+fn between(a: Point, b: Point, t: f64) -> Point {
+    [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+}
+
+fn add(factors: &mut [f64; 6], more: &[(usize, f64)]) {
+    for (place, value) in more {
+        factors[*place] += value;
+    }
+}
+
+/// A convex part of the section with one owner, but for the bulge of its curved edges. Edge `k`
+/// runs from vertex `k` to the next.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) owner: Option<usize>,
+    pub(super) vertices: Vec<Point>,
+    pub(super) edges: Vec<Edge>,
+}
+
+/// A vertex with its side and the edge that follows.
+type Corner = (Point, i8, Edge);
+
+/// A curve that cuts, among all.
+#[derive(Clone, Copy)]
+pub(super) struct Cutter<'a, 'g> {
+    pub(super) shapes: &'a [Shape<'g>],
+    pub(super) curve: CurveIndex,
+    pub(super) size: f64,
+}
+
+impl Piece {
+    /// The parts on the two sides of a curve.
+    pub(super) fn cut(&self, cutter: Cutter<'_, '_>) -> [Option<Piece>; 2] {
+        let whole = |above: bool| {
+            if above { [None, Some(self.clone())] } else { [Some(self.clone()), None] }
+        };
+        let corners = cutter.corners(self);
+        let has = |side: i8| corners.iter().any(|corner| corner.1 == side);
+        match (has(-1), has(1)) {
+            (true, true) => [-1, 1].map(|side| {
+                let (vertices, edges) = cutter.half(&corners, side)?;
+                (vertices.len() > 2).then_some(Piece { owner: self.owner, vertices, edges })
+            }),
+            (true, false) => whole(false),
+            (false, true) => whole(true),
+            // Nothing is clearly on a side: its middle decides.
+            (false, false) => {
+                let count = self.vertices.len() as f64;
+                let middle =
+                    [0, 1].map(|k| self.vertices.iter().map(|p| p[k]).sum::<f64>() / count);
+                whole(!cutter.shape().below(middle))
+            }
+        }
+    }
+}
+
+impl<'a, 'g> Cutter<'a, 'g> {
+    fn shape(&self) -> &'a Shape<'g> {
+        &self.shapes[self.curve]
+    }
+
+    /// The vertices with their sides, and those where an edge crosses the curve.
+    fn corners(&self, piece: &Piece) -> Vec<Corner> {
+        let (shape, count) = (self.shape(), piece.vertices.len());
+        let sides: Vec<i8> = piece.vertices.iter().map(|p| shape.side(*p, self.size)).collect();
+        let mut corners = Vec::with_capacity(count + 4);
+        for k in 0..count {
+            let next = (k + 1) % count;
+            let (a, b, edge) = (piece.vertices[k], piece.vertices[next], piece.edges[k]);
+            corners.push((a, sides[k], edge));
+            let mut add = |p: Point, side: i8| corners.push((p, side, edge));
+            if sides[k] * sides[next] < 0 {
+                add(self.crossing(a, b, edge), 0);
+            } else if edge == Edge::Straight
+                && let Some((top, side)) = self.detour([a, b], [sides[k], sides[next]])
+            {
+                if sides[k] != 0 {
+                    add(self.crossing(a, top, edge), 0);
+                }
+                add(top, side);
+                if sides[next] != 0 {
+                    add(self.crossing(top, b, edge), 0);
+                }
+            }
+        }
+        corners
+    }
+
+    /// Where a straight edge is farthest on a side that neither of its ends is on.
+    fn detour(&self, [a, b]: [Point; 2], sides: [i8; 2]) -> Option<(Point, i8)> {
+        let shape = self.shape();
+        if shape.is_line() {
+            return None;
+        }
+        let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| shape.at(p).value);
+        let (bend, slope) = (2.0 * (v0 - 2.0 * vm + v1), 4.0 * vm - 3.0 * v0 - v1);
+        let turn = -slope / (2.0 * bend);
+        if !(turn > 0.0 && turn < 1.0) {
+            return None;
+        }
+        let top = between(a, b, turn);
+        let side = shape.side(top, self.size);
+        (side != 0 && !sides.contains(&side)).then_some((top, side))
+    }
+
+    /// What lies on one side.
+    fn half(&self, corners: &[Corner], side: i8) -> Option<(Vec<Point>, Vec<Edge>)> {
+        let (mut vertices, mut edges) = (Vec::new(), Vec::new());
+        let along = if self.shape().is_line() { Edge::Straight } else { Edge::Along(self.curve) };
+        let count = corners.len();
+        // Behind a corner of the other side, so that the way along the curve comes last.
+        let start = corners.iter().position(|corner| corner.1 == -side)?;
+        for k in 1..=count {
+            let (p, own, edge) = corners[(start + k) % count];
+            let [before, after] = [k - 1, k + 1].map(|k| corners[(start + k) % count].1);
+            // What only touches the curve is not on this side.
+            if own == side || (own == 0 && (before == side || after == side)) {
+                vertices.push(p);
+                edges.push(if own == 0 && after != side { along } else { edge });
+            }
+        }
+        if along != Edge::Straight && is_flat(&vertices, self.size) {
+            let bend = self.bend(*vertices.last()?, *vertices.first()?)?;
+            vertices.push(bend);
+            edges.push(along);
+        }
+        Some((vertices, edges))
+    }
+
+    /// Where an edge between points on different sides crosses, on the curve that it is a chord of.
+    fn crossing(&self, a: Point, b: Point, edge: Edge) -> Point {
+        let shape = self.shape();
+        let (mut low, mut high) = (0.0, 1.0);
+        let below = shape.below(a);
+        for _ in 0..60 {
+            let middle = (low + high) / 2.0;
+            if shape.below(between(a, b, middle)) == below { low = middle } else { high = middle }
+        }
+        let on_chord = between(a, b, low);
+        let Edge::Along(other) = edge else { return on_chord };
+        let mut p = on_chord;
+        for _ in 0..8 {
+            let (own, other) = (shape.at(p), self.shapes[other].at(p));
+            let ([a, b], [c, d]) = (own.gradient, other.gradient);
+            let det = a * d - b * c;
+            let step =
+                [(own.value * d - other.value * b) / det, (other.value * a - own.value * c) / det];
+            p = minus(p, step);
+        }
+        // Where the curves hardly cross, the chord's point is as good.
+        if norm(minus(p, on_chord)) < norm(minus(b, a)) { p } else { on_chord }
+    }
+
+    /// A point of the curve beside the middle of a chord.
+    fn bend(&self, a: Point, b: Point) -> Option<Point> {
+        let shape = self.shape();
+        let across = [-(b[1] - a[1]), b[0] - a[0]];
+        let from = between(a, b, 0.5);
+        let at = |s: f64| [from[0] + s * across[0], from[1] + s * across[1]];
+        // Secant steps along the chord's normal.
+        let (mut s0, mut s1) = (0.0, 0.05);
+        let (mut v0, mut v1) = (shape.at(at(s0)).value, shape.at(at(s1)).value);
+        for _ in 0..12 {
+            if v1 == v0 {
+                break;
+            }
+            let next = s1 - v1 * (s1 - s0) / (v1 - v0);
+            (s0, v0) = (s1, v1);
+            (s1, v1) = (next, shape.at(at(next)).value);
+        }
+        (s1.abs() < 0.6).then_some(at(s1))
+    }
+}
+
+/// Whether all vertices are in a line.
+fn is_flat(vertices: &[Point], size: f64) -> bool {
+    let [first, .., last] = vertices else { return true };
+    let way = minus(*last, *first);
+    let off = |p: &Point| cross(way, minus(*p, *first)).abs() / norm(way);
+    vertices.iter().all(|p| off(p) <= ON * size)
+}

@@ -1,0 +1,176 @@
+//! The partition as polygons, for what wants to see it: the planner and drawings.
+
+use super::outline::{Point, cross, minus, norm};
+use super::section::{Feature, Section, Stop};
+use super::slices::Slice;
+use std::mem::take;
+
+/// A polygon of one owner, convex but for the bulge of its curved edges. Edge `k` runs from vertex
+/// `k` to the next.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell {
+    /// The part that owns it.
+    pub(crate) part: usize,
+    pub(crate) vertices: Vec<Point>,
+    /// Whether each edge is straight, rather than a chord of a curve.
+    pub(crate) straight: Vec<bool>,
+    /// Points inside with the weight of their surroundings.
+    pub(crate) samples: Vec<(Point, f64)>,
+    /// Points beside every border.
+    pub(crate) witnesses: Vec<Point>,
+}
+
+/// Depths of samples, as parts of a slice's.
+const DEPTHS: [f64; 5] = [0.01, 0.05, 0.2, 0.5, 0.85];
+/// Places of samples along a slice.
+const PLACES: [f64; 5] = [0.06, 0.28, 0.5, 0.72, 0.94];
+/// The shell near the surface that counts most, in sizes.
+const SHELL: f64 = 0.05;
+
+impl Cell {
+    /// Twice its area.
+    pub(crate) fn area(&self) -> f64 {
+        let Some(first) = self.vertices.first() else { return 0.0 };
+        let fan = self.vertices.windows(2);
+        fan.map(|pair| cross(minus(pair[0], *first), minus(pair[1], *first))).sum::<f64>().abs()
+    }
+}
+
+/// The cells of all slices that have an area. Neighbours share the points of their border.
+pub(super) fn cells(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -> Vec<Cell> {
+    let all: Vec<&Slice> = slices.iter().flatten().collect();
+    let mut rims: Vec<Option<Vec<Point>>> = vec![None; all.len()];
+    for index in 0..all.len() {
+        if rims[index].is_some() {
+            continue;
+        }
+        let rim = rim(section, all[index], chords);
+        if let Some(twin) = twin(section, &all, index, &rim) {
+            rims[twin] = Some(rim.iter().rev().copied().collect());
+        }
+        rims[index] = Some(rim);
+    }
+    let rims = rims.into_iter().flatten();
+    let least = 1e-16 * section.size * section.size;
+    all.iter()
+        .zip(rims)
+        .flat_map(|(slice, rim)| quads(section, slice, &rim, chords))
+        .filter(|cell| cell.area() > least)
+        .collect()
+}
+
+fn rim(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
+    if slice.stop == Stop::Centre {
+        return vec![slice.rim_at(section, 0.5)];
+    }
+    slice.rim(section, if is_straight(section, slice) { 1 } else { chords })
+}
+
+/// Whether the end of a slice is a straight line.
+fn is_straight(section: &Section<'_>, slice: &Slice) -> bool {
+    let line = |feature: usize| match section.features[feature] {
+        Feature::Piece(piece) => Some(section.outline[piece].circle.is_none()),
+        Feature::Corner(_) => None,
+    };
+    match slice.stop {
+        Stop::Axis => true,
+        Stop::Far => line(slice.feature) == Some(true),
+        Stop::Centre => false,
+        Stop::Feature(other) => match (line(slice.feature), line(other)) {
+            (Some(a), Some(b)) => a && b,
+            (None, None) => true,
+            _ => false,
+        },
+    }
+}
+
+/// The slice on the other side of a rim.
+fn twin(section: &Section<'_>, all: &[&Slice], index: usize, rim: &[Point]) -> Option<usize> {
+    let slice = all[index];
+    let Stop::Feature(other) = slice.stop else { return None };
+    let near = |a: Point, b: Point| norm(minus(a, b)) < 1e-7 * section.size;
+    (index + 1..all.len()).find(|k| {
+        let twin = all[*k];
+        twin.feature == other
+            && twin.stop == Stop::Feature(slice.feature)
+            && near(twin.rim_at(section, 0.0), rim[rim.len() - 1])
+            && near(twin.rim_at(section, 1.0), rim[0])
+    })
+}
+
+/// A slice cut along normals, so that no piece of a curve is long.
+fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Vec<Cell> {
+    let curved = match section.features[slice.feature] {
+        Feature::Piece(piece) => section.outline[piece].circle.is_some(),
+        Feature::Corner(_) => false,
+    };
+    let straight_rim = is_straight(section, slice);
+    let steps = if curved { chords as usize } else { rim.len().max(2) - 1 };
+    let at = |list: &[Point], k: usize| list[(k * (list.len() - 1)) / steps];
+    let feet: Vec<Point> = (0..=steps)
+        .map(|k| {
+            let t = slice.from + (slice.to - slice.from) * k as f64 / steps as f64;
+            section.seat(slice.feature, t).foot
+        })
+        .collect();
+    // A straight rim under a curved foot has two points only.
+    let rim: Vec<Point> = if rim.len() == 2 && steps > 1 {
+        slice.rim(section, chords)
+    } else {
+        (0..=steps).map(|k| at(rim, k)).collect()
+    };
+    let (mut samples, mut witnesses) = (samples(section, slice), witnesses(section, slice));
+    (0..steps)
+        .map(|k| {
+            let vertices = vec![feet[k], feet[k + 1], rim[k + 1], rim[k]];
+            let straight = vec![!curved, true, straight_rim, true];
+            let (vertices, straight) = tidy(vertices, straight, 1e-14 * section.size);
+            let (samples, witnesses) = (take(&mut samples), take(&mut witnesses));
+            Cell { part: slice.feature, vertices, straight, samples, witnesses }
+        })
+        .collect()
+}
+
+/// Drops edges without length.
+fn tidy(vertices: Vec<Point>, straight: Vec<bool>, least: f64) -> (Vec<Point>, Vec<bool>) {
+    let count = vertices.len();
+    (0..count)
+        .filter(|k| norm(minus(vertices[*k], vertices[(k + 1) % count])) > least)
+        .map(|k| (vertices[k], straight[k]))
+        .unzip()
+}
+
+fn samples(section: &Section<'_>, slice: &Slice) -> Vec<(Point, f64)> {
+    let mut samples = Vec::new();
+    let shell = SHELL * section.size;
+    for part in PLACES {
+        let t = slice.from + part * (slice.to - slice.from);
+        let seat = section.seat(slice.feature, t);
+        let radius = slice.radius(section, part).min(2.0 * section.size);
+        let wide = |r: f64| {
+            let ends = [slice.from, slice.to].map(|t| section.seat(slice.feature, t).at(r));
+            norm(minus(ends[0], ends[1]))
+        };
+        let mut before = 0.0;
+        for (k, share) in DEPTHS.iter().enumerate() {
+            let after = DEPTHS.get(k + 1).map_or(1.0, |next| (share + next) / 2.0);
+            let depth = share * radius;
+            let area = wide(depth) * (after - before) * radius / PLACES.len() as f64;
+            let weight = area * ((-depth / shell).exp() + SHELL);
+            samples.push((seat.at(depth), weight));
+            before = after;
+        }
+    }
+    samples
+}
+
+fn witnesses(section: &Section<'_>, slice: &Slice) -> Vec<Point> {
+    let mut witnesses = Vec::new();
+    for k in 0..24 {
+        let part = (f64::from(k) + 0.5) / 24.0;
+        let seat = section.seat(slice.feature, slice.from + part * (slice.to - slice.from));
+        let radius = slice.radius(section, part);
+        witnesses.extend([0.002, 0.15, 0.4, 0.7, 0.93, 0.998].map(|share| seat.at(share * radius)));
+    }
+    witnesses
+}

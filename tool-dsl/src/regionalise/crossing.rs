@@ -1,0 +1,67 @@
+//! Where two pieces of an outline meet.
+
+use super::outline::{Point, Segment, cross, dot, doubles, minus, norm};
+
+/// Where two segments meet, but for the end that neighbours share.
+pub(super) fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
+    let candidates = match (&a.circle, &b.circle) {
+        (None, None) => line_line(a, b),
+        (None, Some(_)) => line_circle(a, b),
+        (Some(_), None) => line_circle(b, a),
+        (Some(_), Some(_)) => circle_circle(a, b),
+    };
+    let size = [&a.from, &a.to, &b.from, &b.to]
+        .into_iter()
+        .map(|place| norm(doubles(place)))
+        .fold(0.0, f64::max);
+    let slack = 1e-9 * size;
+    let on = |s: &Segment, p: Point| {
+        s.signed(p).abs() <= slack && s.sector(p).iter().all(|side| *side >= -slack)
+    };
+    let ends = [doubles(&a.from), doubles(&a.to), doubles(&b.from), doubles(&b.to)];
+    candidates.into_iter().chain(ends).find(|p| {
+        let shared = neighbours && norm(minus(*p, doubles(&b.from))) <= 2.0 * slack;
+        !shared && on(a, *p) && on(b, *p)
+    })
+}
+
+fn line_line(a: &Segment, b: &Segment) -> Vec<Point> {
+    let (p, r) = (doubles(&a.from), minus(doubles(&a.to), doubles(&a.from)));
+    let (q, s) = (doubles(&b.from), minus(doubles(&b.to), doubles(&b.from)));
+    let sine = cross(r, s);
+    if sine == 0.0 {
+        return Vec::new();
+    }
+    let t = cross(minus(q, p), s) / sine;
+    vec![[p[0] + t * r[0], p[1] + t * r[1]]]
+}
+
+fn line_circle(line: &Segment, arc: &Segment) -> Vec<Point> {
+    let Some(circle) = &arc.circle else { return Vec::new() };
+    let (centre, radius) = (doubles(&circle.centre), circle.radius.to_f64());
+    let along = line.tangent(false);
+    let from = minus(doubles(&line.from), centre);
+    let foot = -dot(along, from);
+    let off = cross(along, from);
+    let half = (radius * radius - off * off).max(0.0).sqrt();
+    [foot - half, foot + half]
+        .map(|t| [centre[0] + from[0] + t * along[0], centre[1] + from[1] + t * along[1]])
+        .to_vec()
+}
+
+fn circle_circle(a: &Segment, b: &Segment) -> Vec<Point> {
+    let (Some(ca), Some(cb)) = (&a.circle, &b.circle) else { return Vec::new() };
+    let (p, q) = (doubles(&ca.centre), doubles(&cb.centre));
+    let (r, s) = (ca.radius.to_f64(), cb.radius.to_f64());
+    let between = minus(q, p);
+    let apart = norm(between);
+    if apart == 0.0 {
+        return Vec::new();
+    }
+    let along = (apart * apart + r * r - s * s) / (2.0 * apart);
+    let half = (r * r - along * along).max(0.0).sqrt();
+    let way = [between[0] / apart, between[1] / apart];
+    [half, -half]
+        .map(|h| [p[0] + along * way[0] - h * way[1], p[1] + along * way[1] + h * way[0]])
+        .to_vec()
+}

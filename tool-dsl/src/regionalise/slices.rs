@@ -1,0 +1,186 @@
+//! The nearest-feature partition of one side of an outline, feature by feature.
+//!
+//! A point belongs to the feature whose ball, grown from the point's foot along the normal, reaches
+//! it before it touches anything else. So a feature's cell is the set of points between its seats
+//! and the lower envelope of the radii at which other features stop the ball, each of which has a
+//! closed form. The envelope is followed along the feature; where the stop changes lies a vertex of
+//! the partition, and between two vertices a slice of the cell.
+
+use super::outline::{Point, minus, norm};
+use super::section::{Section, Stop};
+
+/// A part of a cell: the seats between two parameters, and what ends their normals.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slice {
+    pub(super) feature: usize,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) stop: Stop,
+}
+
+/// Parameters at which every feature is asked at least.
+const EVEN: u32 = 16;
+/// Parameters near the ends.
+const ENDS: [f64; 4] = [1e-12, 1e-6, 1e-3, 0.02];
+/// Halvings until a vertex is known to the last bit.
+const HALVINGS: u32 = 60;
+/// Parts of a feature below this are rounding.
+const SLIVER: f64 = 1e-11;
+/// How often vertices found on one feature are looked for on the others.
+const ROUNDS: usize = 4;
+
+/// All slices, feature by feature, in the order of the parameter.
+pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
+    let count = section.features.len();
+    let mut samples: Vec<Vec<f64>> = (0..count)
+        .map(|_| {
+            let even = (1..EVEN).map(|k| f64::from(k) / f64::from(EVEN));
+            ENDS.into_iter().chain(even).chain(ENDS.map(|t| 1.0 - t)).collect()
+        })
+        .collect();
+    // Where the feet of corners fall, small neighbours are found.
+    for (feature, own) in samples.iter_mut().enumerate() {
+        for segment in section.outline {
+            let [from, to] = segment.ends();
+            let middle = [0, 1].map(|k| from[k] / 2.0 + to[k] / 2.0);
+            own.extend([from, middle].map(|p| section.parameter(feature, p)));
+        }
+    }
+    let mut found = envelope(section, &mut samples);
+    for _ in 0..ROUNDS {
+        let before: usize = found.iter().map(Vec::len).sum();
+        for slice in found.iter().flatten() {
+            let Stop::Feature(other) = slice.stop else { continue };
+            for t in [slice.from, slice.to, slice.from / 2.0 + slice.to / 2.0] {
+                let seat = section.seat(slice.feature, t);
+                let at = section.parameter(other, seat.at(section.growth(slice.feature, &seat).0));
+                samples[other].extend([at - 1e-7, at, at + 1e-7]);
+            }
+        }
+        found = envelope(section, &mut samples);
+        if found.iter().map(Vec::len).sum::<usize>() == before {
+            break;
+        }
+    }
+    found
+}
+
+fn envelope(section: &Section<'_>, samples: &mut [Vec<f64>]) -> Vec<Vec<Slice>> {
+    let last = 1.0 - ENDS[0];
+    samples
+        .iter_mut()
+        .enumerate()
+        .map(|(feature, own)| {
+            own.retain(|t| (ENDS[0]..=last).contains(t));
+            own.sort_by(f64::total_cmp);
+            own.dedup();
+            let mut walk = Walk { section, feature, slices: Vec::new() };
+            let mut before = (own[0], walk.stop(own[0]));
+            walk.put(0.0, own[0], before.1);
+            for &t in &own[1..] {
+                let here = (t, walk.stop(t));
+                walk.divide(before, here, HALVINGS);
+                before = here;
+            }
+            walk.put(before.0, 1.0, before.1);
+            merged(walk.slices)
+        })
+        .collect()
+}
+
+/// Without the slivers that rounding makes where one stop takes over from another.
+fn merged(slices: Vec<Slice>) -> Vec<Slice> {
+    let wide = slices.iter().any(|slice| slice.to - slice.from >= SLIVER);
+    let mut merged: Vec<Slice> = Vec::new();
+    for slice in slices {
+        match merged.last_mut() {
+            Some(last) if last.stop == slice.stop || (wide && slice.to - slice.from < SLIVER) => {
+                last.to = slice.to;
+            }
+            Some(last) if wide && last.to - last.from < SLIVER => {
+                *last = Slice { from: last.from, ..slice };
+            }
+            _ => merged.push(slice),
+        }
+    }
+    merged
+}
+
+struct Walk<'a> {
+    section: &'a Section<'a>,
+    feature: usize,
+    slices: Vec<Slice>,
+}
+
+impl Walk<'_> {
+    fn stop(&self, t: f64) -> Stop {
+        self.section.growth(self.feature, &self.section.seat(self.feature, t)).1
+    }
+
+    fn put(&mut self, from: f64, to: f64, stop: Stop) {
+        match self.slices.last_mut() {
+            Some(last) if last.stop == stop => last.to = to,
+            _ => self.slices.push(Slice { feature: self.feature, from, to, stop }),
+        }
+    }
+
+    /// The slices between two parameters whose stops are known.
+    fn divide(&mut self, (a, first): (f64, Stop), (b, last): (f64, Stop), halvings: u32) {
+        if first == last {
+            return self.put(a, b, first);
+        }
+        let (mut low, mut high) = (a, b);
+        for step in 0..halvings {
+            let middle = low / 2.0 + high / 2.0;
+            if middle <= low || middle >= high {
+                break;
+            }
+            let stop = self.stop(middle);
+            if stop == first {
+                low = middle;
+            } else if stop == last {
+                high = middle;
+            } else {
+                let left = halvings - step - 1;
+                self.divide((low, first), (middle, stop), left);
+                return self.divide((middle, stop), (high, last), left);
+            }
+        }
+        self.put(a, high, first);
+        self.put(high, b, last);
+    }
+}
+
+impl Slice {
+    /// Points of its end, from the first parameter to the last.
+    pub(super) fn rim(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
+        (0..=steps).map(|k| self.rim_at(section, f64::from(k) / f64::from(steps))).collect()
+    }
+
+    /// The point of its end at a part of its width.
+    pub(super) fn rim_at(&self, section: &Section<'_>, part: f64) -> Point {
+        let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
+        seat.at(self.radius(section, part))
+    }
+
+    /// How far its normals run at a part of its width: by its own stop, whoever else is as near.
+    pub(super) fn radius(&self, section: &Section<'_>, part: f64) -> f64 {
+        // At the very ends of a feature the growth of the ball is a limit.
+        let t = (self.from + part * (self.to - self.from)).clamp(ENDS[0], 1.0 - ENDS[0]);
+        let seat = section.seat(self.feature, t);
+        let own = match self.stop {
+            Stop::Feature(other) => section.until(self.feature, &seat, other),
+            _ => f64::INFINITY,
+        };
+        if own.is_finite() { own } else { section.growth(self.feature, &seat).0 }
+    }
+
+    /// Whether it has no width to speak of.
+    pub(super) fn is_thin(&self, section: &Section<'_>) -> bool {
+        let [a, b] = [0.0, 1.0].map(|part| {
+            let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
+            [seat.foot, seat.at(self.radius(section, part))]
+        });
+        norm(minus(a[0], b[0])).max(norm(minus(a[1], b[1]))) < 1e-10 * section.size
+    }
+}

@@ -1,0 +1,163 @@
+//! One outline put on another: what is left of each, and the ring between them.
+
+use crate::number::Number;
+use crate::regionalise::outline::{Circle, Place, Segment, doubles};
+
+/// Lengths below this part of the tool's size are rounding.
+const ROUNDING: f64 = 1e-12;
+/// How far a tool's end may be from the tip that it says, in sizes of the tool.
+pub(super) const OFF_TIP: f64 = 1e-6;
+
+/// Why two outlines cannot be joined at a plane.
+#[derive(Debug)]
+pub(super) enum Unjoined {
+    /// The lower one ends below it.
+    Short,
+    /// The lower one comes to a point on it.
+    Point,
+    /// The lower one comes back to it, with this segment.
+    Back(Box<Segment>),
+    /// The upper one does not begin with a flat face, but with this segment.
+    NoFace(Box<Segment>),
+}
+
+/// The same outline with its lengths multiplied, then farther along the axis, on surfaces that are
+/// counted from `first` on.
+pub(super) fn moved(
+    outline: &[Segment],
+    scale: &Number,
+    by: &Number,
+    first: usize,
+) -> Vec<Segment> {
+    let place = |[d, z]: &Place| [d * scale, &(z * scale) + by];
+    let moved = |segment: &Segment| {
+        let circle = segment.circle.as_ref().map(|circle| Circle {
+            centre: place(&circle.centre),
+            radius: &circle.radius * scale,
+            convex: circle.convex,
+        });
+        let ends = [place(&segment.from), place(&segment.to)];
+        Segment::new(ends, circle, segment.surface + first, segment.span)
+    };
+    outline.iter().map(moved).collect()
+}
+
+/// The solid of `lower` below a plane across the axis, with that of `upper`, which begins there,
+/// above. The ring that is left between their radii belongs to the wider one.
+pub(super) fn join(
+    lower: &[Segment],
+    upper: &[Segment],
+    plane: &Number,
+) -> Result<Vec<Segment>, Unjoined> {
+    let slack = ROUNDING * size(lower).max(size(upper));
+    let mut joined = below(lower, plane, slack)?;
+    let Some(last) = joined.last() else { return Err(Unjoined::Short) };
+    let (radius, ring) = (last.to[0].clone(), (last.surface, last.span));
+    if radius.to_f64() <= slack {
+        return Err(Unjoined::Point);
+    }
+    let (height, off_tip) = (plane.to_f64(), OFF_TIP * size(upper));
+    let flat = |segment: &&Segment| {
+        let [[inner, a], [outer, b]] = segment.ends();
+        let level = [a, b].into_iter().all(|z| (z - height).abs() <= off_tip);
+        segment.circle.is_none() && level && inner < outer
+    };
+    let faces = upper.iter().take_while(flat).count();
+    let (face, rest) = upper.split_at(faces);
+    let (Some(rim), Some((wall, rest))) = (face.last(), rest.split_first()) else {
+        return Err(Unjoined::NoFace(Box::new(upper.first().unwrap_or(last).clone())));
+    };
+    let on_plane = |d: &Number| [d.clone(), plane.clone()];
+    let mut at = on_plane(&radius);
+    let (inner, outer) = (radius.to_f64(), rim.to[0].to_f64());
+    if inner > outer + slack {
+        let to = on_plane(&rim.to[0]);
+        joined.push(Segment::new([at, to.clone()], None, ring.0, ring.1));
+        at = to;
+    }
+    for segment in face.iter().filter(|segment| segment.to[0].to_f64() > inner + slack) {
+        let to = on_plane(&segment.to[0]);
+        joined.push(Segment::new([at, to.clone()], None, segment.surface, segment.span));
+        at = to;
+    }
+    let ends = [at, wall.to.clone()];
+    joined.push(Segment::new(ends, wall.circle.clone(), wall.surface, wall.span));
+    joined.extend(rest.iter().cloned());
+    Ok(joined)
+}
+
+fn size(outline: &[Segment]) -> f64 {
+    let ends = outline.iter().flat_map(|segment| segment.ends());
+    ends.flatten().fold(0.0, |size, part| size.max(part.abs()))
+}
+
+/// The walk of an outline up to a plane, which it must cross once.
+fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>, Unjoined> {
+    let height = plane.to_f64();
+    let side = |z: f64| match z - height {
+        off if off.abs() <= slack => 0,
+        off if off < 0.0 => -1,
+        _ => 1,
+    };
+    let mut walked: Vec<Segment> = Vec::new();
+    let mut reached = false;
+    for segment in outline {
+        let stops = stops(segment);
+        if reached {
+            if stops.iter().any(|z| side(*z) < 0) {
+                return Err(Unjoined::Back(Box::new(segment.clone())));
+            }
+            continue;
+        }
+        match stops.iter().position(|z| side(*z) >= 0) {
+            None => walked.push(segment.clone()),
+            // The plane goes through the corner where the walk begins: there is nothing below.
+            Some(0) => return Err(Unjoined::Point),
+            Some(stop) => {
+                if stops[stop..].iter().any(|z| side(*z) < 0) {
+                    return Err(Unjoined::Back(Box::new(segment.clone())));
+                }
+                let at_end = stop + 1 == stops.len() && side(stops[stop]) == 0;
+                let d = if at_end { segment.to[0].clone() } else { crossing(segment, plane) };
+                let ends = [segment.from.clone(), [d, plane.clone()]];
+                let circle = segment.circle.clone();
+                walked.push(Segment::new(ends, circle, segment.surface, segment.span));
+                reached = true;
+            }
+        }
+    }
+    if reached { Ok(walked) } else { Err(Unjoined::Short) }
+}
+
+/// The z of a segment's ends, and between them of where an arc turns back along the axis.
+fn stops(segment: &Segment) -> Vec<f64> {
+    let [from, to] = segment.ends().map(|end| end[1]);
+    let turns = segment.circle.as_ref().and_then(|circle| {
+        let ([_, centre], radius) = (doubles(&circle.centre), circle.radius.to_f64());
+        [centre - radius, centre + radius].into_iter().find(|z| {
+            let strictly = [from, to].iter().all(|end| (end - z).abs() > ROUNDING * radius);
+            let way = [doubles(&circle.centre)[0], *z];
+            strictly && segment.sector(way).iter().all(|side| *side > 0.0)
+        })
+    });
+    [Some(from), turns, Some(to)].into_iter().flatten().collect()
+}
+
+/// The distance from the axis at which a segment rises through a plane.
+fn crossing(segment: &Segment, plane: &Number) -> Number {
+    let [[d, z], [to_d, to_z]] = [&segment.from, &segment.to];
+    match &segment.circle {
+        None => {
+            let part = (plane - z).over(&(to_z - z)).unwrap_or_else(|| Number::int(0));
+            d + &(&part * &(to_d - d))
+        }
+        Some(circle) => {
+            let up = plane - &circle.centre[1];
+            let square = &(&circle.radius * &circle.radius) - &(&up * &up);
+            let off = square.sqrt().unwrap_or_else(|| Number::int(0));
+            // The material is on the left, which is toward the axis for a walk that rises.
+            let off = if circle.convex { off } else { -&off };
+            &circle.centre[0] + &off
+        }
+    }
+}

@@ -1,0 +1,398 @@
+//! Several files joined into one profile.
+
+use super::given::{self, Given};
+use super::join::{OFF_TIP, Unjoined, join, moved};
+use super::lower::{Lowering, May};
+use super::region::{Laws, quantity};
+use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
+use crate::domain::Domain;
+use crate::expr::{Graph, Id};
+use crate::look;
+use crate::model::{Frame, Surface, Unit};
+use crate::number::Number;
+use crate::regionalise::outline::{Segment, check, reach};
+use crate::report::{Report, any_error, figure};
+use crate::source::{Sources, Span};
+use crate::syntax;
+use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
+use std::collections::BTreeMap;
+
+/// The most files that a tool mounts, those of mounted files among them.
+const MOST: usize = 64;
+
+/// A file's solid in its tool's frame and its unit, and the niceness that comes along.
+pub(super) struct Part {
+    pub(super) outline: Vec<Segment>,
+    pub(super) surfaces: Vec<Surface>,
+    /// The law of each surface, and in which of the scopes it is written.
+    niceness: Vec<Option<(usize, Expr)>>,
+    scopes: Vec<Scope>,
+}
+
+/// The names of a mounted file.
+struct Scope {
+    lowering: Lowering,
+    curves: Vec<Definition>,
+}
+
+/// A niceness law of a mounted file, in that file's own names, unit and frame.
+pub(super) struct Along {
+    lowering: Lowering,
+    value: Expr,
+}
+
+impl Along {
+    /// The law at a point of the whole tool, of which this is the depth.
+    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Id, Report> {
+        self.lowering.clone().on(graph, |lowering| {
+            let depth = lowering.length_here(depth);
+            quantity(lowering, &self.value, May::Depth(depth))
+        })
+    }
+}
+
+/// The one profile of mounted files, and the niceness that comes along with its surfaces.
+pub(super) fn assembled(
+    mounts: &[&Mount],
+    span: Span,
+    lowering: &mut Lowering,
+    sources: &mut Sources,
+    reports: &mut Vec<Report>,
+) -> Option<Outlined> {
+    let mut mounting = Mounting { sources, reports, chain: Vec::new(), mounted: 0 };
+    mounting.chain.push(mounting.sources.own().base);
+    let part = mounting.assemble(mounts, lowering)?;
+    let mut scopes = Vec::new();
+    for mut scope in part.scopes {
+        for definition in &scope.curves {
+            let value =
+                scope.lowering.on(&mut lowering.graph, |lowering| lowering.curve(definition));
+            reports.extend(value.err());
+        }
+        scopes.push(scope.lowering);
+    }
+    let along = part.surfaces.iter().zip(part.niceness).filter_map(|(surface, law)| {
+        let (scope, value) = law?;
+        Some((surface.name.clone(), Along { lowering: scopes[scope].clone(), value }))
+    });
+    let along = along.collect();
+    Some(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
+}
+
+/// What goes on while files are mounted.
+struct Mounting<'a> {
+    sources: &'a mut Sources,
+    reports: &'a mut Vec<Report>,
+    /// The files that are being mounted, each by the one before, by where their texts begin.
+    chain: Vec<usize>,
+    mounted: usize,
+}
+
+impl Mounting<'_> {
+    /// The parts of a tool joined into one, in the unit of the file that mounts them.
+    fn assemble(&mut self, mounts: &[&Mount], lowering: &mut Lowering) -> Option<Part> {
+        let before = self.reports.len();
+        let mut parts = Vec::new();
+        for (index, mount) in mounts.iter().enumerate() {
+            if let Some(first) = mounts[..index].iter().find(|m| m.name.word == mount.name.word) {
+                self.reports.push(
+                    Report::error(
+                        mount.name.span,
+                        format!("two mounts are called `{}`", mount.name.word),
+                    )
+                    .and(first.name.span, "the first")
+                    .help("give it another name"),
+                );
+            }
+            let at = self.place(mount, index, lowering);
+            let given = given::from_mount(&mount.with, lowering, self.reports);
+            let part = self.open(mount, &given, &mut lowering.graph);
+            if let (Some(at), Some((part, unit))) = (at, part) {
+                parts.push((*mount, at, part.placed(mount, &unit.to(lowering.unit))));
+            }
+        }
+        if any_error(&self.reports[before..]) {
+            return None;
+        }
+        let mut parts = parts.into_iter();
+        let (mut last, mut height, mut whole) = parts.next()?;
+        for (mount, at, part) in parts {
+            if let Err(report) = whole.carry((last, &height), (mount, &at), part) {
+                self.reports.push(report);
+                return None;
+            }
+            (last, height) = (mount, at);
+        }
+        whole.drop_what_is_gone();
+        let shown = |[d, z]: [f64; 2]| format!("({}, {})", figure(d), figure(z));
+        self.reports.extend(check(&whole.outline, shown));
+        (!any_error(&self.reports[before..])).then_some(whole)
+    }
+
+    /// Where a mount puts its tip.
+    fn place(&mut self, mount: &Mount, index: usize, lowering: &mut Lowering) -> Option<Number> {
+        if mount.name.word == "cutting" {
+            self.reports.push(
+                Report::error(mount.name.span, "no part is called `cutting`")
+                    .help("give it another name"),
+            );
+        }
+        if let Some(span) = mount.cutting {
+            self.reports.push(
+                Report::error(span, "a mount is not `cutting`")
+                    .help("drop it: each surface of the mounted file says so for itself"),
+            );
+        }
+        match (index, &mount.at) {
+            (0, None) => Some(Number::int(0)),
+            (0, Some(at)) => {
+                self.reports.push(
+                    Report::error(at.span, "the first mount keeps its place")
+                        .help("drop `at`: its tip is the tool's, at z = 0"),
+                );
+                None
+            }
+            (_, None) => {
+                let report = format!("where along the axis does `{}` begin?", mount.name.word);
+                let help = "write `at z = …`, from the first mount's tip";
+                self.reports.push(Report::error(mount.span, report).help(help));
+                None
+            }
+            (_, Some(at)) => lowering.length(at, "`at`").map_err(|r| self.reports.push(r)).ok(),
+        }
+    }
+
+    /// Reads and resolves a mounted file as far as its profile, and says its unit.
+    fn open(
+        &mut self,
+        mount: &Mount,
+        given: &[Given<'_>],
+        graph: &mut Graph,
+    ) -> Option<(Part, Unit)> {
+        let (base, tree) = self.read(mount)?;
+        let before = self.reports.len();
+        let unit = unit(&tree).map_err(|report| self.reports.push(report)).ok()?;
+        let mut lowering = Lowering::of(&tree, unit);
+        self.chain.push(base);
+        let part = lowering.on(graph, |lowering| self.part(mount, &tree, given, lowering));
+        self.chain.pop();
+        let mut part = part.filter(|_| !any_error(&self.reports[before..]))?;
+        part.scopes.push(Scope { lowering, curves: curves(&tree) });
+        Some((part, unit))
+    }
+
+    /// The tree of a mounted file, and where its text begins.
+    fn read(&mut self, mount: &Mount) -> Option<(usize, Tool)> {
+        let (written, by) = (mount.file.word.as_str(), mount.file.span);
+        let Some(place) = self.sources.beside(by, written) else {
+            self.reports.push(
+                Report::error(by, format!("where is `{written}`? this text is from no file"))
+                    .help("a mounted file is looked for beside the file that mounts it"),
+            );
+            return None;
+        };
+        let shown = place.0.clone();
+        let source = match self.sources.read(by, place) {
+            Ok(source) => source.clone(),
+            Err(error) => {
+                self.reports.push(
+                    Report::error(by, format!("cannot read `{shown}`: {error}"))
+                        .help("the path is relative to the file that mounts it"),
+                );
+                return None;
+            }
+        };
+        if let Some(first) = self.chain.iter().position(|base| *base == source.base) {
+            let name = |base: &usize| {
+                self.sources.locate(Span { start: *base, end: *base }).0.name.as_str()
+            };
+            let mut chain: Vec<&str> = self.chain[first..].iter().map(name).collect();
+            chain.push(&source.name);
+            let message = format!("`{written}` mounts itself: {}", chain.join(" mounts "));
+            self.reports.push(Report::error(by, message).help("break the ring"));
+            return None;
+        }
+        self.mounted += 1;
+        if self.mounted > MOST {
+            self.reports.push(Report::error(by, format!("more than {MOST} mounted files")));
+            return None;
+        }
+        let (tree, reports) = syntax::parse(&source);
+        let broken = any_error(&reports);
+        self.reports.extend(reports);
+        tree.filter(|_| !broken).map(|tree| (source.base, tree))
+    }
+
+    /// A mounted file's solid and its niceness.
+    fn part(
+        &mut self,
+        mount: &Mount,
+        tree: &Tool,
+        given: &[Given<'_>],
+        lowering: &mut Lowering,
+    ) -> Option<Part> {
+        let before = self.reports.len();
+        if tree.domain == Domain::Space {
+            let file = &mount.file;
+            let report =
+                format!("`{}` is a solid without an axis and cannot be mounted", file.word);
+            self.reports.push(
+                Report::error(file.span, report)
+                    .help("only outlines can be joined: mount a `tool`"),
+            );
+            return None;
+        }
+        given::untaken(tree, given, self.reports);
+        constants(tree, given, lowering, self.reports);
+        frame(tree, lowering, self.reports);
+        if any_error(&self.reports[before..]) {
+            return None;
+        }
+        let mut part = match shape(tree, self.reports) {
+            Some(Shape::Profile(profile)) => {
+                let (outline, surfaces) = profile::outline(profile, lowering, self.reports)?;
+                self.reports.extend(off_tip(&outline, &lowering.frame, tree));
+                let niceness = vec![None; surfaces.len()];
+                Part { outline, surfaces, niceness, scopes: Vec::new() }
+            }
+            Some(Shape::Mounts(mounts)) => self.assemble(&mounts, lowering)?,
+            None => {
+                let file = &mount.file;
+                let regions = tree.items.iter().any(|item| matches!(item, Item::Region(_)));
+                let has = if regions { "has regions but no profile" } else { "has no profile" };
+                self.reports.push(
+                    Report::error(
+                        file.span,
+                        format!("`{}` {has} and cannot be mounted", file.word),
+                    )
+                    .help("only outlines can be joined: write it as a `profile`"),
+                );
+                return None;
+            }
+        };
+        let laws: Vec<&Law> = tree
+            .items
+            .iter()
+            .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
+            .filter(|law| law.quantity == Quantity::Niceness)
+            .collect();
+        let laws = Laws::new(&laws, BTreeMap::new());
+        laws.check(&part.surfaces, self.reports);
+        let own = part.scopes.len();
+        for (surface, niceness) in part.surfaces.iter().zip(&mut part.niceness) {
+            if let Some(law) = laws.find(Quantity::Niceness, surface).filter(|_| surface.cutting) {
+                *niceness = Some((own, law.value.clone()));
+            }
+        }
+        Some(part)
+    }
+}
+
+/// The curves of a file, of which its laws may speak.
+fn curves(tree: &Tool) -> Vec<Definition> {
+    definitions(tree, |item| matches!(item, Item::Curve(_))).cloned().collect()
+}
+
+/// A solid that does not end at its tip.
+fn off_tip(outline: &[Segment], frame: &Frame, tree: &Tool) -> Option<Report> {
+    let [[_, end], [radius, high]] = reach(outline);
+    if end.abs() <= OFF_TIP * radius.max(high - end) {
+        return None;
+    }
+    Some(look::off_tip(frame, end, tree.name.span))
+}
+
+impl Part {
+    /// The part under its name and in the unit of the file that mounts it.
+    fn placed(mut self, mount: &Mount, scale: &Number) -> Part {
+        let zero = Number::int(0);
+        self.outline = moved(&self.outline, scale, &zero, 0);
+        self.raised(scale, &zero);
+        for surface in &mut self.surfaces {
+            surface.name = format!("{}.{}", mount.name.word, surface.name);
+        }
+        self
+    }
+
+    /// Lets the laws know where their part has gone.
+    fn raised(&mut self, scale: &Number, by: &Number) {
+        for scope in &mut self.scopes {
+            scope.lowering.placed(scale, by);
+        }
+    }
+
+    /// Puts another part on this one, from a plane on.
+    fn carry(
+        &mut self,
+        (last, height): (&Mount, &Number),
+        (mount, at): (&Mount, &Number),
+        mut part: Part,
+    ) -> Result<(), Report> {
+        let span = mount.at.as_ref().map_or(mount.span, |at| at.span);
+        let (name, below, z) = (&mount.name.word, &last.name.word, figure(at.to_f64()));
+        if at <= height {
+            let there = figure(height.to_f64());
+            return Err(Report::error(
+                span,
+                format!("`{name}` at z = {z} does not lie above `{below}` at z = {there}"),
+            )
+            .help("mounts are listed from the tip up"));
+        }
+        let first = self.surfaces.len();
+        let upper = moved(&part.outline, &Number::int(1), at, first);
+        self.outline = join(&self.outline, &upper, at).map_err(|why| match why {
+            Unjoined::Short => {
+                let [_, [_, top]] = reach(&self.outline);
+                let (long, top) = (figure(top - height.to_f64()), figure(top));
+                let message = if height.is_zero() {
+                    format!("`{below}` is {long} long and cannot stick out {z}")
+                } else {
+                    format!("`{below}` ends at z = {top} and does not reach z = {z}")
+                };
+                Report::error(span, message).and(last.name.span, "this one")
+            }
+            Unjoined::Point => {
+                Report::error(span, format!("`{below}` comes to a point at z = {z}"))
+                    .help("put the plane where there is something to hold")
+            }
+            Unjoined::Back(segment) => {
+                Report::error(span, format!("the plane z = {z} cuts `{below}` more than once"))
+                    .and(segment.span, "here it comes back to it")
+                    .help("put the plane where the profile crosses it once")
+            }
+            Unjoined::NoFace(segment) => Report::error(
+                mount.file.span,
+                format!("the first segment of `{}` is not a flat face", mount.file.word),
+            )
+            .and(segment.span, "this one")
+            .help("what is mounted on another part begins with a face across the axis"),
+        })?;
+        part.raised(&Number::int(1), at);
+        let scopes = self.scopes.len();
+        self.surfaces.extend(part.surfaces);
+        self.niceness.extend(
+            part.niceness.into_iter().map(|law| law.map(|(scope, value)| (scope + scopes, value))),
+        );
+        self.scopes.extend(part.scopes);
+        Ok(())
+    }
+
+    /// Forgets the surfaces of which nothing is left.
+    fn drop_what_is_gone(&mut self) {
+        let mut left = vec![None; self.surfaces.len()];
+        let mut count = 0;
+        for (surface, place) in left.iter_mut().enumerate() {
+            if self.outline.iter().any(|segment| segment.surface == surface) {
+                *place = Some(count);
+                count += 1;
+            }
+        }
+        for segment in &mut self.outline {
+            segment.surface = left[segment.surface].unwrap_or_default();
+        }
+        let mut kept = left.iter().map(Option::is_some);
+        self.surfaces.retain(|_| kept.next().unwrap_or_default());
+        let mut kept = left.iter().map(Option::is_some);
+        self.niceness.retain(|_| kept.next().unwrap_or_default());
+    }
+}

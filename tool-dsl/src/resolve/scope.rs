@@ -1,0 +1,77 @@
+//! What names mean in a file, and where its coordinates lie in the whole tool.
+
+use super::definitions;
+use super::dimension::Dimension;
+use super::lower::{Lowering, May};
+use crate::domain::Domain;
+use crate::expr::{Coord, Graph, Id};
+use crate::model::{Frame, Unit};
+use crate::number::Number;
+use crate::report::Report;
+use crate::syntax::tree::{Definition, Tool};
+use std::collections::BTreeMap;
+
+impl Lowering {
+    /// Of a text without names.
+    pub(super) fn new(domain: Domain, unit: Unit) -> Lowering {
+        Lowering {
+            domain,
+            graph: Graph::default(),
+            unit,
+            frame: Frame { tip: Number::int(0), down: false },
+            scale: Number::int(1),
+            values: BTreeMap::new(),
+            declared: BTreeMap::new(),
+        }
+    }
+
+    /// Of a tool of which nothing is lowered yet.
+    pub(super) fn of(tool: &Tool, unit: Unit) -> Lowering {
+        let declared = definitions(tool, |_| true)
+            .map(|definition| (definition.name.word.clone(), definition.name.span))
+            .collect();
+        Lowering { declared, ..Lowering::new(tool.domain, unit) }
+    }
+
+    /// Works on a graph that is shared with other files.
+    pub(super) fn on<T>(&mut self, graph: &mut Graph, work: impl FnOnce(&mut Lowering) -> T) -> T {
+        std::mem::swap(graph, &mut self.graph);
+        let done = work(self);
+        std::mem::swap(graph, &mut self.graph);
+        done
+    }
+
+    /// Puts the file's tool somewhere else: its lengths multiplied, its tip moved along the axis.
+    pub(super) fn placed(&mut self, scale: &Number, by: &Number) {
+        self.scale = &self.scale / scale;
+        let by = &self.scale * by;
+        self.frame.tip =
+            if self.frame.down { &self.frame.tip + &by } else { &self.frame.tip - &by };
+    }
+
+    /// A length of the tool in the file's unit.
+    pub(super) fn length_here(&mut self, length: Id) -> Id {
+        if self.scale == Number::int(1) {
+            return length;
+        }
+        let scale = self.graph.number(self.scale.clone());
+        self.graph.mul(scale, length)
+    }
+
+    /// A coordinate of the tool's in the file's unit and frame.
+    pub(super) fn coordinate_here(&mut self, coordinate: Coord) -> Id {
+        let id = self.graph.coord(coordinate);
+        let id = self.length_here(id);
+        if coordinate == Coord::Z { self.frame.file_z(&mut self.graph, id) } else { id }
+    }
+
+    /// A function of the coordinates that gets a name.
+    pub(super) fn curve(&mut self, definition: &Definition) -> Result<(), Report> {
+        let value = self.lower(&definition.value, May::Coordinates)?;
+        if value.1 == Dimension::Angle {
+            let report = Report::error(definition.value.span, "a curve is no angle");
+            return Err(report.help("give a number or a power of length"));
+        }
+        self.define(&definition.name, value)
+    }
+}

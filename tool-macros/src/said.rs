@@ -1,0 +1,55 @@
+//! What the compiler says of a tool, where rustc shows it.
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote_spanned;
+use tool_dsl::Compiled;
+use tool_dsl::report::{Report, Severity};
+use tool_dsl::source::Sources;
+
+/// A tool's errors: one that stands in the program's own text at its token, one that stands in a
+/// mounted file at the mount, with its file's line; all others together at the macro's call.
+pub(crate) fn errors(compiled: &Compiled, place: Span) -> TokenStream {
+    let sources = &compiled.sources;
+    let mut tokens = TokenStream::new();
+    let mut rest = Vec::new();
+    for report in compiled.reports.iter().filter(|r| r.severity == Severity::Error) {
+        let (source, inside) = sources.locate(report.span);
+        match (source.token_at(inside), sources.token_at(report.span)) {
+            (Some(span), _) => tokens.extend(error(&in_words(report, sources), span)),
+            (None, Some(mount)) => tokens.extend(error(&excerpt(report, sources), mount)),
+            (None, None) => rest.push(excerpt(report, sources)),
+        }
+    }
+    if !rest.is_empty() {
+        tokens.extend(error(&rest.join("\n\n"), place));
+    }
+    tokens
+}
+
+fn error(message: &str, span: Span) -> TokenStream {
+    quote_spanned! { span => ::core::compile_error! { #message } }
+}
+
+/// A report with the line of its file.
+fn excerpt(report: &Report, sources: &Sources) -> String {
+    // rustc says "error: " itself.
+    report.render(sources, false).trim_start_matches("error: ").to_owned()
+}
+
+/// A report where rustc shows the place itself.
+fn in_words(report: &Report, sources: &Sources) -> String {
+    let mut text = report.message.clone();
+    if let Some((span, label)) = &report.second {
+        let (source, inside) = sources.locate(*span);
+        let place = sources.text(*span);
+        text.push_str(&format!("\nnote: {label}: `{place}`"));
+        if source.token_at(inside).is_none() {
+            let line = 1 + source.text[..inside.start].matches('\n').count();
+            text.push_str(&format!(", line {line} of {}", source.name));
+        }
+    }
+    if let Some(help) = &report.help {
+        text.push_str(&format!("\nhelp: {help}"));
+    }
+    text
+}
