@@ -155,8 +155,8 @@ impl Walker {
 /// Sixteen points or boxes, coordinate by coordinate.
 type Triple<S> = [f32x16<S>; 3];
 
-// What runs on vectors is written in functions that are always inlined: a closure would be compiled
-// without the vector instructions of its surroundings.
+// What runs on vectors is written in functions that are always inlined: a closure, as `array::map`
+// takes one, would be compiled without the vector instructions of its surroundings.
 
 #[inline(always)]
 fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> Triple<S> {
@@ -212,8 +212,13 @@ fn descend<S: Simd>(
     for node in nodes {
         let children = &boxes[*node as usize];
         let (centre, half) = (load(simd, &children.centre), load(simd, &children.half));
-        let seen = [0, 1, 2].map(|axis| dot(&centre, view.rows[axis]) + view.origin[axis]);
-        let wide = [0, 1, 2].map(|axis| reach(&half, view.rows[axis]));
+        let seen = [
+            dot(&centre, view.rows[0]) + view.origin[0],
+            dot(&centre, view.rows[1]) + view.origin[1],
+            dot(&centre, view.rows[2]) + view.origin[2],
+        ];
+        let wide =
+            [reach(&half, view.rows[0]), reach(&half, view.rows[1]), reach(&half, view.rows[2])];
         let hits = within(simd, &view.nodes, seen, wide);
         let first = node * WIDTH as u32;
         // Write every child, keep those that hit: no branch to mispredict.
@@ -249,8 +254,11 @@ fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], candidates: 
         let points = &tree.leaves[index].offset;
         let offset = load(simd, points);
         let hits = if view.fits {
-            let seen =
-                [0, 1, 2].map(|axis| dot(&offset, view.rows[axis]) + view.place(centre, axis));
+            let seen = [
+                dot(&offset, view.rows[0]) + view.place(centre, 0),
+                dot(&offset, view.rows[1]) + view.place(centre, 1),
+                dot(&offset, view.rows[2]) + view.place(centre, 2),
+            ];
             within(simd, &view.points, seen, [f32x16::splat(simd, 0.0); 3])
         } else {
             offset[0].simd_le(f32::INFINITY).to_bitmask() as u32
