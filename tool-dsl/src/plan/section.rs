@@ -146,7 +146,7 @@ struct Halves {
 impl Planner<'_> {
     fn tree(
         &mut self,
-        mut pieces: Vec<Piece>,
+        pieces: Vec<Piece>,
         samples: Vec<u32>,
         mut open: Vec<CurveIndex>,
     ) -> Result<Owners, Report> {
@@ -154,18 +154,8 @@ impl Planner<'_> {
         if pieces.iter().all(|piece| piece.owner == first.owner) {
             return Ok(Tree::Leaf(first.owner));
         }
-        let choice = self.choose(&pieces, &samples, &mut open).or_else(|| {
-            pieces.retain(|piece| self.owns(piece));
-            self.choose(&pieces, &samples, &mut open)
-        });
-        let Some((curve, halves)) = choice else {
-            return match pieces.first() {
-                None => Ok(Tree::Leaf(None)),
-                Some(first) if pieces.iter().all(|piece| piece.owner == first.owner) => {
-                    Ok(Tree::Leaf(first.owner))
-                }
-                _ => Err(self.inseparable(pieces[0].vertices[0])),
-            };
+        let Some((curve, halves)) = self.choose(&pieces, &samples, &mut open) else {
+            return Ok(Tree::Leaf(self.settle(&pieces)));
         };
         self.used[curve] = true;
         self.tests += 1;
@@ -238,10 +228,18 @@ impl Planner<'_> {
         fallback
     }
 
+    /// Whose pieces are that no curve tells apart: slivers between a curve and its chord, but for
+    /// one owner's.
+    fn settle(&self, pieces: &[Piece]) -> Option<usize> {
+        let true_ones: Vec<&Piece> = pieces.iter().filter(|piece| self.owns(piece)).collect();
+        let rest = if true_ones.is_empty() { pieces.iter().collect() } else { true_ones };
+        let largest = rest.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
+        largest.and_then(|piece| piece.owner)
+    }
+
     /// Whether a piece is its owner's, in its middle.
     fn owns(&self, piece: &Piece) -> bool {
-        let count = piece.vertices.len() as f64;
-        let middle = [0, 1].map(|k| piece.vertices.iter().map(|p| p[k]).sum::<f64>() / count);
+        let middle = piece.middle();
         let value = |curve: CurveIndex| self.shapes[curve].value(middle);
         match piece.owner {
             Some(owner) => self.inside[owner].holds(&value),

@@ -154,18 +154,28 @@ impl Piece {
         match (has(-1), has(1)) {
             (true, true) => [-1, 1].map(|side| {
                 let (vertices, edges) = cutter.half(&corners, side)?;
-                (vertices.len() > 2).then_some(Piece { owner: self.owner, vertices, edges })
+                let part = Piece { owner: self.owner, vertices, edges };
+                (!is_thin(&part.vertices, cutter.size)).then_some(part)
             }),
             (true, false) => whole(false),
             (false, true) => whole(true),
-            // Nothing is clearly on a side: its middle decides.
-            (false, false) => {
-                let count = self.vertices.len() as f64;
-                let middle =
-                    [0, 1].map(|k| self.vertices.iter().map(|p| p[k]).sum::<f64>() / count);
-                whole(!cutter.shape().below(middle))
-            }
+            // Nothing is clearly on a side: its middle decides, or it is no more than its border.
+            (false, false) if is_thin(&self.vertices, cutter.size) => [None, None],
+            (false, false) => whole(!cutter.shape().below(self.middle())),
         }
+    }
+
+    /// The mean of its vertices.
+    pub(super) fn middle(&self) -> Point {
+        let count = self.vertices.len() as f64;
+        [0, 1].map(|k| self.vertices.iter().map(|p| p[k]).sum::<f64>() / count)
+    }
+
+    /// Twice its area.
+    pub(super) fn area(&self) -> f64 {
+        let first = self.vertices[0];
+        let fan = self.vertices.windows(2);
+        fan.map(|pair| cross(minus(pair[0], first), minus(pair[1], first))).sum::<f64>().abs()
     }
 }
 
@@ -234,7 +244,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
                 edges.push(if own == 0 && after != side { along } else { edge });
             }
         }
-        if along != Edge::Straight && is_flat(&vertices, self.size) {
+        if along != Edge::Straight && is_thin(&vertices, self.size) {
             let bend = self.bend(*vertices.last()?, *vertices.first()?)?;
             vertices.push(bend);
             edges.push(along);
@@ -287,10 +297,15 @@ impl<'a, 'g> Cutter<'a, 'g> {
     }
 }
 
-/// Whether all vertices are in a line.
-fn is_flat(vertices: &[Point], size: f64) -> bool {
-    let [first, .., last] = vertices else { return true };
-    let way = minus(*last, *first);
-    let off = |p: &Point| cross(way, minus(*p, *first)).abs() / norm(way);
-    vertices.iter().all(|p| off(p) <= ON * size)
+/// Whether all vertices are in a line, but for rounding.
+fn is_thin(vertices: &[Point], size: f64) -> bool {
+    let Some(&first) = vertices.first() else { return true };
+    let far = |a: Point| {
+        let farther = |b: &&Point, c: &&Point| norm(minus(**b, a)).total_cmp(&norm(minus(**c, a)));
+        vertices.iter().max_by(farther).copied().unwrap_or(a)
+    };
+    let last = far(first);
+    let (first, way) = (far(last), minus(last, far(last)));
+    let off = |p: &Point| cross(way, minus(*p, first)).abs() / norm(way);
+    vertices.iter().all(|p| !(off(p) > ON * size))
 }

@@ -143,7 +143,7 @@ impl Section<'_> {
             let mine = |s: &&Slice| s.stop == slice.stop;
             let others = slices.iter().filter(|s| !mine(s));
             let cut: Vec<Point> = others
-                .flat_map(|s| s.rim(self, 12))
+                .flat_map(|s| s.rays(self, 12))
                 .filter(|p| {
                     let own = self.depth_at(feature, *p);
                     own > self.depth_at(other, *p) + 1e-9 * self.size

@@ -157,6 +157,17 @@ impl Slice {
         (0..=steps).map(|k| self.rim_at(section, f64::from(k) / f64::from(steps))).collect()
     }
 
+    /// Points along its normals.
+    pub(super) fn rays(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
+        let ray = |k: u32| {
+            let part = f64::from(k) / f64::from(steps);
+            let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
+            let radius = self.radius(section, part);
+            [0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0].map(|share| seat.at(share * radius))
+        };
+        (0..=steps).flat_map(ray).collect()
+    }
+
     /// The point of its end at a part of its width.
     pub(super) fn rim_at(&self, section: &Section<'_>, part: f64) -> Point {
         let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
