@@ -35,7 +35,8 @@ pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<
 }
 
 fn drawing(file: &Path, given: &Given) -> Result<String, Failure> {
-    Ok(svg(&*files::checked(file, given)?, Lettering::Strokes))
+    let tool = files::checked(file, given)?;
+    svg(&tool, Lettering::Strokes).ok_or_else(|| Failure::NoAxis(tool.model.name.clone()))
 }
 
 /// An SVG without text elements as a PNG.

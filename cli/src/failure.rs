@@ -71,6 +71,9 @@ pub(crate) enum Failure {
         /// A name that would do.
         better: std::path::PathBuf,
     },
+    /// A shape without an axis has no section that shows it whole.
+    #[error("`{0}` is a solid without an axis: only tools are drawn")]
+    NoAxis(String),
     /// A drawing could not be made into pixels.
     #[error("the drawing could not be made a PNG: {0}; an `.svg` needs no pixels")]
     Pixels(String),

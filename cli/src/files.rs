@@ -5,10 +5,11 @@ use crate::failure::Failure;
 use serde::Serialize;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use tool_dsl::domain::Domain;
 use tool_dsl::report::{self, Severity};
 use tool_dsl::{Checked, compile_with, emit};
 use tools_library::TOOLS;
-use touchoff::tool::{Card, Interpreted};
+use touchoff::tool::{Card, Interpreted, Shape};
 use touchoff::{Tool, Unit};
 
 #[derive(Serialize)]
@@ -19,6 +20,9 @@ struct Listed<'a> {
     low: f64,
     high: f64,
     radius: f64,
+    /// From where to where a solid reaches along x and along y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    across: Option<[[f64; 2]; 2]>,
     surfaces: Vec<ListedSurface<'a>>,
     regions: Vec<&'a str>,
 }
@@ -39,6 +43,10 @@ impl<'a> Listed<'a> {
             low,
             high,
             radius: card.radius(),
+            across: match card.shape {
+                Shape::Revolved => None,
+                Shape::Solid { across } => Some(across),
+            },
             surfaces: card
                 .surfaces
                 .iter()
@@ -150,11 +158,22 @@ fn described(tool: &Checked, warnings: usize) -> String {
     let unit = model.unit.word();
     let cutting: Vec<&str> =
         model.surfaces.iter().filter(|s| s.cutting).map(|s| s.name.as_str()).collect();
+    let extent = &tool.extent;
+    let size = match model.domain {
+        Domain::HalfPlane => format!(
+            "{} {unit} long and {} {unit} in radius",
+            report::figure(extent.high - extent.low),
+            report::figure(extent.radius),
+        ),
+        Domain::Space => {
+            let sides = extent.cell().sides;
+            let [x, y, z] = sides.map(|side| report::figure(side.high - side.low));
+            format!("a solid of {x} by {y} by {z} {unit}")
+        }
+    };
     format!(
-        "{} is {} {unit} long and {} {unit} in radius; {} regions, {} curves, cutting: {}; {warnings} {}",
+        "{} is {size}; {} regions, {} curves, cutting: {}; {warnings} {}",
         model.name,
-        report::figure(tool.extent.high - tool.extent.low),
-        report::figure(tool.extent.radius),
         model.regions.len(),
         model.curves.len(),
         if cutting.is_empty() { "nothing".to_owned() } else { cutting.join(", ") },

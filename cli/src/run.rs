@@ -36,6 +36,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let tool = found.tool();
     let program = Program::read(&wanted.path)?;
     program.check_unit(wanted.unit)?;
+    program.check_poses(tool.card())?;
     let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
     let part = Part::read_stl(&wanted.part, wanted.unit, points, wanted.seed)?;
     about(wanted, &part, &program, tool.card());

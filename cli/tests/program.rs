@@ -414,3 +414,19 @@ fn files_are_drawn() {
     let bad = bench.write("bad.tool", "tool Bad { units mm; }");
     assert_eq!(touchoff(&["draw", &bad]).status.code(), Some(1));
 }
+
+/// A solid without an axis feels its spin: rows of an axis do not place it, quaternions do.
+#[test]
+fn a_solid_wants_full_poses() {
+    let bench = Bench::new();
+    bench.refused(
+        "block.stl",
+        "path.csv",
+        "Block",
+        &["path.csv:2", "an axis does not place `Block`", "give a quaternion"],
+    );
+    bench.write("full.csv", "x,y,z,qx,qy,qz,qw\n0,0,1,0,0,0,1\n0,0,-0.5,0,0,0,1\n");
+    let rows = rows(&bench.run("block.stl", "full.csv", "Block", &["--json"]));
+    assert_eq!(rows[0]["colliding"], 0);
+    assert!((rows[1]["depth"].as_f64().expect("a number") - 0.5).abs() < 1e-6, "{}", rows[1]);
+}

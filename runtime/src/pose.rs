@@ -8,11 +8,14 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 pub const AXIS_TOLERANCE: f64 = 1e-3;
 
 /// A tool's pose in the world: the map from the tool's frame (tip at the origin, +z from the tip
-/// to the spindle) to the part's, both in the part's unit of length.
+/// to the spindle) to the part's, both in the part's unit of length. Of a solid without an axis
+/// what is called its tip is the origin of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     rotation: Matrix3<f64>,
     tip: Point3<f64>,
+    /// Whether the spin about the axis was given.
+    full: bool,
 }
 
 /// A pose that cannot be one.
@@ -37,7 +40,8 @@ impl Pose {
     /// chosen by the branch-free frame of Duff et al., *Building an orthonormal basis, revisited*
     /// (JCGT 2017), accurate for every axis.
     ///
-    /// An axis whose norm is within [`AXIS_TOLERANCE`] of 1 is normalised, another refused.
+    /// An axis whose norm is within [`AXIS_TOLERANCE`] of 1 is normalised, another refused. Such a
+    /// pose is not [full](Pose::is_full): it does not place a solid without an axis.
     pub fn from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Result<Pose, PoseError> {
         let axis = unit("axis", [axis.x, axis.y, axis.z, 0.0])?;
         let [x, y, z, _] = axis;
@@ -47,7 +51,7 @@ impl Pose {
         let first = Vector3::new(1.0 + sign * x * x * a, sign * b, -sign * x);
         let second = Vector3::new(b, sign + y * y * a, -y);
         let rotation = Matrix3::from_columns(&[first, second, Vector3::new(x, y, z)]);
-        Pose::finite(rotation, tip)
+        Pose::finite(rotation, tip, false)
     }
 
     /// A pose from the tip and a quaternion `(x, y, z, w)` that turns the tool's frame into the
@@ -65,15 +69,22 @@ impl Pose {
             2.0 * (y * z + x * w),
             1.0 - 2.0 * (x * x + y * y),
         );
-        Pose::finite(rotation, tip)
+        Pose::finite(rotation, tip, true)
     }
 
-    fn finite(rotation: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
+    fn finite(rotation: Matrix3<f64>, tip: Point3<f64>, full: bool) -> Result<Pose, PoseError> {
         if tip.iter().all(|c| c.abs() <= LARGEST_COORDINATE) {
-            Ok(Pose { rotation, tip })
+            Ok(Pose { rotation, tip, full })
         } else {
             Err(PoseError::NotFinite)
         }
+    }
+
+    /// Whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`]. A
+    /// tool's answers do not depend on it; those of a solid without an axis do, so that only a
+    /// full pose means something for it.
+    pub fn is_full(&self) -> bool {
+        self.full
     }
 
     /// Where the tip is, in the world.

@@ -203,10 +203,42 @@ proptest! {
         let root = tree.build(&mut graph);
         let slope = derivative(&mut graph, root, Coord::Z);
         let mut encloser = Encloser::new(&graph, [root, slope]);
-        encloser.set(Cell { d: Interval::new(d, d + width), z: Interval::new(z, z + height) });
+        encloser.set(Cell::half_plane(Interval::new(d, d + width), Interval::new(z, z + height)));
         let mut evaluator = Evaluator::new(&graph, [root, slope]);
         evaluator.set(At::meridian((d + u * width).min(d + width), (z + v * height).min(z + height)));
         for id in [root, slope] {
+            let (value, within) = (evaluator.get(id), encloser.get(id));
+            prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
+        }
+    }
+
+    #[test]
+    fn in_space_too(
+        tree in tree(),
+        p in [-3.0..3.0f64, -3.0..3.0f64, -3.0..3.0f64],
+        width in [0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64],
+        part in [0.0..=1.0f64, 0.0..=1.0f64, 0.0..=1.0f64],
+    ) {
+        let mut graph = Graph::default();
+        let root = tree.build(&mut graph);
+        let [x, y, _] = p;
+        let d = x.hypot(y);
+        let expected = tree.at(d, p[2]);
+        let slopes = [Coord::X, Coord::Y, Coord::Z].map(|by| derivative(&mut graph, root, by));
+        let all = [root, slopes[0], slopes[1], slopes[2]];
+        let (mut evaluator, mut encloser) = (Evaluator::new(&graph, all), Encloser::new(&graph, all));
+        let sane = expected.value.abs() < 1e6 && expected.slope.iter().all(|s| s.abs() < 1e6);
+        if sane && expected.smooth > 1e-6 && d > 1e-3 {
+            evaluator.set(At::point(x, y, p[2]));
+            let [radial, axial] = expected.slope;
+            for (id, slope) in slopes.into_iter().zip([radial * x / d, radial * y / d, axial]) {
+                prop_assert!(near(evaluator.get(id), slope, 1000.0), "{} {slope}", evaluator.get(id));
+            }
+        }
+        encloser.set(Cell { sides: [0, 1, 2].map(|k| Interval::new(p[k], p[k] + width[k])) });
+        let [x, y, z] = [0, 1, 2].map(|k| (p[k] + part[k] * width[k]).min(p[k] + width[k]));
+        evaluator.set(At::point(x, y, z));
+        for id in all {
             let (value, within) = (evaluator.get(id), encloser.get(id));
             prop_assert!(within.low <= value && value <= within.high, "{value} outside {within:?}");
         }

@@ -12,7 +12,7 @@ use tool_dsl::{compile, emit};
 /// Methods that generated code may call: none panics, none is a libm function.
 const METHODS: [&str; 3] = ["sqrt", "abs", "of"];
 /// Functions that it may call.
-const FUNCTIONS: [&str; 12] = [
+const FUNCTIONS: [&str; 13] = [
     "Some",
     "Lane::of",
     "Lane::le",
@@ -22,6 +22,7 @@ const FUNCTIONS: [&str; 12] = [
     "Lane::max",
     "Lane::quotient",
     "Card::new",
+    "Card::solid",
     "Region::new",
     "Slab::new",
     "Surface::new",
@@ -114,7 +115,16 @@ macro_rules! snapshots {
     };
 }
 
-snapshots!(cylinder, d2_ball, fig_7_3, fig_7_3_exact, half_sphere_cylinder, unit_sphere);
+snapshots!(
+    block,
+    cylinder,
+    d2_ball,
+    fig_7_3,
+    fig_7_3_exact,
+    half_sphere_cylinder,
+    l_bracket,
+    unit_sphere
+);
 
 /// The check above sees what it looks for.
 #[test]

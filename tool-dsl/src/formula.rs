@@ -77,6 +77,15 @@ impl Formula {
         }
     }
 
+    /// The choices of which every point for which this holds has one, for each of several.
+    pub fn choices(&self) -> Vec<&[Formula]> {
+        match self {
+            Formula::All(parts) => parts.iter().flat_map(Formula::choices).collect(),
+            Formula::Any(parts) => vec![parts],
+            _ => Vec::new(),
+        }
+    }
+
     /// The atoms whose curve is not yet decided, in order.
     pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {

@@ -10,6 +10,7 @@
 //! cannot fail.
 
 pub mod bound;
+pub mod domain;
 pub mod draw;
 pub mod emit;
 pub mod expr;
@@ -140,7 +141,7 @@ impl Checked {
     fn nothing(mut model: Model) -> Checked {
         let outside = Tree::Leaf(model.graph.int(0));
         let plan = Plan { owner: Tree::Leaf(None), inside: Tree::Leaf(false), outside };
-        let extent = Extent { low: 0.0, high: 0.0, radius: 0.0 };
+        let extent = Extent::of(model.domain.whole(0.0), 0.0);
         Checked { model, extent, envelope: Vec::new(), plan }
     }
 }

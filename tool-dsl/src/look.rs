@@ -1,7 +1,8 @@
-//! Looks for what is wrong with a tool at many points of its section: regions that overlap, are
+//! Looks for what is wrong with a tool at many points of its domain: regions that overlap, are
 //! never reached or say nonsense. What is found comes with the point where it was found.
 
 use crate::bound::Extent;
+use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{CurveIndex, Formula};
@@ -10,7 +11,7 @@ use crate::plan::spread;
 use crate::report::{Report, any_error, figure};
 use crate::source::Span;
 
-/// Points of the section that are looked at.
+/// Points that are looked at.
 const POINTS: usize = 12_000;
 /// Ways from the inside to the outside along which the surface is sought.
 const CROSSINGS: usize = 1_500;
@@ -19,16 +20,16 @@ const COLUMNS: i32 = 100;
 /// Lengths below this part of the tool's size are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Curves that are undefined somewhere in the section's surroundings, for a tool of which nothing
+/// Curves that are undefined somewhere about the origin, for a tool of which nothing
 /// else is known yet.
 pub(crate) fn undefined(model: &Model) -> Vec<Report> {
     let mut reports = Vec::new();
     for power in -20..=20 {
         let size = 2f64.powi(power);
-        let around = Extent { low: -size, high: size, radius: size };
+        let around = Extent::of(model.domain.whole(size), size);
         let mut look = Look::new(model, &around);
-        for point in spread(&around, 50, 0.0) {
-            look.evaluator.set(At::meridian(point[0], point[1]));
+        for point in spread(model.domain, &around, 50, 0.0) {
+            look.go(point);
             look.undefined_curves(point);
         }
         reports = look.found;
@@ -56,18 +57,21 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
         look.tip(extent.low);
         for cell in section.inner.cells(1) {
             for (p, _) in &cell.samples {
-                look.evaluator.set(At::meridian(p[0], p[1]));
-                look.felt(&model.regions[cell.part], *p);
+                let point = [p[0], 0.0, p[1]];
+                look.go(point);
+                look.felt(&model.regions[cell.part], point);
             }
         }
         return look.found;
     }
     look.scale(extent);
-    let end = look.end(extent);
-    look.tip(end);
+    if model.domain == Domain::HalfPlane {
+        let end = look.end(extent);
+        look.tip(end);
+    }
     let mut inside = Vec::new();
     let mut outside = Vec::new();
-    for point in spread(extent, POINTS, 0.02) {
+    for point in spread(model.domain, extent, POINTS, 0.02) {
         match look.point(point) {
             Some(_) => inside.push(point),
             None => outside.push(point),
@@ -95,7 +99,7 @@ struct Look<'m> {
     holds: Vec<usize>,
     /// Who owns a point that this region would have had.
     beaten: Vec<Option<usize>>,
-    /// The largest value of each curve over the section.
+    /// The largest value of each curve.
     scales: Vec<f64>,
 }
 
@@ -105,15 +109,7 @@ impl<'m> Look<'m> {
             .regions
             .iter()
             .flat_map(|r| {
-                [
-                    r.depth,
-                    r.magnitude,
-                    r.niceness,
-                    r.course.0[0],
-                    r.course.0[1],
-                    r.direction[0],
-                    r.direction[1],
-                ]
+                [r.depth, r.magnitude, r.niceness].into_iter().chain(r.course.0).chain(r.direction)
             })
             .chain(model.curves.iter().map(|curve| curve.value));
         Look {
@@ -130,8 +126,8 @@ impl<'m> Look<'m> {
 
     /// Measures the curves.
     fn scale(&mut self, extent: &Extent) {
-        for [d, z] in spread(extent, 500, 0.02) {
-            self.evaluator.set(At::meridian(d, z));
+        for point in spread(self.model.domain, extent, 500, 0.02) {
+            self.go(point);
             for curve in 0..self.scales.len() {
                 let size = self.value(curve).abs();
                 if size.is_finite() {
@@ -141,10 +137,15 @@ impl<'m> Look<'m> {
         }
     }
 
-    fn place(&self, [d, z]: [f64; 2]) -> String {
+    /// Moves to a point.
+    fn go(&mut self, [x, y, z]: [f64; 3]) {
+        self.evaluator.set(At::point(x, y, z));
+    }
+
+    fn place(&self, [x, y, z]: [f64; 3]) -> String {
         // What is rounding beside the tool's size is 0.
-        let tidy = |v: f64| figure(if v.abs() < ROUNDING * self.size { 0.0 } else { v });
-        format!("({}, {})", tidy(d), tidy(self.model.frame.to_file(z)))
+        let tidy = |v: f64| if v.abs() < ROUNDING * self.size { 0.0 } else { v };
+        self.model.domain.shown([x, y, self.model.frame.to_file(z)].map(tidy))
     }
 
     /// Reports something once a place of the text.
@@ -158,8 +159,8 @@ impl<'m> Look<'m> {
         self.evaluator.get(self.model.curves[curve].value)
     }
 
-    fn owner(&mut self, point: [f64; 2]) -> Option<usize> {
-        self.evaluator.set(At::meridian(point[0], point[1]));
+    fn owner(&mut self, point: [f64; 3]) -> Option<usize> {
+        self.go(point);
         let value = |curve: CurveIndex| self.value(curve);
         self.model.regions.iter().position(|region| region.inside.holds(&value))
     }
@@ -171,12 +172,12 @@ impl<'m> Look<'m> {
             let d = extent.radius * f64::from(column) / f64::from(COLUMNS);
             let steps = (extent.high - extent.low) / f64::from(COLUMNS);
             let at = |step: i32| extent.low + steps * f64::from(step);
-            let inside = (0..=COLUMNS).find(|step| self.owner([d, at(*step)]).is_some());
+            let inside = (0..=COLUMNS).find(|step| self.owner([d, 0.0, at(*step)]).is_some());
             let Some(step) = inside else { continue };
             let (mut good, mut bad) = (at(step), at(step - 1));
             for _ in 0..50 {
                 let middle = good / 2.0 + bad / 2.0;
-                if self.owner([d, middle]).is_some() { good = middle } else { bad = middle }
+                if self.owner([d, 0.0, middle]).is_some() { good = middle } else { bad = middle }
             }
             end = end.min(good);
         }
@@ -191,7 +192,7 @@ impl<'m> Look<'m> {
     }
 
     /// Looks at one point; its owner comes back.
-    fn point(&mut self, point: [f64; 2]) -> Option<usize> {
+    fn point(&mut self, point: [f64; 3]) -> Option<usize> {
         let owner = self.owner(point);
         self.undefined_curves(point);
         let value = |curve: CurveIndex| self.value(curve);
@@ -231,7 +232,7 @@ impl<'m> Look<'m> {
     }
 
     /// Values that make no sense.
-    fn felt(&mut self, region: &Region, point: [f64; 2]) {
+    fn felt(&mut self, region: &Region, point: [f64; 3]) {
         let (name, place) = (&region.name, self.place(point));
         let get = |id: Id| self.evaluator.get(id);
         let sayings = [
@@ -259,17 +260,18 @@ impl<'m> Look<'m> {
             };
             return self.report(report);
         }
-        let [a, b] = region.course.0.map(get);
-        if !a.is_finite() || !b.is_finite() || (a == 0.0 && b == 0.0) {
+        let course = region.course.0.map(get);
+        if !course.into_iter().all(f64::is_finite) || course == [0.0; 3] {
             let report = Report::error(
                 region.course.1,
                 format!("the direction of {name} vanishes at {place}"),
             )
-            .help("give a vector that is not (0, 0), or `toward` a point");
+            .help("give a vector that is nowhere 0, or `toward` a point");
             return self.report(report);
         }
-        let [a, b] = region.direction.map(get);
-        if !(a.hypot(b) - 1.0).abs().is_finite() || (a.hypot(b) - 1.0).abs() > 1e-9 {
+        let [x, y, z] = region.direction.map(get);
+        let off = (x.hypot(y).hypot(z) - 1.0).abs();
+        if off.is_nan() || off > 1e-9 {
             let report = Report::error(
                 region.course.1,
                 format!("the direction of {name} is too long to be made a unit vector at {place}"),
@@ -280,7 +282,7 @@ impl<'m> Look<'m> {
     }
 
     /// Curves that have no value somewhere have no side there.
-    fn undefined_curves(&mut self, point: [f64; 2]) {
+    fn undefined_curves(&mut self, point: [f64; 3]) {
         for curve in 0..self.model.curves.len() {
             if self.value(curve).is_finite() {
                 continue;
@@ -318,7 +320,7 @@ impl<'m> Look<'m> {
                 .help("drop it, or list it earlier"),
                 _ => Report::warning(
                     region.span,
-                    format!("region {} has none of {POINTS} points of the section", region.name),
+                    format!("region {} has none of the {POINTS} points looked at", region.name),
                 )
                 .help("do its conditions contradict one another?"),
             };
@@ -327,11 +329,9 @@ impl<'m> Look<'m> {
     }
 
     /// The depth is 0 where the way from an inside to an outside point meets the surface.
-    fn crossing(&mut self, inside: [f64; 2], outside: [f64; 2]) {
+    fn crossing(&mut self, inside: [f64; 3], outside: [f64; 3]) {
         let (mut good, mut bad) = (0.0, 1.0);
-        let at = |t: f64| {
-            [inside[0] + (outside[0] - inside[0]) * t, inside[1] + (outside[1] - inside[1]) * t]
-        };
+        let at = |t: f64| [0, 1, 2].map(|k| inside[k] + (outside[k] - inside[k]) * t);
         for _ in 0..50 {
             let middle = (good + bad) / 2.0;
             if self.owner(at(middle)).is_some() { good = middle } else { bad = middle }

@@ -1,8 +1,10 @@
 //! A tool whose every name, dimension and rule is settled: what the compiler reasons about.
 //!
-//! All expressions are in the tool's frame (tip at the origin, +z toward the spindle) and the
-//! file's unit. A point belongs to the first region whose formula holds; elsewhere it is outside.
+//! All expressions are in the tool's frame (tip at the origin, +z toward the spindle; a solid's is
+//! its file's) and the file's unit. A point belongs to the first region whose formula holds;
+//! elsewhere it is outside.
 
+use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::{CurveIndex, Formula};
 use crate::number::Number;
@@ -51,9 +53,11 @@ impl Unit {
     }
 }
 
-/// A tool, resolved.
+/// A tool or a solid, resolved.
 #[derive(Clone, Debug)]
 pub struct Model {
+    /// What the expressions are functions of.
+    pub domain: Domain,
     /// The type's name.
     pub name: String,
     /// Where it stands.
@@ -171,10 +175,10 @@ pub struct Region {
     pub depth_span: Span,
     /// How hard it is pushed, as the file says it.
     pub magnitude: Id,
-    /// The direction to the surface in (d, z), a unit vector.
-    pub direction: [Id; 2],
+    /// The direction to the surface in the domain, a unit vector.
+    pub direction: [Id; 3],
     /// The direction before it was made a unit vector, and where it is said.
-    pub course: ([Id; 2], Span),
+    pub course: ([Id; 3], Span),
     /// How good a contact is, as the file says it.
     pub niceness: Id,
     /// What the evaluators compute.

@@ -147,9 +147,15 @@ fn read(path: &Path, shown: &str, place: &LitStr) -> syn::Result<Source> {
     Ok(Source::new(shown, text).held_by(path))
 }
 
+/// Whether the compiler at work is rustdoc, the only one that shows drawings.
+fn documents() -> bool {
+    std::env::current_exe().is_ok_and(|program| program.file_stem().is_some_and(|n| n == "rustdoc"))
+}
+
 /// A tool's code, or a stand-in for one that has errors, and these.
 fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
     let mut tokens = match (&compiled.tool, &compiled.name) {
+        (Some(tool), _) if documents() => emit::documented(tool),
         (Some(tool), _) => emit::emit(tool),
         (None, Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::skeleton(name),
         _ => quote! {},

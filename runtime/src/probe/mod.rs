@@ -21,7 +21,8 @@ use crate::tree::{Candidates, View, Walker, filter};
 use fearless_simd::Level;
 use nalgebra::Point3;
 
-/// A tool beside a part, ready to be asked at one pose after another.
+/// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
+/// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
 ///
 /// Memory is kept between questions, so that after the first few none is allocated. The answers
 /// have the same bits on every machine and at every [`Level`].

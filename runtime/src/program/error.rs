@@ -50,6 +50,19 @@ pub enum ProgramError {
         /// The part's unit.
         part: Unit,
     },
+    /// A solid without an axis, and an axis for its pose.
+    #[error(
+        "{file}:{line}: an axis does not place `{solid}`, a solid without one: give a quaternion, \
+         x,y,z,qx,qy,qz,qw"
+    )]
+    NoSpin {
+        /// The file.
+        file: String,
+        /// The line of the first such pose, 1-based.
+        line: usize,
+        /// The solid's name.
+        solid: String,
+    },
 }
 
 /// What can be wrong with a line of a program.

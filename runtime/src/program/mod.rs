@@ -21,6 +21,7 @@ pub use error::{Fault, ProgramError};
 use std::fs;
 use std::path::Path;
 
+use crate::tool::{Card, Shape};
 use crate::{Pose, Unit};
 use nalgebra::{Point3, Vector3};
 
@@ -84,6 +85,19 @@ impl Program {
                 line: self.unit_line,
                 said,
                 part,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Holds the program to what it moves: a solid without an axis needs full poses, which only a
+    /// table of quaternions gives.
+    pub fn check_poses(&self, card: &Card) -> Result<(), ProgramError> {
+        match (card.shape, self.stops.iter().find(|stop| !stop.pose.is_full())) {
+            (Shape::Solid { .. }, Some(stop)) => Err(ProgramError::NoSpin {
+                file: self.file.clone(),
+                line: stop.line,
+                solid: card.name.to_string(),
             }),
             _ => Ok(()),
         }

@@ -1,4 +1,4 @@
-//! Who a tool is.
+//! Who a tool is, or a solid: to the runtime a solid is a tool without an axis.
 
 use crate::Unit;
 use std::borrow::Cow;
@@ -18,13 +18,27 @@ pub struct Card {
     pub regions: Cow<'static, [Region]>,
     /// The solid's largest radius along the axis, proved: no point of it lies outside all slabs.
     pub envelope: Cow<'static, [Slab]>,
+    /// Whether it has an axis.
+    pub shape: Shape,
     /// Whether depth and clearance are true distances. Without a profile, depth is what the file
     /// says and clearance a lower bound.
     pub exact: bool,
 }
 
+/// Whether a tool looks the same however it is turned about z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// It does: a `tool`, a solid of revolution. A tip and an axis place it.
+    Revolved,
+    /// It does not: a `solid`. Only a full pose places it (see [`crate::Pose::is_full`]).
+    Solid {
+        /// From where to where it reaches along x and along y, proved.
+        across: [[f64; 2]; 2],
+    },
+}
+
 impl Card {
-    /// A card from constants, as generated code writes it.
+    /// A tool's card from constants, as generated code writes it.
     pub const fn new(
         name: &'static str,
         title: &'static str,
@@ -41,7 +55,30 @@ impl Card {
             surfaces: Cow::Borrowed(surfaces),
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
+            shape: Shape::Revolved,
             exact,
+        }
+    }
+
+    /// A solid's card from constants; `across` says from where to where it reaches along x and y.
+    pub const fn solid(
+        name: &'static str,
+        title: &'static str,
+        unit: Unit,
+        surfaces: &'static [Surface],
+        regions: &'static [Region],
+        envelope: &'static [Slab],
+        across: [[f64; 2]; 2],
+    ) -> Card {
+        Card {
+            name: Cow::Borrowed(name),
+            title: Cow::Borrowed(title),
+            unit,
+            surfaces: Cow::Borrowed(surfaces),
+            regions: Cow::Borrowed(regions),
+            envelope: Cow::Borrowed(envelope),
+            shape: Shape::Solid { across },
+            exact: false,
         }
     }
 

@@ -1,10 +1,12 @@
 //! Tools that are loaded at run time.
 
-use super::{Ask, Card, Felt, LANES, Points, Region, Slab, Surface, Tool, present};
+use super::{Ask, Card, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool, present};
 use crate::Unit;
 use fearless_simd::Level;
 use std::borrow::Cow;
 use std::path::Path;
+use tool_dsl::bound::across;
+use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape};
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile_with, model, report};
@@ -94,6 +96,10 @@ fn card(tool: &Checked) -> Card {
             .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: r.surface })
             .collect(),
         envelope: tool.envelope.iter().map(|s| Slab::new(s.low, s.high, s.radius)).collect(),
+        shape: match model.domain {
+            Domain::HalfPlane => Shape::Revolved,
+            Domain::Space => Shape::Solid { across: across(&tool.extent) },
+        },
         exact: model.is_exact(),
     }
 }

@@ -1,7 +1,7 @@
 //! What a tool is to the runtime: a card that describes it, and evaluators of what is felt.
 //!
-//! Everything here is in the tool's frame (tip at the origin, +z from the tip to the spindle) and
-//! in the unit of the tool's file, unless it says otherwise.
+//! Everything here is in the tool's frame (tip at the origin, +z from the tip to the spindle; for
+//! a `solid` its file's frame) and in the unit of the tool's file, unless it says otherwise.
 
 mod card;
 mod compiled;
@@ -9,7 +9,7 @@ mod compiled;
 mod interpreted;
 mod lane;
 
-pub use card::{Card, Region, Slab, Surface};
+pub use card::{Card, Region, Shape, Slab, Surface};
 pub use compiled::Evaluators;
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};

@@ -2,7 +2,7 @@
 
 use super::{Candidates, Tree, WIDTH};
 use crate::pose::Pose;
-use crate::tool::Card;
+use crate::tool::{Card, Shape};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16};
 
 /// A part seen from a tool at a pose: the map to the tool's frame, and the tool's reach, in `f32`
@@ -12,9 +12,9 @@ pub(crate) struct View {
     rows: [[f32; 3]; 3],
     /// The cloud's origin in the tool's frame.
     origin: [f32; 3],
-    /// Low end, high end and squared radius of each slab, for nodes and for points.
-    nodes: Vec<[f32; 3]>,
-    points: Vec<[f32; 3]>,
+    /// The tool's reach as nodes and as points are held to it.
+    nodes: Reach,
+    points: Reach,
     /// For leaves and points: the rotation and the origin as they are, in `f64`.
     exact_rows: [[f64; 3]; 3],
     exact_origin: [f64; 3],
@@ -27,6 +27,39 @@ pub(crate) struct View {
     fits: bool,
 }
 
+/// What a tool reaches, widened.
+#[derive(Default)]
+struct Reach {
+    /// Low end, high end and squared radius of each slab.
+    slabs: Vec<[f32; 3]>,
+    /// Low and high end along x and y, if it has no axis.
+    across: Option<[[f32; 2]; 2]>,
+}
+
+impl Reach {
+    /// The reach of a tool in the tree's unit, which `unit` of the tool's go to, and a margin more.
+    fn set(&mut self, card: &Card, unit: f64, margin: f64) {
+        let low = |v: f64| ((v * unit - margin) as f32).next_down();
+        let high = |v: f64| ((v * unit + margin) as f32).next_up();
+        self.slabs.clear();
+        self.slabs.extend(card.envelope.iter().map(|slab| {
+            let radius = slab.radius * unit + margin;
+            // Two roundings more, to f32 and of the comparison's own square.
+            let squared = radius * radius * (1.0 + 8.0 * ROUNDOFF);
+            [low(slab.low), high(slab.high), (squared as f32).next_up()]
+        }));
+        self.across = match card.shape {
+            Shape::Revolved => None,
+            Shape::Solid { across } => Some(across.map(|[from, to]| [low(from), high(to)])),
+        };
+    }
+
+    fn is_finite(&self) -> bool {
+        let across = self.across.iter().flatten().flatten();
+        self.slabs.iter().flatten().chain(across).all(|v| v.is_finite())
+    }
+}
+
 /// The unit roundoff of `f32`.
 const ROUNDOFF: f64 = 1.0 / 16_777_216.0;
 
@@ -36,8 +69,8 @@ impl View {
         View {
             rows: [[0.0; 3]; 3],
             origin: [0.0; 3],
-            nodes: Vec::new(),
-            points: Vec::new(),
+            nodes: Reach::default(),
+            points: Reach::default(),
             exact_rows: [[0.0; 3]; 3],
             exact_origin: [0.0; 3],
             from_tip: [0.0; 3],
@@ -74,20 +107,9 @@ impl View {
         // A leaf that the descent kept is no farther from the tool than the tool's size and its own.
         let near = tool + 4.0 * f64::from(tree.leaf_size) + 2.0 * node_margin;
         let point_margin = 16.0 * ROUNDOFF * (near + 3.0 * f64::from(tree.leaf_size));
-        let widened = |slabs: &mut Vec<[f32; 3]>, margin: f64| {
-            slabs.clear();
-            slabs.extend(card.envelope.iter().map(|slab| {
-                let radius = slab.radius * unit + margin;
-                // Two roundings more, to f32 and of the comparison's own square.
-                let squared = radius * radius * (1.0 + 8.0 * ROUNDOFF);
-                let low = slab.low * unit - margin;
-                let high = slab.high * unit + margin;
-                [(low as f32).next_down(), (high as f32).next_up(), (squared as f32).next_up()]
-            }));
-        };
-        widened(&mut self.nodes, node_margin);
-        widened(&mut self.points, point_margin);
-        self.fits = self.origin.iter().chain(self.nodes.iter().flatten()).all(|v| v.is_finite());
+        self.nodes.set(card, unit, node_margin);
+        self.points.set(card, unit, point_margin);
+        self.fits = self.origin.iter().all(|v| v.is_finite()) && self.nodes.is_finite();
     }
 
     /// A coordinate of a place of the cloud, seen from the tool: in `f64`, then rounded.
@@ -133,8 +155,8 @@ impl Walker {
 /// Sixteen points or boxes, coordinate by coordinate.
 type Triple<S> = [f32x16<S>; 3];
 
-// What runs on vectors is written in functions that are always inlined: a closure would be compiled
-// without the vector instructions of its surroundings.
+// What runs on vectors is written in functions that are always inlined: a closure, as `array::map`
+// takes one, would be compiled without the vector instructions of its surroundings.
 
 #[inline(always)]
 fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> Triple<S> {
@@ -156,18 +178,23 @@ fn reach<S: Simd>(half: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
     dot(half, [row[0].abs(), row[1].abs(), row[2].abs()])
 }
 
-/// Which lanes lie in a slab: z from `low` to `high`, and no farther from the axis than its radius.
+/// Which lanes a tool may reach: boxes about a centre, with half extents along the tool's axes.
 #[inline(always)]
-fn in_slabs<S: Simd>(
-    simd: S,
-    slabs: &[[f32; 3]],
-    low: f32x16<S>,
-    high: f32x16<S>,
-    squared: f32x16<S>,
-) -> u32 {
+fn within<S: Simd>(simd: S, reach: &Reach, centre: Triple<S>, half: Triple<S>) -> u32 {
+    let zero = f32x16::splat(simd, 0.0);
+    let [x, y, z] = centre;
+    let (low, high) = (z - half[2], z + half[2]);
+    let (dx, dy) = ((x.abs() - half[0]).max(zero), (y.abs() - half[1]).max(zero));
+    let squared = dx * dx + dy * dy;
     let mut hit = mask32x16::splat(simd, false);
-    for [slab_low, slab_high, radius] in slabs {
+    for [slab_low, slab_high, radius] in &reach.slabs {
         hit |= low.simd_le(*slab_high) & high.simd_ge(*slab_low) & squared.simd_le(*radius);
+    }
+    if let Some(across) = &reach.across {
+        for (axis, [from, to]) in across.iter().enumerate() {
+            hit &= (centre[axis] - half[axis]).simd_le(*to);
+            hit &= (centre[axis] + half[axis]).simd_ge(*from);
+        }
     }
     hit.to_bitmask() as u32
 }
@@ -182,17 +209,17 @@ fn descend<S: Simd>(
     below: &mut [u32],
 ) -> usize {
     let mut kept = 0;
-    let zero = f32x16::splat(simd, 0.0);
     for node in nodes {
         let children = &boxes[*node as usize];
         let (centre, half) = (load(simd, &children.centre), load(simd, &children.half));
-        let z = dot(&centre, view.rows[2]) + view.origin[2];
-        let dz = reach(&half, view.rows[2]);
-        let x = dot(&centre, view.rows[0]) + view.origin[0];
-        let y = dot(&centre, view.rows[1]) + view.origin[1];
-        let x = (x.abs() - reach(&half, view.rows[0])).max(zero);
-        let y = (y.abs() - reach(&half, view.rows[1])).max(zero);
-        let hits = in_slabs(simd, &view.nodes, z - dz, z + dz, x * x + y * y);
+        let seen = [
+            dot(&centre, view.rows[0]) + view.origin[0],
+            dot(&centre, view.rows[1]) + view.origin[1],
+            dot(&centre, view.rows[2]) + view.origin[2],
+        ];
+        let wide =
+            [reach(&half, view.rows[0]), reach(&half, view.rows[1]), reach(&half, view.rows[2])];
+        let hits = within(simd, &view.nodes, seen, wide);
         let first = node * WIDTH as u32;
         // Write every child, keep those that hit: no branch to mispredict.
         let place = &mut below[kept..kept + WIDTH];
@@ -226,11 +253,13 @@ fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], candidates: 
         let centre = [f64::from(last[0][lane]), f64::from(last[1][lane]), f64::from(last[2][lane])];
         let points = &tree.leaves[index].offset;
         let offset = load(simd, points);
-        let x = dot(&offset, view.rows[0]) + view.place(centre, 0);
-        let y = dot(&offset, view.rows[1]) + view.place(centre, 1);
-        let z = dot(&offset, view.rows[2]) + view.place(centre, 2);
         let hits = if view.fits {
-            in_slabs(simd, &view.points, z, z, x * x + y * y)
+            let seen = [
+                dot(&offset, view.rows[0]) + view.place(centre, 0),
+                dot(&offset, view.rows[1]) + view.place(centre, 1),
+                dot(&offset, view.rows[2]) + view.place(centre, 2),
+            ];
+            within(simd, &view.points, seen, [f32x16::splat(simd, 0.0); 3])
         } else {
             offset[0].simd_le(f32::INFINITY).to_bitmask() as u32
         };

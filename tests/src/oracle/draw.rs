@@ -25,4 +25,15 @@ impl Draw {
         let unit = (self.bits() >> 11) as f64 * 2f64.powi(-53);
         low + (high - low) * unit
     }
+
+    /// A unit vector, in any direction.
+    pub fn direction(&mut self) -> [f64; 3] {
+        loop {
+            let v = [0; 3].map(|_| self.between(-1.0, 1.0));
+            let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if (0.01..=1.0).contains(&norm) {
+                return v.map(|c| c / norm);
+            }
+        }
+    }
 }

@@ -10,6 +10,7 @@
 //! **Where a direction does not exist.** On the axis the radial part is that of +x. Where the vector in the half plane itself vanishes
 //! (centre of an arc, or a reflex corner that owns the point) the direction is +z.
 
+pub mod bodies;
 pub mod brute;
 #[cfg(test)]
 mod brute_contacts;
@@ -23,6 +24,7 @@ mod piece;
 pub mod profile;
 pub mod solids;
 
+pub use bodies::{Block, LBracket};
 pub use fig73::Fig73;
 pub use nearest::{D2Ball, Fig73Exact, HalfSphereCylinder};
 pub use solids::{Cylinder, UnitSphere};
@@ -76,11 +78,32 @@ pub trait Oracle {
         true
     }
 
-    /// `[d, z]`: vertices of the profile, ends of splitting curves, centres of arcs.
-    fn corners(&self) -> Vec<[f64; 2]>;
+    /// Whether the solid looks the same however it is turned about z.
+    fn revolved(&self) -> bool {
+        true
+    }
 
-    /// Points `[d, z]` along every splitting curve and every piece of the surface, a list for each, ends included.
-    fn curves(&self) -> Vec<Vec<[f64; 2]>>;
+    /// `[d, z]`: vertices of the profile, ends of splitting curves, centres of arcs. Only of a solid of revolution.
+    fn corners(&self) -> Vec<[f64; 2]> {
+        Vec::new()
+    }
+
+    /// Points `[d, z]` along every splitting curve and every piece of the surface, a list for each, ends included. Only of a solid of
+    /// revolution.
+    fn curves(&self) -> Vec<Vec<[f64; 2]>> {
+        Vec::new()
+    }
+
+    /// [`Oracle::corners`] in space; of a solid of revolution in the half plane y = 0.
+    fn corner_points(&self) -> Vec<[f64; 3]> {
+        self.corners().into_iter().map(|[d, z]| [d, 0.0, z]).collect()
+    }
+
+    /// [`Oracle::curves`] in space; of a solid of revolution in the half plane y = 0.
+    fn curve_points(&self) -> Vec<Vec<[f64; 3]>> {
+        let lift = |curve: Vec<[f64; 2]>| curve.into_iter().map(|[d, z]| [d, 0.0, z]).collect();
+        self.curves().into_iter().map(lift).collect()
+    }
 
     /// Largest distance from the axis, and largest z. The smallest z is 0.
     fn extent(&self) -> [f64; 2];
@@ -95,7 +118,20 @@ pub fn all() -> Vec<Box<dyn Oracle>> {
         Box::<Fig73>::default(),
         Box::<Fig73Exact>::default(),
         Box::<D2Ball>::default(),
+        Box::new(Block),
+        Box::new(LBracket),
     ]
+}
+
+/// A point moved by `step`: anywhere in space, or if the solid is one of revolution within the half plane, and then turned about z by
+/// `angle`.
+pub fn moved(o: &dyn Oracle, [x, y, z]: [f64; 3], step: [f64; 3], angle: f64) -> [f64; 3] {
+    if !o.revolved() {
+        return [x + step[0], y + step[1], z + step[2]];
+    }
+    let (sin, cos) = angle.sin_cos();
+    let d = (x.hypot(y) + step[0]).abs();
+    [d * cos, d * sin, z + step[2]]
 }
 
 /// A point seen in the half plane through it and the axis.
@@ -197,7 +233,12 @@ mod tests {
                 for k in 0..8 {
                     let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
                     let d = m.dz[0] + reach * cos;
-                    let q = [d * m.radial[0], d * m.radial[1], p[2] + reach * sin];
+                    let q = if o.revolved() {
+                        [d * m.radial[0], d * m.radial[1], p[2] + reach * sin]
+                    } else {
+                        let way = draw.direction();
+                        [0, 1, 2].map(|axis| p[axis] + reach * way[axis])
+                    };
                     let there = o.sense(q).map(|s| s.owner);
                     assert_eq!(owner, there, "{} {p:?} {q:?}", o.name());
                 }
@@ -208,18 +249,20 @@ mod tests {
     /// On each curve the border is 0 to rounding, and each is a border: some owner or side changes close by.
     #[test]
     fn curves_and_corners_lie_on_borders() {
+        let mut draw = Draw::new(5);
         for o in all() {
-            for curve in o.curves() {
+            for curve in o.curve_points() {
                 let inner = &curve[1..curve.len() - 1];
-                for &[d, z] in inner {
-                    assert!(o.border([d, 0.0, z]) < 1e-14, "{} {d} {z}", o.name());
-                    let mut owners = (0..16).map(|k| {
+                for &p in inner {
+                    assert!(o.border(p) < 1e-14, "{} {p:?}", o.name());
+                    let mut owners = (0..32).map(|k| {
                         let (sin, cos) =
                             (0.1 + f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
-                        o.sense([d + 1e-6 * cos, 0.0, z + 1e-6 * sin]).map(|s| s.owner)
+                        let way = if o.revolved() { [cos, 0.0, sin] } else { draw.direction() };
+                        o.sense(moved(&*o, p, way.map(|c| 1e-6 * c), 0.0)).map(|s| s.owner)
                     });
-                    let first = owners.next().expect("sixteen of them");
-                    assert!(owners.any(|other| other != first), "{} {d} {z}", o.name());
+                    let first = owners.next().expect("many of them");
+                    assert!(owners.any(|other| other != first), "{} {p:?}", o.name());
                 }
             }
         }
@@ -228,7 +271,7 @@ mod tests {
     #[test]
     fn no_owner_is_lost_between_the_curves() {
         // Every change of owner found on a fine walk has a listed curve within a step of it.
-        for o in all() {
+        for o in all().into_iter().filter(|o| o.revolved()) {
             let [width, height] = o.extent();
             let all: Vec<_> = o.curves().into_iter().flatten().collect();
             let step = 0.05;
@@ -279,7 +322,7 @@ mod tests {
 
     #[test]
     fn the_axis_answers() {
-        for o in all() {
+        for o in all().into_iter().filter(|o| o.revolved()) {
             for tiny in [0.0, -0.0, 5e-324, 2f64.powi(-540)] {
                 for i in 0..=1000 {
                     let z = o.extent()[1] * f64::from(i) / 1000.0;

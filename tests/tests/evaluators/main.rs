@@ -80,5 +80,7 @@ suites! {
     half_sphere_cylinder: HalfSphereCylinder in "half_sphere_cylinder.tool", oracle::HalfSphereCylinder::default();
     fig_7_3: Fig73 in "fig_7_3.tool", oracle::Fig73::default();
     fig_7_3_exact: Fig73Exact in "fig_7_3_exact.tool", oracle::Fig73Exact::default();
+    block: Block in "block.tool", oracle::Block;
+    l_bracket: LBracket in "l_bracket.tool", oracle::LBracket;
     d2_ball: D2Ball in "d2_ball.tool", oracle::D2Ball::default();
 }

@@ -1,7 +1,7 @@
 //! Points that an evaluator finds hard, and plenty of ordinary ones.
 
 use touchoff_tests::oracle::draw::Draw;
-use touchoff_tests::oracle::{Meridian, Oracle};
+use touchoff_tests::oracle::{Meridian, Oracle, moved};
 
 /// Points spread over the box, and as many close to borders.
 const UNIFORM: usize = 60_000;
@@ -46,17 +46,15 @@ fn uniform(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
 /// Within 1e-6 of the surface or a splitting curve. Where they run is found by halving a stretch
 /// on whose ends the oracle disagrees, so that nothing but the oracle's answer is trusted.
 fn beside_borders(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
-    let samples: Vec<[f64; 2]> = oracle.curves().into_iter().flatten().collect();
-    let owner = |[d, z]: [f64; 2]| oracle.sense([d, 0.0, z]).map(|sense| sense.owner);
+    let samples: Vec<[f64; 3]> = oracle.curve_points().into_iter().flatten().collect();
+    let owner = |p: [f64; 3]| oracle.sense(p).map(|sense| sense.owner);
     let mut found = 0;
     while found < BORDERS {
         let sample = samples[draw.bits() as usize % samples.len()];
         let reach = 0.05 * oracle.extent()[0];
         let mut near = || {
-            [
-                (sample[0] + draw.between(-reach, reach)).abs(),
-                sample[1] + draw.between(-reach, reach),
-            ]
+            let step = [0; 3].map(|_| draw.between(-reach, reach));
+            moved(oracle, sample, step, 0.0)
         };
         let (mut a, mut b) = (near(), near());
         let first = owner(a);
@@ -65,38 +63,50 @@ fn beside_borders(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3
         }
         found += 1;
         for _ in 0..45 {
-            let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+            let middle = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0);
             if owner(middle) == first { a = middle } else { b = middle }
         }
         for _ in 0..BESIDE {
             // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
             let size = 10f64.powf(draw.between(-16.0, -6.0));
-            let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+            let beside = moved(oracle, a, draw.direction().map(|c| size * c), 0.0);
             let azimuths = azimuths(draw);
             let azimuth = azimuths[draw.bits() as usize % azimuths.len()];
-            points.push(over([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth));
+            points.push(turned(oracle, beside, azimuth));
         }
     }
 }
 
-/// Every corner and every sample of a curve, and one ulp to either side of it in d and in z.
+/// Every corner and every sample of a curve, and one ulp to either side of it in each coordinate.
 fn exact(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
     let around = |v: f64| [v, v.next_up(), v.next_down()];
-    let curves = oracle.curves().into_iter().flatten();
-    for [d, z] in oracle.corners().into_iter().chain(curves) {
-        for d in around(d) {
+    let curves = oracle.curve_points().into_iter().flatten();
+    for [x, y, z] in oracle.corner_points().into_iter().chain(curves) {
+        for x in around(x) {
             for z in around(z) {
-                points.extend(azimuths(draw).map(|azimuth| over([d.abs(), z], azimuth)));
+                if oracle.revolved() {
+                    points.extend(azimuths(draw).map(|azimuth| over([x.abs(), z], azimuth)));
+                } else {
+                    points.extend(around(y).map(|y| [x, y, z]));
+                }
             }
         }
     }
+}
+
+/// A point of the half plane y = 0 of a solid of revolution turned about z; of another solid as it is.
+fn turned(oracle: &dyn Oracle, p: [f64; 3], azimuth: [f64; 2]) -> [f64; 3] {
+    if oracle.revolved() { over([p[0], p[2]], azimuth) } else { p }
 }
 
 /// On the axis and as close to it as numbers go, at every height that a corner has and others.
 fn axis(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
     const CLOSE: [f64; 8] = [0.0, 5e-324, 1e-310, 1.7e-162, 1.6e-154, 1e-100, 1e-20, f64::EPSILON];
     let height = oracle.extent()[1];
-    let corners = oracle.corners().into_iter().flat_map(|[_, z]| [z, z.next_up(), z.next_down()]);
+    let mut heights: Vec<f64> = oracle.corner_points().into_iter().map(|[.., z]| z).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup();
+    let corners = heights.into_iter().flat_map(|z| [z, z.next_up(), z.next_down()]);
     let others = (0..=200).map(|k| height * f64::from(k) / 200.0);
     for z in corners.chain(others).chain([-0.0, 5e-324, -5e-324]) {
         for close in CLOSE.into_iter().chain([2f64.powi(-540)]) {

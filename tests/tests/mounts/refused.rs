@@ -24,6 +24,10 @@ fn files_that_cannot_be_mounted() {
         "mount \"regions.tool\" as a;",
         &["`regions.tool` has regions but no profile and cannot be mounted"],
     );
+    refused(
+        "mount \"plate.tool\" as a;",
+        &["`plate.tool` is a solid without an axis and cannot be mounted"],
+    );
     let text = mounts("mount \"er16.tool\" as a;");
     let nowhere = compile(&Source::new("t.tool", text));
     assert!(said(&nowhere).contains("this text is from no file"), "{}", said(&nowhere));

@@ -12,3 +12,4 @@ mod margins;
 mod parts;
 mod poses;
 mod scenes;
+mod solids;

@@ -4,8 +4,8 @@
 use crate::compare::{Case, Seen, tools};
 use crate::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{Oracle, moved};
 
 /// Points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, carried to a pose, among others over a part of `size`.
 fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
@@ -30,13 +30,12 @@ fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
 
 fn own_points(oracle: &dyn Oracle, draw: &mut Draw) -> Vec<Vector3<f64>> {
     let mut points = Vec::new();
-    for [d, z] in oracle.curves().into_iter().flatten() {
+    for p in oracle.curve_points().into_iter().flatten() {
         for power in [0, -15, -14, -13, -12, -11, -9, -7, -6, -5, -3] {
             let step = if power == 0 { 0.0 } else { 10f64.powi(power) };
-            let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
-            let (d, z) = ((d + step * cos).abs(), z + step * sin);
-            let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
-            points.push(Vector3::new(d * cos, d * sin, z));
+            let step = draw.direction().map(|c| step * c);
+            let angle = draw.between(0.0, std::f64::consts::TAU);
+            points.push(moved(oracle, p, step, angle).into());
         }
     }
     points
@@ -87,14 +86,15 @@ fn a_hair_to_either_side() {
                 let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
                 // Where a step along the outward slope of the signed distance leads to, if it is the wanted distance off.
                 let mut both = [Vec::new(), Vec::new()];
-                for [d, z] in oracle.curves().into_iter().flatten() {
-                    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
-                    let at = |d: f64, z: f64| Vector3::new(d * cos, d * sin, z);
+                for p in oracle.curve_points().into_iter().flatten() {
+                    let angle = draw.between(0.0, std::f64::consts::TAU);
                     for turn in 0..8 {
                         let (up, out) = (f64::from(turn) * std::f64::consts::FRAC_PI_4).sin_cos();
-                        let q = at((d + hair * out).abs(), z + hair * up);
-                        let off = oracle.signed_distance(q.into());
+                        let way = if oracle.revolved() { [out, 0.0, up] } else { draw.direction() };
+                        let q = moved(&*oracle, p, way.map(|c| hair * c), angle);
+                        let off = oracle.signed_distance(q);
                         if off.abs() > 0.3 * hair && off.abs() < 2.0 * hair {
+                            let q = Vector3::from(q);
                             both[usize::from(off < 0.0)].push(pose.tip() + pose.rotation() * q);
                         }
                     }

@@ -37,6 +37,13 @@ pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Draw)
         let far = draw.between(1.0, 4.0) * 10f64.powi(draw.bits() as i32 & 3);
         return bringing(vector(draw, height), point + far * height * direction(draw), draw);
     }
+    if !oracle.revolved() {
+        // Of a box about it a solid may fill little: somewhere near a face or a splitting surface.
+        let curves = oracle.curve_points();
+        let curve = &curves[draw.bits() as usize % curves.len()];
+        let own = Vector3::from(curve[draw.bits() as usize % curve.len()]);
+        return bringing(own + vector(draw, 0.02 * height), point, draw);
+    }
     let around = direction(draw);
     let d = 1.05 * width * draw.between(0.0, 1.0);
     let z = draw.between(-0.05, 1.05) * height;

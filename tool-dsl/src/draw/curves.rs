@@ -76,7 +76,7 @@ impl<'m> Curves<'m> {
             }
             Asked::Bent(bent) => {
                 let side = |k: usize| Interval::new(low[k], high[k]);
-                bent.1.set(Cell { d: side(0), z: side(1) });
+                bent.1.set(Cell::half_plane(side(0), side(1)));
                 bent.1.get(id)
             }
         };

@@ -24,7 +24,8 @@ impl<'m> Directions<'m> {
     /// The direction to the surface at a point of a region, if there is one.
     pub(super) fn at(&mut self, region: usize, [d, z]: Point) -> Option<Point> {
         self.evaluator.set(At::meridian(d, z));
-        let way = self.model.regions[region].direction.map(|id| self.evaluator.get(id));
+        let [across, _, along] = self.model.regions[region].direction;
+        let way = [across, along].map(|id| self.evaluator.get(id));
         ((norm(way) - 1.0).abs() < 1e-3).then_some(way)
     }
 

@@ -28,6 +28,7 @@ mod stroke;
 mod view;
 
 use crate::Checked;
+use crate::domain::Domain;
 use crate::model::Model;
 use borders::{Border, Nearness, Side};
 use curves::Curves;
@@ -48,8 +49,11 @@ struct Picture<'m> {
     size: f64,
 }
 
-/// Draws a tool as SVG. The drawing says what it is of, so it needs no caption; it lies on white.
-pub fn svg(tool: &Checked, lettering: Lettering) -> String {
+/// Draws a tool as SVG; a solid has no axis, so no section shows it whole. The drawing says what it is of, so it needs no caption; it lies on white.
+pub fn svg(tool: &Checked, lettering: Lettering) -> Option<String> {
+    if tool.model.domain == Domain::Space {
+        return None;
+    }
     let picture = Picture::new(tool);
     let mut sheet = Sheet::new(lettering);
     let marks = regions::draw(&picture, &mut sheet);
@@ -57,10 +61,10 @@ pub fn svg(tool: &Checked, lettering: Lettering) -> String {
     legend::draw(&picture, &marks, &mut sheet);
     title(tool, &mut sheet);
     let name = &tool.model.name;
-    sheet.finish(&match &tool.model.title {
+    Some(sheet.finish(&match &tool.model.title {
         Some(title) => format!("{name}: {title}"),
         None => name.clone(),
-    })
+    }))
 }
 
 impl<'m> Picture<'m> {

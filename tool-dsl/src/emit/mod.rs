@@ -7,6 +7,8 @@ mod dot;
 pub use dot::dot;
 
 use crate::Checked;
+use crate::bound::across;
+use crate::domain::Domain;
 use crate::draw::{self, Lettering};
 use crate::expr::Id;
 use crate::model::Outputs;
@@ -21,9 +23,14 @@ use std::fmt::Write;
 /// The type and its evaluators. Its documentation has the tool's drawing, which only rustdoc is
 /// shown: an editor that shows documentation as text is spared it.
 pub fn emit(tool: &Checked) -> TokenStream {
+    code(tool, &quote! {})
+}
+
+/// The same with the tool's drawing on the type's page, for rustdoc.
+pub fn documented(tool: &Checked) -> TokenStream {
     // One line within a block, so that nothing in it is read as Markdown.
-    let drawing = format!("<div>{}</div>", draw::svg(tool, Lettering::Page));
-    code(tool, &quote! { #[cfg_attr(doc, doc = "", doc = #drawing)] })
+    let drawing = draw::svg(tool, Lettering::Page).map(|svg| format!("<div>{svg}</div>"));
+    code(tool, &drawing.map(|drawing| quote! { #[doc = ""] #[doc = #drawing] }).unwrap_or_default())
 }
 
 fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
@@ -95,13 +102,11 @@ pub fn skeleton(name: &str) -> TokenStream {
 fn documentation(tool: &Checked) -> String {
     let model = &tool.model;
     let mut text = format!(
-        "{}\n\nUnit: {}. Reaches from z = {} to {}, and {} from the axis.\n\n\
+        "{}\n\nUnit: {}. {}.\n\n\
          | region | surface |\n|---|---|\n",
         model.title.as_deref().unwrap_or(&model.name),
         model.unit.word(),
-        figure(if tool.extent.low.abs() < 1e-9 * tool.extent.high { 0.0 } else { tool.extent.low }),
-        figure(tool.extent.high),
-        figure(tool.extent.radius),
+        reach(tool),
     );
     for region in &model.regions {
         let surface = &model.surfaces[region.surface];
@@ -110,6 +115,25 @@ fn documentation(tool: &Checked) -> String {
         let _ = writeln!(text, "| {} | {}{cutting} |", region.name, surface.name);
     }
     text
+}
+
+/// How far a tool reaches along its axis and about it, or a solid along x, y and z.
+fn reach(tool: &Checked) -> String {
+    let extent = &tool.extent;
+    let tidy = |v: f64| figure(if v.abs() < 1e-9 * extent.scale() { 0.0 } else { v });
+    match tool.model.domain {
+        Domain::HalfPlane => format!(
+            "Reaches from z = {} to {}, and {} from the axis",
+            tidy(extent.low),
+            tidy(extent.high),
+            tidy(extent.radius),
+        ),
+        Domain::Space => {
+            let sides = extent.cell().sides;
+            let [x, y, z] = sides.map(|side| format!("{} to {}", tidy(side.low), tidy(side.high)));
+            format!("A solid without an axis: reaches from x = {x}, y = {y}, z = {z}")
+        }
+    }
 }
 
 fn card(tool: &Checked) -> TokenStream {
@@ -129,13 +153,28 @@ fn card(tool: &Checked) -> TokenStream {
         let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
         quote! { Slab::new(#low, #high, #radius) }
     });
+    let made = match model.domain {
+        Domain::HalfPlane => quote! {
+            Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, #exact)
+        },
+        Domain::Space => {
+            let [x, y] = across(&tool.extent).map(|ends| {
+                let ends = ends.map(literal);
+                quote! { [#(#ends),*] }
+            });
+            quote! {
+                Card::solid(
+                    #name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, [#x, #y]
+                )
+            }
+        }
+    };
     quote! {
         fn card() -> &'static Card {
             static SURFACES: &[Surface] = &[#(#surfaces),*];
             static REGIONS: &[Region] = &[#(#regions),*];
             static SLABS: &[Slab] = &[#(#slabs),*];
-            static CARD: Card =
-                Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, #exact);
+            static CARD: Card = #made;
             &CARD
         }
     }

@@ -3,7 +3,8 @@
 use super::{Coord, Graph, Id, Node};
 use std::collections::HashMap;
 
-/// The derivative of `of` with respect to a coordinate, in the meridian coordinates `d` and `z`.
+/// The derivative of `of` with respect to a coordinate: one of `d` and `z`, which are a tool's, or
+/// of `x`, `y` and `z`, which are a solid's and which `d` depends on.
 ///
 /// Where a root, a minimum or an absolute value has a kink, one of its one-sided derivatives is
 /// taken (of a root of 0, the value 0), so that the result is finite wherever the function is.
@@ -24,6 +25,15 @@ fn rule(graph: &mut Graph, id: Id, by: Coord, known: &HashMap<Id, Id>) -> Id {
             let two = graph.int(2);
             let radius = graph.coord(Coord::D);
             graph.mul(two, radius)
+        }
+        Node::Coord(Coord::Q) if matches!(by, Coord::X | Coord::Y) => {
+            let two = graph.int(2);
+            let across = graph.coord(by);
+            graph.mul(two, across)
+        }
+        Node::Coord(Coord::D) if matches!(by, Coord::X | Coord::Y) => {
+            let across = graph.coord(by);
+            graph.quotient(across, id)
         }
         Node::Coord(coord) => graph.int(i64::from(coord == by)),
         Node::Neg(a) => graph.neg(d(&a)),

@@ -12,6 +12,9 @@ pub struct Interval {
     pub high: f64,
 }
 
+/// Nothing but 0.
+pub const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+
 /// Every number.
 pub const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
@@ -80,15 +83,69 @@ impl Interval {
         let abs = self.abs();
         Interval::out(abs.low * abs.low, abs.high * abs.high).at_least_0(true)
     }
+
+    /// Undefined somewhere: then nothing is known.
+    fn sqrt(self) -> Interval {
+        if self.low < 0.0 {
+            return EVERYTHING;
+        }
+        Interval::out(self.low.sqrt(), self.high.sqrt()).at_least_0(true)
+    }
 }
 
-/// A box of the half plane that the profile lies in.
+/// A box of space. A tool's lies in the half plane of y = 0, x ≥ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Distance from the axis.
-    pub d: Interval,
-    /// Along the axis.
-    pub z: Interval,
+    /// Along x, y and z.
+    pub sides: [Interval; 3],
+}
+
+impl Cell {
+    /// The box of a tool's half plane with these distances from the axis and places along it.
+    pub fn half_plane(d: Interval, z: Interval) -> Cell {
+        Cell { sides: [d, ZERO, z] }
+    }
+
+    /// The same with another side along an axis.
+    #[must_use]
+    pub fn with(mut self, axis: usize, side: Interval) -> Cell {
+        self.sides[axis] = side;
+        self
+    }
+
+    /// The smallest box around two.
+    pub(crate) fn hull(&self, other: &Cell) -> Cell {
+        let [a, b, c] = self.sides;
+        let [d, e, f] = other.sides;
+        Cell { sides: [a.hull(d), b.hull(e), c.hull(f)] }
+    }
+
+    /// What two boxes have in common; one whose sides end before they begin if nothing.
+    pub(crate) fn common(&self, other: &Cell) -> Cell {
+        let both = |axis: usize| {
+            let (a, b) = (self.sides[axis], other.sides[axis]);
+            Interval { low: a.low.max(b.low), high: a.high.min(b.high) }
+        };
+        Cell { sides: [0, 1, 2].map(both) }
+    }
+
+    /// Whether the two have a point in common.
+    pub(crate) fn meets(&self, other: &Cell) -> bool {
+        self.common(other).sides.iter().all(|side| side.low <= side.high)
+    }
+
+    /// The square of the distance from the axis.
+    fn squared_radius(&self) -> Interval {
+        let [x, y, _] = self.sides;
+        // Exact where it can be.
+        if y == ZERO { x.square() } else { x.square().plus(y.square()) }
+    }
+
+    /// The distance from the axis.
+    pub(crate) fn radius(&self) -> Interval {
+        let [x, y, _] = self.sides;
+        if y == ZERO { x.abs() } else { self.squared_radius().sqrt() }
+    }
 }
 
 /// Encloses chosen nodes of a graph over one box after another.
@@ -100,7 +157,7 @@ pub struct Encloser<'g> {
 }
 
 impl<'g> Encloser<'g> {
-    /// An encloser of some nodes, which are functions of d and z.
+    /// An encloser of some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Encloser<'g> {
         let mut order = graph.needed(roots);
         let mut values = vec![EVERYTHING; graph.nodes().len()];
@@ -121,12 +178,11 @@ impl<'g> Encloser<'g> {
             let v = |id: Id| self.values[id.index()];
             self.values[id.index()] = match self.graph.node(id) {
                 Node::Const(_) => v(id),
-                Node::Coord(Coord::Z) => cell.z,
-                Node::Coord(Coord::D) => cell.d,
-                Node::Coord(Coord::Q) => cell.d.square(),
-                Node::Coord(Coord::X | Coord::Y) => {
-                    Interval { low: -cell.d.high, high: cell.d.high }
-                }
+                Node::Coord(Coord::X) => cell.sides[0],
+                Node::Coord(Coord::Y) => cell.sides[1],
+                Node::Coord(Coord::Z) => cell.sides[2],
+                Node::Coord(Coord::D) => cell.radius(),
+                Node::Coord(Coord::Q) => cell.squared_radius(),
                 Node::Coord(Coord::Length | Coord::PerLength) => EVERYTHING,
                 Node::Neg(a) => Interval { low: -v(*a).high, high: -v(*a).low },
                 Node::Add(a, b) => v(*a).plus(v(*b)),
@@ -141,11 +197,7 @@ impl<'g> Encloser<'g> {
                     Interval { low: v(*a).low.max(v(*b).low), high: v(*a).high.max(v(*b).high) }
                 }
                 Node::Abs(a) => v(*a).abs(),
-                // Undefined somewhere: then nothing is known.
-                Node::Sqrt(a) if v(*a).low < 0.0 => EVERYTHING,
-                Node::Sqrt(a) => {
-                    Interval::out(v(*a).low.sqrt(), v(*a).high.sqrt()).at_least_0(true)
-                }
+                Node::Sqrt(a) => v(*a).sqrt(),
                 Node::Select { low, high, then, other } => {
                     if v(*low).high <= v(*high).low {
                         v(*then)

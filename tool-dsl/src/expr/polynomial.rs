@@ -6,7 +6,19 @@ use crate::number::Number;
 use std::collections::BTreeMap;
 
 /// Exponents of (d, x, y, z); d² is the same as x² + y² only outside this module.
-type Monomial = [u8; 4];
+pub(crate) type Monomial = [u8; 4];
+
+/// The exponents of one coordinate alone; of the file's unit of length, none.
+pub(crate) fn monomial_of(coord: Coord) -> Monomial {
+    match coord {
+        Coord::D => [1, 0, 0, 0],
+        Coord::Q => [2, 0, 0, 0],
+        Coord::X => [0, 1, 0, 0],
+        Coord::Y => [0, 0, 1, 0],
+        Coord::Z => [0, 0, 0, 1],
+        Coord::Length | Coord::PerLength => [0; 4],
+    }
+}
 
 /// A sum of monomials.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,29 +30,25 @@ const DEGREE: u8 = 8;
 impl Polynomial {
     /// The polynomial that a node is, if it is one.
     pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
+        Polynomial::of_parts(graph, id).remove(&id).flatten()
+    }
+
+    /// The polynomials that a node and all that it needs are, if they are.
+    pub(crate) fn of_parts(graph: &Graph, id: Id) -> BTreeMap<Id, Option<Polynomial>> {
         let mut known: BTreeMap<Id, Option<Polynomial>> = BTreeMap::new();
         for id in graph.needed([id]) {
             let polynomial = Polynomial::node(graph.node(id), |operand| known[operand].clone());
             known.insert(id, polynomial);
         }
-        known.remove(&id).flatten()
+        known
     }
 
     fn node(node: &Node, of: impl Fn(&Id) -> Option<Polynomial>) -> Option<Polynomial> {
         let single = |monomial, value: Number| Polynomial(BTreeMap::from([(monomial, value)]));
         Some(match node {
             Node::Const(value) => single([0; 4], value.clone()),
-            Node::Coord(coord) => single(
-                match coord {
-                    Coord::D => [1, 0, 0, 0],
-                    Coord::Q => [2, 0, 0, 0],
-                    Coord::X => [0, 1, 0, 0],
-                    Coord::Y => [0, 0, 1, 0],
-                    Coord::Z => [0, 0, 0, 1],
-                    Coord::Length | Coord::PerLength => return None,
-                },
-                Number::int(1),
-            ),
+            Node::Coord(Coord::Length | Coord::PerLength) => return None,
+            Node::Coord(coord) => single(monomial_of(*coord), Number::int(1)),
             Node::Neg(a) => of(a)?.scaled(&Number::int(-1)),
             Node::Add(a, b) => of(a)?.plus(&of(b)?),
             Node::Sub(a, b) => of(a)?.plus(&of(b)?.scaled(&Number::int(-1))),

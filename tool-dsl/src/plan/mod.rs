@@ -1,19 +1,20 @@
-//! The order of splits: a binary space partition of the tool's section by its curves.
+//! The order of splits: a binary space partition of the tool's domain by its curves.
 //!
 //! Every test takes a curve's zero to one side, that of the region listed earlier; where both
 //! sides want it, the curve is split once more. A side that provably has no point is not tested
 //! for (`empty`). So a tree gives every point its owner as the regions' list does (in real
 //! arithmetic; a test that is left out can no longer fail by rounding), and only the order of the
 //! tests is chosen: greedily by the information that they give about
-//! samples of the section, cheap curves first, `bsp` before all.
+//! samples of the domain, cheap curves first, `bsp` before all.
 
 pub(crate) mod empty;
 mod section;
 mod shape;
 
 use crate::bound::Extent;
+use crate::domain::Domain;
 use crate::expr::value::{At, Evaluator};
-use crate::expr::{Coord, Graph, Id};
+use crate::expr::{Coord, Id};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::Number;
@@ -127,7 +128,7 @@ pub struct Plan {
 pub fn plan(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
     let (owner, outside) = match &model.section {
         Some(section) => section::trees(model, section)?,
-        None => (by_signs(model, extent)?, Tree::Leaf(beside(&mut model.graph, extent))),
+        None => (by_signs(model, extent)?, Tree::Leaf(beside(model, extent))),
     };
     // Of one tree, so that inside is where an owner is, to the last bit.
     let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
@@ -135,21 +136,28 @@ pub fn plan(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
     Ok(Plan { owner, inside, outside })
 }
 
-/// The distance to the cylinder about the solid.
-fn beside(graph: &mut Graph, extent: &Extent) -> Id {
+/// The distance to the box about the solid, of a tool to the cylinder.
+fn beside(model: &mut Model, extent: &Extent) -> Id {
+    let graph = &mut model.graph;
     let zero = graph.int(0);
-    let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-    let [radius, low, high] = [extent.radius, extent.low, extent.high].map(|value| {
-        let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
-        graph.number(number)
-    });
-    let (below, above, across) = (graph.sub(low, z), graph.sub(z, high), graph.sub(d, radius));
-    let along = graph.max(below, above);
-    let [along, across] = [along, across].map(|part| {
-        let part = graph.max(zero, part);
-        graph.mul(part, part)
-    });
-    let square = graph.add(along, across);
+    let mut square = zero;
+    for (coord, axis, _) in model.domain.coordinates().iter().rev() {
+        let here = graph.coord(*coord);
+        let side = extent.cell().sides[*axis];
+        let [low, high] = [side.low, side.high].map(|value| {
+            let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
+            graph.number(number)
+        });
+        let mut beyond = graph.sub(here, high);
+        // There is nothing beyond the axis.
+        if *coord != Coord::D {
+            let below = graph.sub(low, here);
+            beyond = graph.max(below, beyond);
+        }
+        let beyond = graph.max(zero, beyond);
+        let more = graph.mul(beyond, beyond);
+        square = graph.add(square, more);
+    }
     graph.sqrt(square).unwrap_or(zero)
 }
 
@@ -163,31 +171,46 @@ fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Repor
     planner.tree(vec![ANY; model.curves.len()], &all)
 }
 
-/// A point of the section: the side of each curve, and the owner.
+/// A point: the side of each curve, and the owner.
 struct Sample {
     signs: Vec<Signs>,
     owner: Option<usize>,
 }
 
-/// Points spread evenly over the section's box by the additive recurrence R2 (Roberts 2018).
-pub(crate) fn spread(extent: &Extent, count: usize, around: f64) -> impl Iterator<Item = [f64; 2]> {
+/// Points spread evenly over the extent's box and what lies `around` it, by the additive
+/// recurrences R2 in the half plane and R3 in space (Roberts 2018).
+pub(crate) fn spread(
+    domain: Domain,
+    extent: &Extent,
+    count: usize,
+    around: f64,
+) -> impl Iterator<Item = [f64; 3]> {
+    // The real roots of x³ = x + 1 and x⁴ = x + 1.
     const PLASTIC: f64 = 1.324_717_957_244_746;
-    let (height, radius) = (extent.high - extent.low, extent.radius);
-    let low = extent.low - around * height;
-    let (a, b) = (1.0 / PLASTIC, 1.0 / (PLASTIC * PLASTIC));
+    const IN_SPACE: f64 = 1.220_744_084_605_759_5;
+    let cell = extent.cell();
+    let step = |root: f64, power: i32| 1.0 / root.powi(power);
+    let (low_end, steps) = match domain {
+        // There is nothing beyond the axis.
+        Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
+        Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
+    };
+    let ends = [low_end, low_end, around].map(|below| [below, below + around]);
     (1..=count).map(move |k| {
-        let k = k as f64;
-        let (u, v) = ((0.5 + a * k).fract(), (0.5 + b * k).fract());
-        [u * radius * (1.0 + around), low + v * height * (1.0 + 2.0 * around)]
+        [0, 1, 2].map(|axis| {
+            let (side, [below, both]) = (cell.sides[axis], ends[axis]);
+            let (width, part) = (side.high - side.low, (0.5 + steps[axis] * k as f64).fract());
+            side.low - below * width + part * width * (1.0 + both)
+        })
     })
 }
 
 fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
     let values = model.curves.iter().map(|curve| curve.value);
     let mut evaluator = Evaluator::new(&model.graph, values);
-    spread(extent, 2000, 0.05)
-        .map(|[d, z]| {
-            evaluator.set(At::meridian(d, z));
+    spread(model.domain, extent, 2000, 0.05)
+        .map(|[x, y, z]| {
+            evaluator.set(At::point(x, y, z));
             let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
             let owner = model.regions.iter().position(|region| region.inside.holds(&value));
             let signs = (0..model.curves.len())
@@ -206,7 +229,7 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
 fn costs(model: &Model) -> Vec<f64> {
     use crate::expr::{Coord, Node};
     let cost = |node: &Node| match node {
-        Node::Const(_) | Node::Coord(Coord::Z) => 0.0,
+        Node::Const(_) | Node::Coord(Coord::X | Coord::Y | Coord::Z) => 0.0,
         Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
         _ => 1.0,
     };

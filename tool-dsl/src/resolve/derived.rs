@@ -3,6 +3,7 @@
 use super::condition::Curves;
 use super::lower::Lowering;
 use super::region::{Felt, Laws, Said};
+use crate::domain::Domain;
 use crate::expr::Graph;
 use crate::formula::Formula;
 use crate::model::{Outside, Region, Section, Surface};
@@ -125,6 +126,7 @@ impl Felt<'_> {
         let zero = graph.int(0);
         let inside = formula(&part.inside, curves, graph);
         let course = regionalise::course(graph, outline, part.feature).unwrap_or([zero, zero]);
+        let course = Domain::HalfPlane.vector(graph, &course);
         let depth = part.depth;
         let magnitude = self.magnitude(None, depth)?;
         let niceness = self.niceness(None, depth)?;

@@ -2,6 +2,7 @@
 
 use super::dimension::Dimension;
 use super::lower::Lowering;
+use crate::domain::Domain;
 use crate::expr::Graph;
 use crate::model::Unit;
 use crate::number::Number;
@@ -20,10 +21,10 @@ pub(super) struct Given<'t> {
 /// What a macro's call or a command line gives: constants without names, in the file's own unit.
 pub(super) fn from_outside<'t>(
     settings: &'t [Definition],
-    unit: Unit,
+    (domain, unit): (Domain, Unit),
     reports: &mut Vec<Report>,
 ) -> Vec<Given<'t>> {
-    given(settings, &mut Lowering::new(unit), reports, |report| {
+    given(settings, &mut Lowering::new(domain, unit), reports, |report| {
         if report.message.starts_with("unknown name") {
             return report.help("what is given is a constant: numbers with their units, `pi`");
         }

@@ -1,7 +1,8 @@
 //! Expressions of the syntax tree to nodes of the graph, with their dimension.
 
 use super::dimension::{Dimension, LENGTH};
-use crate::expr::{Coord, Graph, Id};
+use crate::domain::Domain;
+use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::report::{Report, nearest};
@@ -9,7 +10,7 @@ use crate::source::Span;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 
-/// Names that belong to the language.
+/// Names that belong to the language, whatever the file's own coordinates.
 const COORDINATES: [&str; 4] = ["d", "z", "x", "y"];
 const FUNCTIONS: [&str; 8] = ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
 
@@ -36,6 +37,7 @@ pub(super) enum May {
 /// Everything that lowering needs and fills.
 #[derive(Clone)]
 pub(super) struct Lowering {
+    pub(super) domain: Domain,
     pub(super) graph: Graph,
     pub(super) unit: Unit,
     pub(super) frame: Frame,
@@ -62,12 +64,13 @@ impl Lowering {
         (id, dimension): (Id, Dimension),
     ) -> Result<(), Report> {
         let word = name.word.as_str();
-        if word == "d" || word == "z" {
-            let what =
-                if word == "d" { "the distance from the axis" } else { "the place along the axis" };
+        if let Some(what) = self.domain.meaning(word) {
             let report =
                 Report::error(name.span, format!("`{word}` is {what} and cannot be defined"));
-            return Err(report.help("for a diameter use `D`"));
+            return Err(match self.domain {
+                Domain::HalfPlane => report.help("for a diameter use `D`"),
+                Domain::Space => report.help("take another name"),
+            });
         }
         if COORDINATES.contains(&word)
             || FUNCTIONS.contains(&word)
@@ -173,10 +176,17 @@ impl Lowering {
             _ if COORDINATES.contains(&word) || self.values.contains_key(word) || word == "pi" => {
                 let number = value.to_f64();
                 let report = Report::error(span, format!("`{number}{word}` is not a number"));
-                let times =
-                    if word == "d" { " for two times the distance from the axis" } else { "" };
-                let times = if number == 2.0 { times } else { "" };
-                return Err(report.help(format!("write `{number}*{word}`{times}")));
+                let written = match (self.domain, word) {
+                    (Domain::Space, "d") => "hypot(x, y)",
+                    _ => word,
+                };
+                let times = match (self.domain, word) {
+                    (Domain::HalfPlane, "d") if number == 2.0 => {
+                        " for two times the distance from the axis"
+                    }
+                    _ => "",
+                };
+                return Err(report.help(format!("write `{number}*{written}`{times}")));
             }
             _ => Report::error(unit.span, format!("unknown unit `{word}`"))
                 .help("units are `mm`, `inch`, `m`, `deg` and `rad`, glued to the number"),
@@ -195,17 +205,14 @@ impl Lowering {
                     May::Constants(what) => Err(not_constant(span, word, what)),
                 };
             }
-            "d" => Some(Coord::D),
-            "z" => Some(Coord::Z),
-            "x" | "y" => {
-                return Err(Report::error(
-                    span,
-                    format!("`{word}` exists in a solid without an axis only"),
-                )
-                .help("in a `tool` the coordinates are `d`, the distance from the axis, and `z`"));
-            }
-            _ => None,
+            _ => self.domain.coordinates().iter().find(|(.., name)| *name == word),
         };
+        let coordinate = coordinate.map(|(coordinate, ..)| *coordinate);
+        if coordinate.is_none() && COORDINATES.contains(&word) {
+            let other = if word == "d" { "tool" } else { "solid" };
+            let report = Report::error(span, format!("`{word}` exists in a `{other}` only"));
+            return Err(report.help(self.domain.instead()));
+        }
         if let Some(coordinate) = coordinate {
             if let May::Constants(what) = may {
                 return Err(not_constant(span, word, what));
@@ -222,7 +229,9 @@ impl Lowering {
                     .help("move the definition up"));
             }
             let report = Report::error(span, format!("unknown name `{word}`"));
-            let known = self.values.keys().map(String::as_str).chain(["d", "z", "pi", "depth"]);
+            let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
+            let known = self.values.keys().map(String::as_str).chain(coordinates);
+            let known = known.chain(["pi", "depth"]);
             return Err(match nearest(word, known) {
                 Some(meant) => report.help(format!("did you mean `{meant}`?")),
                 None => report.help(format!("define it above: `let {word} = …;`")),

@@ -3,6 +3,7 @@
 mod condition;
 mod derived;
 mod dimension;
+mod direction;
 mod given;
 mod join;
 mod lower;
@@ -12,6 +13,7 @@ mod profile;
 mod region;
 mod scope;
 
+use crate::domain::Domain;
 use crate::model::{Model, Surface, Unit};
 use crate::regionalise::outline::Segment;
 use crate::report::{Report, any_error, nearest};
@@ -48,11 +50,14 @@ fn settle(
         Err(report) => return (None, vec![report]),
     };
     let mut lowering = Lowering::of(tool, unit);
-    let given = given::from_outside(given, unit, &mut reports);
+    let given = given::from_outside(given, (tool.domain, unit), &mut reports);
     given::untaken(tool, &given, &mut reports);
     constants(tool, &given, &mut lowering, &mut reports);
     if any_error(&reports) {
         return (None, reports);
+    }
+    if tool.domain == Domain::Space {
+        without_axis(tool, &mut reports);
     }
     frame(tool, &mut lowering, &mut reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
@@ -112,6 +117,7 @@ fn settle(
         return (None, reports);
     }
     let model = Model {
+        domain: tool.domain,
         name: tool.name.word.clone(),
         name_span: tool.name.span,
         title: tool.title.clone(),
@@ -125,6 +131,24 @@ fn settle(
         section,
     };
     (Some(model), reports)
+}
+
+/// What only a tool has, in a solid.
+fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
+    for item in &tool.items {
+        let (span, word, why) = match item {
+            Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
+            Item::Spindle { span, .. } => (*span, "spindle", "its file's frame is the pose's"),
+            Item::Profile(profile) => (profile.span, "profile", "it has regions by hand"),
+            Item::Mount(mount) => (mount.span, "mount", "it has regions by hand"),
+            Item::Regions(span) => (*span, "regions", "it has regions by hand"),
+            _ => continue,
+        };
+        reports.push(
+            Report::error(span, format!("`{word}` exists in a `tool` only"))
+                .help(format!("a `solid` has no axis: {why}")),
+        );
+    }
 }
 
 /// What a tool's outline is made of.

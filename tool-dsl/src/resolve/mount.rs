@@ -5,6 +5,7 @@ use super::join::{OFF_TIP, Unjoined, join, moved};
 use super::lower::{Lowering, May};
 use super::region::{Laws, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
+use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::look;
 use crate::model::{Frame, Surface, Unit};
@@ -231,6 +232,16 @@ impl Mounting<'_> {
         lowering: &mut Lowering,
     ) -> Option<Part> {
         let before = self.reports.len();
+        if tree.domain == Domain::Space {
+            let file = &mount.file;
+            let report =
+                format!("`{}` is a solid without an axis and cannot be mounted", file.word);
+            self.reports.push(
+                Report::error(file.span, report)
+                    .help("only outlines can be joined: mount a `tool`"),
+            );
+            return None;
+        }
         given::untaken(tree, given, self.reports);
         constants(tree, given, lowering, self.reports);
         frame(tree, lowering, self.reports);

@@ -1,52 +1,58 @@
 //! What the evaluators compute, from what a region says.
 
+use crate::domain::Domain;
 use crate::expr::derive::derivative;
 use crate::expr::{Coord, Graph, Id};
 use crate::model::Outputs;
 use crate::number::Number;
 
-/// Makes a vector a unit vector. Where both parts are 0 it is (1, 0) or, if not `first`, (0, 1).
+/// Makes a vector a unit vector. Where it vanishes it is the unit vector along `axis`.
 ///
 /// Squares of numbers below 2^-480 lose digits and below 2^-537 vanish, so short vectors are
 /// lengthened by a power of two before they are squared.
-pub(super) fn unit(graph: &mut Graph, [a, b]: [Id; 2], first: bool) -> Option<[Id; 2]> {
-    if let (Some(x), Some(y)) = (graph.constant(a).cloned(), graph.constant(b).cloned()) {
-        let norm = (&(&x * &x) + &(&y * &y)).sqrt()?;
-        let (x, y) = (x.over(&norm)?, y.over(&norm)?);
-        return Some([graph.number(x), graph.number(y)]);
+pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[Id; 3]> {
+    let constants = vector.map(|part| graph.constant(part).cloned());
+    if let [Some(x), Some(y), Some(z)] = constants {
+        let norm = (&(&(&x * &x) + &(&y * &y)) + &(&z * &z)).sqrt()?;
+        let (x, y, z) = (x.over(&norm)?, y.over(&norm)?, z.over(&norm)?);
+        return Some([graph.number(x), graph.number(y), graph.number(z)]);
     }
-    let square = |graph: &mut Graph, a: Id, b: Id| {
-        let (aa, bb) = (graph.mul(a, a), graph.mul(b, b));
-        graph.add(aa, bb)
+    let square = |graph: &mut Graph, vector: [Id; 3]| {
+        let [x, y, z] = vector.map(|part| graph.mul(part, part));
+        let across = graph.add(x, y);
+        graph.add(across, z)
     };
     let one = graph.int(1);
     let zero = graph.int(0);
     let tiny = graph.number(Number::from_f64(2f64.powi(-960))?);
     let huge = graph.number(Number::from_f64(2f64.powi(600))?);
-    let plain = square(graph, a, b);
+    let plain = square(graph, vector);
     let scale = graph.select(plain, tiny, huge, one);
-    let (a, b) = (graph.mul(scale, a), graph.mul(scale, b));
-    let square = square(graph, a, b);
+    let vector = vector.map(|part| graph.mul(scale, part));
+    let square = square(graph, vector);
     let norm = graph.sqrt(square)?;
-    let (x, y) = (graph.quotient(a, norm), graph.quotient(b, norm));
-    Some(if first {
-        [graph.select(norm, zero, one, x), y]
-    } else {
-        [x, graph.select(norm, zero, one, y)]
-    })
+    let mut unit = vector.map(|part| graph.quotient(part, norm));
+    unit[axis] = graph.select(norm, zero, one, unit[axis]);
+    Some(unit)
 }
 
-/// The gradient in (d, z).
-pub(super) fn gradient(graph: &mut Graph, of: Id) -> [Id; 2] {
-    [derivative(graph, of, Coord::D), derivative(graph, of, Coord::Z)]
+/// The gradient in a domain.
+pub(super) fn gradient(graph: &mut Graph, domain: Domain, of: Id) -> [Id; 3] {
+    let parts: Vec<Id> =
+        domain.coordinates().iter().map(|(by, ..)| derivative(graph, of, *by)).collect();
+    domain.vector(graph, &parts)
 }
 
-/// A vector of the half plane (d, z) turned to where the point is in space. On the axis the
-/// radial part is that of +x.
-fn in_space(graph: &mut Graph, [radial, axial]: [Id; 2]) -> [Id; 3] {
-    let across = [graph.coord(Coord::X), graph.coord(Coord::Y)];
-    // Two coordinates are no constants, so the unit vector exists.
-    let [cos, sin] = unit(graph, across, true).unwrap_or(across);
+/// A vector of the domain turned to where the point is in space. On a tool's axis the radial part
+/// is that of +x.
+fn in_space(graph: &mut Graph, domain: Domain, vector: [Id; 3]) -> [Id; 3] {
+    if domain == Domain::Space {
+        return vector;
+    }
+    let [radial, _, axial] = vector;
+    let across = [graph.coord(Coord::X), graph.coord(Coord::Y), graph.int(0)];
+    // Coordinates are no constants, so the unit vector exists.
+    let [cos, sin, _] = unit(graph, across, 0).unwrap_or(across);
     [graph.mul(radial, cos), graph.mul(radial, sin), axial]
 }
 
@@ -54,14 +60,15 @@ fn in_space(graph: &mut Graph, [radial, axial]: [Id; 2]) -> [Id; 3] {
 /// the unit; another is the file's own number.
 pub(super) fn outputs(
     graph: &mut Graph,
+    domain: Domain,
     depth: Id,
     (magnitude, is_depth): (Id, bool),
-    direction: [Id; 2],
+    direction: [Id; 3],
     niceness: Id,
 ) -> Outputs {
     let zero = graph.int(0);
-    let slope = gradient(graph, magnitude);
-    let slope = in_space(graph, slope);
+    let slope = gradient(graph, domain, magnitude);
+    let slope = in_space(graph, domain, slope);
     let depth = graph.max(zero, depth);
     let (magnitude, gradient) = if is_depth {
         let length = graph.coord(Coord::Length);
@@ -74,7 +81,7 @@ pub(super) fn outputs(
         depth,
         magnitude,
         gradient,
-        direction: in_space(graph, direction),
+        direction: in_space(graph, domain, direction),
         niceness: graph.max(zero, niceness),
     }
 }

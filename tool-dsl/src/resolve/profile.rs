@@ -69,7 +69,7 @@ pub(super) fn outline(
 }
 
 fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<Place, Report> {
-    let [d, z] = super::region::pair(tuple, "a point")?;
+    let [d, z] = super::direction::pair(tuple, "a point")?;
     let mut length = |expr: &Expr| lowering.length(expr, "a point");
     Ok([length(d)?, length(z)?])
 }

@@ -10,7 +10,7 @@ use crate::formula::Formula;
 use crate::model::{Region, Surface};
 use crate::report::{Report, nearest};
 use crate::source::Span;
-use crate::syntax::tree::{self, Compare, Direction, Expr, Item, Law, Quantity, Tool, Tuple};
+use crate::syntax::tree::{self, Compare, Expr, Item, Law, Quantity, Tool};
 use std::collections::BTreeMap;
 
 /// The most regions that a tool may have: more take the planner minutes.
@@ -246,16 +246,16 @@ impl Felt<'_> {
         self,
         said: Said,
         (depth, magnitude, niceness): (Id, Option<Id>, Id),
-        (course, course_span): ([Id; 2], Span),
+        (course, course_span): ([Id; 3], Span),
     ) -> Result<Region, Report> {
-        let graph = &mut self.lowering.graph;
-        let direction = outputs::unit(graph, course, false).ok_or_else(|| {
+        let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
+        let direction = outputs::unit(graph, course, 2).ok_or_else(|| {
             Report::error(course_span, format!("the direction of {} vanishes", said.name))
-                .help("give a vector that is not (0, 0), or `toward` a point")
+                .help("give a vector that is not 0, or `toward` a point")
         })?;
         let is_depth = magnitude.is_none();
-        let magnitude = magnitude.unwrap_or(depth);
-        let outputs = outputs::outputs(graph, depth, (magnitude, is_depth), direction, niceness);
+        let magnitude = (magnitude.unwrap_or(depth), is_depth);
+        let outputs = outputs::outputs(graph, domain, depth, magnitude, direction, niceness);
         Ok(Region {
             name: said.name,
             span: said.span,
@@ -263,7 +263,7 @@ impl Felt<'_> {
             inside: said.inside,
             depth,
             depth_span: said.depth_span,
-            magnitude,
+            magnitude: magnitude.0,
             direction,
             course: (course, course_span),
             niceness,
@@ -396,57 +396,10 @@ impl Felt<'_> {
     }
 
     /// −∇ of the depth.
-    fn downhill(&mut self, depth: Id) -> [Id; 2] {
-        let graph = &mut self.lowering.graph;
-        outputs::gradient(graph, depth).map(|part| graph.neg(part))
+    fn downhill(&mut self, depth: Id) -> [Id; 3] {
+        let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
+        outputs::gradient(graph, domain, depth).map(|part| graph.neg(part))
     }
-
-    fn direction(&mut self, direction: &Direction) -> Result<[Id; 2], Report> {
-        match direction {
-            Direction::Along(tuple) => {
-                let [d, z] = pair(tuple, "a direction")?;
-                let (d, of_d) = self.lowering.lower(d, May::Coordinates)?;
-                let (z, of_z) = self.lowering.lower(z, May::Coordinates)?;
-                if of_d.alike(of_z).is_none_or(|d| d == Dimension::Angle) {
-                    let message = format!("a direction of {of_d} and {of_z}");
-                    return Err(Report::error(tuple.span, message).help("both parts are alike"));
-                }
-                let down = self.lowering.frame.down;
-                let graph = &mut self.lowering.graph;
-                Ok([d, if down { graph.neg(z) } else { z }])
-            }
-            Direction::AwayFrom(tuple) => self.away_from(tuple),
-            Direction::Toward(tuple) => {
-                let away = self.away_from(tuple)?;
-                Ok(away.map(|part| self.lowering.graph.neg(part)))
-            }
-        }
-    }
-
-    /// The vector from a point to where one feels.
-    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 2], Report> {
-        let [d, z] = pair(tuple, "a point")?;
-        let d = self.lowering.length(d, "a point")?;
-        let z = self.lowering.length(z, "a point")?;
-        let z = self.lowering.frame.to_tool(&z);
-        let graph = &mut self.lowering.graph;
-        let here = [crate::expr::Coord::D, crate::expr::Coord::Z].map(|c| graph.coord(c));
-        let there = [graph.number(d), graph.number(z)];
-        Ok([graph.sub(here[0], there[0]), graph.sub(here[1], there[1])])
-    }
-}
-
-pub(super) fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
-    if let [d, z] = tuple.parts.as_slice() {
-        return Ok([d, z]);
-    }
-    let count = tuple.parts.len();
-    let report =
-        Report::error(tuple.span, format!("{what} in a tool has two numbers, this has {count}"));
-    Err(match what {
-        "a point" => report.help("write `(d, z)`; a decimal comma? write `0.5`"),
-        _ => report.help("write `(radial, axial)`: across the axis, and along the file's z"),
-    })
 }
 
 /// Where an expression mentions a name.

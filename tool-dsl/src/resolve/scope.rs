@@ -3,6 +3,7 @@
 use super::definitions;
 use super::dimension::Dimension;
 use super::lower::{Lowering, May};
+use crate::domain::Domain;
 use crate::expr::{Coord, Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
@@ -12,8 +13,9 @@ use std::collections::BTreeMap;
 
 impl Lowering {
     /// Of a text without names.
-    pub(super) fn new(unit: Unit) -> Lowering {
+    pub(super) fn new(domain: Domain, unit: Unit) -> Lowering {
         Lowering {
+            domain,
             graph: Graph::default(),
             unit,
             frame: Frame { tip: Number::int(0), down: false },
@@ -28,7 +30,7 @@ impl Lowering {
         let declared = definitions(tool, |_| true)
             .map(|definition| (definition.name.word.clone(), definition.name.span))
             .collect();
-        Lowering { declared, ..Lowering::new(unit) }
+        Lowering { declared, ..Lowering::new(tool.domain, unit) }
     }
 
     /// Works on a graph that is shared with other files.

@@ -2,6 +2,7 @@
 
 use super::tree::*;
 use super::{Grammar, Rule, refuse};
+use crate::domain::Domain;
 use crate::number::Number;
 use crate::report::Report;
 use crate::source::{Source, Span};
@@ -50,7 +51,7 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
         }
     };
     let mut broken = Vec::new();
-    let tool = pairs.flatten().find(|pair| pair.as_rule() == Rule::tool);
+    let tool = pairs.flatten().find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid));
     let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
     let tool = tool.map(|pair| reader.tool(pair));
     (tool.map(|tool| Tool { broken, ..tool }), reports)
@@ -116,6 +117,7 @@ impl Reader<'_> {
     }
 
     fn tool(&mut self, pair: Pair<'_, Rule>) -> Tool {
+        let domain = if pair.as_rule() == Rule::solid { Domain::Space } else { Domain::HalfPlane };
         let mut name = Name { word: String::new(), span: self.span(&pair) };
         let mut title = None;
         let mut items = Vec::new();
@@ -140,11 +142,11 @@ impl Reader<'_> {
                 }
                 Rule::text => title = Some(pair.as_str().trim_matches('"').to_owned()),
                 Rule::stray => items.extend(self.stray(&pair)),
-                Rule::k_tool => {}
+                Rule::k_tool | Rule::k_solid => {}
                 _ => items.extend(self.item(pair)),
             }
         }
-        Tool { name, title, items, broken: Vec::new() }
+        Tool { domain, name, title, items, broken: Vec::new() }
     }
 
     /// An item that the grammar could not read is read again alone, for its own error.

@@ -5,6 +5,8 @@ use crate::report::{Report, nearest};
 use crate::source::Span;
 use pest::error::{Error, ErrorVariant, InputLocation};
 
+/// What a file is.
+const FILES: [&str; 2] = ["tool", "solid"];
 const ITEMS: [&str; 13] = [
     "units",
     "let",
@@ -134,7 +136,7 @@ fn spelling(text: &str, rest: &str, before: &str, here: Span) -> Option<Report> 
         }
         '"' => report(
             "text stands only behind the tool's name and `mount`".into(),
-            "write `tool Name \"what it is\" { … }` or `mount \"file.tool\" as NAME`",
+            "write it as in `tool Name \"what it is\" { … }` or `mount \"file.tool\" as NAME`",
         ),
         '_' => report("a name begins with a letter".into(), "drop the `_`"),
         _ if !next.is_ascii() => report(
@@ -177,8 +179,10 @@ fn habit(rest: &str, before: &str, here: Span) -> Option<Report> {
     if rest.starts_with("/*") {
         return Some(Report::error(here, "this comment does not end").help("close it with `*/`"));
     }
-    if next == "tool" {
-        return Some(Report::error(place, "a second tool").help("write one tool a file"));
+    if FILES.contains(&next) {
+        return Some(
+            Report::error(place, format!("a second {next}")).help("write one tool or solid a file"),
+        );
     }
     if rest.trim().is_empty() && before.matches("/*").count() > before.matches("*/").count() {
         let start = here.start - before.len() + before.rfind("/*").unwrap_or(0);
@@ -202,18 +206,21 @@ fn item(text: &str, rest: &str, at: usize, offset: usize) -> Option<Report> {
     }
     // A whole file comes with its header, an item without.
     let header = offset == 0 && at == text.len() - whole.len();
-    if header && first != "tool" {
+    if header && !FILES.contains(&first) {
         let span = Span { start: at, end: at + first.len() };
         let report = Report::error(span, format!("a file does not begin with `{first}`"));
-        return Some(report.help("write `tool Name { … }`"));
+        return Some(match nearest(first, FILES) {
+            Some(meant) => report.help(format!("did you mean `{meant}`?")),
+            None => report.help("write `tool Name { … }`, or `solid Name { … }` without an axis"),
+        });
     }
-    if first != "tool" && !ITEMS.contains(&first) {
+    if !FILES.contains(&first) && !ITEMS.contains(&first) {
         let start = offset + text.len() - whole.len();
         let report = Report::error(
             Span { start, end: start + first.len() },
             format!("no item begins with `{first}`"),
         );
-        return Some(match (first, nearest(first, ITEMS.into_iter().chain(["tool"]))) {
+        return Some(match (first, nearest(first, ITEMS.into_iter().chain(FILES))) {
             ("depth", _) => report.help("`depth:` belongs inside a `region`"),
             (_, Some(meant)) => report.help(format!("did you mean `{meant}`?")),
             _ => report
@@ -295,6 +302,7 @@ fn describe(rule: Rule) -> Option<&'static str> {
         Rule::sign => "`+` or `-`",
         Rule::k_z => "`z`",
         Rule::k_tool | Rule::tool => "`tool Name { … }`",
+        Rule::k_solid | Rule::solid => "`solid Name { … }`",
         Rule::k_from => "`from`",
         Rule::which | Rule::path => "a surface's name",
         Rule::EOI => "the end",

@@ -1,5 +1,6 @@
 //! The syntax tree: what was written, each piece with its place.
 
+use crate::domain::Domain;
 use crate::number::Number;
 use crate::source::Span;
 
@@ -12,9 +13,11 @@ pub struct Name {
     pub span: Span,
 }
 
-/// A whole file: one tool.
+/// A whole file: one tool, or one solid.
 #[derive(Clone, Debug)]
 pub struct Tool {
+    /// Which of the two.
+    pub domain: Domain,
     /// The type's name.
     pub name: Name,
     /// What it is, for people.

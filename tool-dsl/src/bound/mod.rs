@@ -1,0 +1,308 @@
+//! Where the solid can be, proved by interval branch and bound: how far it reaches, and its
+//! largest radius over stretches of the axis. The runtime skips whatever these rule out.
+
+mod envelope;
+
+pub use envelope::{Slab, across, envelope};
+
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval};
+use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::model::{Model, Region};
+use crate::plan::empty::Linear;
+use crate::regionalise::outline;
+use crate::report::Report;
+
+/// The largest coordinate, 2^300.
+const LIMIT: f64 = 2.037035976334486e90;
+/// Boxes that one question may take: enough for a few percent where the expression mentions a
+/// coordinate several times, for rounding where it does so once.
+const BUDGET: usize = 100;
+/// Boxes for a cylinder about the axis of space, which no box fits: a few percent again.
+const ROUND_BUDGET: usize = 400;
+
+/// What a box is to the solid.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    Inside,
+    Outside,
+    Unknown,
+}
+
+/// Asks of boxes whether the solid is there.
+pub struct Prover<'m> {
+    model: &'m Model,
+    encloser: Encloser<'m>,
+    signs: Vec<Signs>,
+    /// A box that each region does not leave.
+    reaches: Vec<Cell>,
+}
+
+impl<'m> Prover<'m> {
+    /// A prover about a tool.
+    pub fn new(model: &'m Model) -> Prover<'m> {
+        let values = model.curves.iter().map(|curve| curve.value);
+        let encloser = Encloser::new(&model.graph, values);
+        let everywhere = Cell { sides: [EVERYTHING; 3] };
+        Prover {
+            model,
+            encloser,
+            signs: vec![ANY; model.curves.len()],
+            reaches: vec![everywhere; model.regions.len()],
+        }
+    }
+
+    /// One that knows how far the regions reach by their linear curves, which boxes would find out
+    /// slowly.
+    fn of_regions(model: &'m Model) -> Prover<'m> {
+        let linear = Linear::new(model);
+        let reach = |region: &Region| {
+            let mut signs = vec![ANY; model.curves.len()];
+            region.inside.demand(&mut signs);
+            let mut reach = linear.reach(&signs);
+            for choices in region.inside.choices() {
+                let one = |choice: &Formula| {
+                    let mut signs = signs.clone();
+                    choice.demand(&mut signs);
+                    linear.reach(&signs)
+                };
+                let hull = choices.iter().map(one).reduce(|a, b| a.hull(&b));
+                reach = hull.map_or(reach, |hull| reach.common(&hull));
+            }
+            reach
+        };
+        Prover { reaches: model.regions.iter().map(reach).collect(), ..Prover::new(model) }
+    }
+
+    /// The signs that the curves can have in a box.
+    pub fn signs(&mut self, cell: Cell) -> &[Signs] {
+        self.encloser.set(cell);
+        for (sign, curve) in self.signs.iter_mut().zip(&self.model.curves) {
+            *sign = possible(self.encloser.get(curve.value));
+        }
+        &self.signs
+    }
+
+    fn place(&mut self, cell: Cell) -> Place {
+        self.signs(cell);
+        let mut place = Place::Outside;
+        for (region, reach) in self.model.regions.iter().zip(&self.reaches) {
+            if !reach.meets(&cell) {
+                continue;
+            }
+            match region.inside.decided(&self.signs) {
+                Some(true) => return Place::Inside,
+                Some(false) => {}
+                None => place = Place::Unknown,
+            }
+        }
+        place
+    }
+
+    /// Whether the solid provably does not reach into a box.
+    fn empty(&mut self, cell: Cell) -> bool {
+        self.empty_within(cell, BUDGET, 0.0)
+    }
+
+    /// Whether the solid provably has no point of a box that is this far from the axis or farther;
+    /// none of the box is farther than `widest`.
+    fn none_beyond(&mut self, radius: f64, widest: f64, within: Cell) -> bool {
+        match self.model.domain {
+            Domain::HalfPlane => self.empty(within.with(0, Interval::new(radius, widest))),
+            Domain::Space => self.empty_within(within, ROUND_BUDGET, radius),
+        }
+    }
+
+    /// What lies nearer to the axis than `radius` is not asked about.
+    fn empty_within(&mut self, cell: Cell, budget: usize, radius: f64) -> bool {
+        let mut open = vec![cell];
+        let mut left = budget;
+        while let Some(cell) = open.pop() {
+            if cell.radius().high < radius {
+                continue;
+            }
+            match self.place(cell) {
+                Place::Outside => {}
+                Place::Inside => return false,
+                Place::Unknown if left == 0 => return false,
+                Place::Unknown => {
+                    left -= 1;
+                    open.extend(halves(cell));
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The signs of the numbers in an interval.
+fn possible(value: Interval) -> Signs {
+    let mut signs = 0;
+    if value.low < 0.0 {
+        signs |= NEGATIVE;
+    }
+    if value.low <= 0.0 && value.high >= 0.0 {
+        signs |= ZERO;
+    }
+    if value.high > 0.0 {
+        signs |= POSITIVE;
+    }
+    signs
+}
+
+/// A box cut in two across its longest side; a side that spans magnitudes is cut between them.
+pub(crate) fn halves(cell: Cell) -> [Cell; 2] {
+    let length = |axis: usize| cell.sides[axis].high - cell.sides[axis].low;
+    let longer = |most, axis| if length(axis) > length(most) { axis } else { most };
+    let axis = [0, 1].into_iter().fold(2, longer);
+    let side = cell.sides[axis];
+    let middle = middle(side);
+    [
+        cell.with(axis, Interval::new(side.low, middle)),
+        cell.with(axis, Interval::new(middle, side.high)),
+    ]
+}
+
+fn middle(side: Interval) -> f64 {
+    let (low, high) = (side.low, side.high);
+    if low < 0.0 && high > 0.0 && (high > 1e6 || low < -1e6) {
+        0.0
+    } else if low >= 0.0 && high > 1e3 * (low + 1.0) {
+        ((low + 1.0) * high).sqrt()
+    } else if high <= 0.0 && low < 1e3 * (high - 1.0) {
+        -((1.0 - high) * -low).sqrt()
+    } else {
+        low / 2.0 + high / 2.0
+    }
+}
+
+/// How far the solid reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// The lowest z.
+    pub low: f64,
+    /// The highest z.
+    pub high: f64,
+    /// The largest distance from the axis.
+    pub radius: f64,
+    /// Along x and y of the domain: for a tool from 0 to the radius, and nothing.
+    pub across: [Interval; 2],
+}
+
+impl Extent {
+    /// The reach of what fills a box of the domain and no more than a radius about the axis.
+    pub(crate) fn of(cell: Cell, radius: f64) -> Extent {
+        let [x, y, z] = cell.sides;
+        Extent { low: z.low, high: z.high, radius, across: [x, y] }
+    }
+
+    /// The box of the domain.
+    pub fn cell(&self) -> Cell {
+        let [x, y] = self.across;
+        Cell { sides: [x, y, Interval::new(self.low, self.high)] }
+    }
+
+    /// The next power of two above the largest coordinate: the S of the accuracy contract.
+    pub fn scale(&self) -> f64 {
+        let sides = self.cell().sides;
+        let largest = sides.iter().fold(0.0, |m: f64, s| m.max(s.high.abs()).max(s.low.abs()));
+        let mut scale = 2f64.powi(largest.log2().floor() as i32);
+        while scale <= largest {
+            scale *= 2.0;
+        }
+        scale
+    }
+
+    /// How many steps there are to 1 in what is rounded for the card.
+    fn steps(&self) -> f64 {
+        10f64.powf(5.0 - self.scale().log10().floor())
+    }
+}
+
+/// The reach of the solid, proved; an error if no bound is found.
+pub fn extent(model: &Model) -> Result<Extent, Report> {
+    if let Some(section) = &model.section {
+        let [low, high] = outline::reach(&section.outline);
+        let (d, z) = (Interval::new(0.0, high[0]), Interval::new(low[1], high[1]));
+        return Ok(Extent::of(Cell::half_plane(d, z), high[0]));
+    }
+    let (domain, mut prover) = (model.domain, Prover::of_regions(model));
+    let power = reach(domain, &mut prover).ok_or_else(|| endless(model))?;
+    let whole = domain.whole(2f64.powi(power));
+    let mut cell = whole;
+    // From outside inward, as long as the rest stays provably empty; then again, since between its
+    // ends the solid is easier to bound.
+    for pass in 0..2 {
+        for (axis, high) in domain.ways() {
+            let side = cell.sides[*axis];
+            let opposite = if pass == 0 { whole.sides[*axis] } else { side };
+            let end = if *high {
+                let beyond = |v| cell.with(*axis, Interval::new(v, side.high));
+                inward(side.high, opposite.low, 52, |v| prover.empty(beyond(v)))
+            } else {
+                let beyond = |v| cell.with(*axis, Interval::new(side.low, v));
+                inward(side.low, opposite.high, 52, |v| prover.empty(beyond(v)))
+            };
+            let place = &mut cell.sides[*axis];
+            if *high { place.high = end } else { place.low = end }
+        }
+        let void = |(_, axis, _): &(_, usize, _)| {
+            let side = cell.sides[*axis];
+            side.low >= side.high
+        };
+        if domain.coordinates().iter().any(void) {
+            return Err(Report::error(
+                model.name_span,
+                format!("no point belongs to this {}", domain.word()),
+            )
+            .help("the conditions of each region contradict one another"));
+        }
+    }
+    let widest = cell.radius().high;
+    let radius = match domain {
+        Domain::HalfPlane => cell.sides[0].high,
+        Domain::Space => inward(widest, 0.0, 12, |r| prover.none_beyond(r, widest, cell)),
+    };
+    Ok(Extent::of(cell, radius))
+}
+
+/// A power of two beyond which the solid provably has no point.
+fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
+    let mut beyond = |size: f64| {
+        domain.ways().iter().all(|&(axis, high)| {
+            let far = if high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
+            prover.empty_within(domain.whole(LIMIT).with(axis, far), 20 * BUDGET, 0.0)
+        })
+    };
+    let mut power = 280;
+    if !beyond(2f64.powi(power)) {
+        return None;
+    }
+    for step in [64, 16, 4, 1] {
+        while power - step > -280 && beyond(2f64.powi(power - step)) {
+            power -= step;
+        }
+    }
+    Some(power)
+}
+
+fn endless(model: &Model) -> Report {
+    let report =
+        Report::error(model.name_span, "the regions reach to infinity, as far as can be proved");
+    report.help(match model.domain {
+        Domain::HalfPlane => {
+            "bound every region in d and in z, toward the axis's ends and away from it"
+        }
+        Domain::Space => "bound every region in x, in y and in z, to both sides",
+    })
+}
+
+/// The innermost place from `outer` toward `inner` for which `empty` still holds, by halving.
+fn inward(outer: f64, inner: f64, halvings: usize, mut empty: impl FnMut(f64) -> bool) -> f64 {
+    let (mut good, mut bad) = (outer, inner);
+    for _ in 0..halvings {
+        let middle = good / 2.0 + bad / 2.0;
+        if empty(middle) { good = middle } else { bad = middle }
+    }
+    good
+}
