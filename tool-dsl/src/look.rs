@@ -58,8 +58,9 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
         for cell in section.inner.cells(1) {
             for (p, _) in &cell.samples {
                 let point = [p[0], 0.0, p[1]];
-                look.go(point);
-                look.felt(&model.regions[cell.part], point);
+                if let Some(owner) = look.owner(point) {
+                    look.felt(&model.regions[owner], point);
+                }
             }
         }
         return look.found;

@@ -87,12 +87,23 @@ pub struct Model {
 pub(crate) struct Section {
     /// The pieces, counter-clockwise in the tool's frame.
     pub(crate) outline: Vec<Segment>,
-    /// The inside; its parts are the regions.
+    /// The inside; its parts are the regions, where nothing divides them once more.
     pub(crate) inner: Partition,
     /// The outside, as far as 64 sizes; its parts are those of `outside`.
     pub(crate) outer: Partition,
     /// The features that are nearest outside.
     pub(crate) outside: Vec<Outside>,
+    /// What divides the inside once more.
+    pub(crate) over: Option<Over>,
+}
+
+/// Conditions over the inside's parts: regions by hand, or the fans of smoothed corners.
+#[derive(Clone, Debug)]
+pub(crate) struct Over {
+    /// A point belongs to the first that holds.
+    pub(crate) conditions: Vec<Formula>,
+    /// The part and the condition of each region.
+    pub(crate) regions: Vec<(usize, usize)>,
 }
 
 impl Model {

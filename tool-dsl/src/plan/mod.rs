@@ -9,7 +9,6 @@
 
 pub(crate) mod empty;
 mod section;
-mod shape;
 
 use crate::bound::Extent;
 use crate::domain::Domain;

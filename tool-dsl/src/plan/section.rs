@@ -1,13 +1,14 @@
 //! The plan of a profile's tool: the partition is known as polygons, and splits cut them until one
 //! owner is left.
 
-use super::shape::{Cutter, Edge, Piece, Shape};
 use super::{LARGEST, Tree, costs};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
-use crate::model::{Model, Section};
+use crate::model::{Model, Over, Section};
 use crate::regionalise::cells::Cell;
-use crate::regionalise::outline::{Point, minus, norm};
+use crate::regionalise::outline::{self, Point, minus, norm};
+use crate::regionalise::overlay;
+use crate::regionalise::shape::{Cutter, Edge, Piece, Shape};
 use crate::report::Report;
 use std::cmp::Ordering;
 
@@ -38,48 +39,103 @@ pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id
 }
 
 fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, Tree<Id>), Report> {
+    let (middle, size) = overlay::frame(outline::reach(&section.outline));
+    let shapes: Vec<Shape<'_>> =
+        model.curves.iter().map(|curve| Shape::new(&model.graph, curve.value, middle)).collect();
     let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
-    let of = |cell: &Cell| Some(cell.part);
-    let outside: Vec<_> = outer.iter().map(|cell| (cell, of(cell))).collect();
-    let all = inner.iter().map(|cell| (cell, of(cell)));
-    let all: Vec<_> = all.chain(outer.iter().map(|cell| (cell, None))).collect();
+    let whole = |cell: &Cell, owner| overlay::piece(cell, owner, &shapes, size);
+
+    let mut all = Ground::default();
+    for cell in &inner {
+        match &section.over {
+            None => all.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part))),
+            Some(over) => {
+                let pieces = overlay::divided(whole(cell, None), &over.conditions, &shapes, size);
+                let owned = pieces.into_iter().filter_map(|(piece, holding)| {
+                    let owner = over.region(cell.part, *holding.first()?)?;
+                    Some(Piece { owner: Some(owner), ..piece })
+                });
+                all.add(cell, owned, |p| over.owner(cell.part, p, &shapes, size).map(Some));
+            }
+        }
+    }
+    for cell in &outer {
+        all.add(cell, [whole(cell, None)], |_| Some(None));
+    }
     let inside = model.regions.iter().map(|region| &region.inside).collect();
+    let owners = plan(model, &shapes, size, all, inside)?;
+
+    let mut outside = Ground::default();
+    for cell in &outer {
+        outside.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part)));
+    }
     let beside = section.outside.iter().map(|part| &part.beside).collect();
-    let owners = plan(model, &all, inside)?;
-    let outside = plan(model, &outside, beside)?;
+    let outside = plan(model, &shapes, size, outside, beside)?;
     let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
     let outside = outside.map(&clearance);
     Ok((owners, outside.unwrap_or(Tree::Leaf(section.outside[0].clearance))))
 }
 
-/// Plans by cells; each names its owner by its place in the model's list, `None` outside.
+/// What is to be told apart: pieces, points with their weights, and points to check the tree by.
+#[derive(Default)]
+struct Ground {
+    pieces: Vec<Piece>,
+    samples: Vec<(Point, f64, Option<usize>)>,
+    witnesses: Vec<(Point, Option<usize>)>,
+}
+
+impl Ground {
+    /// Adds a cell's pieces, and its points as far as their owner is known.
+    fn add(
+        &mut self,
+        cell: &Cell,
+        pieces: impl IntoIterator<Item = Piece>,
+        owner: impl Fn(Point) -> Option<Option<usize>>,
+    ) {
+        self.pieces.extend(pieces);
+        let samples = cell.samples.iter();
+        self.samples.extend(samples.filter_map(|(p, weight)| Some((*p, *weight, owner(*p)?))));
+        self.witnesses.extend(cell.witnesses.iter().filter_map(|p| Some((*p, owner(*p)?))));
+    }
+}
+
+impl Over {
+    /// The region of a part where a condition is the first to hold.
+    fn region(&self, part: usize, condition: usize) -> Option<usize> {
+        self.regions.iter().position(|pair| *pair == (part, condition))
+    }
+
+    /// The region of a point of a part, unless it is as good as on a border.
+    fn owner(&self, part: usize, p: Point, shapes: &[Shape<'_>], size: f64) -> Option<usize> {
+        let holds = |sign: i8| {
+            let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
+                0 => f64::from(sign),
+                _ => shapes[curve].value(p),
+            };
+            self.conditions.iter().position(|condition| condition.holds(&value))
+        };
+        let (low, high) = (holds(-1)?, holds(1)?);
+        if low == high { self.region(part, low) } else { None }
+    }
+}
+
+/// Plans what tells the pieces of a ground apart.
 ///
 /// Curved edges are chords here, so a cut may leave a sliver that is nobody's; `inside` are the
 /// owners' conditions, by which such are told.
-fn plan(
-    model: &Model,
-    cells: &[(&Cell, Option<usize>)],
-    inside: Vec<&Formula>,
+fn plan<'m>(
+    model: &'m Model,
+    shapes: &'m [Shape<'m>],
+    size: f64,
+    ground: Ground,
+    inside: Vec<&'m Formula>,
 ) -> Result<Owners, Report> {
-    let near = cells.iter().filter(|(_, owner)| owner.is_some());
-    let vertices = || near.clone().flat_map(|(cell, _)| &cell.vertices);
-    let [low, high] = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| {
-        [0, 1].map(|k| vertices().map(|p| p[k]).reduce(pick).unwrap_or(0.0))
-    });
-    let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
-    let shapes: Vec<Shape<'_>> =
-        model.curves.iter().map(|curve| Shape::new(&model.graph, curve.value, middle)).collect();
-    let samples: Vec<Sample> = cells
-        .iter()
-        .flat_map(|(cell, owner)| cell.samples.iter().map(|(p, weight)| (*p, *weight, *owner)))
-        .map(|(p, weight, owner)| Sample {
-            below: shapes.iter().map(|shape| shape.below(p)).collect(),
-            weight,
-            owner,
-        })
-        .collect();
-    let size = norm(minus(high, low));
-    let pieces = cells.iter().map(|(cell, owner)| piece(cell, *owner, &shapes, size)).collect();
+    let sample = |(p, weight, owner): (Point, f64, Option<usize>)| Sample {
+        below: shapes.iter().map(|shape| shape.below(p)).collect(),
+        weight,
+        owner,
+    };
+    let samples: Vec<Sample> = ground.samples.into_iter().map(sample).collect();
     let all = (0..samples.len() as u32).collect();
     let mut planner = Planner {
         model,
@@ -92,36 +148,13 @@ fn plan(
         tests: 0,
     };
     let open = (0..model.curves.len()).collect();
-    let tree = planner.tree(pieces, all, open)?;
-    for (cell, owner) in cells {
-        for p in &cell.witnesses {
-            if tree.at(&|curve| planner.shapes[curve].value(*p)) != owner {
-                return Err(planner.inseparable(*p));
-            }
+    let tree = planner.tree(ground.pieces, all, open)?;
+    for (p, owner) in ground.witnesses {
+        if *tree.at(&|curve| shapes[curve].value(p)) != owner {
+            return Err(planner.inseparable(p));
         }
     }
     Ok(tree)
-}
-
-/// A cell as a piece whose curved edges know their curve.
-fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], size: f64) -> Piece {
-    let count = cell.vertices.len();
-    let mut edges = vec![Edge::Straight; count];
-    let mut run: Vec<usize> = Vec::new();
-    for k in 0..=count {
-        if k < count && !cell.straight[k] {
-            run.push(k);
-        } else if !run.is_empty() {
-            let on = |shape: &Shape<'_>| {
-                run.iter().all(|k| {
-                    [*k, (*k + 1) % count].iter().all(|v| shape.side(cell.vertices[*v], size) == 0)
-                })
-            };
-            let edge = shapes.iter().position(on).map_or(Edge::Chord, Edge::Along);
-            run.drain(..).for_each(|k| edges[k] = edge);
-        }
-    }
-    Piece { owner, vertices: cell.vertices.clone(), edges }
 }
 
 /// A point: on which side of each curve it lies, and how much it counts.
@@ -133,7 +166,7 @@ struct Sample {
 
 struct Planner<'m> {
     model: &'m Model,
-    shapes: Vec<Shape<'m>>,
+    shapes: &'m [Shape<'m>],
     costs: Vec<f64>,
     samples: Vec<Sample>,
     inside: Vec<&'m Formula>,
@@ -279,7 +312,7 @@ impl Planner<'_> {
     fn halves(&self, curve: CurveIndex, pieces: &[Piece]) -> Halves {
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
-            let [below, above] = piece.cut(Cutter { shapes: &self.shapes, curve, size: self.size });
+            let [below, above] = piece.cut(Cutter { shapes: self.shapes, curve, size: self.size });
             halves.below.extend(below);
             halves.above.extend(above);
         }

@@ -17,6 +17,17 @@ pub(crate) enum Test {
     Any(Vec<Test>),
 }
 
+impl Test {
+    /// The conditions of a cell, with other sides in place of its own line's or circle's, which
+    /// comes first.
+    pub(crate) fn without_own(self, sides: Vec<Test>) -> Test {
+        match self {
+            Test::All(all) => Test::All(all.into_iter().skip(1).chain(sides).collect()),
+            other => other,
+        }
+    }
+}
+
 /// A side of a border, by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Border {

@@ -9,8 +9,11 @@ pub(crate) mod cells;
 mod crossing;
 mod curve;
 pub(crate) mod outline;
+pub(crate) mod overlay;
 mod section;
+pub(crate) mod shape;
 mod slices;
+pub(crate) mod smooth;
 
 use crate::expr::{Graph, Id};
 use curve::Border;
@@ -51,6 +54,11 @@ impl Partition {
         let section = Section::new(&self.outline, self.outer);
         let slices = self.slices.iter().enumerate();
         slices.map(|(feature, slices)| section.part(graph, feature, slices)).collect()
+    }
+
+    /// The side of a piece's line or circle that is its own.
+    pub(crate) fn inside(&self, graph: &mut Graph, piece: usize) -> Option<Test> {
+        Border::Inside { piece }.test(&Section::new(&self.outline, self.outer), graph)
     }
 
     /// Polygons that cover it as far as is looked, with so many chords to a curved edge.

@@ -2,11 +2,12 @@
 
 use super::condition::Curves;
 use super::lower::Lowering;
+use super::over::Divider;
 use super::region::{Felt, Laws, Said};
 use crate::domain::Domain;
-use crate::expr::Graph;
+use crate::expr::{Graph, Id};
 use crate::formula::Formula;
-use crate::model::{Outside, Region, Section, Surface};
+use crate::model::{Outside, Over, Region, Section, Surface};
 use crate::regionalise::outline::Segment;
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::report::Report;
@@ -20,9 +21,22 @@ pub(super) struct FromProfile {
     pub(super) section: Option<Section>,
 }
 
+/// A part of the inside: where one feature is nearest.
+pub(super) struct Part {
+    pub(super) feature: Feature,
+    pub(super) inside: Formula,
+    pub(super) depth: Id,
+    pub(super) course: [Id; 3],
+    pub(super) name: String,
+    /// The surface it belongs to.
+    pub(super) owner: usize,
+    pub(super) span: Span,
+}
+
 /// The regions of an outline, derived, and its surfaces.
 pub(super) fn derived(
     (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
+    divider: &Divider<'_>,
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
@@ -33,8 +47,8 @@ pub(super) fn derived(
     let inner = Partition::new(outline.clone(), false);
     let outer = Partition::new(reversed, true);
     let graph = &mut lowering.graph;
-    let parts = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
-    let (parts, beside) = match parts {
+    let divided = inner.parts(graph).and_then(|parts| Ok((parts, outer.parts(graph)?)));
+    let (derived, beside) = match divided {
         Ok(both) => both,
         Err(Undivided([d, z])) => {
             let z = lowering.frame.to_file(z);
@@ -48,14 +62,36 @@ pub(super) fn derived(
             return FromProfile::default();
         }
     };
-    let names = names(&outline, &surfaces, &parts);
+    let parts = parts(&derived, &outline, &surfaces, lowering, curves);
+    let whole = (outline.as_slice(), &inner);
     let mut regions = Vec::new();
-    for (part, (name, owner, span)) in parts.iter().zip(names) {
-        let felt = Felt { laws, lowering, surface: &surfaces[owner] };
-        match felt.derived(part, &outline, (name, owner, span), curves) {
-            Ok(region) => regions.push(region),
-            Err(report) => reports.push(report),
+    let before = reports.len();
+    let conditions = divider.conditions(whole, &surfaces, lowering, curves, reports);
+    let mut over = None;
+    match conditions {
+        None => {
+            for part in &parts {
+                let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
+                let said = (part.name.clone(), part.span, part.owner, part.inside.clone());
+                match felt.of_part(part, said, (part.course, part.span)) {
+                    Ok(region) => regions.push(region),
+                    Err(report) => reports.push(report),
+                }
+            }
         }
+        Some(conditions) if reports.len() == before => {
+            let pairs = conditions.pairs(whole, (curves, lowering), span, reports);
+            for (part, index) in &pairs {
+                let pair = (&parts[*part], *index);
+                match conditions.region(pair, &surfaces, laws, lowering) {
+                    Ok(region) => regions.push(region),
+                    Err(report) if reports.iter().any(|r| r.span == report.span) => {}
+                    Err(report) => reports.push(report),
+                }
+            }
+            over = Some(Over { conditions: conditions.conditions, regions: pairs });
+        }
+        Some(_) => {}
     }
     let outside = beside
         .iter()
@@ -64,12 +100,35 @@ pub(super) fn derived(
             clearance: part.depth,
         })
         .collect();
-    let section = Section { outline, inner, outer, outside };
+    let section = Section { outline, inner, outer, outside, over };
     FromProfile { surfaces, regions, section: Some(section) }
 }
 
+/// The parts of the inside with their names and directions.
+fn parts(
+    derived: &[Derived],
+    outline: &[Segment],
+    surfaces: &[Surface],
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+) -> Vec<Part> {
+    let names = names(outline, surfaces, derived);
+    let graph = &mut lowering.graph;
+    let zero = graph.int(0);
+    derived
+        .iter()
+        .zip(names)
+        .map(|(part, (name, owner, span))| {
+            let inside = formula(&part.inside, curves, graph);
+            let course = regionalise::course(graph, outline, part.feature).unwrap_or([zero, zero]);
+            let course = Domain::HalfPlane.vector(graph, &course);
+            Part { feature: part.feature, inside, depth: part.depth, course, name, owner, span }
+        })
+        .collect()
+}
+
 /// A test as a formula over curves.
-fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
+pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
     let zero = graph.int(0);
     match test {
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
@@ -114,23 +173,16 @@ fn names(
 }
 
 impl Felt<'_> {
-    /// A region that was derived.
-    fn derived(
+    /// A region of a part, with the laws for its surface.
+    pub(super) fn of_part(
         mut self,
-        part: &Derived,
-        outline: &[Segment],
-        (name, owner, span): (String, usize, Span),
-        curves: &mut Curves,
+        part: &Part,
+        (name, span, owner, inside): (String, Span, usize, Formula),
+        course: ([Id; 3], Span),
     ) -> Result<Region, Report> {
-        let graph = &mut self.lowering.graph;
-        let zero = graph.int(0);
-        let inside = formula(&part.inside, curves, graph);
-        let course = regionalise::course(graph, outline, part.feature).unwrap_or([zero, zero]);
-        let course = Domain::HalfPlane.vector(graph, &course);
-        let depth = part.depth;
-        let magnitude = self.magnitude(None, depth)?;
-        let niceness = self.niceness(None, depth)?;
-        let felt = (depth, magnitude, niceness);
-        self.finish(Said { name, span, owner, inside, depth_span: span }, felt, (course, span))
+        let magnitude = self.magnitude(None, part.depth)?;
+        let niceness = self.niceness(None, part.depth)?;
+        let said = Said { name, span, owner, inside, depth_span: span };
+        self.finish(said, (part.depth, magnitude, niceness), course)
     }
 }

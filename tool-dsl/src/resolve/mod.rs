@@ -9,6 +9,7 @@ mod join;
 mod lower;
 mod mount;
 mod outputs;
+mod over;
 mod profile;
 mod region;
 mod scope;
@@ -18,12 +19,15 @@ use crate::model::{Model, Surface, Unit};
 use crate::regionalise::outline::Segment;
 use crate::report::{Report, any_error, nearest};
 use crate::source::{Sources, Span};
-use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Quantity, Tool};
+use crate::syntax::tree::{
+    Definition, Expr, Item, Law, Mount, Name, Profile, Quantity, Region, Tool,
+};
 use condition::Curves;
 use derived::FromProfile;
 use given::Given;
 use lower::Lowering;
 use mount::Along;
+use over::Divider;
 use region::Laws;
 use std::collections::BTreeMap;
 
@@ -95,7 +99,8 @@ fn settle(
         Some(Some(Outlined { outline, surfaces, along, span })) => {
             let laws = Laws::new(&laws, along);
             let whole = (outline, surfaces, span);
-            derived::derived(whole, &laws, &mut lowering, &mut curves, &mut reports)
+            let divider = divider(tool, &mut reports);
+            derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, &mut reports)
         }
         Some(None) => FromProfile::default(),
         None => {
@@ -141,13 +146,47 @@ fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
             Item::Spindle { span, .. } => (*span, "spindle", "its file's frame is the pose's"),
             Item::Profile(profile) => (profile.span, "profile", "it has regions by hand"),
             Item::Mount(mount) => (mount.span, "mount", "it has regions by hand"),
-            Item::Regions(span) => (*span, "regions", "it has regions by hand"),
+            Item::Regions { span, .. } => (*span, "regions", "it has regions by hand"),
             _ => continue,
         };
         reports.push(
             Report::error(span, format!("`{word}` exists in a `tool` only"))
                 .help(format!("a `solid` has no axis: {why}")),
         );
+    }
+}
+
+/// What divides a profile's inside: `regions smooth`, or regions by hand.
+fn divider<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Divider<'t> {
+    let by_hand: Vec<&Region> = tool
+        .items
+        .iter()
+        .filter_map(|item| if let Item::Region(region) = item { Some(region) } else { None })
+        .collect();
+    let mut said: Option<(Span, Option<&Expr>)> = None;
+    for item in &tool.items {
+        let Item::Regions { span, smooth } = item else { continue };
+        if let Some((first, _)) = said {
+            reports.push(
+                Report::error(*span, "`regions` is said twice")
+                    .and(first, "first here")
+                    .help("drop one"),
+            );
+        }
+        said = said.or(Some((*span, smooth.as_ref())));
+    }
+    match (said, by_hand.first()) {
+        (Some((span, _)), Some(region)) => {
+            reports.push(
+                Report::error(span, "the regions are derived and written")
+                    .and(region.name.span, "written here")
+                    .help("drop this, or the regions"),
+            );
+            Divider::Features
+        }
+        (None, Some(_)) => Divider::Hand(by_hand),
+        (Some((_, Some(length))), None) => Divider::Smooth(length),
+        _ => Divider::Features,
     }
 }
 
@@ -188,14 +227,7 @@ fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
         .collect();
     for item in &tool.items {
         match item {
-            Item::Region(region) if first.is_some() || !mounts.is_empty() => {
-                let has = if first.is_some() { "a profile" } else { "mounts" };
-                reports.push(
-                    Report::error(region.name.span, format!("a tool has {has} or regions by hand"))
-                        .help("drop the regions: the profile's are derived"),
-                );
-            }
-            Item::Regions(span) if first.is_none() && mounts.is_empty() => reports.push(
+            Item::Regions { span, .. } if first.is_none() && mounts.is_empty() => reports.push(
                 Report::error(*span, "there is no profile to derive regions of")
                     .help("write `profile { … }`"),
             ),

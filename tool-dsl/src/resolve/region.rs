@@ -109,7 +109,7 @@ fn named(word: &str, surfaces: &[Surface]) -> String {
     }
 }
 
-fn idle_niceness(span: Span, surface: &str) -> Report {
+pub(super) fn idle_niceness(span: Span, surface: &str) -> Report {
     Report::error(span, format!("`{surface}` does not cut, its niceness is 0"))
         .help("make it `cutting` or drop the rule")
 }
@@ -277,7 +277,7 @@ impl Felt<'_> {
         owner: usize,
         curves: &mut Curves,
     ) -> Result<Region, Report> {
-        let inside = self.inside(written, curves)?;
+        let inside = inside(written, self.lowering, curves)?;
         let (depth, depth_span) = self.depth(written)?;
         let magnitude = self.magnitude(self.said(written, Quantity::Magnitude)?, depth)?;
         let niceness = self.niceness(self.said(written, Quantity::Niceness)?, depth)?;
@@ -298,30 +298,8 @@ impl Felt<'_> {
         )
     }
 
-    fn inside(&mut self, written: &tree::Region, curves: &mut Curves) -> Result<Formula, Report> {
-        let mut all = Vec::new();
-        for condition in &written.conditions {
-            let mut left = self.lowering.lower(&condition.first, May::Coordinates)?;
-            for (compare, right) in &condition.rest {
-                let right = self.lowering.lower(right, May::Coordinates)?;
-                if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
-                    let message = format!("this compares {} with {}", left.1, right.1);
-                    return Err(Report::error(condition.span, message)
-                        .help("both sides want the same power of length; a bare number fits any"));
-                }
-                let graph = &mut self.lowering.graph;
-                all.push(match compare {
-                    Compare::AtMost => curves.at_most(graph, left.0, right.0),
-                    Compare::AtLeast => curves.at_most(graph, right.0, left.0),
-                });
-                left = right;
-            }
-        }
-        Ok(Formula::All(all))
-    }
-
     /// The region's own word on a quantity.
-    fn said<'w>(
+    pub(super) fn said<'w>(
         &self,
         written: &'w tree::Region,
         quantity: Quantity,
@@ -402,8 +380,35 @@ impl Felt<'_> {
     }
 }
 
+/// The points that a region's conditions name.
+pub(super) fn inside(
+    written: &tree::Region,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+) -> Result<Formula, Report> {
+    let mut all = Vec::new();
+    for condition in &written.conditions {
+        let mut left = lowering.lower(&condition.first, May::Coordinates)?;
+        for (compare, right) in &condition.rest {
+            let right = lowering.lower(right, May::Coordinates)?;
+            if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
+                let message = format!("this compares {} with {}", left.1, right.1);
+                return Err(Report::error(condition.span, message)
+                    .help("both sides want the same power of length; a bare number fits any"));
+            }
+            let graph = &mut lowering.graph;
+            all.push(match compare {
+                Compare::AtMost => curves.at_most(graph, left.0, right.0),
+                Compare::AtLeast => curves.at_most(graph, right.0, left.0),
+            });
+            left = right;
+        }
+    }
+    Ok(Formula::All(all))
+}
+
 /// Where an expression mentions a name.
-fn mention(expr: &Expr, word: &str) -> Option<Span> {
+pub(super) fn mention(expr: &Expr, word: &str) -> Option<Span> {
     match &expr.kind {
         tree::ExprKind::Name(name) => (name == word).then_some(expr.span),
         tree::ExprKind::Number(..) => None,

@@ -184,7 +184,12 @@ impl Reader<'_> {
             Rule::spindle => Item::Spindle { down: inner.next()?.as_str() == "-", span },
             Rule::profile => Item::Profile(self.profile(inner, span)?),
             Rule::mount => Item::Mount(self.mount(inner, span)?),
-            Rule::regions => Item::Regions(span),
+            Rule::regions => {
+                let smooth = inner.find(|pair| pair.as_rule() == Rule::smooth);
+                let length =
+                    smooth.and_then(|pair| pair.into_inner().find(|pair| !is_word(pair.as_rule())));
+                Item::Regions { span, smooth: length.map(|pair| self.expr(pair)) }
+            }
             Rule::region => Item::Region(self.region(inner)?),
             Rule::bsp => Item::Bsp(inner.map(|pair| self.name(&pair)).collect()),
             Rule::law => {
@@ -482,6 +487,7 @@ pub(super) fn is_word(rule: Rule) -> bool {
     matches!(
         rule,
         Rule::k_units
+            | Rule::k_smooth
             | Rule::k_let
             | Rule::k_param
             | Rule::k_curve

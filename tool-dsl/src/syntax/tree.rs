@@ -53,8 +53,13 @@ pub enum Item {
     Profile(Profile),
     /// `mount "er16.tool" as nut at z = 30;`
     Mount(Mount),
-    /// `regions nearest;`
-    Regions(Span),
+    /// `regions nearest;` or `regions smooth w;`
+    Regions {
+        /// The whole item.
+        span: Span,
+        /// The tangent length.
+        smooth: Option<Expr>,
+    },
     /// `region … { … }`
     Region(Region),
     /// `bsp { a, b }`

@@ -1,10 +1,10 @@
 //! Curves and polygons of the section in doubles, and the cutting of the ones by the others.
 
+use super::outline::{Point, cross, minus, norm};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Graph, Id};
 use crate::formula::CurveIndex;
-use crate::regionalise::outline::{Point, cross, minus, norm};
 
 /// What is closer to a curve than this part of the section's size lies on it.
 const ON: f64 = 1e-10;
@@ -12,7 +12,7 @@ const ON: f64 = 1e-10;
 const ROUNDING: f64 = 2e-14;
 
 /// A curve as a function of the section's points.
-pub(super) enum Shape<'g> {
+pub(crate) enum Shape<'g> {
     /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, `u` and `v` from the section's middle.
     Conic { middle: Point, factors: [f64; 6] },
     /// Anything else.
@@ -28,7 +28,7 @@ struct Value {
 
 /// What a polygon's edge is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Edge {
+pub(crate) enum Edge {
     Straight,
     /// A chord of one of the tool's curves.
     Along(CurveIndex),
@@ -37,7 +37,7 @@ pub(super) enum Edge {
 }
 
 impl<'g> Shape<'g> {
-    pub(super) fn new(graph: &'g Graph, id: Id, middle: Point) -> Shape<'g> {
+    pub(crate) fn new(graph: &'g Graph, id: Id, middle: Point) -> Shape<'g> {
         let other = || Shape::Other(Evaluator::new(graph, [id]).into(), id);
         let Some(polynomial) = Polynomial::of(graph, id) else { return other() };
         let mut factors = [0.0; 6];
@@ -95,7 +95,7 @@ impl<'g> Shape<'g> {
     }
 
     /// -1, 0 or 1: the side of the curve that a point is on, 0 for what is as good as on it.
-    pub(super) fn side(&self, p: Point, size: f64) -> i8 {
+    pub(crate) fn side(&self, p: Point, size: f64) -> i8 {
         let Value { value, gradient, terms } = self.at(p);
         if value.abs() <= ON * size * norm(gradient) || value.abs() <= ROUNDING * terms {
             return 0;
@@ -103,12 +103,12 @@ impl<'g> Shape<'g> {
         if value < 0.0 { -1 } else { 1 }
     }
 
-    pub(super) fn value(&self, p: Point) -> f64 {
+    pub(crate) fn value(&self, p: Point) -> f64 {
         self.at(p).value
     }
 
     /// The sign, without tolerance.
-    pub(super) fn below(&self, p: Point) -> bool {
+    pub(crate) fn below(&self, p: Point) -> bool {
         self.at(p).value <= 0.0
     }
 }
@@ -126,10 +126,10 @@ fn add(factors: &mut [f64; 6], more: &[(usize, f64)]) {
 /// A convex part of the section with one owner, but for the bulge of its curved edges. Edge `k`
 /// runs from vertex `k` to the next.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
-    pub(super) owner: Option<usize>,
-    pub(super) vertices: Vec<Point>,
-    pub(super) edges: Vec<Edge>,
+pub(crate) struct Piece {
+    pub(crate) owner: Option<usize>,
+    pub(crate) vertices: Vec<Point>,
+    pub(crate) edges: Vec<Edge>,
 }
 
 /// A vertex with its side and the edge that follows.
@@ -137,15 +137,15 @@ type Corner = (Point, i8, Edge);
 
 /// A curve that cuts, among all.
 #[derive(Clone, Copy)]
-pub(super) struct Cutter<'a, 'g> {
-    pub(super) shapes: &'a [Shape<'g>],
-    pub(super) curve: CurveIndex,
-    pub(super) size: f64,
+pub(crate) struct Cutter<'a, 'g> {
+    pub(crate) shapes: &'a [Shape<'g>],
+    pub(crate) curve: CurveIndex,
+    pub(crate) size: f64,
 }
 
 impl Piece {
     /// The parts on the two sides of a curve.
-    pub(super) fn cut(&self, cutter: Cutter<'_, '_>) -> [Option<Piece>; 2] {
+    pub(crate) fn cut(&self, cutter: Cutter<'_, '_>) -> [Option<Piece>; 2] {
         let whole = |above: bool| {
             if above { [None, Some(self.clone())] } else { [Some(self.clone()), None] }
         };
@@ -166,13 +166,20 @@ impl Piece {
     }
 
     /// The mean of its vertices.
-    pub(super) fn middle(&self) -> Point {
+    pub(crate) fn middle(&self) -> Point {
         let count = self.vertices.len() as f64;
         [0, 1].map(|k| self.vertices.iter().map(|p| p[k]).sum::<f64>() / count)
     }
 
+    /// Whether it is so thin that it may lie between a curve and its chord.
+    pub(crate) fn is_sliver(&self) -> bool {
+        let first = self.vertices[0];
+        let long = self.vertices.iter().map(|p| norm(minus(*p, first))).fold(0.0, f64::max);
+        self.area() < 0.05 * long * long
+    }
+
     /// Twice its area.
-    pub(super) fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         let first = self.vertices[0];
         let fan = self.vertices.windows(2);
         fan.map(|pair| cross(minus(pair[0], first), minus(pair[1], first))).sum::<f64>().abs()

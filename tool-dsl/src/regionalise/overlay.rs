@@ -1,0 +1,122 @@
+//! A partition divided once more, by conditions.
+
+use super::cells::Cell;
+use super::outline::{Point, minus, norm};
+use super::shape::{Cutter, Edge, Piece, Shape};
+use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
+
+/// A cell as a piece whose curved edges know their curve.
+pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], size: f64) -> Piece {
+    let count = cell.vertices.len();
+    let mut edges = vec![Edge::Straight; count];
+    let mut run: Vec<usize> = Vec::new();
+    for k in 0..=count {
+        if k < count && !cell.straight[k] {
+            run.push(k);
+        } else if !run.is_empty() {
+            let on = |shape: &Shape<'_>| {
+                run.iter().all(|k| {
+                    [*k, (*k + 1) % count].iter().all(|v| shape.side(cell.vertices[*v], size) == 0)
+                })
+            };
+            let edge = shapes.iter().position(on).map_or(Edge::Chord, Edge::Along);
+            run.drain(..).for_each(|k| edges[k] = edge);
+        }
+    }
+    Piece { owner, vertices: cell.vertices.clone(), edges }
+}
+
+/// A piece cut until each part has conditions that hold all over it, or not at all; with each part
+/// those that hold.
+pub(crate) fn divided(
+    piece: Piece,
+    conditions: &[Formula],
+    shapes: &[Shape<'_>],
+    size: f64,
+) -> Vec<(Piece, Vec<usize>)> {
+    let mut parts = Vec::new();
+    divide(piece, vec![ANY; shapes.len()], conditions, shapes, size, &mut parts);
+    parts
+}
+
+fn divide(
+    piece: Piece,
+    mut signs: Vec<Signs>,
+    conditions: &[Formula],
+    shapes: &[Shape<'_>],
+    size: f64,
+    parts: &mut Vec<(Piece, Vec<usize>)>,
+) {
+    loop {
+        let mut open = Vec::new();
+        for condition in conditions {
+            condition.open(&signs, &mut open);
+        }
+        let Some((curve, _)) = open.first().copied() else {
+            let holds = |k: &usize| conditions[*k].decided(&signs) == Some(true);
+            parts.push((piece, (0..conditions.len()).filter(holds).collect()));
+            return;
+        };
+        match piece.cut(Cutter { shapes, curve, size }) {
+            [Some(below), Some(above)] => {
+                for (part, sign) in [(below, NEGATIVE), (above, POSITIVE)] {
+                    signs[curve] = sign;
+                    divide(part, signs.clone(), conditions, shapes, size, parts);
+                }
+                return;
+            }
+            [None, Some(_)] => signs[curve] = POSITIVE,
+            _ => signs[curve] = NEGATIVE,
+        }
+    }
+}
+
+/// Which parts of a partition and which conditions have points in common.
+pub(crate) struct Overlay {
+    /// Part and condition.
+    pub(crate) pairs: Vec<(usize, usize)>,
+    /// A point that no condition holds at.
+    pub(crate) bare: Option<Point>,
+    /// Two conditions and a point where both hold.
+    pub(crate) double: Option<(usize, usize, Point)>,
+}
+
+/// Lays conditions over cells. What is narrower than a curve's chords is not looked at.
+pub(crate) fn overlay(
+    cells: &[Cell],
+    conditions: &[Formula],
+    shapes: &[Shape<'_>],
+    size: f64,
+) -> Overlay {
+    let mut found = Overlay { pairs: Vec::new(), bare: None, double: None };
+    for cell in cells {
+        let whole = piece(cell, Some(cell.part), shapes, size);
+        for (part, holding) in divided(whole, conditions, shapes, size) {
+            let middle = part.middle();
+            let holds =
+                |k: &usize| conditions[*k].holds(&|curve: usize| shapes[curve].value(middle));
+            if part.is_sliver() && !holding.first().is_some_and(holds) {
+                continue;
+            }
+            match holding.as_slice() {
+                [] => found.bare = found.bare.or(Some(middle)),
+                [first, rest @ ..] => {
+                    if let (Some(second), None) = (rest.first(), found.double) {
+                        found.double = Some((*first, *second, middle));
+                    }
+                    let pair = (cell.part, *first);
+                    if !found.pairs.contains(&pair) {
+                        found.pairs.push(pair);
+                    }
+                }
+            }
+        }
+    }
+    found.pairs.sort_by_key(|(part, condition)| (*condition, *part));
+    found
+}
+
+/// The middle and the diagonal of an outline's box.
+pub(crate) fn frame([low, high]: [Point; 2]) -> (Point, f64) {
+    ([0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0), norm(minus(high, low)))
+}

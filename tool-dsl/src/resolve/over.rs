@@ -1,0 +1,301 @@
+//! A profile divided once more: by regions that are written, or by the fans of smoothed corners.
+
+use super::condition::Curves;
+use super::derived::{Part, formula};
+use super::lower::Lowering;
+use super::outputs;
+use super::region::{Felt, Laws, Said, idle_niceness, mention};
+use crate::domain::Domain;
+use crate::expr::Id;
+use crate::formula::Formula;
+use crate::model::{Region, Surface};
+use crate::regionalise::outline::{self, Segment};
+use crate::regionalise::overlay::{self, Overlay};
+use crate::regionalise::shape::Shape;
+use crate::regionalise::smooth::{self, Origin, Rough};
+use crate::regionalise::{self, Feature, Partition, Undivided};
+use crate::report::{Report, any_error, nearest};
+use crate::source::Span;
+use crate::syntax::tree::{self, Expr, Quantity};
+
+/// What divides a profile's inside beside its nearest features.
+pub(super) enum Divider<'t> {
+    /// Nothing.
+    Features,
+    /// Regions that are written.
+    Hand(Vec<&'t tree::Region>),
+    /// Directions of the outline with its corners rounded over this tangent length.
+    Smooth(&'t Expr),
+}
+
+/// Conditions over the parts of a partition, and what they change.
+pub(super) struct Conditions<'t> {
+    pub(super) conditions: Vec<Formula>,
+    kinds: Vec<Kind<'t>>,
+}
+
+enum Kind<'t> {
+    Hand(&'t tree::Region, Option<usize>),
+    /// The way to the rounded outline, and where that comes from.
+    Smooth([Id; 3], Origin),
+}
+
+impl Divider<'_> {
+    /// The conditions, if there are any.
+    pub(super) fn conditions(
+        &self,
+        (outline, inner): (&[Segment], &Partition),
+        surfaces: &[Surface],
+        lowering: &mut Lowering,
+        curves: &mut Curves,
+        reports: &mut Vec<Report>,
+    ) -> Option<Conditions<'_>> {
+        match self {
+            Divider::Features => None,
+            Divider::Hand(regions) => {
+                let mut all = Conditions { conditions: Vec::new(), kinds: Vec::new() };
+                for region in regions {
+                    match written(region, &regions[..], surfaces, lowering, curves) {
+                        Ok((condition, surface)) => {
+                            all.conditions.push(condition);
+                            all.kinds.push(Kind::Hand(region, surface));
+                        }
+                        Err(report) => reports.push(report),
+                    }
+                }
+                Some(all)
+            }
+            Divider::Smooth(length) => match fans(length, outline, inner, lowering, curves) {
+                Ok(all) => Some(all),
+                Err(report) => {
+                    reports.push(report);
+                    None
+                }
+            },
+        }
+    }
+}
+
+/// The conditions and the surface of a written region.
+fn written(
+    region: &tree::Region,
+    all: &[&tree::Region],
+    surfaces: &[Surface],
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+) -> Result<(Formula, Option<usize>), Report> {
+    let name = &region.name;
+    if let Some(first) = all.iter().find(|r| r.name.word == name.word)
+        && first.name.span != name.span
+    {
+        let report = Report::error(name.span, format!("two regions are called `{}`", name.word));
+        return Err(report.and(first.name.span, "the first").help("give it another name"));
+    }
+    if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
+        return Err(Report::error(depth.value.span, "`depth` is the profile's here")
+            .help("write `magnitude:` for what is felt"));
+    }
+    let surface = match &region.surface {
+        None => None,
+        Some(wanted) => {
+            if let Some(cutting) = region.cutting {
+                return Err(Report::error(cutting, "the profile says which surfaces cut")
+                    .help("drop `cutting` here"));
+            }
+            let found = surfaces.iter().position(|surface| surface.name == wanted.word);
+            Some(found.ok_or_else(|| {
+                let report =
+                    Report::error(wanted.span, format!("unknown surface `{}`", wanted.word));
+                match nearest(&wanted.word, surfaces.iter().map(|s| s.name.as_str())) {
+                    Some(meant) => report.help(format!("did you mean `{meant}`?")),
+                    None => report.help("name a surface of the profile"),
+                }
+            })?)
+        }
+    };
+    Ok((super::region::inside(region, lowering, curves)?, surface))
+}
+
+/// The cells of the outline with rounded corners, of which directions are taken.
+fn fans<'t>(
+    length: &Expr,
+    outline: &[Segment],
+    inner: &Partition,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+) -> Result<Conditions<'t>, Report> {
+    let span = length.span;
+    let width = lowering.length(length, "`smooth`")?;
+    if width.to_f64() <= 0.0 {
+        return Err(Report::error(span, "a tangent length is more than 0"));
+    }
+    let shown = |behind: Option<usize>, lowering: &Lowering| {
+        let [d, z] = match behind {
+            Some(piece) => outline[piece].ends()[1],
+            None => outline[0].ends()[0],
+        };
+        Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)])
+    };
+    let pieces = smooth::rounded(outline, &width).map_err(|rough| match rough {
+        Rough::Round(behind) => Report::error(
+            span,
+            format!(
+                "`smooth` rounds corners between lines, at {} an arc ends",
+                shown(behind, lowering)
+            ),
+        )
+        .help("let the arc run into its neighbour without a corner, or write regions by hand"),
+        Rough::Short(piece, size, count) => {
+            let [from, to] =
+                [piece.checked_sub(1), Some(piece)].map(|behind| shown(behind, lowering));
+            let most = crate::report::figure(size / count as f64);
+            let size = crate::report::figure(size);
+            let fans = if count == 2 {
+                format!("the fans of {from} and {to} do not fit")
+            } else {
+                "its fan does not fit".to_owned()
+            };
+            Report::error(span, format!("{fans} on the edge of length {size}"))
+                .and(outline[piece].span, "this edge")
+                .help(format!("at most {most}"))
+        }
+    })?;
+    let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
+    let graph = &mut lowering.graph;
+    let undivided = |Undivided([d, z]): Undivided| {
+        let place = Domain::HalfPlane.shown([d, 0.0, z]);
+        Report::error(span, format!("the smoothed section could not be divided near {place}"))
+            .help("give another tangent length")
+    };
+    let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
+    let mut all = Conditions { conditions: Vec::new(), kinds: Vec::new() };
+    for part in &parts {
+        let Feature::Piece(piece) = part.feature else { continue };
+        let mut inside = part.inside.clone();
+        if let Origin::Fan(behind) = origins[piece]
+            && rounded[piece].round().is_some_and(|(_, _, convex)| convex)
+        {
+            // A convex corner stands out from its arc: its edges bound the fan there.
+            let beside = [behind, Some(behind.map_or(0, |k| k + 1))];
+            let edges = beside.into_iter().flatten().filter(|k| *k < outline.len());
+            let edges = edges.filter_map(|k| inner.inside(graph, k)).collect();
+            inside = inside.without_own(edges);
+        }
+        all.conditions.push(formula(&inside, curves, graph));
+        let zero = graph.int(0);
+        let course = regionalise::course(graph, &rounded, part.feature).unwrap_or([zero, zero]);
+        let course = Domain::HalfPlane.vector(graph, &course);
+        all.kinds.push(Kind::Smooth(course, origins[piece]));
+    }
+    Ok(all)
+}
+
+impl Conditions<'_> {
+    /// The parts and conditions that have points in common.
+    pub(super) fn pairs(
+        &self,
+        (outline, inner): (&[Segment], &Partition),
+        (curves, lowering): (&Curves, &Lowering),
+        span: Span,
+        reports: &mut Vec<Report>,
+    ) -> Vec<(usize, usize)> {
+        let (middle, size) = overlay::frame(outline::reach(outline));
+        let shapes: Vec<Shape<'_>> = curves
+            .list
+            .iter()
+            .map(|curve| Shape::new(&lowering.graph, curve.value, middle))
+            .collect();
+        let Overlay { pairs, bare, double } =
+            overlay::overlay(&inner.cells(8), &self.conditions, &shapes, size);
+        let shown = |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
+        if let Some(p) = bare {
+            reports.push(
+                Report::error(
+                    span,
+                    format!("nothing covers {}, which the profile contains", shown(p)),
+                )
+                .help("the regions beside a profile divide all of it"),
+            );
+        }
+        if let Some((first, second, p)) = double
+            && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
+        {
+            let (a, b) = (&a.name, &b.name);
+            let message =
+                format!("regions {} and {} overlap, for instance at {}", a.word, b.word, shown(p));
+            reports.push(
+                Report::error(b.span, message)
+                    .and(a.span, "the other one")
+                    .help("bound one of them by the curve that divides them"),
+            );
+        }
+        for (k, kind) in self.kinds.iter().enumerate() {
+            if let Kind::Hand(region, _) = kind
+                && !any_error(reports)
+                && pairs.iter().all(|(_, condition)| *condition != k)
+            {
+                let name = &region.name;
+                let message = format!("region {} has no point of the profile", name.word);
+                reports.push(
+                    Report::error(name.span, message)
+                        .help("do its conditions contradict one another, or does one listed before it cover it?"),
+                );
+            }
+        }
+        pairs
+    }
+
+    /// The region of a part where a condition holds.
+    pub(super) fn region(
+        &self,
+        (part, index): (&Part, usize),
+        surfaces: &[Surface],
+        laws: &Laws<'_>,
+        lowering: &mut Lowering,
+    ) -> Result<Region, Report> {
+        let inside = Formula::All(vec![self.conditions[index].clone(), part.inside.clone()]);
+        let depth = part.depth;
+        match &self.kinds[index] {
+            Kind::Smooth(course, origin) => {
+                let own = matches!((part.feature, origin), (Feature::Piece(a), Origin::Piece(b)) if a == *b);
+                let name = match origin {
+                    _ if own => part.name.clone(),
+                    Origin::Piece(piece) => format!("{} by {}", part.name, piece + 1),
+                    Origin::Fan(behind) => {
+                        format!("{} by fan {}", part.name, behind.map_or(0, |k| k + 1))
+                    }
+                };
+                let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
+                felt.of_part(part, (name, part.span, part.owner, inside), (*course, part.span))
+            }
+            Kind::Hand(region, surface) => {
+                let owner = surface.unwrap_or(part.owner);
+                let mut felt = Felt { laws, lowering, surface: &surfaces[owner] };
+                let own = felt.said(region, Quantity::Magnitude)?;
+                let magnitude = felt.magnitude(own, depth)?;
+                let niceness = felt.said(region, Quantity::Niceness)?;
+                if let (Some(value), false) = (niceness, surfaces[owner].cutting) {
+                    return Err(idle_niceness(value.span, &surfaces[owner].name));
+                }
+                let niceness = felt.niceness(niceness, depth)?;
+                let free = own.filter(|value| mention(value, Quantity::Depth.word()).is_none());
+                let course = match (region.direction.as_slice(), free, magnitude) {
+                    ([(direction, span)], ..) => (felt.direction(direction)?, *span),
+                    ([], Some(value), Some(magnitude)) => {
+                        let graph = &mut felt.lowering.graph;
+                        let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
+                        (slope.map(|slope| graph.neg(slope)), value.span)
+                    }
+                    ([], ..) => (part.course, part.span),
+                    ([(_, first), (_, second), ..], ..) => {
+                        return Err(Report::error(*second, "the direction is said twice")
+                            .and(*first, "first here"));
+                    }
+                };
+                let (name, span) = (region.name.word.clone(), region.name.span);
+                let said = Said { name, span, owner, inside, depth_span: part.span };
+                felt.finish(said, (depth, magnitude, niceness), course)
+            }
+        }
+    }
+}
