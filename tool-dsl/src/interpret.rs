@@ -162,7 +162,8 @@ impl Tape {
         registers: &mut Vec<Lanes>,
         results: &mut [Lanes],
     ) {
-        let Some((_, end)) = self.outputs.iter().take(results.len()).last() else { return };
+        let wanted = results.len().min(self.outputs.len());
+        let Some((_, end)) = self.outputs[..wanted].last() else { return };
         registers.resize(self.operations.len(), [0.0; BLOCK]);
         for (at, operation) in self.operations[..*end].iter().enumerate() {
             let (done, rest) = registers.split_at_mut(at);

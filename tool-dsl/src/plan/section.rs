@@ -148,7 +148,7 @@ fn plan<'m>(
         tests: 0,
     };
     let open = (0..model.curves.len()).collect();
-    let tree = planner.tree(ground.pieces, all, open)?;
+    let tree = planner.tree(&ground.pieces, all, open)?;
     for (p, owner) in ground.witnesses {
         if *tree.at(&|curve| shapes[curve].value(p)) != owner {
             return Err(planner.inseparable(p));
@@ -184,7 +184,7 @@ struct Halves {
 impl Planner<'_> {
     fn tree(
         &mut self,
-        pieces: Vec<Piece>,
+        pieces: &[Piece],
         samples: Vec<u32>,
         mut open: Vec<CurveIndex>,
     ) -> Result<Owners, Report> {
@@ -192,8 +192,8 @@ impl Planner<'_> {
         if pieces.iter().all(|piece| piece.owner == first.owner) {
             return Ok(Tree::Leaf(first.owner));
         }
-        let Some((curve, halves, zeros)) = self.choose(&pieces, &samples, &mut open) else {
-            return Ok(Tree::Leaf(self.settle(&pieces)));
+        let Some((curve, halves, zeros)) = self.choose(pieces, &samples, &mut open) else {
+            return Ok(Tree::Leaf(self.settle(pieces)));
         };
         self.used[curve] = true;
         self.tests += 1;
@@ -211,8 +211,8 @@ impl Planner<'_> {
             Zeros::Both => Some(self.touching(curve, &halves, &open)?),
             _ => None,
         };
-        let below = self.tree(halves.below, low, open.clone())?;
-        let above = self.tree(halves.above, high, open)?;
+        let below = self.tree(&halves.below, low, open.clone())?;
+        let above = self.tree(&halves.above, high, open)?;
         Ok(match on {
             Some(on) if on == above => Tree::split(curve, true, below, above),
             Some(on) if on != below => {
@@ -388,8 +388,8 @@ impl Planner<'_> {
             |piece: &&Piece| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
         let [below, above] = [&halves.below, &halves.above]
             .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
-        let below = self.tree(below, Vec::new(), open.to_vec())?;
-        let above = self.tree(above, Vec::new(), open.to_vec())?;
+        let below = self.tree(&below, Vec::new(), open.to_vec())?;
+        let above = self.tree(&above, Vec::new(), open.to_vec())?;
         Ok(first(&below, &above))
     }
 }

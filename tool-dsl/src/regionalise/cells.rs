@@ -122,9 +122,9 @@ fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Ve
     let (mut samples, mut witnesses) = (samples(section, slice), witnesses(section, slice));
     (0..steps)
         .map(|k| {
-            let vertices = vec![feet[k], feet[k + 1], rim[k + 1], rim[k]];
-            let straight = vec![!curved, true, straight_rim, true];
-            let (vertices, straight) = tidy(vertices, straight, 1e-14 * section.size);
+            let vertices = [feet[k], feet[k + 1], rim[k + 1], rim[k]];
+            let straight = [!curved, true, straight_rim, true];
+            let (vertices, straight) = tidy(&vertices, &straight, 1e-14 * section.size);
             let (samples, witnesses) = (take(&mut samples), take(&mut witnesses));
             Cell { part: slice.feature, vertices, straight, samples, witnesses }
         })
@@ -132,7 +132,7 @@ fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Ve
 }
 
 /// Drops edges without length.
-fn tidy(vertices: Vec<Point>, straight: Vec<bool>, least: f64) -> (Vec<Point>, Vec<bool>) {
+fn tidy(vertices: &[Point], straight: &[bool], least: f64) -> (Vec<Point>, Vec<bool>) {
     let count = vertices.len();
     (0..count)
         .filter(|k| norm(minus(vertices[*k], vertices[(k + 1) % count])) > least)

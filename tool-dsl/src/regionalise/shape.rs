@@ -314,5 +314,6 @@ fn is_thin(vertices: &[Point], size: f64) -> bool {
     let last = far(first);
     let (first, way) = (far(last), minus(last, far(last)));
     let off = |p: &Point| cross(way, minus(*p, first)).abs() / norm(way);
-    vertices.iter().all(|p| !(off(p) > ON * size))
+    // Points in one place have no direction, and are thin.
+    !vertices.iter().any(|p| off(p) > ON * size)
 }
