@@ -20,8 +20,9 @@ pub struct Card {
     pub envelope: Cow<'static, [Slab]>,
     /// Whether it has an axis.
     pub shape: Shape,
-    /// Whether depth and clearance are true distances. Without a profile, depth is what the file
-    /// says and clearance a lower bound.
+    /// Whether depth and clearance are true distances; farther out than 48 sizes of the tool
+    /// clearance is a lower bound. Without a profile, depth is what the file says and clearance a
+    /// lower bound everywhere.
     pub exact: bool,
 }
 

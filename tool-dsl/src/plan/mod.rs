@@ -15,7 +15,7 @@ use crate::domain::Domain;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Coord, Id};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
-use crate::model::Model;
+use crate::model::{Curve, Model};
 use crate::number::Number;
 use crate::report::Report;
 use empty::Void;
@@ -126,13 +126,57 @@ pub struct Plan {
 /// Plans a tool's splits.
 pub fn plan(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
     let (owner, outside) = match &model.section {
-        Some(section) => section::trees(model, section)?,
+        Some(section) => {
+            let (owner, outside) = section::trees(model, section)?;
+            let far = section::claims_far(model, section, &owner);
+            let owner = if far { boxed(model, extent, owner) } else { owner };
+            (owner, within_reach(model, extent, outside))
+        }
         None => (by_signs(model, extent)?, Tree::Leaf(beside(model, extent))),
     };
     // Of one tree, so that inside is where an owner is, to the last bit.
     let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
     let inside = inside.unwrap_or(Tree::Leaf(false));
     Ok(Plan { owner, inside, outside })
+}
+
+/// A tree that asks for the section's box first: beyond, curves may come round again.
+fn boxed(model: &mut Model, extent: &Extent, tree: Tree<Option<usize>>) -> Tree<Option<usize>> {
+    let graph = &mut model.graph;
+    let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+    let [radius, low, high] = [extent.radius, extent.low, extent.high].map(|value| {
+        let number = Number::from_f64(value).unwrap_or_else(|| Number::int(0));
+        graph.number(number)
+    });
+    let sides = [graph.sub(d, radius), graph.sub(low, z), graph.sub(z, high)];
+    sides.into_iter().fold(tree, |tree, value| {
+        let known = model.curves.iter().position(|curve| curve.value == value);
+        let curve = known.unwrap_or_else(|| {
+            model.curves.push(Curve { name: None, value });
+            model.curves.len() - 1
+        });
+        Tree::split(curve, false, tree.knowing(curve, false, true), Tree::Leaf(None))
+    })
+}
+
+/// How far the outside was divided, in tools' sizes from the middle of the axis.
+const DIVIDED: f64 = 48.0;
+
+/// Distances to the nearest feature as far as those are known, and farther out to the cylinder.
+fn within_reach(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
+    let bound = beside(model, extent);
+    let graph = &mut model.graph;
+    let number = |value: f64| Number::from_f64(value).unwrap_or_else(|| Number::int(0));
+    let (height, middle) = (extent.high - extent.low, extent.high / 2.0 + extent.low / 2.0);
+    let reach = DIVIDED * height.hypot(extent.radius);
+    let (z, q) = (graph.coord(Coord::Z), graph.coord(Coord::Q));
+    let (middle, reach) = (graph.number(number(middle)), graph.number(number(reach * reach)));
+    let up = graph.sub(z, middle);
+    let up = graph.mul(up, up);
+    let away = graph.add(q, up);
+    let value = graph.sub(away, reach);
+    model.curves.push(Curve { name: None, value });
+    Tree::split(model.curves.len() - 1, false, tree, Tree::Leaf(bound))
 }
 
 /// The distance to the box about the solid, of a tool to the cylinder.

@@ -8,9 +8,10 @@ use crate::model::{Model, Over, Section};
 use crate::regionalise::cells::Cell;
 use crate::regionalise::outline::{self, Point, minus, norm};
 use crate::regionalise::overlay;
-use crate::regionalise::shape::{Cutter, Edge, Piece, Shape};
+use crate::regionalise::shape::{Cut, Cutter, Edge, Piece, Shape};
 use crate::report::Report;
 use std::cmp::Ordering;
+use std::rc::Rc;
 
 /// Chords of a curved edge, at first and where so few misled.
 const CHORDS: [u32; 2] = [8, 40];
@@ -26,6 +27,8 @@ const PRICE: f64 = 0.01;
 const AGAIN: f64 = 0.3;
 /// Additions that a side where several owners are left will cost at least.
 const TEST: f64 = 8.0;
+/// Bits that an owner counts for who is found again on both sides: without, trees grow by half.
+const TORN: f64 = 0.2;
 
 /// The owners' tree, and that of the features which are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Report> {
@@ -36,6 +39,40 @@ pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id
         }
     }
     tried
+}
+
+/// Whether a tree finds an owner far outside, where no piece was: all around, and along each line
+/// to where a strip beside it leads.
+pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> bool {
+    let (middle, size) = overlay::frame(outline::reach(&section.outline));
+    let shapes: Vec<Shape<'_>> =
+        model.curves.iter().map(|curve| Shape::new(&model.graph, curve.value, middle)).collect();
+    let claims =
+        |p: Point| p[0] >= 0.0 && tree.at(&|curve| shapes[curve].value([p[0], p[1]])).is_some();
+    let reaches = || (1..16).map(|k| size * 8f64.powi(k));
+    let around = reaches().any(|reach| {
+        (0..=128).any(|k| {
+            let (sin, cos) = ((f64::from(k) / 128.0 - 0.5) * std::f64::consts::PI).sin_cos();
+            claims([reach * cos, middle[1] + reach * sin])
+        })
+    });
+    let beside = || {
+        section.outline.iter().any(|segment| {
+            let [from, to] = segment.ends();
+            let way = minus(to, from).map(|part| part / norm(minus(to, from)));
+            [from, to].into_iter().any(|end| {
+                [way, [-way[1], way[0]]].into_iter().any(|way| {
+                    reaches().chain(reaches().map(|reach| -reach)).any(|reach| {
+                        [-0.01, -1e-5, 1e-5, 0.01].into_iter().any(|off| {
+                            let across = [-way[1] * off * size, way[0] * off * size];
+                            claims([0, 1].map(|k| end[k] + reach * way[k] + across[k]))
+                        })
+                    })
+                })
+            })
+        })
+    };
+    around || beside()
 }
 
 fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, Tree<Id>), Report> {
@@ -79,7 +116,7 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
 /// What is to be told apart: pieces, points with their weights, and points to check the tree by.
 #[derive(Default)]
 struct Ground {
-    pieces: Vec<Piece>,
+    pieces: Vec<Rc<Piece>>,
     samples: Vec<(Point, f64, Option<usize>)>,
     witnesses: Vec<(Point, Option<usize>)>,
 }
@@ -92,7 +129,7 @@ impl Ground {
         pieces: impl IntoIterator<Item = Piece>,
         owner: impl Fn(Point) -> Option<Option<usize>>,
     ) {
-        self.pieces.extend(pieces);
+        self.pieces.extend(pieces.into_iter().map(Rc::new));
         let samples = cell.samples.iter();
         self.samples.extend(samples.filter_map(|(p, weight)| Some((*p, *weight, owner(*p)?))));
         self.witnesses.extend(cell.witnesses.iter().filter_map(|p| Some((*p, owner(*p)?))));
@@ -130,18 +167,22 @@ fn plan<'m>(
     ground: Ground,
     inside: Vec<&'m Formula>,
 ) -> Result<Owners, Report> {
-    let sample = |(p, weight, owner): (Point, f64, Option<usize>)| Sample {
-        below: shapes.iter().map(|shape| shape.below(p)).collect(),
-        weight,
-        owner,
-    };
-    let samples: Vec<Sample> = ground.samples.into_iter().map(sample).collect();
+    let samples: Vec<(u32, f64)> = ground
+        .samples
+        .iter()
+        .map(|(_, weight, owner)| (owner.map_or(0, |owner| owner as u32 + 1), *weight))
+        .collect();
+    let below = shapes
+        .iter()
+        .map(|shape| ground.samples.iter().map(|(p, ..)| shape.below(*p)).collect())
+        .collect();
     let all = (0..samples.len() as u32).collect();
     let mut planner = Planner {
         model,
         shapes,
         costs: costs(model),
         samples,
+        below,
         inside,
         used: vec![false; model.curves.len()],
         size,
@@ -157,18 +198,14 @@ fn plan<'m>(
     Ok(tree)
 }
 
-/// A point: on which side of each curve it lies, and how much it counts.
-struct Sample {
-    below: Vec<bool>,
-    weight: f64,
-    owner: Option<usize>,
-}
-
 struct Planner<'m> {
     model: &'m Model,
     shapes: &'m [Shape<'m>],
     costs: Vec<f64>,
-    samples: Vec<Sample>,
+    /// The owner of each sample (0 for none, else one more than its place) and its weight.
+    samples: Vec<(u32, f64)>,
+    /// Of each curve, which samples lie below it.
+    below: Vec<Vec<bool>>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
     size: f64,
@@ -177,14 +214,14 @@ struct Planner<'m> {
 
 /// Pieces on the two sides of a curve.
 struct Halves {
-    below: Vec<Piece>,
-    above: Vec<Piece>,
+    below: Vec<Rc<Piece>>,
+    above: Vec<Rc<Piece>>,
 }
 
 impl Planner<'_> {
     fn tree(
         &mut self,
-        pieces: &[Piece],
+        pieces: &[Rc<Piece>],
         samples: Vec<u32>,
         mut open: Vec<CurveIndex>,
     ) -> Result<Owners, Report> {
@@ -206,7 +243,7 @@ impl Planner<'_> {
         }
         open.retain(|other| *other != curve);
         let (low, high): (Vec<u32>, Vec<u32>) =
-            samples.into_iter().partition(|s| self.samples[*s as usize].below[curve]);
+            samples.into_iter().partition(|s| self.below[curve][*s as usize]);
         let on = match zeros {
             Zeros::Both => Some(self.touching(curve, &halves, &open)?),
             _ => None,
@@ -226,7 +263,7 @@ impl Planner<'_> {
     /// The curve that tells most about the owners for what it costs, and what it divides.
     fn choose(
         &self,
-        pieces: &[Piece],
+        pieces: &[Rc<Piece>],
         samples: &[u32],
         open: &mut Vec<CurveIndex>,
     ) -> Option<(CurveIndex, Halves, Zeros)> {
@@ -252,7 +289,7 @@ impl Planner<'_> {
                 continue;
             }
             // A curve that only cuts through cells brings nobody apart; keep it for later.
-            let owners = |pieces: &[Piece]| {
+            let owners = |pieces: &[Rc<Piece>]| {
                 let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
                 owners.sort_unstable();
                 owners.dedup();
@@ -283,8 +320,8 @@ impl Planner<'_> {
 
     /// Whose pieces are that no curve tells apart: slivers between a curve and its chord, but for
     /// one owner's.
-    fn settle(&self, pieces: &[Piece]) -> Option<usize> {
-        let true_ones: Vec<&Piece> = pieces.iter().filter(|piece| self.owns(piece)).collect();
+    fn settle(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
+        let true_ones: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
         let rest = if true_ones.is_empty() { pieces.iter().collect() } else { true_ones };
         let largest = rest.into_iter().max_by(|a, b| a.area().total_cmp(&b.area()));
         largest.and_then(|piece| piece.owner)
@@ -309,12 +346,18 @@ impl Planner<'_> {
         .help("features closer than 10^-10 of the tool's size cannot be told apart")
     }
 
-    fn halves(&self, curve: CurveIndex, pieces: &[Piece]) -> Halves {
+    fn halves(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
-            let [below, above] = piece.cut(Cutter { shapes: self.shapes, curve, size: self.size });
-            halves.below.extend(below);
-            halves.above.extend(above);
+            match piece.cut(Cutter { shapes: self.shapes, curve, size: self.size }) {
+                Cut::Below => halves.below.push(Rc::clone(piece)),
+                Cut::Above => halves.above.push(Rc::clone(piece)),
+                Cut::Nothing => {}
+                Cut::Both(below, above) => {
+                    halves.below.extend(below.map(Rc::new));
+                    halves.above.extend(above.map(Rc::new));
+                }
+            }
         }
         halves
     }
@@ -323,15 +366,16 @@ impl Planner<'_> {
     fn gain(&self, curve: CurveIndex, samples: &[u32], counts: &mut Vec<[f64; 2]>) -> f64 {
         counts.clear();
         counts.resize(self.inside.len() + 1, [0.0; 2]);
+        let below = &self.below[curve];
         for sample in samples {
-            let sample = &self.samples[*sample as usize];
-            let owner = sample.owner.map_or(0, |owner| owner + 1);
-            counts[owner][usize::from(!sample.below[curve])] += sample.weight;
+            let (owner, weight) = self.samples[*sample as usize];
+            counts[owner as usize][usize::from(!below[*sample as usize])] += weight;
         }
         counts.retain(|count| count[0] + count[1] > 0.0);
         let owners = |side: usize| counts.iter().filter(|count| count[side] > 0.0).count();
         let open = [0, 1].map(|side| if owners(side) > 1 { PRICE * TEST } else { 0.0 });
-        super::information(counts.iter().copied()) - open[0] - open[1]
+        let torn = counts.iter().filter(|count| count[0] > 0.0 && count[1] > 0.0).count() as f64;
+        super::information(counts.iter().copied()) - open[0] - open[1] - TORN * torn
     }
 
     /// Which side the points on a curve go to: that of the solid, so that its surface is its own;
@@ -358,7 +402,7 @@ impl Planner<'_> {
     }
 
     /// What of some pieces lies on a curve.
-    fn rim(&self, curve: CurveIndex, pieces: &[Piece]) -> Rim {
+    fn rim(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Rim {
         let shape = &self.shapes[curve];
         let mut rim = Rim::default();
         for piece in pieces {
@@ -385,7 +429,7 @@ impl Planner<'_> {
     ) -> Result<Owners, Report> {
         let shape = &self.shapes[curve];
         let touches =
-            |piece: &&Piece| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
+            |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
         let [below, above] = [&halves.below, &halves.above]
             .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
         let below = self.tree(&below, Vec::new(), open.to_vec())?;

@@ -21,9 +21,9 @@ pub(crate) struct Cell {
 }
 
 /// Depths of samples, as parts of a slice's.
-const DEPTHS: [f64; 5] = [0.01, 0.05, 0.2, 0.5, 0.85];
+const DEPTHS: [f64; 4] = [0.02, 0.12, 0.45, 0.85];
 /// Places of samples along a slice.
-const PLACES: [f64; 5] = [0.06, 0.28, 0.5, 0.72, 0.94];
+const PLACES: [f64; 3] = [0.1, 0.5, 0.9];
 /// The shell near the surface that counts most, in sizes.
 const SHELL: f64 = 0.05;
 

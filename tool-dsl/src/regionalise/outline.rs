@@ -74,7 +74,7 @@ pub(crate) fn cross(a: Point, b: Point) -> f64 {
 }
 
 pub(crate) fn norm(a: Point) -> f64 {
-    a[0].hypot(a[1])
+    (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
 fn unit(a: Point) -> Point {

@@ -2,7 +2,7 @@
 
 use super::cells::Cell;
 use super::outline::{Point, minus, norm};
-use super::shape::{Cutter, Edge, Piece, Shape};
+use super::shape::{Cut, Cutter, Edge, Piece, Shape};
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
 
 /// A cell as a piece whose curved edges know their curve.
@@ -58,15 +58,18 @@ fn divide(
             return;
         };
         match piece.cut(Cutter { shapes, curve, size }) {
-            [Some(below), Some(above)] => {
+            Cut::Both(below, above) => {
                 for (part, sign) in [(below, NEGATIVE), (above, POSITIVE)] {
                     signs[curve] = sign;
-                    divide(part, signs.clone(), conditions, shapes, size, parts);
+                    if let Some(part) = part {
+                        divide(part, signs.clone(), conditions, shapes, size, parts);
+                    }
                 }
                 return;
             }
-            [None, Some(_)] => signs[curve] = POSITIVE,
-            _ => signs[curve] = NEGATIVE,
+            Cut::Nothing => return,
+            Cut::Above => signs[curve] = POSITIVE,
+            Cut::Below => signs[curve] = NEGATIVE,
         }
     }
 }

@@ -132,6 +132,15 @@ pub(crate) struct Piece {
     pub(crate) edges: Vec<Edge>,
 }
 
+/// Where a piece lies, or what a curve cuts it into.
+pub(crate) enum Cut {
+    Below,
+    Above,
+    /// It is no more than its border.
+    Nothing,
+    Both(Option<Piece>, Option<Piece>),
+}
+
 /// A vertex with its side and the edge that follows.
 type Corner = (Point, i8, Edge);
 
@@ -145,23 +154,24 @@ pub(crate) struct Cutter<'a, 'g> {
 
 impl Piece {
     /// The parts on the two sides of a curve.
-    pub(crate) fn cut(&self, cutter: Cutter<'_, '_>) -> [Option<Piece>; 2] {
-        let whole = |above: bool| {
-            if above { [None, Some(self.clone())] } else { [Some(self.clone()), None] }
-        };
+    pub(crate) fn cut(&self, cutter: Cutter<'_, '_>) -> Cut {
         let corners = cutter.corners(self);
         let has = |side: i8| corners.iter().any(|corner| corner.1 == side);
         match (has(-1), has(1)) {
-            (true, true) => [-1, 1].map(|side| {
-                let (vertices, edges) = cutter.half(&corners, side)?;
-                let part = Piece { owner: self.owner, vertices, edges };
-                (!is_thin(&part.vertices, cutter.size)).then_some(part)
-            }),
-            (true, false) => whole(false),
-            (false, true) => whole(true),
+            (true, true) => {
+                let [below, above] = [-1, 1].map(|side| {
+                    let (vertices, edges) = cutter.half(&corners, side)?;
+                    let part = Piece { owner: self.owner, vertices, edges };
+                    (!is_thin(&part.vertices, cutter.size)).then_some(part)
+                });
+                Cut::Both(below, above)
+            }
+            (true, false) => Cut::Below,
+            (false, true) => Cut::Above,
             // Nothing is clearly on a side: its middle decides, or it is no more than its border.
-            (false, false) if is_thin(&self.vertices, cutter.size) => [None, None],
-            (false, false) => whole(!cutter.shape().below(self.middle())),
+            (false, false) if is_thin(&self.vertices, cutter.size) => Cut::Nothing,
+            (false, false) if cutter.shape().below(self.middle()) => Cut::Below,
+            (false, false) => Cut::Above,
         }
     }
 
