@@ -1,20 +1,22 @@
 //! Tools that are loaded at run time.
 
-use super::{Ask, Card, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool, present};
+use super::{Ask, Card, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool};
 use crate::Unit;
 use fearless_simd::Level;
 use std::borrow::Cow;
 use std::path::Path;
 use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape};
+use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape, Walk};
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile_with, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
     card: Card,
-    tape: Tape,
+    owner: Tape,
+    felt: Vec<Tape>,
+    walk: Walk,
     outside: Tape,
     warnings: String,
 }
@@ -61,7 +63,9 @@ impl Interpreted {
         match compiled.tool {
             Some(tool) if !report::any_error(&compiled.reports) => Ok(Interpreted {
                 card: card(&tool),
-                tape: Tape::new(&tool),
+                owner: Tape::owner(&tool),
+                felt: (0..tool.model.regions.len()).map(|k| Tape::felt(&tool, k)).collect(),
+                walk: Walk::new(&tool),
                 outside: Tape::outside(&tool),
                 warnings: said.join("\n\n"),
             }),
@@ -112,7 +116,7 @@ impl Tool for Interpreted {
     fn clearance(&self, point: [f64; 3]) -> f64 {
         let block = point.map(|part| [part; BLOCK]);
         let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
-        self.tape.run(block.each_ref(), 1.0, &mut registers, &mut results);
+        self.owner.run(block.each_ref(), 1.0, &mut registers, &mut results);
         if results[0][0] >= 0.0 {
             return 0.0;
         }
@@ -129,40 +133,119 @@ impl Tool for Interpreted {
             Ask::Gradient | Ask::Everything => OUTPUTS,
         };
         let coordinates = points.coordinates();
-        let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
-        let mut results = [[0.0; BLOCK]; OUTPUTS];
-        let total = coordinates[0].len();
-        for start in (0..total).step_by(BLOCK) {
-            let count = BLOCK.min(total - start);
-            for (part, list) in block.iter_mut().zip(coordinates) {
-                part[..count].copy_from_slice(&list[start..start + count]);
-            }
-            self.tape.run(block.each_ref(), length, &mut felt.registers, &mut results[..wanted]);
-            for (offset, owners) in results[0][..count].chunks(LANES).enumerate() {
-                let at = start / LANES + offset;
-                let bits = owners.iter().rev().fold(0, |bits, o| bits << 1 | u8::from(*o >= 0.0));
-                felt.inside[at] = bits & present(points.len(), at);
-            }
-            if ask == Ask::Inside {
-                continue;
-            }
-            let copy = |list: &mut Vec<f64>, result: usize| {
-                list[start..start + count].copy_from_slice(&results[result][..count]);
-            };
-            copy(&mut felt.depth, 1);
-            copy(&mut felt.magnitude, 2);
-            copy(&mut felt.niceness, 3);
-            for part in 0..3 {
-                if ask.direction() {
-                    copy(&mut felt.direction[part], 4 + part);
-                }
-                if ask.gradient() {
-                    copy(&mut felt.gradient[part], 7 + part);
-                }
-            }
-            if ask == Ask::Everything {
-                copy(&mut felt.region, 0);
+        for start in (0..points.len()).step_by(BLOCK) {
+            let count = BLOCK.min(points.len() - start);
+            if count <= FEW {
+                self.one_by_one(start..start + count, coordinates, (ask, wanted, length), felt);
+            } else {
+                self.block(start, coordinates, (ask, wanted, length), points.len(), felt);
             }
         }
+    }
+}
+
+/// Up to so many points of a block are walked one by one: the tape does all of a block's lanes.
+const FEW: usize = 24;
+/// From so many points of a region on, its tape is faster than as many walks.
+const SEVERAL: usize = 12;
+
+impl Interpreted {
+    fn one_by_one(
+        &self,
+        places: std::ops::Range<usize>,
+        [x, y, z]: [&[f64]; 3],
+        (ask, wanted, length): (Ask, usize, f64),
+        felt: &mut Felt,
+    ) {
+        let mut results = [0.0; OUTPUTS];
+        for at in places {
+            let point = [x[at], y[at], z[at]];
+            self.walk.run(point, length, &mut felt.scratch, &mut results[..wanted]);
+            if results[0] < 0.0 {
+                continue;
+            }
+            felt.inside[at / LANES] |= 1 << (at % LANES);
+            put(felt, ask, |list, result| list[at] = results[result]);
+        }
+    }
+
+    fn block(
+        &self,
+        start: usize,
+        coordinates: [&[f64]; 3],
+        (ask, wanted, length): (Ask, usize, f64),
+        total: usize,
+        felt: &mut Felt,
+    ) {
+        let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
+        let mut owners = [[-1.0; BLOCK]];
+        let count = BLOCK.min(total - start);
+        for (part, list) in block.iter_mut().zip(coordinates) {
+            part[..count].copy_from_slice(&list[start..start + count]);
+        }
+        self.owner.run(block.each_ref(), length, &mut felt.registers, &mut owners);
+        let owners = &owners[0][..count];
+        for (at, _) in owners.iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
+            felt.inside[(start + at) / LANES] |= 1 << (at % LANES);
+        }
+        if ask == Ask::Inside {
+            return;
+        }
+        let mut left: Vec<usize> = (0..count).filter(|at| owners[*at] >= 0.0).collect();
+        let mut results = [[0.0; BLOCK]; OUTPUTS];
+        while let Some(first) = left.first() {
+            let region = owners[*first];
+            let (own, rest): (Vec<usize>, Vec<usize>) =
+                left.iter().partition(|at| owners[**at] == region);
+            let mut gathered: [Lanes; 3] = [[0.0; BLOCK]; 3];
+            for (lane, at) in own.iter().enumerate() {
+                for (part, list) in gathered.iter_mut().zip(&block) {
+                    part[lane] = list[*at];
+                }
+            }
+            results[0] = [region; BLOCK];
+            if own.len() < SEVERAL {
+                let mut one = [0.0; OUTPUTS];
+                for lane in 0..own.len() {
+                    let point = [0, 1, 2].map(|k| gathered[k][lane]);
+                    let one = &mut one[..wanted - 1];
+                    self.walk.felt(region as usize, point, length, &mut felt.scratch, one);
+                    for (result, value) in results[1..].iter_mut().zip(one) {
+                        result[lane] = *value;
+                    }
+                }
+            } else {
+                let tape = &self.felt[region as usize];
+                let results = &mut results[1..wanted];
+                tape.run(gathered.each_ref(), length, &mut felt.registers, results);
+            }
+            put(felt, ask, |list, result| {
+                for (lane, at) in own.iter().enumerate() {
+                    list[start + at] = results[result][lane];
+                }
+            });
+            left = rest;
+        }
+    }
+}
+
+/// Hands each list that is asked for on, with the number of its result.
+fn put(felt: &mut Felt, ask: Ask, mut copy: impl FnMut(&mut Vec<f64>, usize)) {
+    if ask == Ask::Inside {
+        return;
+    }
+    copy(&mut felt.depth, 1);
+    copy(&mut felt.magnitude, 2);
+    copy(&mut felt.niceness, 3);
+    for part in 0..3 {
+        if ask.direction() {
+            copy(&mut felt.direction[part], 4 + part);
+        }
+        if ask.gradient() {
+            copy(&mut felt.gradient[part], 7 + part);
+        }
+    }
+    if ask == Ask::Everything {
+        copy(&mut felt.region, 0);
     }
 }

@@ -140,6 +140,9 @@ pub struct Felt {
     /// Room for the interpreter.
     #[cfg(feature = "interpreter")]
     pub(crate) registers: Vec<tool_dsl::interpret::Lanes>,
+    /// What it remembers of a point.
+    #[cfg(feature = "interpreter")]
+    pub(crate) scratch: tool_dsl::interpret::Scratch,
 }
 
 impl Felt {

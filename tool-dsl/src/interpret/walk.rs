@@ -1,0 +1,188 @@
+//! The plan for one point after another.
+
+use super::{OUTPUTS, Operation, Slot, roots};
+use crate::Checked;
+use crate::expr::value::{max, min, quotient};
+use crate::expr::{Coord, Id};
+use crate::plan::Tree;
+
+/// Operations in the order in which they are done; the last is what is asked for.
+type List = Vec<Slot>;
+
+/// A test, or an owner.
+#[derive(Clone, Debug)]
+enum Fork {
+    Owner(Option<usize>),
+    /// Where a curve's operations find its value below 0 (or at 0, if not strict) the walk goes on
+    /// at the next place, else at `above`.
+    Test {
+        curve: usize,
+        strict: bool,
+        above: usize,
+    },
+}
+
+/// A tool's plan that does for a point what it needs and no more.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    operations: Vec<Operation>,
+    curves: Vec<List>,
+    regions: Vec<[List; OUTPUTS - 1]>,
+    forks: Vec<Fork>,
+}
+
+/// What a walk remembers of a point; kept between calls.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    values: Vec<f64>,
+    /// When each value was computed last.
+    done: Vec<u32>,
+    now: u32,
+}
+
+impl Walk {
+    /// The walk of a tool.
+    pub fn new(tool: &Checked) -> Walk {
+        let graph = &tool.model.graph;
+        let slot = |id: &Id| id.index() as Slot;
+        let list = |id: Id| graph.needed([id]).iter().map(slot).collect::<List>();
+        let mut forks = Vec::new();
+        flatten(&tool.plan.owner, &mut forks);
+        Walk {
+            operations: graph.nodes().iter().map(|node| Operation::of(node, slot)).collect(),
+            curves: tool.model.curves.iter().map(|curve| list(curve.value)).collect(),
+            regions: tool
+                .model
+                .regions
+                .iter()
+                .map(|region| {
+                    let roots = roots(&region.outputs);
+                    std::array::from_fn(|part| list(roots[part]))
+                })
+                .collect(),
+            forks,
+        }
+    }
+
+    /// Writes as many of a point's first outputs as there are results; all but the owner mean
+    /// nothing outside. The point is of the tool's frame, in the file's unit; `length` is the
+    /// file's unit of length measured in the part's.
+    pub fn run(&self, point: [f64; 3], length: f64, scratch: &mut Scratch, results: &mut [f64]) {
+        scratch.start(self.operations.len());
+        let mut at = 0;
+        let owner = loop {
+            match &self.forks[at] {
+                Fork::Owner(owner) => break *owner,
+                Fork::Test { curve, strict, above } => {
+                    let value = self.value(&self.curves[*curve], point, length, scratch);
+                    let below = if *strict { value < 0.0 } else { value <= 0.0 };
+                    at = if below { at + 1 } else { *above };
+                }
+            }
+        };
+        let Some((first, rest)) = results.split_first_mut() else { return };
+        *first = owner.map_or(-1.0, |owner| owner as f64);
+        let Some(owner) = owner else { return };
+        self.felt_in(owner, point, length, scratch, rest);
+    }
+
+    /// What is felt at a point of a region, as [`Tape::felt`](super::Tape::felt) gives it.
+    pub fn felt(
+        &self,
+        owner: usize,
+        point: [f64; 3],
+        length: f64,
+        scratch: &mut Scratch,
+        results: &mut [f64],
+    ) {
+        scratch.start(self.operations.len());
+        self.felt_in(owner, point, length, scratch, results);
+    }
+
+    fn felt_in(
+        &self,
+        owner: usize,
+        point: [f64; 3],
+        length: f64,
+        scratch: &mut Scratch,
+        results: &mut [f64],
+    ) {
+        for (result, list) in results.iter_mut().zip(&self.regions[owner]) {
+            *result = self.value(list, point, length, scratch);
+        }
+    }
+
+    fn value(&self, list: &List, p: [f64; 3], length: f64, scratch: &mut Scratch) -> f64 {
+        let mut last = 0.0;
+        for &slot in list {
+            let slot = slot as usize;
+            if scratch.done[slot] != scratch.now {
+                scratch.done[slot] = scratch.now;
+                scratch.values[slot] = perform(self.operations[slot], p, length, &scratch.values);
+            }
+            last = scratch.values[slot];
+        }
+        last
+    }
+}
+
+impl Scratch {
+    /// Forgets the last point.
+    fn start(&mut self, slots: usize) {
+        if self.values.len() < slots || self.now == u32::MAX {
+            self.values.resize(slots, 0.0);
+            self.done = vec![0; self.values.len()];
+            self.now = 0;
+        }
+        self.now += 1;
+    }
+}
+
+fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<Fork>) {
+    match tree {
+        Tree::Leaf(owner) => forks.push(Fork::Owner(*owner)),
+        Tree::Split { curve, strict, below, above } => {
+            let at = forks.len();
+            forks.push(Fork::Owner(None));
+            flatten(below, forks);
+            forks[at] = Fork::Test { curve: *curve, strict: *strict, above: forks.len() };
+            flatten(above, forks);
+        }
+    }
+}
+
+#[inline(always)]
+fn perform(operation: Operation, [x, y, z]: [f64; 3], length: f64, values: &[f64]) -> f64 {
+    let v = |slot: Slot| values[slot as usize];
+    match operation {
+        Operation::Const(value) => value,
+        Operation::Coord(Coord::X) => x,
+        Operation::Coord(Coord::Y) => y,
+        Operation::Coord(Coord::Z) => z,
+        Operation::Coord(Coord::Q) => x * x + y * y,
+        Operation::Coord(Coord::D) => (x * x + y * y).sqrt(),
+        Operation::Coord(Coord::Length) => length,
+        Operation::Coord(Coord::PerLength) => 1.0 / length,
+        Operation::Neg(a) => -v(a),
+        Operation::Add(a, b) => v(a) + v(b),
+        Operation::Sub(a, b) => v(a) - v(b),
+        Operation::Mul(a, b) => v(a) * v(b),
+        Operation::Div(a, b) => v(a) / v(b),
+        Operation::Quotient(a, b) => quotient(v(a), v(b)),
+        Operation::Min(a, b) => min(v(a), v(b)),
+        Operation::Max(a, b) => max(v(a), v(b)),
+        Operation::Abs(a) => v(a).abs(),
+        Operation::Sqrt(a) => v(a).sqrt(),
+        Operation::Select { low, high, then, other } => {
+            if v(low) <= v(high) {
+                v(then)
+            } else {
+                v(other)
+            }
+        }
+        Operation::Side { value, strict, then, other } => {
+            let below = if strict { v(value) < 0.0 } else { v(value) <= 0.0 };
+            if below { v(then) } else { v(other) }
+        }
+    }
+}
