@@ -31,8 +31,8 @@ const FUNCTIONS: [&str; 13] = [
 /// The code for a tool of the library.
 fn generated(file: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
-    let text = std::fs::read_to_string(&path).expect("the library has the file");
-    let tool = compile(&Source::new(file, text)).tool.expect("a tool of the library has no error");
+    let source = Source::read(path).expect("the library has the file");
+    let tool = compile(&source).tool.expect("a tool of the library has no error");
     emit::rust(&tool)
 }
 
@@ -83,6 +83,22 @@ impl<'ast> Visit<'ast> for Refused {
     }
 }
 
+#[test]
+fn every_tool_of_the_library_is_straight_line_code() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
+    let there = std::fs::read_dir(folder).expect("the library's folder");
+    let files = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut seen = 0;
+    for file in files.filter(|file| file.ends_with(".tool")) {
+        let tree = syn::parse_file(&generated(&file)).expect("generated code is Rust");
+        let mut refused = Refused::default();
+        refused.visit_file(&tree);
+        assert_eq!(refused.0, Vec::<String>::new(), "{file}");
+        seen += 1;
+    }
+    assert_eq!(seen, tools_library::TOOLS.len());
+}
+
 macro_rules! snapshots {
     ($($test:ident),*) => {
         $(#[test]
@@ -91,38 +107,24 @@ macro_rules! snapshots {
             let code = generated(file);
             // A hash map's order, which is another every time, must not show.
             assert_eq!(code, generated(file));
-            let tree = syn::parse_file(&code).expect("generated code is Rust");
-            let mut refused = Refused::default();
-            refused.visit_file(&tree);
-            assert_eq!(refused.0, Vec::<String>::new());
             insta::with_settings!({ omit_expression => true }, {
                 insta::assert_snapshot!(stringify!($test), code);
             });
         })*
-
-        #[test]
-        fn every_tool_of_the_library_has_its_snapshot() {
-            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
-            let mut there: Vec<String> = std::fs::read_dir(folder)
-                .expect("the library's folder")
-                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-                .collect();
-            there.sort();
-            let mut tested = [$(concat!(stringify!($test), ".tool")),*];
-            tested.sort_unstable();
-            assert_eq!(there, tested);
-        }
     };
 }
 
+// As many as can be read: the thesis's solids, a cone, a torus in inches, an assembly, a block.
 snapshots!(
+    ball_er16,
     block,
     cylinder,
     d2_ball,
     fig_7_3,
     fig_7_3_exact,
     half_sphere_cylinder,
-    l_bracket,
+    quarter_inch_flat,
+    tapered_ball,
     unit_sphere
 );
 

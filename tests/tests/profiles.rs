@@ -7,7 +7,7 @@ use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff_tests::oracle::draw::Draw;
-use touchoff_tests::oracle::{D2Ball, Fig73Exact, HalfSphereCylinder, Oracle};
+use touchoff_tests::oracle::{Oracle, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 
 fn tool(text: &str) -> Result<Box<Checked>, String> {
     let source = Source::new("t.tool", text);
@@ -20,31 +20,10 @@ fn tool(text: &str) -> Result<Box<Checked>, String> {
     }
 }
 
-const FIG_7_3: &str = "tool Fig73 { units mm; tip z = 20; spindle -z;
-    profile {
-        start (0, 0);
-        line to (5, 0), (5, 11), (3, 11) as housing;
-        line to (3, 13), (1, 15)         as spindle;
-        line to (1, 19)                  as flute cutting;
-        arc  to (0, 20) center (0, 19)   as nose  cutting;
-    } }";
-
-const D2_BALL: &str = "tool D2 { units mm;
-    profile {
-        start (0, 0);
-        arc  to (1, 1) radius 1 as ball  cutting;
-        line to (1, 5)          as flute cutting;
-        line to (1, 40), (0, 40) as shank;
-    }
-    niceness cutting: 1 - depth/1; }";
-
-const HALF_SPHERE: &str = "tool Half { units mm; tip z = -2;
-    profile {
-        start (0, -2);
-        arc  to (2, 0) center (0, 0) as ball;
-        line to (1, 0)               as step;
-        line to (1, 6), (0, 6)       as stem;
-    } }";
+const FIG_7_3: &str = include_str!("../../tools-library/tools/fig_7_3_exact.tool");
+const FIG_7_3_BY_HAND: &str = include_str!("by_hand/fig_7_3_exact.tool");
+const D2_BALL: &str = include_str!("../../tools-library/tools/d2_ball.tool");
+const HALF_SPHERE: &str = include_str!("../../tools-library/tools/half_sphere_cylinder.tool");
 
 /// Owner, depth and direction are the oracle's; `order` gives the oracle's place of each region.
 fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
@@ -72,6 +51,7 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
         felt += 1;
         assert_eq!(order[got.region], expected.owner, "owner at {p:?}");
         assert!((got.depth - expected.depth).abs() < 1e-13 * scale, "{} at {p:?}", got.depth);
+        assert!((got.niceness - expected.niceness).abs() < 1e-12 * scale, "niceness at {p:?}");
         for (a, b) in got.direction.iter().zip(expected.direction) {
             assert!(
                 (a - b).abs() < 1e-9,
@@ -86,8 +66,9 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
 
 #[test]
 fn the_thesis_tool_is_derived() {
-    // Derived from the tip up, where the thesis lists from the housing down.
-    agrees(FIG_7_3, &Fig73Exact::default(), &[8, 7, 6, 5, 4, 3, 2, 1, 0]);
+    agrees(FIG_7_3, &fig_7_3_exact(), &[0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    // By hand as the thesis lists them, from the housing down.
+    agrees(FIG_7_3_BY_HAND, &fig_7_3_exact(), &[8, 7, 6, 5, 4, 3, 2, 1, 0]);
     let tool = tool(FIG_7_3).expect("a good profile");
     let names: Vec<&str> = tool.model.regions.iter().map(|region| region.name.as_str()).collect();
     assert_eq!(
@@ -124,12 +105,12 @@ fn mentioned(formula: &Formula, curves: &mut BTreeSet<usize>) {
 
 #[test]
 fn a_ball_cutter_is_derived() {
-    agrees(D2_BALL, &D2Ball::default(), &[0, 1, 2, 3]);
+    agrees(D2_BALL, &d2_ball(), &[0, 1, 2, 3]);
 }
 
 #[test]
 fn the_half_sphere_is_derived() {
-    agrees(HALF_SPHERE, &HalfSphereCylinder::default(), &[0, 1, 2, 3, 4]);
+    agrees(HALF_SPHERE, &half_sphere_cylinder(), &[0, 1, 2, 3, 4]);
 }
 
 /// A magnitude that is the depth is a length and changes with the part's unit; a law of another

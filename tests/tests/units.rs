@@ -5,7 +5,7 @@ use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, Path};
 use touchoff::{Cloud, Law, Part, Pose, Probe, Tool, Unit, Weights, Wrench};
 use touchoff_tests::oracle::brute::{self, Query};
-use touchoff_tests::oracle::{D2Ball, Fig73, Fig73Exact, Oracle};
+use touchoff_tests::oracle::{Fig73, Oracle, d2_ball, fig_7_3_exact};
 
 touchoff::tool! {
     /// D2Ball's 2 mm ball, flute and shank, in inches: 1 mm is 1/25.4 inch.
@@ -210,10 +210,10 @@ fn a_written_magnitude_stays() {
 fn in_every_unit_as_the_oracle_says() {
     let tools: [(&dyn Tool, &dyn Oracle); 4] = [
         (tool("Fig73"), &Fig73::default()),
-        (tool("Fig73Exact"), &Fig73Exact::default()),
-        (tool("D2Ball"), &D2Ball::default()),
+        (tool("Fig73Exact"), &fig_7_3_exact()),
+        (tool("D2Ball"), &d2_ball()),
         // The oracle's file is in mm.
-        (&InchBall, &D2Ball::default()),
+        (&InchBall, &d2_ball()),
     ];
     for unit in UNITS {
         let part = tube(unit, 1_500);

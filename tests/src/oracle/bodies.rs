@@ -160,13 +160,12 @@ macro_rules! ask_the_body {
         fn name(&self) -> &'static str {
             $name
         }
-        fn regions(&self) -> &'static [&'static str] {
-            Self::REGIONS
+        fn regions(&self) -> Vec<&str> {
+            Self::REGIONS.to_vec()
         }
         fn sense(&self, p: P3) -> Option<Sense> {
             let ((owner, patch, depth), _) = self.won(p)?;
             Some(Sense {
-                region: Self::REGIONS[owner],
                 owner,
                 depth,
                 magnitude: depth,
@@ -386,7 +385,7 @@ mod tests {
 
     #[test]
     fn the_block_at_a_few_points() {
-        let at = |p| Block.sense(p).map(|s| (s.region, s.depth, s.direction));
+        let at = |p| Block.sense(p).map(|s| (Block::REGIONS[s.owner], s.depth, s.direction));
         assert_eq!(at([18.0, 0.0, 10.0]), Some(("right", 2.0, [1.0, 0.0, 0.0])));
         assert_eq!(at([0.0, -14.5, 10.0]), Some(("front", 0.5, [0.0, -1.0, 0.0])));
         assert_eq!(at([0.0, 0.0, 10.0]), Some(("bottom", 10.0, [0.0, 0.0, -1.0])));
@@ -397,7 +396,7 @@ mod tests {
 
     #[test]
     fn the_bracket_at_a_few_points() {
-        let at = |p| LBracket.sense(p).map(|s| (s.region, s.depth));
+        let at = |p| LBracket.sense(p).map(|s| (LBracket::REGIONS[s.owner], s.depth));
         assert_eq!(at([0.0, 0.0, 2.0]), Some(("lying_bottom", 2.0)));
         assert_eq!(at([-7.5, 0.0, 15.0]), Some(("standing_back", 2.5)));
         assert_eq!(at([-5.0, 0.0, 5.0]), Some(("heel_edge", 2f64.sqrt())));

@@ -5,7 +5,7 @@ use super::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
 use super::draw::Draw;
-use super::{Fig73, Fig73Exact, Oracle, UnitSphere};
+use super::{Fig73, Oracle, UnitSphere, fig_7_3_exact};
 
 /// A weighted cloud.
 #[derive(Default)]
@@ -79,7 +79,7 @@ fn compare(query: Query<'_>, want: Contact, axis: [f64; 3], tolerance: f64) -> A
 #[test]
 fn a_ball_in_a_plane() {
     let (cloud, up) = (Cloud::plane(1000, 1.0), [0.0, 0.0, 1.0]);
-    let (exact, thesis) = (Fig73Exact::default(), Fig73::default());
+    let (exact, thesis) = (fig_7_3_exact(), Fig73::default());
     for (tool, tilt) in
         [(&UnitSphere as &dyn Oracle, 0.0f64), (&exact, 0.0), (&exact, 0.35), (&thesis, 0.7)]
     {
@@ -102,7 +102,7 @@ fn a_ball_in_a_plane() {
 /// CF2 with the shank (region VIII), the part a strip of length 2.
 #[test]
 fn a_shank_along_a_plane() {
-    let tool = Fig73Exact::default();
+    let tool = fig_7_3_exact();
     let cloud = Cloud::plane(1000, 1.0);
     let h = 0.3;
     // The shank lies along x between z = 1 and z = 5 of the tool.
@@ -148,7 +148,7 @@ fn a_shank_in_a_bore() {
         let (sin, cos) = (0.6 * (2.0 * s - 1.0)).sin_cos();
         ([bore * cos, bore * sin, 2.5 + t], [-cos, -sin, 0.0], 1.2 * bore)
     });
-    let tool = Fig73Exact::default();
+    let tool = fig_7_3_exact();
     let query = cloud.query(&tool, Pose::along([offset, 0.0, 0.0], [0.0, 0.0, 1.0]));
     compare(query, cylinder_in_bore(1.0, bore, offset), [1.0, 0.0, 0.0], 1e-5);
 }

@@ -3,15 +3,21 @@
 //! The thesis measures z from the back of the housing, the tip at 20. IV, VI and VII are not distances. The splits are where its magnitudes
 //! meet without a jump.
 
-use super::{Fig73Exact, Meridian, Oracle, Sense, straight, unit_or_z};
+use super::{Meridian, Nearest, Oracle, Sense, fig_7_3_exact, straight, unit_or_z};
 
 /// The thesis's names, in its order.
-pub(super) const REGIONS: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
+const REGIONS: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
 
 /// The tool of fig. 7.3. Its depth is its magnitude, which is never below the true distance and at most √5 times it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Fig73 {
-    exact: Fig73Exact,
+    exact: Nearest,
+}
+
+impl Default for Fig73 {
+    fn default() -> Self {
+        Self { exact: fig_7_3_exact() }
+    }
 }
 
 /// Magnitude, its slope and the direction in the thesis's `(d, z)`, and niceness.
@@ -64,8 +70,8 @@ impl Oracle for Fig73 {
         "Fig73"
     }
 
-    fn regions(&self) -> &'static [&'static str] {
-        &REGIONS
+    fn regions(&self) -> Vec<&str> {
+        REGIONS.to_vec()
     }
 
     fn sense(&self, p: [f64; 3]) -> Option<Sense> {
@@ -74,7 +80,6 @@ impl Oracle for Fig73 {
         let owner = owner(d, z)?;
         let (magnitude, _, direction, niceness) = felt(owner, d, z);
         Some(Sense {
-            region: REGIONS[owner],
             owner,
             depth: magnitude,
             magnitude,

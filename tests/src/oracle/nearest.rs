@@ -1,231 +1,245 @@
-//! Tools whose owner is the nearest feature of the profile: nothing but [`Profile`] decides, the splitting curves are only listed.
+//! Tools whose owner is the nearest feature of the profile: nothing but [`Profile`] decides.
 
-use super::profile::Profile;
+use super::draw::Draw;
+use super::profile::{Feature, Profile};
+use super::restated::{self, Niceness, Restated};
 use super::{Meridian, Oracle, Sense, sampled, straight};
+
+/// Points along a curve.
+type Points = Vec<[f64; 2]>;
 
 /// A profile tool: `depth` is the distance, `magnitude` the same, the direction points to the nearest point.
 #[derive(Clone, Debug)]
-struct Nearest {
+pub struct Nearest {
+    name: &'static str,
     profile: Profile,
-    regions: &'static [&'static str],
+    regions: Vec<Region>,
+    niceness: Niceness,
     /// Largest `d` and `z`.
     extent: [f64; 2],
+    /// The splitting curves, where they are known as equations.
+    splits: Option<Vec<Points>>,
+}
+
+#[derive(Clone, Debug)]
+struct Region {
+    name: String,
+    surface: &'static str,
+    cutting: bool,
 }
 
 impl Nearest {
-    fn sense(&self, p: [f64; 3], niceness: impl Fn(usize, f64, [f64; 2]) -> f64) -> Option<Sense> {
+    /// The oracle of a restated tool.
+    pub fn new(tool: &Restated) -> Self {
+        let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
+        let drafts: Vec<_> =
+            tool.ways.iter().map(|way| (point(&way.to), way.centre.as_ref().map(point))).collect();
+        let profile = Profile::new(point(&tool.start), &drafts);
+        let surface = profile.surface();
+        let most = |axis: usize| surface.iter().flatten().fold(0.0f64, |most, p| most.max(p[axis]));
+        Self {
+            name: tool.name,
+            regions: regions(tool, &profile),
+            extent: [most(0), most(1)],
+            profile,
+            niceness: tool.niceness,
+            splits: None,
+        }
+    }
+
+    /// The oracle of a restated tool, by its name.
+    ///
+    /// # Panics
+    /// If no restated tool has this name.
+    pub fn of(name: &str) -> Self {
+        let tool = restated::of(name);
+        Self::new(&tool.unwrap_or_else(|| panic!("`{name}` is not restated")))
+    }
+
+    fn with(mut self, splits: Vec<Points>) -> Self {
+        self.splits = Some(splits);
+        self
+    }
+
+    /// The profile that it asks.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// The surface that each region belongs to, and whether it cuts.
+    pub fn surfaces(&self) -> impl Iterator<Item = (&'static str, bool)> {
+        self.regions.iter().map(|region| (region.surface, region.cutting))
+    }
+
+    /// Points at which the nearest feature changes, found by halving stretches; a list for each pair of owners.
+    fn found(&self) -> Vec<Points> {
+        const STRETCHES: usize = 4_000;
+        let owner = |q: [f64; 2]| self.sense([q[0], 0.0, q[1]]).map(|s| s.owner);
+        let [radius, height] = self.extent;
+        let mut draw = Draw::new(27);
+        let mut all = std::collections::BTreeMap::<_, Points>::new();
+        for _ in 0..STRETCHES {
+            let a = [draw.between(0.0, radius), draw.between(0.0, height)];
+            let mut step = || draw.between(-0.3 * radius, 0.3 * radius);
+            let b = [(a[0] + step()).abs(), a[1] + step()];
+            let (Some(first), Some(last)) = (owner(a), owner(b)) else { continue };
+            if first == last {
+                continue;
+            }
+            let (mut a, mut b, mut beyond) = (a, b, last);
+            for _ in 0..60 {
+                let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+                match owner(middle) {
+                    Some(other) if other == first => a = middle,
+                    Some(other) => (b, beyond) = (middle, other),
+                    None => break,
+                }
+            }
+            if (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= 1e-13 * height {
+                all.entry((first.min(beyond), first.max(beyond))).or_default().push(a);
+            }
+        }
+        all.into_values().collect()
+    }
+}
+
+/// The names of regions, as the language gives them, and their surfaces: a corner's is that of the neighbour that does not cut, else
+/// the first.
+fn regions(tool: &Restated, profile: &Profile) -> Vec<Region> {
+    let cuts = |surface: &str| tool.cutting.contains(&surface);
+    let mut fans: Vec<String> = Vec::new();
+    let of = |feature: &Feature| match *feature {
+        Feature::Piece(piece) => {
+            let surface = tool.ways[piece].surface;
+            let mine =
+                |ways: &[restated::Way]| ways.iter().filter(|w| w.surface == surface).count();
+            let name = match mine(&tool.ways) {
+                1 => surface.to_owned(),
+                _ => format!("{surface}.{}", mine(&tool.ways[..=piece])),
+            };
+            Region { name, surface, cutting: cuts(surface) }
+        }
+        Feature::Corner(piece) => {
+            let [a, b] = [piece, piece + 1].map(|piece| tool.ways[piece].surface);
+            let surface = if cuts(a) && !cuts(b) { b } else { a };
+            let pair = format!("{a}/{b}");
+            fans.push(pair.clone());
+            let count = fans.iter().filter(|other| **other == pair).count();
+            Region { name: format!("{pair}.{count}"), surface, cutting: cuts(surface) }
+        }
+    };
+    profile.owners().iter().map(of).collect()
+}
+
+impl Oracle for Nearest {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn regions(&self) -> Vec<&str> {
+        self.regions.iter().map(|region| region.name.as_str()).collect()
+    }
+
+    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
         let m = Meridian::of(p);
         let [d, z] = m.dz;
         if d > self.extent[0] || z < 0.0 || z > self.extent[1] {
             return None; // most points of most clouds
         }
         let (near, toward) = self.profile.sense(m.dz)?;
+        let region = &self.regions[near.owner];
+        let nice = || (self.niceness)(region.surface, near.distance, m.dz).max(0.0);
         Some(Sense {
-            region: self.regions[near.owner],
             owner: near.owner,
             depth: near.distance,
             magnitude: near.distance,
             direction: m.lift(toward),
-            niceness: niceness(near.owner, near.distance, m.dz),
+            niceness: if region.cutting { nice() } else { 0.0 },
         })
     }
-}
 
-/// What the three tools below have in common.
-macro_rules! ask_the_profile {
-    () => {
-        fn name(&self) -> &'static str {
-            Self::NAME
-        }
-        fn regions(&self) -> &'static [&'static str] {
-            self.0.regions
-        }
-        fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
-            Some(self.sense(p)?.direction.map(|c| -c))
-        }
-        fn signed_distance(&self, p: [f64; 3]) -> f64 {
-            self.0.profile.signed_distance(Meridian::of(p).dz)
-        }
-        fn border(&self, p: [f64; 3]) -> f64 {
-            self.0.profile.border(Meridian::of(p).dz)
-        }
-        fn singular(&self, p: [f64; 3]) -> f64 {
-            self.0.profile.singular(Meridian::of(p).dz)
-        }
-        fn corners(&self) -> Vec<[f64; 2]> {
-            let ends = Self::splits().into_iter().flat_map(|c| [c[0], c[c.len() - 1]]);
-            let mut all: Vec<[f64; 2]> = self.0.profile.corners().into_iter().chain(ends).collect();
-            all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-            all.dedup();
-            all
-        }
-        fn curves(&self) -> Vec<Vec<[f64; 2]>> {
-            let mut all = self.0.profile.surface();
-            all.extend(Self::splits());
-            all
-        }
-        fn extent(&self) -> [f64; 2] {
-            self.0.extent
-        }
-    };
+    fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
+        Some(self.sense(p)?.direction.map(|c| -c))
+    }
+
+    fn signed_distance(&self, p: [f64; 3]) -> f64 {
+        self.profile.signed_distance(Meridian::of(p).dz)
+    }
+
+    fn border(&self, p: [f64; 3]) -> f64 {
+        self.profile.border(Meridian::of(p).dz)
+    }
+
+    fn singular(&self, p: [f64; 3]) -> f64 {
+        self.profile.singular(Meridian::of(p).dz)
+    }
+
+    fn corners(&self) -> Vec<[f64; 2]> {
+        let known = self.splits.iter().flatten().flat_map(|c| [c[0], c[c.len() - 1]]);
+        let mut all: Vec<[f64; 2]> = self.profile.corners().into_iter().chain(known).collect();
+        all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        all.dedup();
+        all
+    }
+
+    fn curves(&self) -> Vec<Points> {
+        let mut all = self.profile.surface();
+        all.extend(self.splits.clone().unwrap_or_else(|| self.found()));
+        all
+    }
+
+    fn extent(&self) -> [f64; 2] {
+        self.extent
+    }
 }
 
 /// The half sphere of radius 2 joined to a cylinder of radius 1 (Ho 1999, fig. 2.2, 2.3), 8 long.
-///
-/// Regions along the profile: `ball`, `step`, `step/stem` (the reflex corner (1, 2)), `stem`, `end`. The example file calls the last two
-/// pieces by one name, `stem`.
-#[derive(Clone, Debug)]
-pub struct HalfSphereCylinder(Nearest);
-
-impl HalfSphereCylinder {
-    const NAME: &'static str = "HalfSphereCylinder";
-
-    fn splits() -> Vec<Vec<[f64; 2]>> {
-        vec![
-            // ball | step: 2 - |p - c| = 2 - z, a parabola.
-            sampled(|t| {
-                let d = 2.0 - t;
-                [d, 1.0 + d * d / 4.0]
-            }),
-            // ball | corner: |p - c| + |p - q| = 2, an ellipse with foci (0, 2) and (1, 2).
-            sampled(|t| {
-                let d = 1.0 - t;
-                [d, 2.0 - (0.75 * (1.0 - (d - 0.5) * (d - 0.5))).sqrt()]
-            }),
-            straight([1.0, 1.25], [1.0, 2.0]), // step | corner
-            straight([1.0, 2.0], [0.0, 2.0]),  // corner | stem
-            straight([1.0, 8.0], [0.0, 7.0]),  // stem | end
-        ]
-    }
+pub fn half_sphere_cylinder() -> Nearest {
+    Nearest::of("HalfSphereCylinder").with(vec![
+        // ball | step: 2 - |p - c| = 2 - z, a parabola.
+        sampled(|t| {
+            let d = 2.0 - t;
+            [d, 1.0 + d * d / 4.0]
+        }),
+        // ball | corner: |p - c| + |p - q| = 2, an ellipse with foci (0, 2) and (1, 2).
+        sampled(|t| {
+            let d = 1.0 - t;
+            [d, 2.0 - (0.75 * (1.0 - (d - 0.5) * (d - 0.5))).sqrt()]
+        }),
+        straight([1.0, 1.25], [1.0, 2.0]), // step | corner
+        straight([1.0, 2.0], [0.0, 2.0]),  // corner | stem
+        straight([1.0, 8.0], [0.0, 7.0]),  // stem | end
+    ])
 }
 
-impl Default for HalfSphereCylinder {
-    fn default() -> Self {
-        let regions = &["ball", "step", "step/stem", "stem", "end"];
-        let profile = Profile::new(
-            [0.0, 0.0],
-            &[
-                ([2.0, 2.0], Some([0.0, 2.0]), "ball"),
-                ([1.0, 2.0], None, "step"),
-                ([1.0, 8.0], None, "stem"),
-                ([0.0, 8.0], None, "end"),
-            ],
-            &["step/stem"],
-            regions,
-        );
-        Self(Nearest { profile, regions, extent: [2.0, 8.0] })
-    }
-}
-
-impl Oracle for HalfSphereCylinder {
-    ask_the_profile!();
-
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
-        self.0.sense(p, |_, _, _| 0.0)
-    }
-}
-
-/// The ball end mill of fig. 7.3 with true distances. Regions I to IX by feature, in the thesis's order (from the spindle's end); IV and
-/// VII are the reflex corners. Niceness as eq. 7.3.
-#[derive(Clone, Debug)]
-pub struct Fig73Exact(Nearest);
-
-impl Fig73Exact {
-    const NAME: &'static str = "Fig73Exact";
-
-    fn splits() -> Vec<Vec<[f64; 2]>> {
-        let s2 = std::f64::consts::SQRT_2;
-        vec![
-            straight([5.0, 20.0], [0.0, 15.0]), // I | II
-            straight([5.0, 9.0], [3.0, 11.0]),  // II | III
-            // II | IV, the parabola around (3, 9) that d = 5 directs.
-            sampled(|t| {
-                let up = 2.0 + 2.0 * t;
-                [4.0 - up * up / 4.0, 9.0 + up]
-            }),
-            straight([3.0, 11.0], [3.0, 9.0]),           // III | IV
-            straight([3.0, 9.0], [0.0, 9.0]),            // IV | V
-            straight([3.0, 7.0], [0.0, 4.0 + 3.0 * s2]), // V | VI
-            straight([1.0, 5.0], [0.0, 6.0]),            // VI | VII
-            straight([1.0, 5.0], [0.0, 5.0]),            // VII | VIII
-            straight([1.0, 1.0], [0.0, 1.0]),            // VIII | IX
-        ]
-    }
-}
-
-impl Default for Fig73Exact {
-    fn default() -> Self {
-        let regions = &super::fig73::REGIONS;
-        let profile = Profile::new(
-            [0.0, 0.0],
-            &[
-                ([1.0, 1.0], Some([0.0, 1.0]), "IX"),
-                ([1.0, 5.0], None, "VIII"),
-                ([3.0, 7.0], None, "VI"),
-                ([3.0, 9.0], None, "V"),
-                ([5.0, 9.0], None, "III"),
-                ([5.0, 20.0], None, "II"),
-                ([0.0, 20.0], None, "I"),
-            ],
-            &["VII", "IV"],
-            regions,
-        );
-        Self(Nearest { profile, regions, extent: [5.0, 20.0] })
-    }
-}
-
-impl Oracle for Fig73Exact {
-    ask_the_profile!();
-
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
-        self.0.sense(p, |owner, _, [d, z]| match owner {
-            7 => 2.0 * d * d,
-            8 => 2.0 * d * d + (z - 1.0) * (z - 1.0),
-            _ => 0.0,
-        })
-    }
+/// The ball end mill of fig. 7.3 with true distances. Its regions, from the tip up, are the thesis's IX to I; IV and VII are the reflex
+/// corners.
+pub fn fig_7_3_exact() -> Nearest {
+    let s2 = std::f64::consts::SQRT_2;
+    Nearest::of("Fig73Exact").with(vec![
+        straight([5.0, 20.0], [0.0, 15.0]), // I | II
+        straight([5.0, 9.0], [3.0, 11.0]),  // II | III
+        // II | IV, the parabola around (3, 9) that d = 5 directs.
+        sampled(|t| {
+            let up = 2.0 + 2.0 * t;
+            [4.0 - up * up / 4.0, 9.0 + up]
+        }),
+        straight([3.0, 11.0], [3.0, 9.0]),           // III | IV
+        straight([3.0, 9.0], [0.0, 9.0]),            // IV | V
+        straight([3.0, 7.0], [0.0, 4.0 + 3.0 * s2]), // V | VI
+        straight([1.0, 5.0], [0.0, 6.0]),            // VI | VII
+        straight([1.0, 5.0], [0.0, 5.0]),            // VII | VIII
+        straight([1.0, 1.0], [0.0, 1.0]),            // VIII | IX
+    ])
 }
 
 /// A plain 2 mm ball end mill, 40 long, its flute 5: ball and flute cut, with niceness `1 - depth`.
-#[derive(Clone, Debug)]
-pub struct D2Ball(Nearest);
-
-impl D2Ball {
-    const NAME: &'static str = "D2Ball";
-
-    fn splits() -> Vec<Vec<[f64; 2]>> {
-        vec![
-            straight([1.0, 1.0], [0.0, 1.0]),   // ball | flute
-            straight([1.0, 5.0], [0.0, 5.0]),   // flute | shank
-            straight([1.0, 40.0], [0.0, 39.0]), // shank | end
-        ]
-    }
-}
-
-impl Default for D2Ball {
-    fn default() -> Self {
-        let regions = &["ball", "flute", "shank", "end"];
-        let profile = Profile::new(
-            [0.0, 0.0],
-            &[
-                ([1.0, 1.0], Some([0.0, 1.0]), "ball"),
-                ([1.0, 5.0], None, "flute"),
-                ([1.0, 40.0], None, "shank"),
-                ([0.0, 40.0], None, "end"),
-            ],
-            &[],
-            regions,
-        );
-        Self(Nearest { profile, regions, extent: [1.0, 40.0] })
-    }
-}
-
-impl Oracle for D2Ball {
-    ask_the_profile!();
-
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
-        self.0.sense(p, |owner, depth, _| if owner < 2 { 1.0 - depth } else { 0.0 })
-    }
+pub fn d2_ball() -> Nearest {
+    Nearest::of("D2Ball").with(vec![
+        straight([1.0, 1.0], [0.0, 1.0]),   // ball | flute
+        straight([1.0, 5.0], [0.0, 5.0]),   // flute | shank
+        straight([1.0, 40.0], [0.0, 39.0]), // shank | end
+    ])
 }
 
 #[cfg(test)]
@@ -234,29 +248,32 @@ mod tests {
 
     #[test]
     fn borders_go_to_the_first_listed() {
-        let ball = D2Ball::default();
-        let region = |d: f64, z: f64| ball.sense([d, 0.0, z]).map(|s| s.region);
+        let ball = d2_ball();
+        let region = |d: f64, z: f64| ball.sense([d, 0.0, z]).map(|s| ball.regions()[s.owner]);
         for d in [0.0, 0.3, 1.0] {
             assert_eq!(region(d, 1.0), Some("ball"));
             assert_eq!(region(d, 5.0), Some("flute"));
         }
-        assert_eq!(region(0.5, 39.5), Some("shank"));
-        assert_eq!(region(1.0, 40.0), Some("shank"));
-        assert_eq!(region(0.5, 40.0), Some("end"));
+        assert_eq!(region(0.5, 39.5), Some("shank.1"));
+        assert_eq!(region(1.0, 40.0), Some("shank.1"));
+        assert_eq!(region(0.5, 40.0), Some("shank.2"));
         assert_eq!(region(1.0, 40.1), None);
     }
 
     #[test]
     fn the_half_sphere_is_mostly_its_step_and_corner() {
-        let tool = HalfSphereCylinder::default();
-        let at = |d: f64, z: f64| tool.sense([0.0, d, z]).expect("inside");
-        let s = at(0.0, 2.0); // the arc's centre: the corner is nearer than the ball
-        assert_eq!((s.region, s.depth, s.direction), ("step/stem", 1.0, [1.0, 0.0, 0.0]));
-        let s = at(0.0, 1.25); // ball and corner tie on the axis
+        let tool = half_sphere_cylinder();
+        let at = |d: f64, z: f64| {
+            let s = tool.sense([0.0, d, z]).expect("inside");
+            (tool.regions()[s.owner], s)
+        };
+        let (region, s) = at(0.0, 2.0); // the arc's centre: the corner is nearer than the ball
+        assert_eq!((region, s.depth, s.direction), ("step/stem.1", 1.0, [1.0, 0.0, 0.0]));
+        let (_, s) = at(0.0, 1.25); // ball and corner tie on the axis
         assert!((s.depth - 1.25).abs() < 1e-15);
-        let s = at(1.5, 1.8);
-        assert_eq!((s.region, s.direction), ("step", [0.0, 0.0, 1.0]));
-        assert_eq!(at(0.1, 5.0).region, "stem");
-        assert_eq!(at(0.1, 7.5).region, "end");
+        let (region, s) = at(1.5, 1.8);
+        assert_eq!((region, s.direction), ("step", [0.0, 0.0, 1.0]));
+        assert_eq!(at(0.1, 5.0).0, "stem.1");
+        assert_eq!(at(0.1, 7.5).0, "stem.2");
     }
 }

@@ -45,44 +45,55 @@ pub struct Near {
 pub struct Profile {
     pieces: Vec<Piece>,
     vertices: Vec<Vertex>,
+    owners: Vec<Feature>,
 }
 
-/// A piece to be: its end, its centre if it is an arc, and its name.
-pub type Draft = ([f64; 2], Option<[f64; 2]>, &'static str);
+/// A piece to be: its end, and its centre if it is an arc.
+pub type Draft = ([f64; 2], Option<[f64; 2]>);
+
+/// What may own points inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Feature {
+    /// A piece, by its place.
+    Piece(usize),
+    /// The reflex corner behind a piece.
+    Corner(usize),
+}
 
 impl Profile {
-    /// The profile that starts at `start` and goes on through `drafts`. `corners` names the reflex corners in the order of the profile,
-    /// and `order` lists all names; the first listed wins a tie.
-    ///
-    /// # Panics
-    /// If a name is missing from `order`, or the number of reflex corners is another.
-    pub fn new(start: P2, drafts: &[Draft], corners: &[&str], order: &[&str]) -> Self {
-        let rank = |name: &str| {
-            let found = order.iter().position(|o| *o == name);
-            found.unwrap_or_else(|| panic!("`{name}` is not listed"))
-        };
+    /// The profile that starts at `start` and goes on through `drafts`. Owners are numbered along it, each reflex corner between its
+    /// pieces; the first wins a tie.
+    pub fn new(start: P2, drafts: &[Draft]) -> Self {
         let mut at = start;
-        let mut pieces = Vec::new();
-        for &(to, centre, name) in drafts {
-            pieces.push(Piece::new(at, to, centre, rank(name)));
+        let mut pieces: Vec<Piece> = Vec::new();
+        let mut vertices = vec![Vertex { at: start, turn: Turn::Axis }];
+        let mut owners = Vec::new();
+        for (place, &(to, centre)) in drafts.iter().enumerate() {
+            let mut piece = Piece::new(at, to, centre, 0);
+            if let Some(before) = pieces.last() {
+                let bend = cross(before.tangent(at), piece.tangent(at));
+                let turn = if bend < -1e-12 {
+                    owners.push(Feature::Corner(place - 1));
+                    Turn::Reflex(owners.len() - 1)
+                } else if bend > 1e-12 {
+                    Turn::Convex
+                } else {
+                    Turn::Smooth
+                };
+                vertices.push(Vertex { at, turn });
+            }
+            piece.rank = owners.len();
+            owners.push(Feature::Piece(place));
+            pieces.push(piece);
             at = to;
         }
-        let mut names = corners.iter();
-        let mut vertices = vec![Vertex { at: start, turn: Turn::Axis }];
-        for pair in pieces.windows(2) {
-            let bend = cross(pair[0].tangent(pair[0].b), pair[1].tangent(pair[1].a));
-            let turn = if bend < -1e-12 {
-                Turn::Reflex(rank(names.next().expect("a name for each reflex corner")))
-            } else if bend > 1e-12 {
-                Turn::Convex
-            } else {
-                Turn::Smooth
-            };
-            vertices.push(Vertex { at: pair[0].b, turn });
-        }
         vertices.push(Vertex { at, turn: Turn::Axis });
-        assert!(names.next().is_none(), "more names than reflex corners");
-        Self { pieces, vertices }
+        Self { pieces, vertices, owners }
+    }
+
+    /// Who may own points inside, in the order of listing.
+    pub fn owners(&self) -> &[Feature] {
+        &self.owners
     }
 
     /// The nearest feature, from inside or outside.
@@ -237,14 +248,12 @@ mod tests {
         Profile::new(
             [0.0, 0.0],
             &[
-                ([2.0, 2.0], Some([0.0, 2.0]), "bowl"),
-                ([1.0, 3.0], Some([2.0, 3.0]), "neck"),
-                ([3.0, 5.0], None, "flare"),
-                ([3.0, 6.0], None, "rim"),
-                ([0.0, 6.0], None, "top"),
+                ([2.0, 2.0], Some([0.0, 2.0])),
+                ([1.0, 3.0], Some([2.0, 3.0])),
+                ([3.0, 5.0], None),
+                ([3.0, 6.0], None),
+                ([0.0, 6.0], None),
             ],
-            &["throat"],
-            &["bowl", "neck", "throat", "flare", "rim", "top"],
         )
     }
 

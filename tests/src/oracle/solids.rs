@@ -19,14 +19,13 @@ impl Oracle for UnitSphere {
         "UnitSphere"
     }
 
-    fn regions(&self) -> &'static [&'static str] {
-        &["ball"]
+    fn regions(&self) -> Vec<&str> {
+        vec!["ball"]
     }
 
     fn sense(&self, p: [f64; 3]) -> Option<Sense> {
         let (m, arm, rho) = Self::from_centre(p);
         (rho <= 1.0).then(|| Sense {
-            region: "ball",
             owner: 0,
             depth: 1.0 - rho,
             magnitude: 1.0 - rho,
@@ -88,8 +87,8 @@ impl Oracle for Cylinder {
         "Cylinder"
     }
 
-    fn regions(&self) -> &'static [&'static str] {
-        &REGIONS
+    fn regions(&self) -> Vec<&str> {
+        REGIONS.to_vec()
     }
 
     fn sense(&self, p: [f64; 3]) -> Option<Sense> {
@@ -103,14 +102,7 @@ impl Oracle for Cylinder {
         } else {
             return None;
         };
-        Some(Sense {
-            region: REGIONS[owner],
-            owner,
-            depth,
-            magnitude: depth,
-            direction: m.lift(direction),
-            niceness: 0.0,
-        })
+        Some(Sense { owner, depth, magnitude: depth, direction: m.lift(direction), niceness: 0.0 })
     }
 
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
@@ -179,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_cylinder_gives_its_borders_to_the_first_listed() {
-        let region = |p| Cylinder.sense(p).map(|s| s.region);
+        let region = |p| Cylinder.sense(p).map(|s| REGIONS[s.owner]);
         assert_eq!(region([1.0, 0.0, 1.0]), Some("side"));
         assert_eq!(region([1.0, 0.0, 5.0]), Some("side"));
         assert_eq!(region([0.5, 0.0, 1.0]), Some("bottom"));

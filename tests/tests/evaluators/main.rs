@@ -13,7 +13,7 @@ use std::path::Path;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile};
 use touchoff::tool::Interpreted;
-use touchoff_tests::oracle;
+use touchoff_tests::oracle::{self, Nearest};
 
 /// Lengths of the file's unit in the part's that are tried: the same unit, and mm in inches.
 const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];
@@ -21,8 +21,7 @@ const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];
 /// The text of a tool of the library.
 fn text(file: &str) -> Source {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
-    let text = std::fs::read_to_string(&path).expect("the library has the file");
-    Source::new(file, text)
+    Source::read(path).expect("the library has the file")
 }
 
 /// The tool of a text, checked for the reference interpreter.
@@ -77,10 +76,38 @@ macro_rules! suites {
 suites! {
     unit_sphere: UnitSphere in "unit_sphere.tool", oracle::UnitSphere;
     cylinder: Cylinder in "cylinder.tool", oracle::Cylinder;
-    half_sphere_cylinder: HalfSphereCylinder in "half_sphere_cylinder.tool", oracle::HalfSphereCylinder::default();
+    half_sphere_cylinder: HalfSphereCylinder in "half_sphere_cylinder.tool", oracle::half_sphere_cylinder();
     fig_7_3: Fig73 in "fig_7_3.tool", oracle::Fig73::default();
-    fig_7_3_exact: Fig73Exact in "fig_7_3_exact.tool", oracle::Fig73Exact::default();
     block: Block in "block.tool", oracle::Block;
     l_bracket: LBracket in "l_bracket.tool", oracle::LBracket;
-    d2_ball: D2Ball in "d2_ball.tool", oracle::D2Ball::default();
+    fig_7_3_exact: Fig73Exact in "fig_7_3_exact.tool", oracle::fig_7_3_exact();
+    d2_ball: D2Ball in "d2_ball.tool", oracle::d2_ball();
+    ball: Ball in "ball.tool", Nearest::of("Ball");
+    ball_er16: BallEr16 in "ball_er16.tool", Nearest::of("BallEr16");
+    barrel: Barrel in "barrel.tool", Nearest::of("Barrel");
+    boring_bar: BoringBar in "boring_bar.tool", Nearest::of("BoringBar");
+    bull_nose: BullNose in "bull_nose.tool", Nearest::of("BullNose");
+    bull_nose_hsk63: BullNoseHsk63 in "bull_nose_hsk63.tool", Nearest::of("BullNoseHsk63");
+    chamfer_mill: ChamferMill in "chamfer_mill.tool", Nearest::of("ChamferMill");
+    corner_rounding: CornerRounding in "corner_rounding.tool", Nearest::of("CornerRounding");
+    countersink: Countersink in "countersink.tool", Nearest::of("Countersink");
+    deburrer: Deburrer in "deburrer.tool", Nearest::of("Deburrer");
+    dovetail: Dovetail in "dovetail.tool", Nearest::of("Dovetail");
+    drill: Drill in "drill.tool", Nearest::of("Drill");
+    drill_bt40: DrillBt40 in "drill_bt40.tool", Nearest::of("DrillBt40");
+    engraver: Engraver in "engraver.tool", Nearest::of("Engraver");
+    face_mill: FaceMill in "face_mill.tool", Nearest::of("FaceMill");
+    flat: Flat in "flat.tool", Nearest::of("Flat");
+    half_inch_ball_cat40: HalfInchBallCat40 in "half_inch_ball_cat40.tool", Nearest::of("HalfInchBallCat40");
+    lens: Lens in "lens.tool", Nearest::of("Lens");
+    lollipop: Lollipop in "lollipop.tool", Nearest::of("Lollipop");
+    oval: Oval in "oval.tool", Nearest::of("Oval");
+    quarter_inch_flat: QuarterInchFlat in "quarter_inch_flat.tool", Nearest::of("QuarterInchFlat");
+    reamer: Reamer in "reamer.tool", Nearest::of("Reamer");
+    single_tooth: SingleTooth in "single_tooth.tool", Nearest::of("SingleTooth");
+    spot_drill: SpotDrill in "spot_drill.tool", Nearest::of("SpotDrill");
+    t_slot: TSlot in "t_slot.tool", Nearest::of("TSlot");
+    tapered_ball: TaperedBall in "tapered_ball.tool", Nearest::of("TaperedBall");
+    thread_mill: ThreadMill in "thread_mill.tool", Nearest::of("ThreadMill");
+    woodruff: Woodruff in "woodruff.tool", Nearest::of("Woodruff");
 }

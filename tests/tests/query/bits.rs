@@ -102,21 +102,24 @@ fn whatever_was_asked_first() {
 #[test]
 fn compiled_and_interpreted() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
+    let oracles = touchoff_tests::oracle::all();
+    let files = std::fs::read_dir(folder).expect("the library's folder");
+    let files = files.map(|file| file.expect("a file").path());
     let mut seen = 0;
-    for file in std::fs::read_dir(folder).expect("the library's folder") {
-        let interpreted = Interpreted::load(file.expect("a file").path()).expect("a tool");
+    for file in files.filter(|path| path.extension().is_some_and(|end| end == "tool")) {
+        let interpreted = Interpreted::load(file).expect("a tool");
         let name = &interpreted.card().name;
-        let (tool, oracle) =
-            tools().into_iter().find(|(tool, _)| tool.card().name == *name).expect("compiled too");
+        let tool = tools_library::find(name).expect("compiled too");
+        let oracle = oracles.iter().find(|oracle| oracle.name() == *name).expect("it has one");
         assert_eq!(interpreted.card(), tool.card());
         seen += 1;
         for part in parts() {
-            for (k, pose) in some(&part, &*oracle, 60, 6).iter().enumerate() {
+            for (k, pose) in some(&part, &**oracle, 60, 6).iter().enumerate() {
                 let (law, weights) = WAYS[k % 6];
                 let by = |tool| said(&mut Probe::new(&part, tool).law(law).weights(weights), pose);
                 assert_eq!(by(tool), by(&interpreted), "{name}");
             }
         }
     }
-    assert_eq!(seen, tools().len());
+    assert_eq!(seen, tools_library::TOOLS.len());
 }

@@ -12,11 +12,11 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use touchoff::{Contact, Law, Part, Pose, Probe, Tool, Weights, Wrench, summary};
 use touchoff_tests::oracle::brute::{self, Answer, Query};
-use touchoff_tests::oracle::{Oracle, all};
+use touchoff_tests::oracle::{Oracle, thesis};
 
-/// The tools of the library, each with its oracle.
+/// The thesis's tools, each with its oracle.
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
-    all()
+    thesis()
         .into_iter()
         .map(|oracle| (tools_library::find(oracle.name()).expect("in the library"), oracle))
         .collect()

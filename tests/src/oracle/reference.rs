@@ -1,0 +1,284 @@
+//! The nearest feature of a restated profile in 256 bits.
+//!
+//! Which pieces can be the nearest is found in doubles, with a margin of [`MARGIN`] of the tool's size, a million times what doubles
+//! lose; all that is answered is computed from these pieces to 256 bits.
+
+use super::big::Big;
+use super::piece::Piece;
+use super::profile::{Feature, Profile};
+use super::restated::{Point, Restated};
+use super::{Meridian, Nearest};
+
+/// The part of the tool's size by which a piece may be farther than the nearest, in doubles, and is still looked at.
+const MARGIN: f64 = 1e-9;
+
+/// A point, and the half plane through it and the axis.
+pub struct At {
+    dz: Point,
+    /// Unit vector away from the axis; +x on the axis.
+    radial: [Big; 2],
+    rough: [f64; 2],
+}
+
+impl At {
+    /// The point of these coordinates, taken as they are.
+    pub fn new(p: [f64; 3]) -> Self {
+        let [x, y, z] = p.map(Big::exactly);
+        let d = (&(&x * &x) + &(&y * &y)).sqrt();
+        let radial =
+            if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [&x / &d, &y / &d] };
+        Self { dz: [d, z], radial, rough: Meridian::of(p).dz }
+    }
+}
+
+/// A tool's profile in 256 bits.
+pub struct Reference {
+    tool: Restated,
+    parts: Vec<Part>,
+    /// Whether the corner behind each piece is a reflex one.
+    reflex: Vec<bool>,
+    owners: Vec<Feature>,
+    size: f64,
+}
+
+struct Part {
+    rough: Piece,
+    a: Point,
+    b: Point,
+    shape: Shape,
+}
+
+enum Shape {
+    Line {
+        along: Point,
+        length: Big,
+    },
+    Arc {
+        centre: Point,
+        radius: Big,
+        /// Counter-clockwise: bulging out of the material.
+        convex: bool,
+    },
+}
+
+/// How far a piece is.
+struct Far {
+    distance: Big,
+    /// Whether the foot is no end of the piece, and the point on its inner side then.
+    side: Option<bool>,
+}
+
+fn sub(a: &Point, b: &Point) -> Point {
+    [&a[0] - &b[0], &a[1] - &b[1]]
+}
+
+fn dot(a: &Point, b: &Point) -> Big {
+    &(&a[0] * &b[0]) + &(&a[1] * &b[1])
+}
+
+fn cross(a: &Point, b: &Point) -> Big {
+    &(&a[0] * &b[1]) - &(&a[1] * &b[0])
+}
+
+fn norm(a: &Point) -> Big {
+    dot(a, a).sqrt()
+}
+
+fn double(p: &Point) -> [f64; 2] {
+    [p[0].to_f64(), p[1].to_f64()]
+}
+
+impl Part {
+    fn far(&self, p: &Point) -> Far {
+        let ends = || {
+            let [a, b] = [&self.a, &self.b].map(|end| norm(&sub(p, end)));
+            Far { distance: if b < a { b } else { a }, side: None }
+        };
+        let zero = Big::zero();
+        match &self.shape {
+            Shape::Line { along, length } => {
+                let from = sub(p, &self.a);
+                let t = dot(&from, along);
+                if t < zero || t > length * length {
+                    return ends();
+                }
+                let off = &cross(along, &from) / length;
+                Far { distance: off.abs(), side: Some(!off.is_negative()) }
+            }
+            Shape::Arc { centre, radius, convex } => {
+                let from = sub(p, centre);
+                let (a, b) = (sub(&self.a, centre), sub(&self.b, centre));
+                let (first, last) = (cross(&a, &from), cross(&from, &b));
+                let faces = if *convex {
+                    first >= zero && last >= zero
+                } else {
+                    first <= zero && last <= zero
+                };
+                if !faces {
+                    return ends();
+                }
+                let inward = radius - &norm(&from);
+                let side = inward.is_negative() != *convex || inward == zero;
+                Far { distance: inward.abs(), side: Some(side) }
+            }
+        }
+    }
+
+    /// Unit vector from a point inside to its nearest point here; `None` at a centre.
+    fn outward(&self, p: &Point) -> Option<Point> {
+        match &self.shape {
+            Shape::Line { along, length } => Some([&along[1] / length, &(-&along[0]) / length]),
+            Shape::Arc { centre, convex, .. } => {
+                let arm = if *convex { sub(p, centre) } else { sub(centre, p) };
+                unit(&arm)
+            }
+        }
+    }
+}
+
+fn unit(v: &Point) -> Option<Point> {
+    let n = norm(v);
+    (n != Big::zero()).then(|| [&v[0] / &n, &v[1] / &n])
+}
+
+impl Reference {
+    /// The reference of a restated tool.
+    pub fn new(tool: &Restated) -> Self {
+        let rough = Nearest::new(tool);
+        let profile: &Profile = rough.profile();
+        let mut at = tool.start.clone();
+        let mut parts: Vec<Part> = Vec::new();
+        for way in &tool.ways {
+            let shape = match &way.centre {
+                None => {
+                    let along = sub(&way.to, &at);
+                    let length = norm(&along);
+                    Shape::Line { along, length }
+                }
+                Some(centre) => {
+                    let (a, b) = (sub(&at, centre), sub(&way.to, centre));
+                    let convex = !cross(&a, &b).is_negative();
+                    Shape::Arc { centre: centre.clone(), radius: norm(&a), convex }
+                }
+            };
+            let centre = way.centre.as_ref().map(double);
+            let rough = Piece::new(double(&at), double(&way.to), centre, parts.len());
+            parts.push(Part { rough, a: at, b: way.to.clone(), shape });
+            at = way.to.clone();
+        }
+        let owners = profile.owners().to_vec();
+        let reflex = (0..parts.len()).map(|k| owners.contains(&Feature::Corner(k))).collect();
+        let most = parts.iter().flat_map(|part| double(&part.b)).fold(0.0, f64::max);
+        Self { tool: tool.clone(), parts, reflex, owners, size: most }
+    }
+
+    /// The tool.
+    pub fn tool(&self) -> &Restated {
+        &self.tool
+    }
+
+    /// How deep a point lies: the distance to the surface, negative outside.
+    pub fn depth(&self, at: &At) -> Big {
+        let rough: Vec<f64> = self.parts.iter().map(|part| part.rough.clamped(at.rough)).collect();
+        let reach = rough.iter().copied().fold(f64::INFINITY, f64::min) + MARGIN * self.size;
+        let mut best: Option<(Far, usize)> = None;
+        for (place, part) in self.parts.iter().enumerate().filter(|(k, _)| rough[*k] <= reach) {
+            let far = part.far(&at.dz);
+            let nearer = best.as_ref().is_none_or(|(best, _)| {
+                far.distance < best.distance
+                    || (far.distance == best.distance && best.side.is_none())
+            });
+            if nearer {
+                best = Some((far, place));
+            }
+        }
+        let Some((far, place)) = best else { return Big::zero() };
+        if far.side.unwrap_or_else(|| self.beside(at, place)) {
+            far.distance
+        } else {
+            -&far.distance
+        }
+    }
+
+    /// Whether a point whose nearest is an end of a piece is inside: in the fan of a reflex corner.
+    fn beside(&self, at: &At, place: usize) -> bool {
+        let part = &self.parts[place];
+        let [a, b] = [&part.a, &part.b].map(|end| norm(&sub(&at.dz, end)));
+        if b < a { self.reflex[place] } else { place > 0 && self.reflex[place - 1] }
+    }
+
+    /// The distance to what an owner consists of: a piece with its ends, or a corner.
+    pub fn distance_to(&self, at: &At, owner: usize) -> Big {
+        match self.owners[owner] {
+            Feature::Piece(piece) => self.parts[piece].far(&at.dz).distance,
+            Feature::Corner(piece) => norm(&sub(&at.dz, &self.parts[piece].b)),
+        }
+    }
+
+    /// The unit vector from a point that an owner owns to its nearest point of the surface; where there is none, +z.
+    pub fn direction(&self, at: &At, owner: usize) -> [Big; 3] {
+        let toward = match self.owners[owner] {
+            Feature::Piece(piece) => self.parts[piece].outward(&at.dz),
+            Feature::Corner(piece) => unit(&sub(&self.parts[piece].b, &at.dz)),
+        };
+        let [d, z] = toward.unwrap_or_else(|| [Big::zero(), Big::exactly(1.0)]);
+        [&d * &at.radial[0], &d * &at.radial[1], z]
+    }
+
+    /// The distance from a point to the nearest at which its owner's direction does not exist.
+    pub fn singular(&self, at: &At, owner: usize) -> f64 {
+        let (place, level) = match self.owners[owner] {
+            Feature::Piece(piece) => match &self.parts[piece].shape {
+                Shape::Line { along, .. } => (f64::INFINITY, along[1] == Big::zero()),
+                Shape::Arc { centre, .. } => (norm(&sub(&at.dz, centre)).to_f64(), false),
+            },
+            Feature::Corner(piece) => (norm(&sub(&at.dz, &self.parts[piece].b)).to_f64(), false),
+        };
+        if level { place } else { place.min(at.dz[0].to_f64()) }
+    }
+
+    /// The next power of two above the tool's largest coordinate, by whose rounding errors are measured.
+    pub fn scale(&self) -> f64 {
+        let mut scale = 2f64.powi(-20);
+        while scale <= self.size {
+            scale *= 2.0;
+        }
+        scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::draw::Draw;
+    use super::super::{Oracle, restated};
+    use super::*;
+
+    #[test]
+    fn doubles_say_the_same() {
+        for tool in restated::all() {
+            let (rough, reference) = (Nearest::new(&tool), Reference::new(&tool));
+            let [radius, height] = rough.extent();
+            let size = radius.max(height);
+            let mut draw = Draw::new(8);
+            for _ in 0..300 {
+                let [x, y] = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
+                let p = [x, y, draw.between(-0.1 * height, 1.1 * height)];
+                let at = At::new(p);
+                let depth = reference.depth(&at).to_f64();
+                let expected = -rough.signed_distance(p);
+                assert!((depth - expected).abs() < 1e-13 * size, "{} {p:?}", tool.name);
+                let Some(sense) = rough.sense(p) else { continue };
+                let distance = reference.distance_to(&at, sense.owner).to_f64();
+                assert!((distance - depth).abs() < 1e-13 * size, "{} {p:?}", tool.name);
+                assert!(
+                    (reference.singular(&at, sense.owner) - rough.singular(p)).abs() < 1e-12 * size
+                        || rough.singular(p) == f64::INFINITY
+                );
+                let u = reference.direction(&at, sense.owner);
+                for (u, v) in u.iter().zip(sense.direction) {
+                    assert!((u.to_f64() - v).abs() < 1e-9, "{} {p:?}", tool.name);
+                }
+            }
+        }
+    }
+}
