@@ -1,0 +1,359 @@
+//! Profiles that are wrong, or nearly: each gives an exact result or an error at its place.
+
+use super::compare::compare;
+use super::outline::{Outline, P2, Piece, len, sub};
+use super::{said, tool};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use tool_dsl::source::Source;
+use touchoff::tool::{Interpreted, Tool};
+use touchoff_tests::oracle::draw::Draw;
+
+fn text(profile: &str) -> String {
+    format!("tool T {{ units mm; profile {{ start {profile} }} }}")
+}
+
+/// The words, and where the place begins.
+#[test]
+fn each_mistake_is_shown_at_its_segment() {
+    let cases = [
+        (
+            "(0, 0); line to (3, 0), (3, 20) as a; line to (2, 30) as b;",
+            "ends at (2, 30), not on the axis",
+            "line to (2, 30)",
+        ),
+        (
+            "(1, 0); line to (3, 0), (3, 20), (0, 20) as a;",
+            "begins at (1, 0), not on the axis",
+            "(3, 0)",
+        ),
+        ("(0, 20); line to (3, 20), (3, 0), (0, 0) as a;", "runs clockwise", "(3, 20)"),
+        (
+            "(0, 0); line to (4, 0), (1, 5), (4, 5), (1, 1), (0, 9) as a;",
+            "meets that one at",
+            "(1, 1)",
+        ),
+        (
+            "(0, 0); line to (4, 0), (4, 5), (2, 5), (2, 0), (1, 0), (1, 9), (0, 9) as a;",
+            "meets that one at",
+            "(",
+        ),
+        (
+            "(0, 0); line to (4, 0), (4, 2), (3, 2), (4, 1), (5, 6), (0, 6) as a;",
+            "meets that one at (4, 1)",
+            "(",
+        ),
+        (
+            "(0, 0); line to (3, 0), (3, 5) as a; arc to (3, 9) radius 3 concave as b; line to (0, 9) as c; line to (0.5, 7) as d; line to (0, 9) as e;",
+            "this segment",
+            "line to (0, 9)",
+        ),
+        ("(0, 0); line to (3, 0), (3, 0), (3, 5), (0, 5) as a;", "has no length", "(3, 0)"),
+        (
+            "(0, 0); arc to (0, 0) radius 3 as a; line to (3, 5), (0, 5) as a;",
+            "has no length",
+            "arc to (0, 0)",
+        ),
+        ("(0, 0); line to (0, 2), (3, 2), (3, 5), (0, 5) as a;", "lies on the axis", "(0, 2)"),
+        (
+            "(0, 0); line to (3, 0), (3, 5), (0, 5) as a; line to (0, 9) as b;",
+            "lies on the axis",
+            "line to (0, 9)",
+        ),
+        ("(0, 0); line to (3, 0), (0, 4), (3, 8), (0, 8) as a;", "axis", "("),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 6) center (4, 3) concave as b; line to (-1, 8), (0, 9) as c;",
+            "crosses the axis",
+            "(-1, 8)",
+        ),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 8) radius 4.5 concave as b; line to (0, 8) as c;",
+            "",
+            "",
+        ),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 8) center (3, 4) concave as b; line to (0, 8) as c;",
+            "crosses the axis",
+            "arc to (3, 8)",
+        ),
+        (
+            "(0, 0); line to (2, 0) as a; arc to (2, 8) center (5, 4) concave as b; line to (0, 8) as c;",
+            "axis",
+            "arc to (2, 8)",
+        ),
+        (
+            "(0, 0); line to (3, 0), (5, 0), (4, 0), (4, 5), (0, 5) as a;",
+            "turns straight back at (5, 0)",
+            "(4, 0)",
+        ),
+        (
+            "(0, 0); line to (3, 0), (3, 5), (3, 3), (0, 3) as a;",
+            "turns straight back at (3, 5)",
+            "(3, 3)",
+        ),
+        (
+            "(0, 0); arc to (3, 3) center (0, 3.02) as a; line to (0, 3) as b;",
+            "the arc's ends are 3.02 and ",
+            "arc to",
+        ),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 5) radius 2 as b; line to (0, 5) as c;",
+            "no arc of radius 2 spans a chord of 5",
+            "arc to",
+        ),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 5) radius -4 as b; line to (0, 5) as c;",
+            "radius",
+            "arc to",
+        ),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 5) center (5, 2.5) as b; line to (0, 5) as c;",
+            "this arc is concave: its centre (5, 2.5)",
+            "arc to",
+        ),
+        (
+            "(0, 0); line to (3, 0) as a; arc to (3, 5) center (1, 2.5) concave as b; line to (0, 5) as c;",
+            "this arc is not concave",
+            "concave",
+        ),
+        ("(0, 0); line to (3, 0) as a cutting; line to (3, 5), (0, 5) as a;", "`a` is ", "a"),
+        ("(0, 0); line to (3, 0), (3, 5), (0, 5) as cutting;", "cutting", "cutting"),
+        (
+            "(0, 1); line to (3, 1), (3, 5), (0, 5) as a;",
+            "the tool ends at z = 1 and its tip is said to be at 0",
+            "",
+        ),
+        ("(0, 0); line to (3, 0, 1), (3, 5), (0, 5) as a;", "two numbers", "(3, 0, 1)"),
+        ("(0, 0); line to (3, 0), (3, sqrt(-1)), (0, 5) as a;", "square root", ""),
+    ];
+    let mut wrong = Vec::new();
+    for (profile, words, place) in cases {
+        let said = said(&text(profile));
+        if words.is_empty() {
+            if !said.is_empty() {
+                wrong.push(format!("{profile}\n  is good, but: {said:?}"));
+            }
+        } else if !said.iter().any(|(message, at)| message.contains(words) && at.starts_with(place))
+        {
+            wrong.push(format!("{profile}\n  wants `{words}` at `{place}`, has {said:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What is odd but good is exact.
+fn exact(outline: &Outline) {
+    let text = outline.text();
+    let tool = tool(&text).unwrap_or_else(|said| panic!("{text}\n{said}"));
+    let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
+    let compared = compare(outline, (&tool, &planned), 2_000, &mut Draw::new(41));
+    compared.unwrap_or_else(|flaw| panic!("{flaw:?}\n{text}"));
+}
+
+fn path(points: &[P2]) -> Outline {
+    let pieces = points.windows(2).map(|pair| Piece::line(pair[0], pair[1])).collect();
+    Outline { pieces, down: false }
+}
+
+#[test]
+fn a_sphere_is_one_arc() {
+    exact(&Outline {
+        pieces: vec![Piece::about([0.0, 0.0], [0.0, 6.0], [0.0, 3.0], true)],
+        down: false,
+    });
+}
+
+/// From corner to corner a half circle's chord is rounded as its ends are.
+#[test]
+fn half_a_circle_takes_rounded_ends() {
+    let profile = "(0, 0); line to (1.7, 0), (1.7, 5.792145219109247) as a;
+        arc to (1.7, 8.042145219109248) radius 1.125 as b; line to (0, 8.042145219109248) as c;";
+    let tool = tool(&text(profile));
+    assert!(tool.is_ok(), "{}", tool.expect_err("refused"));
+}
+
+#[test]
+fn dishes_at_the_axis_are_exact() {
+    exact(&path(&[[0.0, 0.0], [1.0, 0.0], [1.0, 5.0], [0.0, 4.0]]));
+    exact(&path(&[[0.0, 1.0], [1.0, 0.0], [1.0, 5.0], [0.0, 5.0]]));
+    let dish = Piece::about([1.0, 5.0], [0.0, 4.0], [0.0, 5.0], false);
+    let lines = path(&[[0.0, 0.0], [1.0, 0.0], [1.0, 5.0]]).pieces;
+    exact(&Outline { pieces: lines.into_iter().chain([dish]).collect(), down: false });
+}
+
+#[test]
+fn collinear_and_tangent_joints_are_exact() {
+    exact(&path(&[
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 1.0],
+        [2.0, 3.0],
+        [1.0, 3.0],
+        [0.0, 3.0],
+    ]));
+    let pieces = vec![
+        Piece::about([0.0, 0.0], [3.0, 1.0], [0.0, 5.0], true),
+        Piece::about([3.0, 1.0], [4.0, 2.0], [0.0, 5.0], true),
+        Piece::about([4.0, 2.0], [5.0, 5.0], [0.0, 5.0], true),
+        Piece::line([5.0, 5.0], [5.0, 8.0]),
+        Piece::line([5.0, 8.0], [0.0, 8.0]),
+    ];
+    exact(&Outline { pieces, down: false });
+}
+
+/// A disc, a slot and a bulge so thin that rounding is near: exact or refused at a segment.
+#[test]
+fn needles_are_exact_or_refused_at_their_place() {
+    let mut tried = Vec::new();
+    for thin in [1e-3, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
+        let disc = [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 2.0],
+            [3.0, 2.0],
+            [3.0, 2.0 + thin],
+            [1.0, 2.0 + thin],
+            [1.0, 5.0],
+            [0.0, 5.0],
+        ];
+        let slot = [
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 2.0],
+            [1.0, 2.0],
+            [1.0, 2.0 + thin],
+            [3.0, 2.0 + thin],
+            [3.0, 5.0],
+            [0.0, 5.0],
+        ];
+        let lance = [[0.0, 0.0], [thin, 0.0], [thin, 5.0], [0.0, 5.0]];
+        let coin = [[0.0, 0.0], [3.0, 0.0], [3.0, thin], [0.0, thin]];
+        let spike = [[0.0, 0.0], [thin, 4.0], [3.0, 4.0], [3.0, 5.0], [0.0, 5.0]];
+        let notch = [
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 2.0],
+            [1.0, 2.0],
+            [3.0, 2.0 + thin],
+            [3.0, 5.0],
+            [0.0, 5.0],
+        ];
+        for points in [&disc[..], &slot, &lance, &coin, &spike, &notch] {
+            tried.push(path(points));
+        }
+        let [low, high] = [[3.0, 2.0], [3.0, 2.0 + 2.0 * thin]];
+        for convex in [true, false] {
+            let mut pieces = path(&[[0.0, 0.0], [3.0, 0.0], low]).pieces;
+            pieces.push(Piece::about(low, high, [3.0, 2.0 + thin], convex));
+            pieces.extend(path(&[high, [3.0, 5.0], [0.0, 5.0]]).pieces);
+            tried.push(Outline { pieces, down: false });
+        }
+        let mut pieces = path(&[[0.0, 0.0], [3.0 - thin, 0.0]]).pieces;
+        pieces.push(Piece::about([3.0 - thin, 0.0], [3.0, thin], [3.0 - thin, thin], true));
+        pieces.extend(path(&[[3.0, thin], [3.0, 5.0], [0.0, 5.0]]).pieces);
+        tried.push(Outline { pieces, down: false });
+    }
+    let mut flawed = Vec::new();
+    for outline in tried {
+        match catch_unwind(AssertUnwindSafe(|| refused_or_exact(&outline))) {
+            Ok(None | Some(true)) => {}
+            Ok(Some(false)) => {
+                flawed.push(format!("{:?} of {}", said(&outline.text()), outline.text()));
+            }
+            Err(_) => flawed.push(outline.text()),
+        }
+    }
+    assert!(flawed.is_empty(), "{} needles: {}", flawed.len(), flawed.join("\n"));
+}
+
+/// Whether a refusal shows a segment of the profile. What is taken has true distances, and the
+/// right side but beside the surface; for that there is no answer.
+fn refused_or_exact(outline: &Outline) -> Option<bool> {
+    let text = outline.text();
+    let said = said(&text);
+    if !said.is_empty() {
+        return Some(
+            said.iter()
+                .any(|(_, at)| ["line to", "arc to", "("].iter().any(|word| at.starts_with(word))),
+        );
+    }
+    let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("nothing was said");
+    let tool = tool(&text).expect("nothing was said");
+    let mut reference = tool_dsl::interpret::Interpreter::new(&tool);
+    let size = outline.size();
+    let near = 1e-8 * size;
+    for p in super::compare::points(outline, 160, &mut Draw::new(42)) {
+        let [d, z] = outline.turned(p);
+        let (_, least) = outline.nearest(p);
+        let (felt, clearance) = (reference.at([d, 0.0, z], 1.0), planned.clearance([d, 0.0, z]));
+        let depth = felt.map_or(0.0, |felt| felt.depth);
+        assert!(
+            ((depth + clearance) - least).abs() < near,
+            "{depth}, {clearance}, {least} at {p:?}\n{text}"
+        );
+        if least > near {
+            assert_eq!(felt.is_some(), outline.contains(p), "at {p:?}\n{text}");
+        }
+    }
+    None
+}
+
+/// Corners of a small grid, some moved by next to nothing, joined by lines and arcs.
+fn nearly(draw: &mut Draw) -> Outline {
+    let pick = |draw: &mut Draw, count: u64| draw.bits() % count;
+    let little = |draw: &mut Draw| match pick(draw, 3) {
+        0 => draw.between(-1.0, 1.0) * 10f64.powf(draw.between(-16.0, -5.0)),
+        _ => 0.0,
+    };
+    let count = 1 + pick(draw, 6);
+    let mut points = vec![[0.0, 0.0]];
+    for k in 0..count {
+        let [_, z] = points[points.len() - 1];
+        let up = [0.0, 0.0, 1.0, 1.0, 2.0, -1.0][pick(draw, 6) as usize];
+        let d = (pick(draw, 4) + u64::from(k == 0)) as f64;
+        points.push([d + little(draw).abs(), z + up + little(draw)]);
+    }
+    let end = points[points.len() - 1][1] + (pick(draw, 3) as f64) + little(draw);
+    points.push([0.0, end]);
+    let mut pieces = Vec::new();
+    for pair in points.windows(2) {
+        let chord = len(sub(pair[1], pair[0]));
+        if pick(draw, 3) > 0 || chord == 0.0 {
+            pieces.push(Piece::line(pair[0], pair[1]));
+            continue;
+        }
+        let radius =
+            chord / 2.0 * (1.0 + [0.0, 0.5, 2.0, 1e6][pick(draw, 4) as usize] + little(draw).abs());
+        let mut arc = Piece::by_radius(pair[0], pair[1], radius, pick(draw, 2) == 0);
+        if let Some(round) = &mut arc.round {
+            round.by_radius = pick(draw, 2) == 0;
+        }
+        pieces.push(arc);
+    }
+    Outline { pieces, down: pick(draw, 4) == 0 }
+}
+
+/// Corners from a small grid, some moved by next to nothing: nearly touching, nearly tangent,
+/// nearly without length. Nothing panics, and what is taken is right.
+#[test]
+fn nearly_bad_profiles_never_panic() {
+    let count: usize =
+        std::env::var("PROFILES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let mut draw = Draw::new(43);
+    let (mut taken, mut vague, mut flawed) = (0, 0, Vec::new());
+    for _ in 0..10 * count {
+        let outline = nearly(&mut draw);
+        match catch_unwind(AssertUnwindSafe(|| refused_or_exact(&outline))) {
+            Ok(shown) => {
+                taken += usize::from(shown.is_none());
+                vague += usize::from(shown == Some(false));
+            }
+            Err(_) => flawed.push(outline.text()),
+        }
+    }
+    println!(
+        "{taken} of {} nearly bad profiles were taken, {vague} refused without a segment",
+        10 * count
+    );
+    assert!(flawed.is_empty(), "{} of them, such as\n{}", flawed.len(), flawed[0]);
+}

@@ -1,0 +1,197 @@
+//! One compiled profile against brute force.
+
+use super::outline::{Feature, Outline, P2, add, len, sub, unit};
+use tool_dsl::Checked;
+use tool_dsl::interpret::{Felt, Interpreter};
+use touchoff::Level;
+use touchoff::tool::{Ask, Felt as Lists, Interpreted, Points, Tool};
+use touchoff_tests::oracle::draw::Draw;
+
+/// What came of comparing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tally {
+    pub(crate) inside: usize,
+    pub(crate) outside: usize,
+    pub(crate) directions: usize,
+    /// The worst error of a depth or clearance, in sizes.
+    pub(crate) worst: f64,
+}
+
+impl Tally {
+    pub(crate) fn and(self, other: Tally) -> Tally {
+        Tally {
+            inside: self.inside + other.inside,
+            outside: self.outside + other.outside,
+            directions: self.directions + other.directions,
+            worst: self.worst.max(other.worst),
+        }
+    }
+}
+
+/// The kind of a mistake, and the rest about it.
+pub(crate) type Flaw = (&'static str, String);
+
+/// Points anywhere, beside the surface, beside borders, on the axis and at the corners.
+pub(crate) fn points(outline: &Outline, count: usize, draw: &mut Draw) -> Vec<P2> {
+    let size = outline.size();
+    let [low, high] = outline.reach();
+    let span = sub(high, low).map(|part| part.max(0.05 * size));
+    let anywhere = |draw: &mut Draw| {
+        let d = draw.between(0.0, high[0] + 0.2 * span[0]);
+        [d, draw.between(low[1] - 0.2 * span[1], high[1] + 0.2 * span[1])]
+    };
+    let a_little = |draw: &mut Draw| size * 10f64.powf(draw.between(-6.0, -2.0));
+    let mut all: Vec<P2> = (0..=outline.pieces.len()).map(|k| outline.vertex(k)).collect();
+    for k in 0..count {
+        all.push(match k % 8 {
+            0..3 => anywhere(draw),
+            3 => [0.0, anywhere(draw)[1]],
+            4 | 5 => {
+                let piece = &outline.pieces[draw.bits() as usize % outline.pieces.len()];
+                let on = piece.at(draw.between(0.0, 1.0));
+                let off = a_little(draw) * if draw.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
+                add(on, piece.outward(on), off)
+            }
+            _ => {
+                let (mut a, mut b) = (anywhere(draw), anywhere(draw));
+                let kind = |p: P2| (outline.nearest(p).0, outline.contains(p));
+                let from = kind(a);
+                for _ in 0..40 {
+                    let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
+                    if kind(middle) == from { a = middle } else { b = middle }
+                }
+                let way = draw.direction();
+                add(a, [way[0], way[1]], a_little(draw))
+            }
+        });
+    }
+    all.iter_mut().for_each(|p| p[0] = p[0].abs());
+    all
+}
+
+/// Compares the reference and the planned tape with brute force at so many points.
+pub(crate) fn compare(
+    outline: &Outline,
+    (tool, planned): (&Checked, &Interpreted),
+    count: usize,
+    draw: &mut Draw,
+) -> Result<Tally, Flaw> {
+    let mut reference = Interpreter::new(tool);
+    let mut tally = Tally::default();
+    let wanted: Vec<[f64; 3]> = points(outline, count, draw)
+        .into_iter()
+        .map(|p| {
+            let [d, z] = outline.turned(p);
+            [d, 0.0, z]
+        })
+        .collect();
+    let (mut list, mut felt) = (Points::default(), Lists::default());
+    wanted.iter().for_each(|p| list.push(*p));
+    planned.evaluate(Level::new(), Ask::Everything, &list, 1.0, &mut felt);
+    for (k, point) in wanted.into_iter().enumerate() {
+        let tape = (felt.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Felt {
+            region: felt.region[k] as usize,
+            depth: felt.depth[k],
+            magnitude: felt.magnitude[k],
+            direction: felt.direction.each_ref().map(|list| list[k]),
+            gradient: felt.gradient.each_ref().map(|list| list[k]),
+            niceness: felt.niceness[k],
+        });
+        let p = outline.back([point[0], point[2]]);
+        let at = |(kind, text): Flaw, who: &str| {
+            let vertex = (0..=outline.pieces.len()).any(|k| outline.vertex(k) == p);
+            let kind = match (p[0] == 0.0, vertex) {
+                (_, true) => "wrong at a vertex",
+                (true, _) => "wrong on the axis",
+                _ => kind,
+            };
+            (kind, format!("{who}, at {p:?}: {text}"))
+        };
+        let clearance = planned.clearance(point);
+        let told = |felt: Option<Felt>| {
+            felt.map_or("outside", |felt| tool.model.regions[felt.region].name.as_str())
+        };
+        let felt = [("reference", reference.at(point, 1.0)), ("tape", tape)];
+        for (who, got) in felt {
+            let who = || format!("{who} says {}", told(got));
+            let one = judge(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
+            tally = tally.and(one);
+        }
+    }
+    Ok(tally)
+}
+
+/// The feature that a region is called after.
+pub(crate) fn feature(outline: &Outline, name: &str) -> Option<Feature> {
+    let number = |word: &str| word.strip_prefix('s')?.parse::<usize>().ok();
+    let Some((a, b)) = name.split_once('/') else { return number(name).map(Feature::Piece) };
+    let (a, b) = (number(a)?, number(b.split_once('.')?.0)?);
+    let last = outline.pieces.len() - 1;
+    match (a.min(b), a.max(b)) {
+        (low, high) if high == low + 1 => Some(Feature::Corner(high)),
+        // At the axis the piece meets itself.
+        (0, 0) if last > 0 || outline.turn(0) < 0.0 => Some(Feature::Corner(0)),
+        (low, high) if low == high && low == last => Some(Feature::Corner(last + 1)),
+        _ => None,
+    }
+}
+
+fn judge(
+    outline: &Outline,
+    tool: &Checked,
+    p: P2,
+    got: Option<Felt>,
+    clearance: f64,
+) -> Result<Tally, Flaw> {
+    let size = outline.size();
+    let tolerance = 1e-12 * size;
+    let (_, least) = outline.nearest(p);
+    let inside = outline.contains(p);
+    let sure = least > tolerance;
+    if sure && got.is_some() != inside {
+        return Err(("wrong side", format!("inside is {inside}, distance {least:e}")));
+    }
+    if sure && (clearance > 0.0) == inside {
+        return Err(("wrong side", format!("clearance {clearance}, inside is {inside}")));
+    }
+    let worst = |error: f64| Tally { worst: error / size, ..Tally::default() };
+    let Some(got) = got else {
+        let error = (clearance - least).abs();
+        if sure && (error > tolerance || error.is_nan()) {
+            return Err(("wrong clearance", format!("{clearance} is not {least}")));
+        }
+        return Ok(Tally { outside: 1, ..worst(if sure { error } else { 0.0 }) });
+    };
+    let error = (got.depth - least).abs();
+    if !(error <= tolerance && got.magnitude == got.depth) {
+        return Err(("wrong depth", format!("{} is not {least}", got.depth)));
+    }
+    let name = &tool.model.regions[got.region].name;
+    let owner = feature(outline, name);
+    let excess = owner.map_or(f64::INFINITY, |owner| outline.excess(owner, p));
+    let Some(owner) = owner.filter(|_| excess <= tolerance) else {
+        return Err(("wrong owner", format!("{name} is {excess:e} farther than the nearest")));
+    };
+    let tally = Tally { inside: 1, ..worst(error) };
+    let (direction, singular) = match owner {
+        Feature::Piece(k) => {
+            let piece = &outline.pieces[k];
+            let singular = piece.round.map_or(f64::INFINITY, |r| len(sub(p, r.centre)));
+            (piece.outward(p), singular.min(len(sub(piece.to, piece.from))))
+        }
+        Feature::Corner(k) => (unit(sub(outline.vertex(k), p)), least),
+    };
+    let norm = got.direction.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if !((norm - 1.0).abs() < 1e-14 && got.direction[1] == 0.0) {
+        return Err(("wrong direction", format!("{:?} is no unit vector", got.direction)));
+    }
+    if singular < 1e-9 * size {
+        return Ok(tally);
+    }
+    let direction = if outline.down { [direction[0], -direction[1]] } else { direction };
+    let off = len(sub([got.direction[0], got.direction[2]], direction));
+    if off > 1e-13 + 1e-13 * size / singular {
+        return Err(("wrong direction", format!("{:?} is not {direction:?}", got.direction)));
+    }
+    Ok(Tally { directions: 1, ..tally })
+}

@@ -1,0 +1,315 @@
+//! Random profiles as recipes, which shrink.
+
+use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
+use proptest::prelude::*;
+
+/// The most segments of a profile.
+const MOST: usize = 12;
+/// Lengths of a recipe are in these parts.
+const GRID: f64 = 64.0;
+
+/// How a profile begins, ends and goes on, in whole numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Recipe {
+    nose: Nose,
+    moves: Vec<Move>,
+    cap: Cap,
+    /// Thousandths, and a power of ten.
+    scale: (i32, i32),
+    lift: i32,
+    down: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Nose {
+    /// The first move begins at the axis.
+    Open,
+    /// An arc about the axis, so many degrees of it.
+    Ball(i32, i32),
+    /// A flat face to the first number, and a quarter of a circle of the second.
+    Torus(i32, i32),
+    /// A cone tip, or a dished one.
+    Cone(i32, i32),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Cap {
+    Flat,
+    Cone(i32),
+    /// An arc about the axis whose centre lies so far below its start, or above for a dish.
+    Dome(i32),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Move {
+    Line(i32, i32),
+    /// To a point by an arc whose radius is so many hundredths of the chord.
+    Arc {
+        to: (i32, i32),
+        ratio: i32,
+        convex: bool,
+        by_radius: bool,
+    },
+    /// Upward half of a circle.
+    Half {
+        radius: i32,
+        convex: bool,
+    },
+    /// Goes on in the direction of travel, turning by so many degrees.
+    Tangent {
+        radius: i32,
+        degrees: i32,
+    },
+    /// In, up and out again.
+    Groove {
+        depth: i32,
+        width: i32,
+    },
+    /// Out, up and in again; thin ones are needles.
+    Flange {
+        reach: i32,
+        width: i32,
+    },
+    /// The corner behind is rounded over so many sixteenths of the shorter edge beside it.
+    Fillet {
+        share: i32,
+        by_radius: bool,
+    },
+}
+
+pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
+    let nose = prop_oneof![
+        3 => Just(Nose::Open),
+        2 => (16..256i32, 10..=90i32).prop_map(|(r, a)| Nose::Ball(r, a)),
+        1 => (16..256i32, 4..128i32).prop_map(|(face, r)| Nose::Torus(face, r)),
+        2 => (16..256i32, -64..256i32).prop_map(|(d, z)| Nose::Cone(d, z)),
+    ];
+    let cap = prop_oneof![
+        3 => Just(Cap::Flat),
+        2 => (-64..256i32).prop_map(Cap::Cone),
+        1 => (-128..128i32).prop_map(Cap::Dome),
+    ];
+    let to = || (-200..=200i32, -64..=256i32);
+    let one = prop_oneof![
+        3 => to().prop_map(|(d, z)| Move::Line(d, z)),
+        1 => (-200..=200i32).prop_map(|d| Move::Line(d, 0)),
+        1 => (1..=256i32).prop_map(|z| Move::Line(0, z)),
+        3 => (to(), 51..400i32, any::<bool>(), any::<bool>())
+            .prop_map(|(to, ratio, convex, by_radius)| Move::Arc { to, ratio, convex, by_radius }),
+        1 => (2..96i32, any::<bool>()).prop_map(|(radius, convex)| Move::Half { radius, convex }),
+        2 => (4..256i32, prop_oneof![-170..-5i32, 5..170i32])
+            .prop_map(|(radius, degrees)| Move::Tangent { radius, degrees }),
+        1 => (4..128i32, 4..128i32).prop_map(|(depth, width)| Move::Groove { depth, width }),
+        1 => (4..256i32, prop_oneof![Just(1i32), 2..64i32])
+            .prop_map(|(reach, width)| Move::Flange { reach, width }),
+        4 => (prop_oneof![2 => 1..16i32, 1 => Just(16i32)], any::<bool>())
+            .prop_map(|(share, by_radius)| Move::Fillet { share, by_radius }),
+    ];
+    let scale = prop_oneof![
+        2 => Just((1000, 0)),
+        2 => (1000..9999i32, -4..=1i32),
+    ];
+    let moves = proptest::collection::vec(one, 1..=9);
+    (nose, moves, cap, scale, prop_oneof![Just(0i32), -500..500i32], any::<bool>()).prop_map(
+        |(nose, moves, cap, scale, lift, down)| Recipe { nose, moves, cap, scale, lift, down },
+    )
+}
+
+/// A piece to be, and the share of the shorter edge over which its first corner is rounded.
+struct Step {
+    piece: Piece,
+    fillet: Option<(f64, bool)>,
+}
+
+struct Pen {
+    scale: f64,
+    at: P2,
+    steps: Vec<Step>,
+    fillet: Option<(f64, bool)>,
+}
+
+impl Recipe {
+    /// The profile; not always a valid one.
+    pub(crate) fn outline(&self) -> Outline {
+        let scale = f64::from(self.scale.0) / 1000.0 * 10f64.powi(self.scale.1);
+        let start = [0.0, f64::from(self.lift) / GRID * scale];
+        let mut pen = Pen { scale, at: start, steps: Vec::new(), fillet: None };
+        self.nose.draw(&mut pen);
+        for step in &self.moves {
+            if pen.steps.len() < MOST {
+                step.draw(&mut pen);
+            }
+        }
+        let [d, z] = pen.at;
+        match self.cap {
+            Cap::Flat => pen.line([0.0, z]),
+            Cap::Cone(up) => pen.line([0.0, z + pen.unit(up)]),
+            Cap::Dome(below) => {
+                let h = pen.unit(below);
+                let (radius, sign) = (d.hypot(h), if below < 0 { -1.0 } else { 1.0 });
+                let centre = [0.0, z - h];
+                pen.push(Piece::about(
+                    pen.at,
+                    add(centre, [0.0, sign * radius], 1.0),
+                    centre,
+                    below >= 0,
+                ));
+            }
+        }
+        Outline { pieces: rounded(&pen.steps), down: self.down }
+    }
+}
+
+impl Pen {
+    fn unit(&self, count: i32) -> f64 {
+        f64::from(count) / GRID * self.scale
+    }
+
+    /// A point relative to here, kept off the axis.
+    fn by(&self, d: i32, z: i32) -> P2 {
+        let [x, y] = add(self.at, [self.unit(d), self.unit(z)], 1.0);
+        [x.max(self.unit(8)), y]
+    }
+
+    fn push(&mut self, piece: Piece) {
+        if piece.from != piece.to {
+            self.at = piece.to;
+            self.steps.push(Step { piece, fillet: self.fillet.take() });
+        }
+    }
+
+    fn line(&mut self, to: P2) {
+        self.push(Piece::line(self.at, to));
+    }
+}
+
+impl Nose {
+    fn draw(self, pen: &mut Pen) {
+        let [_, z] = pen.at;
+        match self {
+            Nose::Open => {}
+            Nose::Ball(radius, degrees) => {
+                let radius = pen.unit(radius);
+                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+                let to = if degrees == 90 {
+                    [radius, z + radius]
+                } else {
+                    [radius * sin, z + radius * (1.0 - cos)]
+                };
+                pen.push(Piece::about(pen.at, to, [0.0, z + radius], true));
+            }
+            Nose::Torus(face, radius) => {
+                let (face, radius) = (pen.unit(face), pen.unit(radius));
+                pen.line([face, z]);
+                let to = [face + radius, z + radius];
+                pen.push(Piece::about(pen.at, to, [face, z + radius], true));
+            }
+            Nose::Cone(d, up) => pen.line([pen.unit(d), z + pen.unit(up)]),
+        }
+    }
+}
+
+impl Move {
+    fn draw(self, pen: &mut Pen) {
+        match self {
+            Move::Line(d, z) => pen.line(pen.by(d, z)),
+            Move::Arc { to: (d, z), ratio, convex, by_radius } => {
+                let to = pen.by(d, z);
+                let radius = f64::from(ratio) / 100.0 * len(sub(to, pen.at));
+                let arc = Piece::by_radius(pen.at, to, radius, convex);
+                let centre = arc.round.map_or([0.0; 2], |round| round.centre);
+                pen.push(if by_radius { arc } else { Piece::about(pen.at, to, centre, convex) });
+            }
+            Move::Half { radius, convex } => {
+                let r = pen.unit(radius);
+                let (to, centre) = (add(pen.at, [0.0, r], 2.0), add(pen.at, [0.0, r], 1.0));
+                let mut arc = Piece::about(pen.at, to, centre, convex);
+                if let Some(round) = &mut arc.round {
+                    // Elsewhere half of the rounded chord need not be the rounded radius.
+                    let exact = |part: f64| pen.scale == 1.0 && (part * GRID).fract() == 0.0;
+                    round.by_radius = exact(pen.at[1]) && radius % 2 == 0;
+                }
+                pen.push(arc);
+            }
+            Move::Tangent { radius, degrees } => {
+                let Some(last) = pen.steps.last() else { return };
+                let t = last.piece.tangent(pen.at);
+                let convex = degrees > 0;
+                let toward = if convex { [-t[1], t[0]] } else { [t[1], -t[0]] };
+                let centre = add(pen.at, toward, pen.unit(radius));
+                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+                let a = sub(pen.at, centre);
+                let to = add(centre, [a[0] * cos - a[1] * sin, a[0] * sin + a[1] * cos], 1.0);
+                pen.push(Piece::about(pen.at, to, centre, convex));
+            }
+            Move::Groove { depth, width } => {
+                pen.line(pen.by(-depth, 0));
+                pen.line(pen.by(0, width));
+                pen.line(pen.by(depth, 0));
+            }
+            Move::Flange { reach, width } => {
+                pen.line(pen.by(reach, 0));
+                pen.line(pen.by(0, width));
+                pen.line(pen.by(-reach, 0));
+            }
+            Move::Fillet { share, by_radius } => {
+                pen.fillet = Some((f64::from(share) / 32.0, by_radius));
+            }
+        }
+    }
+}
+
+/// The pieces, corners between lines rounded where a step says so.
+fn rounded(steps: &[Step]) -> Vec<Piece> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    for step in steps {
+        let next = step.piece;
+        let fillet = step.fillet.and_then(|fillet| Some((fillet, pieces.pop()?))).map(
+            |((share, by_radius), last)| {
+                let (a, b) = (sub(last.to, last.from), sub(next.to, next.from));
+                // A corner before may have taken half of the edge already.
+                let whole = steps.iter().map(|s| s.piece).find(|p| p.to == last.to);
+                let edge = whole.map_or(len(a), |piece| len(sub(piece.to, piece.from)));
+                let cut = (share * edge.min(len(b))).min(len(a));
+                (last, corner(last, next, cut, by_radius))
+            },
+        );
+        match fillet {
+            Some((last, Some((arc, rest)))) => {
+                // Two arcs that share an edge meet in its middle.
+                let used = len(sub(arc.from, last.from)) <= 1e-9 * len(sub(arc.to, arc.from));
+                if used {
+                    pieces.push(Piece { from: last.from, ..arc });
+                } else {
+                    pieces.push(Piece::line(last.from, arc.from));
+                    pieces.push(arc);
+                }
+                pieces.push(rest);
+            }
+            Some((last, None)) => pieces.extend([last, next]),
+            None => pieces.push(next),
+        }
+    }
+    pieces
+}
+
+/// The arc that touches two lines this far from their corner, and what it leaves of the second.
+fn corner(last: Piece, next: Piece, cut: f64, by_radius: bool) -> Option<(Piece, Piece)> {
+    if last.round.is_some() || next.round.is_some() {
+        return None;
+    }
+    let (a, b) = (last.tangent(last.to), next.tangent(next.from));
+    let turn = cross(a, b).atan2(dot(a, b));
+    if !(0.02..3.0).contains(&turn.abs()) {
+        return None;
+    }
+    let (from, to) = (add(last.to, a, -cut), add(last.to, b, cut));
+    let radius = cut / (turn.abs() / 2.0).tan();
+    let left = if turn > 0.0 { [-a[1], a[0]] } else { [a[1], -a[0]] };
+    let arc = if by_radius {
+        Piece::by_radius(from, to, radius, turn > 0.0)
+    } else {
+        Piece::about(from, to, add(from, left, radius), turn > 0.0)
+    };
+    Some((arc, Piece::line(to, next.to)))
+}

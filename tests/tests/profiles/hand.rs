@@ -1,0 +1,212 @@
+//! Regions by hand beside a profile: they say what is felt, never where the tool is.
+
+use super::outline::{Outline, P2, Piece, add, len, sub, unit};
+use super::{said, tool};
+use tool_dsl::Checked;
+use tool_dsl::interpret::{Felt, Interpreter};
+use tool_dsl::source::Source;
+use touchoff::Level;
+use touchoff::tool::{Ask, Interpreted, Points, Tool};
+use touchoff_tests::oracle::draw::Draw;
+
+const PROFILE: &str = "profile {
+        start (0, 0);
+        arc to (3, 3) center (0, 3) as ball cutting;
+        line to (3, 10) as flute cutting;
+        line to (3, 12), (6, 12), (6, 20), (0, 20) as shank;
+    }";
+
+const REGIONS: &str = "curve low = z - 1;
+    region own as ball where low <= 0 { direction: (1, -2); magnitude: 2*depth; }
+    region slope where low >= 0, z <= 3 { magnitude: 5 - d - z/10; niceness: depth/4; }
+    region law as flute where 3 <= z <= 8, d >= 1 { magnitude: 3*depth^1.5; }
+    region away as flute where 3 <= z <= 8, d <= 1 { direction: away from (0, 20); niceness: 0.25; }
+    region toward as shank where 8 <= z <= 13 { direction: toward (9, 20); }
+    region rest where z >= 13 {}
+    magnitude shank: 7*depth;
+    niceness cutting: 1 - depth/6;
+    niceness flute: 0.5;";
+
+fn outline(down: bool) -> Outline {
+    let points = [[3.0, 10.0], [3.0, 12.0], [6.0, 12.0], [6.0, 20.0], [0.0, 20.0]];
+    let mut pieces = vec![Piece::about([0.0, 0.0], [3.0, 3.0], [0.0, 3.0], true)];
+    for to in points {
+        pieces.push(Piece::line(pieces[pieces.len() - 1].to, to));
+    }
+    Outline { pieces, down }
+}
+
+fn text(down: bool, regions: &str) -> String {
+    let frame = if down { "tip z = 20; spindle -z;" } else { "" };
+    format!("tool T {{ units mm; {frame} {PROFILE} {regions} }}")
+}
+
+/// The foot of a point, and the surface of the nearest feature: what `as` would else be.
+fn foot(outline: &Outline, p: P2) -> P2 {
+    let on = |piece: &Piece| {
+        let (distance, end) = piece.clamped(p);
+        match end {
+            None => add(p, piece.outward(p), distance),
+            Some(end) => [piece.from, piece.to][end],
+        }
+    };
+    let feet = outline.pieces.iter().map(on);
+    feet.min_by(|a, b| len(sub(*a, p)).total_cmp(&len(sub(*b, p)))).expect("pieces")
+}
+
+/// What the table of the language says: region, surface, magnitude, direction, niceness.
+fn wanted(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64) {
+    let depth = outline.nearest(p).1;
+    let foot = foot(outline, p);
+    let nearest = unit(sub(foot, p));
+    let [d, z] = p;
+    if z < 1.0 {
+        ("own", "ball", 2.0 * depth, unit([1.0, -2.0]), 1.0 - depth / 6.0)
+    } else if z < 3.0 {
+        ("slope", "ball", 5.0 - d - z / 10.0, unit([1.0, 0.1]), depth / 4.0)
+    } else if z < 8.0 && d > 1.0 {
+        ("law", "flute", 3.0 * depth.powf(1.5), nearest, 0.5)
+    } else if z < 8.0 {
+        ("away", "flute", depth, unit(sub(p, [0.0, 20.0])), 0.25)
+    } else if z < 13.0 {
+        ("toward", "shank", 7.0 * depth, unit(sub([9.0, 20.0], p)), 0.0)
+    } else {
+        ("rest", "shank", 7.0 * depth, nearest, 0.0)
+    }
+}
+
+#[test]
+fn each_region_feels_what_the_table_says() {
+    for down in [false, true] {
+        let text = text(down, REGIONS);
+        let tool = tool(&text).expect("good regions");
+        let planned = Interpreted::parse(&Source::new("t.tool", text.as_str())).expect("the same");
+        let outline = outline(down);
+        let mut draw = Draw::new(31);
+        for _ in 0..30_000 {
+            let p = [draw.between(0.0, 7.0), draw.between(-1.0, 21.0)];
+            let borders = [p[1] - 1.0, p[1] - 3.0, p[1] - 8.0, p[1] - 13.0, p[0] - 1.0];
+            let (_, depth) = outline.nearest(p);
+            if depth > 1e-9 && borders.iter().all(|border| border.abs() > 1e-9) {
+                judge(&tool, &planned, &outline, p);
+            }
+        }
+        let names: std::collections::BTreeSet<&str> =
+            tool.model.regions.iter().map(|region| region.name.as_str()).collect();
+        assert_eq!(names.len(), 6, "{names:?}");
+    }
+}
+
+fn judge(tool: &Checked, planned: &Interpreted, outline: &Outline, p: P2) {
+    let [d, z] = outline.turned(p);
+    let point = [d, 0.0, z];
+    let (mut list, mut lists) = (Points::default(), touchoff::tool::Felt::default());
+    list.push(point);
+    planned.evaluate(Level::new(), Ask::Everything, &list, 1.0, &mut lists);
+    let tape = (lists.inside[0] & 1 == 1).then(|| Felt {
+        region: lists.region[0] as usize,
+        depth: lists.depth[0],
+        magnitude: lists.magnitude[0],
+        direction: lists.direction.each_ref().map(|list| list[0]),
+        gradient: lists.gradient.each_ref().map(|list| list[0]),
+        niceness: lists.niceness[0],
+    });
+    let reference = Interpreter::new(tool).at(point, 1.0);
+    assert_eq!(reference, tape, "at {p:?}");
+    assert_eq!(reference.is_some(), outline.contains(p), "at {p:?}");
+    let Some(felt) = reference else {
+        assert!((planned.clearance(point) - outline.nearest(p).1).abs() < 1e-12, "at {p:?}");
+        return;
+    };
+    let (name, surface, magnitude, [e, f], niceness) = wanted(outline, p);
+    let region = &tool.model.regions[felt.region];
+    assert_eq!(
+        (region.name.as_str(), tool.model.surfaces[region.surface].name.as_str()),
+        (name, surface),
+        "at {p:?}"
+    );
+    let near = |a: f64, b: f64, what: &str| {
+        assert!((a - b).abs() < 1e-11, "{what} is {a}, not {b}, at {p:?} in {name}");
+    };
+    near(felt.depth, outline.nearest(p).1, "depth");
+    near(felt.magnitude, magnitude, "magnitude");
+    near(felt.niceness, niceness, "niceness");
+    let f = if outline.down { -f } else { f };
+    near(felt.direction[0], e, "radial part");
+    near(felt.direction[1], 0.0, "part across");
+    near(felt.direction[2], f, "axial part");
+}
+
+/// The gradient is the magnitude's slope.
+#[test]
+fn gradients_are_slopes() {
+    let tool = tool(&text(false, REGIONS)).expect("good regions");
+    let mut interpreter = Interpreter::new(&tool);
+    let mut draw = Draw::new(32);
+    for _ in 0..5_000 {
+        let p = [draw.between(0.05, 6.0), 0.0, draw.between(0.0, 20.0)];
+        let Some(felt) = interpreter.at(p, 1.0) else { continue };
+        let h = 1e-6;
+        let slopes = [0, 1, 2].map(|k| {
+            let ends = [h, -h].map(|h| {
+                let mut q = p;
+                q[k] += h;
+                interpreter.at(q, 1.0).filter(|other| other.region == felt.region)
+            });
+            ends[0].zip(ends[1]).map(|(a, b)| (a.magnitude - b.magnitude) / (2.0 * h))
+        });
+        if felt.depth > 1e-3 && slopes.iter().all(Option::is_some) {
+            for (slope, part) in slopes.iter().zip(felt.gradient) {
+                assert!(
+                    (slope.unwrap_or(f64::NAN) - part).abs() < 1e-4,
+                    "{slopes:?} at {p:?}, {felt:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Each mistake is said where it was made.
+#[test]
+fn mistakes_of_regions_are_shown() {
+    let two = "region low as ball where z <= 3 {} region high as shank where z >= 3 {}";
+    assert!(tool(&text(false, two)).is_ok());
+    let cases = [
+        (two.replace("z >= 3", "z >= 4"), "nothing covers", "profile {"),
+        (two.replace("z >= 3", "z >= 2"), "regions low and high overlap", "high"),
+        (two.replace("3 {}", "3 { depth: 3 - d; }"), "`depth` is the profile's here", "3 - d"),
+        (two.replace("as shank", "as shnak"), "unknown surface `shnak`", "shnak"),
+        (
+            two.replace("as ball", "as ball cutting"),
+            "the profile says which surfaces cut",
+            "cutting",
+        ),
+        (two.to_owned() + " region far where z >= 30 {}", "region far has no point", "far"),
+        (
+            two.to_owned() + " region never where z <= 1, z >= 2 {}",
+            "region never has no point",
+            "never",
+        ),
+        (two.to_owned() + " region late where z >= 15 {}", "late", "late"),
+        (two.replace("region high", "region low"), "two regions are called `low`", "low"),
+        (
+            two.replace("3 {}", "3 { direction: (0, 0); }"),
+            "the direction of low vanishes",
+            "direction: (0, 0)",
+        ),
+        (two.replace("z >= 3 {}", "z >= 3 { niceness: 1; }"), "does not cut", "1"),
+        (
+            two.replace("z >= 3 {}", "z >= 3 { magnitude: d - 1; }"),
+            "`magnitude` of high is -",
+            "d - 1",
+        ),
+        (two.to_owned() + " regions nearest;", "regions", "regions nearest;"),
+    ];
+    for (regions, message, place) in cases {
+        let said = said(&text(false, &regions));
+        assert!(
+            said.iter().any(|(words, at)| words.contains(message) && at.starts_with(place)),
+            "{regions}\nwants `{message}` at `{place}`, has {said:?}"
+        );
+    }
+}

@@ -1,0 +1,158 @@
+//! Random profiles of every kind, shrunk where they fail.
+
+use super::compare::{Flaw, Tally, compare};
+use super::draw::{Recipe, recipe};
+use super::outline::{Outline, Piece, cross, dot, len, sub};
+use super::tool;
+use super::valid::is_valid;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use tool_dsl::source::Source;
+use touchoff::tool::Interpreted;
+use touchoff_tests::oracle::draw::Draw;
+
+/// Points of each profile.
+const POINTS: usize = 320;
+/// How often a failing profile is tried smaller.
+const SHRINKS: usize = 250;
+/// How many of one kind are shrunk and shown.
+const SHOWN: usize = 4;
+
+/// Compiles and compares one profile.
+fn tried(outline: &Outline) -> Result<Tally, Flaw> {
+    let text = outline.text();
+    let run = || {
+        let tool = tool(&text).map_err(|message| (refusal(&message), message))?;
+        let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
+        compare(outline, (&tool, &planned), POINTS, &mut Draw::new(1))
+    };
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err(("panic", String::new())))
+}
+
+/// Refusals are told apart by their first words.
+fn refusal(message: &str) -> &'static str {
+    if message.contains("no curve tells") {
+        "refused: no curve tells"
+    } else if message.contains("could not be divided") {
+        "refused: not divided"
+    } else {
+        "refused: not understood"
+    }
+}
+
+/// The smallest profile found that fails in the same way.
+fn shrunk(mut tree: impl ValueTree<Value = Recipe>, flaw: Flaw) -> (Outline, Flaw) {
+    let mut best = (tree.current().outline(), flaw);
+    let mut more = tree.simplify();
+    for _ in 0..SHRINKS {
+        if !more {
+            break;
+        }
+        let outline = tree.current().outline();
+        let same = if is_valid(&outline) { tried(&outline).err() } else { None };
+        more = match same.filter(|flaw| flaw.0 == best.1.0) {
+            Some(flaw) => {
+                best = (outline, flaw);
+                tree.simplify()
+            }
+            None => tree.complicate(),
+        };
+    }
+    best
+}
+
+/// What occurs in a profile.
+fn kinds(outline: &Outline) -> Vec<&'static str> {
+    let mut all = Vec::new();
+    for (k, piece) in outline.pieces.iter().enumerate() {
+        let [d, z] = [0, 1].map(|k| piece.to[k] - piece.from[k]);
+        all.push(match piece.round {
+            None if z == 0.0 && d < 0.0 => "radial step inward",
+            None if z == 0.0 => "radial step outward",
+            None if d == 0.0 => "line along the axis",
+            None if z < 0.0 => "undercut",
+            None => "cone",
+            Some(r) if r.convex && r.by_radius => "convex arc by radius",
+            Some(r) if r.convex => "convex arc by centre",
+            Some(r) if r.by_radius => "concave arc by radius",
+            Some(_) => "concave arc by centre",
+        });
+        if piece.sweep().abs() > std::f64::consts::PI - 1e-6 {
+            all.push("half of a circle");
+        }
+        if piece.round.is_some_and(|round| round.centre[0] == 0.0) {
+            all.push("arc about the axis");
+        }
+        if k > 0 {
+            let [a, b] = outline.ways(k);
+            let round = [k - 1, k].map(|k| outline.pieces[k].round.is_some());
+            let tangent = cross(a, b).abs() < 1e-9 && dot(a, b) > 0.0;
+            match (tangent, round) {
+                (true, [true, true]) => all.push("arc tangent to arc"),
+                (true, [true, false] | [false, true]) => all.push("arc tangent to line"),
+                (false, _) if cross(a, b) < 0.0 => all.push("reflex corner"),
+                _ => {}
+            }
+        }
+        let thin = |next: &Piece| dot(sub(next.to, next.from), [d, z]);
+        if let Some(after) = outline.pieces.get(k + 2)
+            && thin(after) < 0.0
+            && outline.pieces[k + 1].round.is_none()
+            && len(sub(after.from, piece.to)) < 0.02 * outline.size()
+        {
+            all.push("thin piece or groove");
+        }
+    }
+    if outline.down {
+        all.push("spindle -z");
+    }
+    all
+}
+
+#[test]
+fn random_profiles_of_every_kind() {
+    let count: usize =
+        std::env::var("PROFILES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
+    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let strategy = recipe();
+    let (mut valid, mut drawn, mut tally) = (0, 0, Tally::default());
+    let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut flaws: BTreeMap<&str, usize> = BTreeMap::new();
+    while valid < count {
+        drawn += 1;
+        let tree = strategy.new_tree(&mut runner).expect("recipes are not filtered");
+        let outline = tree.current().outline();
+        if !is_valid(&outline) {
+            continue;
+        }
+        valid += 1;
+        kinds(&outline).into_iter().for_each(|kind| *seen.entry(kind).or_default() += 1);
+        match tried(&outline) {
+            Ok(one) => tally = tally.and(one),
+            Err(flaw) => {
+                let times = flaws.entry(flaw.0).or_default();
+                *times += 1;
+                if *times <= SHOWN {
+                    let (least, (kind, message)) = shrunk(tree, flaw);
+                    println!("{kind}: {message}\n{}\n", least.text());
+                }
+            }
+        }
+    }
+    println!("{valid} valid profiles of {drawn} drawn: {seen:#?}");
+    println!(
+        "{} points inside and {} outside, {} directions; worst depth {:e} sizes off; flaws: {flaws:?}",
+        tally.inside, tally.outside, tally.directions, tally.worst
+    );
+    let is_refused = |kind: &str| kind.starts_with("refused");
+    let refused: usize = flaws.iter().filter(|flaw| is_refused(flaw.0)).map(|flaw| flaw.1).sum();
+    flaws.retain(|kind, _| !is_refused(kind));
+    assert!(refused * 200 <= count, "{refused} of {count} valid profiles are refused");
+    assert!(flaws.is_empty(), "{flaws:?}");
+    if count >= 60 {
+        assert!(seen.len() >= 16, "{seen:?}");
+    }
+}

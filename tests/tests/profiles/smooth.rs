@@ -1,0 +1,322 @@
+//! `regions smooth w`: the depth stays, the direction is the normal of the rounded profile.
+
+use super::derived::FIG_7_3;
+use super::outline::{P2, Piece, Round, add, cross, dot, len, sub, unit};
+use super::tool;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+use tool_dsl::Checked;
+use tool_dsl::interpret::{Felt, Interpreter};
+use touchoff_tests::oracle::draw::Draw;
+
+/// A smoothed tool beside the same one by nearest features.
+struct Pair {
+    smooth: Box<Checked>,
+    nearest: Box<Checked>,
+    /// The rounded profile, in the file's frame.
+    rounded: Vec<Piece>,
+    /// The tip's z, if the spindle lies toward smaller z; then the tip is at 0 otherwise.
+    down: Option<f64>,
+    extent: P2,
+}
+
+/// Fig. 7.3 by the table of centres; every fan has the tangent length `w`.
+fn thesis(w: f64) -> Pair {
+    let (t, rho) = (w * FRAC_1_SQRT_2, w * (1.0 + SQRT_2));
+    let rounded = vec![
+        Piece::line([0.0, 0.0], [5.0 - w, 0.0]),
+        Piece::about([5.0 - w, 0.0], [5.0, w], [5.0 - w, w], true),
+        Piece::line([5.0, w], [5.0, 11.0 - w]),
+        Piece::about([5.0, 11.0 - w], [5.0 - w, 11.0], [5.0 - w, 11.0 - w], true),
+        Piece::line([5.0 - w, 11.0], [3.0 + w, 11.0]),
+        Piece::about([3.0 + w, 11.0], [3.0, 11.0 + w], [3.0 + w, 11.0 + w], false),
+        Piece::line([3.0, 11.0 + w], [3.0, 13.0 - w]),
+        Piece::about([3.0, 13.0 - w], [3.0 - t, 13.0 + t], [3.0 - rho, 13.0 - w], true),
+        Piece::line([3.0 - t, 13.0 + t], [1.0 + t, 15.0 - t]),
+        Piece::about([1.0 + t, 15.0 - t], [1.0, 15.0 + w], [1.0 + rho, 15.0 + w], false),
+        Piece::line([1.0, 15.0 + w], [1.0, 19.0]),
+        Piece::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true),
+    ];
+    let text = FIG_7_3.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
+    Pair {
+        smooth: tool(&text).expect("fits"),
+        nearest: tool(FIG_7_3).expect("good"),
+        rounded: rounded
+            .into_iter()
+            .filter(|piece| len(sub(piece.to, piece.from)) > 1e-9)
+            .collect(),
+        down: Some(20.0),
+        extent: [5.0, 20.0],
+    }
+}
+
+/// A profile of lines, its corners rounded in the order of the points.
+fn lines(points: &[P2], w: f64) -> Pair {
+    let count = points.len();
+    let way = |k: usize| unit(sub(points[k + 1], points[k]));
+    let mut rounded: Vec<Piece> = Vec::new();
+    let mut from = points[0];
+    for (k, corner) in points.iter().copied().enumerate() {
+        let mirrored = |[d, z]: P2| [d, -z];
+        let a = if k == 0 { mirrored(way(0)) } else { way(k - 1) };
+        let b = if k + 1 == count { mirrored(way(k - 1)) } else { way(k) };
+        let turn = cross(a, b).atan2(dot(a, b));
+        let (mut start, mut end) = (corner, corner);
+        let mut arc = None;
+        if turn.abs() > 1e-9 {
+            (start, end) = (add(corner, a, -w), add(corner, b, w));
+            let radius = w / (turn.abs() / 2.0).tan();
+            let left = if turn > 0.0 { [-a[1], a[0]] } else { [a[1], -a[0]] };
+            let mut centre = add(start, left, radius);
+            if k == 0 || k + 1 == count {
+                centre[0] = 0.0;
+                // From the start on, or up to the end, the mirror image takes the other half.
+                let low = (k == 0) == (turn > 0.0);
+                let pole = [0.0, centre[1] + if low { -radius } else { radius }];
+                if k == 0 { start = pole } else { end = pole }
+            }
+            arc = Some(Piece::about(start, end, centre, turn > 0.0));
+        }
+        if k > 0 && len(sub(start, from)) > 1e-9 {
+            rounded.push(Piece::line(from, start));
+        }
+        rounded.extend(arc);
+        from = end;
+    }
+    let path =
+        points[1..].iter().map(|[d, z]| format!("({d}, {z})")).collect::<Vec<_>>().join(", ");
+    let low = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+    let text = |regions: &str| {
+        let [d, z] = points[0];
+        let profile = format!("profile {{ start ({d}, {z}); line to {path} as body; }}");
+        format!("tool T {{ units mm; tip z = {low}; {profile} {regions} }}")
+    };
+    let most = |k: usize| points.iter().map(|p| p[k]).fold(0.0, f64::max);
+    Pair {
+        smooth: tool(&text(&format!("regions smooth {w};"))).expect("fits"),
+        nearest: tool(&text("")).expect("good"),
+        rounded: rounded.iter().map(|piece| lowered(piece, low)).collect(),
+        down: None,
+        extent: [most(0), most(1) - low],
+    }
+}
+
+fn lowered(piece: &Piece, by: f64) -> Piece {
+    let down = |p: P2| add(p, [0.0, by], -1.0);
+    let mut piece = Piece { from: down(piece.from), to: down(piece.to), ..*piece };
+    piece.round = piece.round.map(|round| Round { centre: down(round.centre), ..round });
+    piece
+}
+
+impl Pair {
+    fn turned(&self, [d, z]: P2) -> P2 {
+        [d, self.down.map_or(z, |tip| tip - z)]
+    }
+
+    /// The direction at a point of the file's frame, in that frame.
+    fn direction(&self, felt: &Felt) -> P2 {
+        [felt.direction[0], felt.direction[2] * if self.down.is_some() { -1.0 } else { 1.0 }]
+    }
+
+    /// The normal of the rounded profile, how far its piece's centre is, and how much farther the
+    /// next piece is that would say something else.
+    fn normal(&self, p: P2) -> (P2, f64, f64) {
+        let facing = self.rounded.iter().filter(|piece| piece.faces(p));
+        let mut all: Vec<(f64, &Piece)> =
+            facing.map(|piece| (piece.signed(p).abs(), piece)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let Some(&(least, owner)) = all.first() else { return ([0.0; 2], 0.0, 0.0) };
+        let way = owner.outward(p);
+        let other = all.iter().find(|(_, piece)| len(sub(piece.outward(p), way)) > 1e-6);
+        let away = owner.round.map_or(f64::INFINITY, |round| len(sub(p, round.centre)));
+        (way, away, other.map_or(f64::INFINITY, |other| other.0 - least))
+    }
+
+    /// Depths are those of nearest features, bit by bit; directions the rounded profile's. The
+    /// mean angle to the way to the true profile comes back.
+    fn agrees(&self, count: u32) -> f64 {
+        let (mut smooth, mut nearest) =
+            (Interpreter::new(&self.smooth), Interpreter::new(&self.nearest));
+        let mut draw = Draw::new(21);
+        let (mut compared, mut inside, mut angles) = (0, 0u32, 0.0);
+        for _ in 0..count {
+            let p = [draw.between(0.0, self.extent[0]), draw.between(0.0, self.extent[1])];
+            let [d, z] = self.turned(p);
+            let at = [d, 0.0, z];
+            let (felt, plain) = (smooth.at(at, 1.0), nearest.at(at, 1.0));
+            let (Some(felt), Some(plain)) = (felt, plain) else {
+                assert_eq!(felt.is_some(), plain.is_some(), "inside at {p:?}");
+                continue;
+            };
+            inside += 1;
+            assert_eq!(felt.depth, plain.depth, "at {p:?}");
+            let surface = |tool: &Checked, region: usize| {
+                tool.model.surfaces[tool.model.regions[region].surface].name.clone()
+            };
+            assert_eq!(surface(&self.smooth, felt.region), surface(&self.nearest, plain.region));
+            let got = self.direction(&felt);
+            angles += angle(got, self.direction(&plain));
+            let (wanted, away, margin) = self.normal(p);
+            if margin > 1e-9 && away > 1e-6 {
+                compared += 1;
+                assert!(
+                    len(sub(got, wanted)) < 1e-12 + 1e-13 / away,
+                    "{got:?}, not {wanted:?} at {p:?}"
+                );
+            }
+        }
+        assert!(compared * 100 > inside * 99 && inside * 10 > count, "{compared} of {inside}");
+        angles / f64::from(inside)
+    }
+
+    /// The largest turn of the direction from step to step along the surface, just below it.
+    fn steps(&self, surface: &[Piece], step: f64) -> f64 {
+        let mut interpreter = Interpreter::new(&self.smooth);
+        let (mut last, mut most) = (None, 0.0f64);
+        for piece in surface {
+            let length = len(sub(piece.to, piece.from)).max(piece.sweep().abs());
+            let count = (length / step).ceil() as u32;
+            for k in 0..=count {
+                let on = piece.at(f64::from(k) / f64::from(count));
+                let [d, z] = self.turned(add(on, piece.outward(on), -1e-9));
+                let Some(felt) = interpreter.at([d.abs(), 0.0, z], 1.0) else { continue };
+                assert!(felt.depth < 2e-9);
+                let way = self.direction(&felt);
+                most = most.max(last.map_or(0.0, |last| angle(last, way)));
+                last = Some(way);
+            }
+        }
+        most
+    }
+
+    /// Depths at which the direction jumps, on straight ways through the inside.
+    fn jumps(&self, count: usize, rho: f64) -> Vec<f64> {
+        let mut interpreter = Interpreter::new(&self.smooth);
+        let mut felt = |p: P2| {
+            let [d, z] = self.turned(p);
+            interpreter.at([d, 0.0, z], 1.0).map(|felt| (self.direction(&felt), felt.depth))
+        };
+        let mut draw = Draw::new(22);
+        let mut depths = Vec::new();
+        for _ in 0..count {
+            let a = [draw.between(0.0, self.extent[0]), draw.between(0.0, self.extent[1])];
+            let b = [(a[0] + draw.between(-0.1, 0.1)).abs(), a[1] + draw.between(-0.1, 0.1)];
+            let (mut a, mut b) = (a, b);
+            while len(sub(b, a)) > 1e-9 {
+                let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
+                let (Some(first), Some(half), Some(last)) = (felt(a), felt(middle), felt(b)) else {
+                    break;
+                };
+                if angle(first.0, last.0) < 1e-3 + 1e-6 * len(sub(b, a)) / rho {
+                    break;
+                }
+                if angle(first.0, half.0) > angle(half.0, last.0) { b = middle } else { a = middle }
+            }
+            if len(sub(b, a)) <= 1e-9 {
+                depths.extend(felt(a).map(|felt| felt.1));
+            }
+        }
+        depths
+    }
+}
+
+fn angle(a: P2, b: P2) -> f64 {
+    cross(a, b).atan2(dot(a, b)).abs()
+}
+
+fn surface_of(points: &[P2]) -> Vec<Piece> {
+    points.windows(2).map(|pair| Piece::line(pair[0], pair[1])).collect()
+}
+
+#[test]
+fn the_thesis_tool_turns_in_fans() {
+    for (w, mean, jump) in [(0.5, 0.034, 0.48), (1.0, 0.079, 0.98)] {
+        let pair = thesis(w);
+        let angle = pair.agrees(60_000);
+        assert!((angle - mean).abs() < 2e-3, "{angle} rad on average for {w}");
+        let mut surface = surface_of(&[
+            [0.0, 0.0],
+            [5.0, 0.0],
+            [5.0, 11.0],
+            [3.0, 11.0],
+            [3.0, 13.0],
+            [1.0, 15.0],
+            [1.0, 19.0],
+        ]);
+        surface.push(Piece::about([1.0, 19.0], [0.0, 20.0], [0.0, 19.0], true));
+        for step in [1e-1, 1e-3, 1e-5] {
+            let most = pair.steps(&surface, step);
+            assert!(most <= step / w * (1.0 + 1e-6) + 1e-8, "{most} in {step} for {w}");
+        }
+        let jumps = pair.jumps(30_000, w);
+        assert!(jumps.len() > 50 && jumps.iter().all(|depth| *depth >= jump), "{jumps:?}");
+    }
+}
+
+/// A tip on the axis, one that points inward, a step under a flange, and skirts around a pin: fans
+/// of small corners reach under larger ones and must not claim what is nearer to those.
+#[test]
+fn fans_are_the_rounded_profiles() {
+    let shapes: [(&[P2], f64); 6] = [
+        (&[[0.0, 0.0], [3.0, 3.0], [3.0, 10.0], [0.0, 10.0]], 0.5),
+        (&[[0.0, 1.0], [3.0, 0.0], [3.0, 10.0], [0.0, 10.0]], 0.5),
+        (&[[0.0, 0.0], [3.0, 1.0], [3.0, 10.0], [0.0, 12.0]], 1.0),
+        (&[[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [6.0, 3.0], [6.0, 4.0], [0.0, 4.0]], 0.5),
+        (&[[0.0, 0.0], [6.0, 0.0], [6.0, 1.0], [2.0, 1.0], [2.0, 3.0], [0.0, 3.0]], 0.5),
+        (
+            &[
+                [0.0, 0.0],
+                [2.0, 0.0],
+                [2.0, 3.0],
+                [4.0, 3.0],
+                [4.0, -2.0],
+                [9.0, -2.0],
+                [9.0, 8.0],
+                [0.0, 8.0],
+            ],
+            0.5,
+        ),
+    ];
+    for (points, w) in shapes {
+        let pair = lines(points, w);
+        pair.agrees(20_000);
+        let low = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+        let surface: Vec<Piece> =
+            surface_of(points).iter().map(|piece| lowered(piece, low)).collect();
+        let rho = pair.rounded.iter().filter_map(|piece| piece.round).map(|round| round.radius);
+        let rho = rho.fold(f64::INFINITY, f64::min);
+        for step in [1e-2, 1e-4] {
+            let most = pair.steps(&surface, step);
+            assert!(most <= step / rho * (1.0 + 1e-6) + 1e-8, "{most} in {step} on {points:?}");
+        }
+    }
+}
+
+/// On the axis itself the direction lies along it.
+#[test]
+fn a_smooth_tip_points_along_the_axis() {
+    let pair = lines(&[[0.0, 0.0], [3.0, 3.0], [3.0, 10.0], [0.0, 10.0]], 0.5);
+    let mut interpreter = Interpreter::new(&pair.smooth);
+    for z in [1e-9, 0.1, 0.5] {
+        let felt = interpreter.at([0.0, 0.0, z], 1.0).expect("inside");
+        assert_eq!(felt.direction, [0.0, 0.0, -1.0]);
+    }
+}
+
+#[test]
+fn fans_that_do_not_fit_are_refused() {
+    let with = |w: &str| FIG_7_3.replacen("} }", &format!("}} regions smooth {w}; }}"), 1);
+    let cases = [
+        ("1.5", &["do not fit on the edge of length 2", "(5, 11)", "(3, 11)", "at most 1"][..]),
+        ("1.0001", &["do not fit on the edge of length 2", "at most 1"]),
+        ("0", &["a tangent length is more than 0"]),
+        ("-1", &["a tangent length is more than 0"]),
+    ];
+    for (w, words) in cases {
+        let message = tool(&with(w)).expect_err("too long");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+    let bulge = "tool T { units mm; profile { start (0, 0);
+        arc to (3, 3) center (0, 3) as ball; line to (5, 3), (5, 9), (0, 9) as shank; } regions smooth 0.5; }";
+    let message = tool(bulge).expect_err("an arc ends in a corner");
+    assert!(message.contains("rounds corners between lines, at (3, 3) an arc ends"), "{message}");
+}

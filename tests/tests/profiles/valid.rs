@@ -1,0 +1,93 @@
+//! Whether a drawn profile is a good one, with room to spare: told from points along it.
+
+use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
+
+/// How near a profile may come to itself, in sizes.
+const MARGIN: f64 = 3e-4;
+/// How sharp a corner may be, as a sine.
+const SHARP: f64 = 0.03;
+const CHORDS: u32 = 48;
+
+/// Whether the profile is valid, and stays so if moved a little.
+pub(crate) fn is_valid(outline: &Outline) -> bool {
+    let size = outline.size();
+    let margin = MARGIN * size;
+    let pieces = &outline.pieces;
+    let count = pieces.len();
+    if count == 0 {
+        return false;
+    }
+    let [first, last] = [outline.vertex(0), outline.vertex(count)];
+    let joined = pieces.windows(2).all(|pair| pair[0].to == pair[1].from);
+    assert!(joined && first[0] == 0.0 && last[0] == 0.0, "{outline:?}");
+    let lines: Vec<Vec<P2>> = pieces.iter().map(chords).collect();
+    let long = |piece: &Piece| {
+        len(sub(piece.to, piece.from)) >= margin
+            && piece.round.is_none_or(|r| r.radius <= 20.0 * size && r.radius >= margin)
+            && piece.sweep().abs() <= std::f64::consts::PI * (1.0 + 1e-9)
+    };
+    let sharp = |k: usize| {
+        let [a, b] = outline.ways(k);
+        dot(a, b) < 0.0 && cross(a, b).abs() < SHARP
+    };
+    if !pieces.iter().all(long) || (0..=count).any(sharp) || area(&lines) < margin * size {
+        return false;
+    }
+    for (k, line) in lines.iter().enumerate() {
+        // Off the axis, and beside the ends steadily away from it.
+        let clear = |p: &P2| {
+            let from = len(sub(*p, first)).min(len(sub(*p, last)));
+            p[0] >= margin.min(SHARP * from)
+        };
+        let ends = usize::from(k == 0)..line.len() - usize::from(k + 1 == count);
+        if !line[ends].iter().all(clear) {
+            return false;
+        }
+        for (j, other) in lines.iter().enumerate().skip(k + 1) {
+            let joint = (j == k + 1).then(|| outline.vertex(j));
+            if near(line, other, joint, margin) || near(other, line, joint, margin) {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// Points along a piece; those of lines are close together near the ends.
+fn chords(piece: &Piece) -> Vec<P2> {
+    let share = |k: u32| f64::from(k) / f64::from(CHORDS);
+    match piece.round {
+        None => (0..=CHORDS).map(|k| piece.at(share(k).powi(2) * (3.0 - 2.0 * share(k)))).collect(),
+        Some(_) => (0..=CHORDS).map(|k| piece.at(share(k))).collect(),
+    }
+}
+
+/// Whether a point of one polyline is too near the other, or they cross. Beside a joint they may
+/// be as near as it is.
+fn near(line: &[P2], other: &[P2], joint: Option<P2>, margin: f64) -> bool {
+    let limit = |p: P2| joint.map_or(margin, |joint| margin.min(0.5 * SHARP * len(sub(p, joint))));
+    line.windows(2).any(|a| {
+        other.windows(2).any(|b| {
+            let beside = joint.is_some_and(|joint| {
+                a.iter().chain(b).any(|p| len(sub(*p, joint)) < 1e-9 * margin)
+            });
+            distance(a[1], b[0], b[1]) < limit(a[1]) || (!beside && cross_each_other(a, b))
+        })
+    })
+}
+
+fn distance(p: P2, a: P2, b: P2) -> f64 {
+    let way = sub(b, a);
+    let share = (dot(sub(p, a), way) / dot(way, way)).clamp(0.0, 1.0);
+    len(sub(p, add(a, way, share)))
+}
+
+fn cross_each_other(a: &[P2], b: &[P2]) -> bool {
+    let side = |a: &[P2], p: P2| cross(sub(a[1], a[0]), sub(p, a[0])) > 0.0;
+    side(a, b[0]) != side(a, b[1]) && side(b, a[0]) != side(b, a[1])
+}
+
+/// Positive if the material is on the left.
+fn area(lines: &[Vec<P2>]) -> f64 {
+    lines.iter().flat_map(|line| line.windows(2)).map(|pair| cross(pair[0], pair[1]) / 2.0).sum()
+}
