@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use tool_dsl::formula::Formula;
 use tool_dsl::interpret::Interpreter;
 use touchoff_tests::oracle::draw::Draw;
-use touchoff_tests::oracle::{D2Ball, Fig73Exact, HalfSphereCylinder, Oracle};
+use touchoff_tests::oracle::{Oracle, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 
 pub(crate) const FIG_7_3: &str = "tool Fig73 { units mm; tip z = 20; spindle -z;
     profile {
@@ -74,7 +74,7 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
 #[test]
 fn the_thesis_tool_is_derived() {
     // Derived from the tip up, where the thesis lists from the housing down.
-    agrees(FIG_7_3, &Fig73Exact::default(), &[8, 7, 6, 5, 4, 3, 2, 1, 0]);
+    agrees(FIG_7_3, &fig_7_3_exact(), &[8, 7, 6, 5, 4, 3, 2, 1, 0]);
     let tool = tool(FIG_7_3).expect("a good profile");
     let names: Vec<&str> = tool.model.regions.iter().map(|region| region.name.as_str()).collect();
     assert_eq!(
@@ -111,12 +111,12 @@ fn mentioned(formula: &Formula, curves: &mut BTreeSet<usize>) {
 
 #[test]
 fn a_ball_cutter_is_derived() {
-    agrees(D2_BALL, &D2Ball::default(), &[0, 1, 2, 3]);
+    agrees(D2_BALL, &d2_ball(), &[0, 1, 2, 3]);
 }
 
 #[test]
 fn the_half_sphere_is_derived() {
-    agrees(HALF_SPHERE, &HalfSphereCylinder::default(), &[0, 1, 2, 3, 4]);
+    agrees(HALF_SPHERE, &half_sphere_cylinder(), &[0, 1, 2, 3, 4]);
 }
 
 /// A magnitude that is the depth is a length and changes with the part's unit; a law of another

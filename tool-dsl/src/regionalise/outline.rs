@@ -265,19 +265,30 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         }
     }
     let points: Vec<Point> = outline.iter().flat_map(along).collect();
-    for (segment, at) in
-        outline.iter().zip(outline.iter().map(|s| (doubles(&s.from), doubles(&s.to))))
-    {
-        let lowest = along(segment).into_iter().map(|p| p[0]).fold(f64::INFINITY, f64::min);
-        if at.0[0] == 0.0 && at.1[0] == 0.0 {
+    let [_, high] = reach(outline);
+    for (index, segment) in outline.iter().enumerate() {
+        let [[from, _], [to, _]] = segment.ends();
+        // An arc's own points, without its ends where they are the profile's.
+        let within = segment.flat.circle.filter(|(centre, radius, _)| {
+            segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
+        });
+        let lowest = within.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
+        let touches =
+            lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
+        if segment.flat.circle.is_none() && from == 0.0 && to == 0.0 {
             reports.push(
                 Report::error(segment.span, "this segment lies on the axis")
                     .help("leave it out: the axis closes the profile by itself"),
             );
-        } else if lowest < -1e-12 {
+        } else if lowest < -1e-12 * high[0] || from < 0.0 || to < 0.0 {
             reports.push(
                 Report::error(segment.span, "this segment crosses the axis")
                     .help("`d` is a radius and never negative"),
+            );
+        } else if touches {
+            reports.push(
+                Report::error(segment.span, "this segment touches the axis")
+                    .help("a profile is on the axis at its two ends only"),
             );
         }
     }

@@ -33,6 +33,13 @@ pub(crate) fn rounded(
     // Corner k lies before piece k; the last behind all.
     let corners: Vec<Option<Corner>> =
         (0..=count).map(|k| corner(outline, k, length)).collect::<Result<_, _>>()?;
+    let ends = |k: usize| usize::from(corners[k].is_some()) + usize::from(corners[k + 1].is_some());
+    let room = |k: &usize| outline[*k].chord() / ends(*k) as f64;
+    if let Some(tightest) = (0..count).min_by(|a, b| room(a).total_cmp(&room(b)))
+        && length.to_f64() > room(&tightest) * (1.0 + 1e-12)
+    {
+        return Err(Rough::Short(tightest, outline[tightest].chord(), ends(tightest)));
+    }
     let mut pieces = Vec::new();
     for (k, segment) in outline.iter().enumerate() {
         let (before, after) = (&corners[k], &corners[k + 1]);
@@ -41,11 +48,7 @@ pub(crate) fn rounded(
         {
             pieces.push((corner.arc(segment), Origin::Fan(None)));
         }
-        let ends = usize::from(before.is_some()) + usize::from(after.is_some());
-        let used = length.to_f64() * ends as f64;
-        if used > segment.chord() * (1.0 + 1e-12) {
-            return Err(Rough::Short(k, segment.chord(), ends));
-        }
+        let used = length.to_f64() * ends(k) as f64;
         if used < segment.chord() * (1.0 - 1e-12) {
             let from = before.as_ref().map_or(&segment.from, |corner| &corner.to);
             let to = after.as_ref().map_or(&segment.to, |corner| &corner.from);

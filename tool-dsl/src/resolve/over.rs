@@ -293,7 +293,8 @@ impl Conditions<'_> {
                     }
                 };
                 let (name, span) = (region.name.word.clone(), region.name.span);
-                let said = Said { name, span, owner, inside, depth_span: part.span };
+                let depth_span = own.map_or(span, |value| value.span);
+                let said = Said { name, span, owner, inside, depth_span };
                 felt.finish(said, (depth, magnitude, niceness), course)
             }
         }

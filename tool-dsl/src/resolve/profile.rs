@@ -163,9 +163,12 @@ fn by_radius(
     let chord = (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0));
     let short = &(radius * radius) - &(&(&chord * &chord) / &Number::int(4));
     let (r, c) = (radius.to_f64(), norm(minus(doubles(to), doubles(from))));
-    // A half circle's centre is on its chord but for rounding.
-    let off =
-        if short.to_f64().abs() <= 1e-18 * c * c { Some(Number::int(0)) } else { short.sqrt() };
+    // A half circle's centre is on its chord, as far as its ends are on the circle.
+    let off = if short.to_f64().abs() <= OFF_CIRCLE * c * c {
+        Some(Number::int(0))
+    } else {
+        short.sqrt()
+    };
     let (Some(off), true) = (off, r > 0.0) else {
         return Err(Report::error(span, format!("no arc of radius {r} spans a chord of {c}"))
             .help("take a larger radius, or nearer ends"));
