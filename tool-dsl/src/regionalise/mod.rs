@@ -262,7 +262,7 @@ impl Section<'_> {
                         None => {
                             let t = segment.tangent(end == 1);
                             let way = if end == 1 { t } else { [-t[0], -t[1]] };
-                            let turned = turn(way, [-way[0], way[1]]);
+                            let turned = turn(way, [way[0], -way[1]]);
                             let corner = if end == 1 { turned } else { -turned };
                             segment.circle.is_none() && corner >= 0.0
                         }

@@ -8,6 +8,8 @@ use crate::formula::CurveIndex;
 
 /// What is closer to a curve than this part of the section's size lies on it.
 const ON: f64 = 1e-10;
+/// How far a curve may stand out from its chord, in chords: beyond, another branch is meant.
+const BULGE: f64 = 0.15;
 /// Rounding of a polynomial's value, in parts of the sum of its terms' sizes.
 const ROUNDING: f64 = 2e-14;
 
@@ -290,7 +292,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             p = minus(p, step);
         }
         // Where the curves hardly cross, the chord's point is as good.
-        if norm(minus(p, on_chord)) < norm(minus(b, a)) { p } else { on_chord }
+        if norm(minus(p, on_chord)) < BULGE * norm(minus(b, a)) { p } else { on_chord }
     }
 
     /// A point of the curve beside the middle of a chord.
