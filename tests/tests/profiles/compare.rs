@@ -154,6 +154,9 @@ fn judge(
     if sure && (clearance > 0.0) == inside {
         return Err(("wrong side", format!("clearance {clearance}, inside is {inside}")));
     }
+    if clearance < -tolerance || clearance.is_nan() {
+        return Err(("wrong clearance", format!("{clearance} is below 0")));
+    }
     let worst = |error: f64| Tally { worst: error / size, ..Tally::default() };
     let Some(got) = got else {
         let error = (clearance - least).abs();

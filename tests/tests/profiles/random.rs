@@ -142,7 +142,7 @@ fn random_profiles_of_every_kind() {
             }
         }
     }
-    println!("{valid} valid profiles of {drawn} drawn: {seen:#?}");
+    println!("{valid} valid profiles of {drawn} drawn: {seen:?}");
     println!(
         "{} points inside and {} outside, {} directions; worst depth {:e} sizes off; flaws: {flaws:?}",
         tally.inside, tally.outside, tally.directions, tally.worst
