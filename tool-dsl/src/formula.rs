@@ -4,7 +4,7 @@
 pub type CurveIndex = usize;
 
 /// A condition on the signs of curves. Both sides of an atom are closed: `below` is `c ≤ 0`, its
-/// opposite `c ≥ 0`.
+/// opposite `c ≥ 0`, but for strict atoms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     /// Always or never.
@@ -15,6 +15,8 @@ pub enum Formula {
         curve: CurveIndex,
         /// `c ≤ 0` rather than `c ≥ 0`.
         below: bool,
+        /// Without the curve itself, as exceptions of derived regions are.
+        strict: bool,
     },
     /// All hold.
     All(Vec<Formula>),
@@ -38,8 +40,10 @@ impl Formula {
     pub fn holds(&self, value: &impl Fn(CurveIndex) -> f64) -> bool {
         match self {
             Formula::Const(constant) => *constant,
-            Formula::Atom { curve, below: true } => value(*curve) <= 0.0,
-            Formula::Atom { curve, below: false } => value(*curve) >= 0.0,
+            Formula::Atom { curve, below: true, strict: false } => value(*curve) <= 0.0,
+            Formula::Atom { curve, below: false, strict: false } => value(*curve) >= 0.0,
+            Formula::Atom { curve, below: true, strict: true } => value(*curve) < 0.0,
+            Formula::Atom { curve, below: false, strict: true } => value(*curve) > 0.0,
             Formula::All(parts) => parts.iter().all(|part| part.holds(value)),
             Formula::Any(parts) => parts.iter().any(|part| part.holds(value)),
         }
@@ -49,8 +53,8 @@ impl Formula {
     pub fn decided(&self, signs: &[Signs]) -> Option<bool> {
         match self {
             Formula::Const(constant) => Some(*constant),
-            Formula::Atom { curve, below } => {
-                let inside = if *below { NEGATIVE | ZERO } else { POSITIVE | ZERO };
+            Formula::Atom { curve, below, strict } => {
+                let inside = side(*below, *strict);
                 match signs[*curve] {
                     known if known & !inside == 0 => Some(true),
                     known if known & inside == 0 => Some(false),
@@ -68,8 +72,8 @@ impl Formula {
     /// atoms say so.
     pub fn demand(&self, signs: &mut [Signs]) {
         match self {
-            Formula::Atom { curve, below } => {
-                signs[*curve] &= if *below { NEGATIVE | ZERO } else { POSITIVE | ZERO };
+            Formula::Atom { curve, below, strict } => {
+                signs[*curve] &= side(*below, *strict);
             }
             Formula::All(parts) => parts.iter().for_each(|part| part.demand(signs)),
             Formula::Any(parts) if parts.len() == 1 => parts[0].demand(signs),
@@ -89,7 +93,7 @@ impl Formula {
     /// The atoms whose curve is not yet decided, in order.
     pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {
-            Formula::Atom { curve, below } if self.decided(signs).is_none() => {
+            Formula::Atom { curve, below, .. } if self.decided(signs).is_none() => {
                 atoms.push((*curve, *below));
             }
             Formula::All(parts) | Formula::Any(parts) if self.decided(signs).is_none() => {
@@ -100,6 +104,12 @@ impl Formula {
             _ => {}
         }
     }
+}
+
+/// The signs that an atom allows.
+fn side(below: bool, strict: bool) -> Signs {
+    let open = if below { NEGATIVE } else { POSITIVE };
+    if strict { open } else { open | ZERO }
 }
 
 fn all(parts: impl Iterator<Item = Option<bool>>) -> Option<bool> {

@@ -175,7 +175,7 @@ fn half_a_circle_takes_rounded_ends() {
 fn dishes_at_the_axis_are_exact() {
     exact(&path(&[[0.0, 0.0], [1.0, 0.0], [1.0, 5.0], [0.0, 4.0]]));
     exact(&path(&[[0.0, 1.0], [1.0, 0.0], [1.0, 5.0], [0.0, 5.0]]));
-    let dish = Piece::about([1.0, 5.0], [0.0, 4.0], [0.0, 5.0], false);
+    let dish = Piece::about([1.0, 5.0], [0.0, 4.5], [0.0, 5.75], false);
     let lines = path(&[[0.0, 0.0], [1.0, 0.0], [1.0, 5.0]]).pieces;
     exact(&Outline { pieces: lines.into_iter().chain([dish]).collect(), down: false });
 }

@@ -338,9 +338,12 @@ impl Planner<'_> {
     }
 
     fn inseparable(&self, [d, z]: Point) -> Report {
+        let outline = self.model.section.iter().flat_map(|section| &section.outline);
+        let outline: Vec<_> = outline.cloned().collect();
+        let span = outline::nearest_span(&outline, [d, z]).unwrap_or(self.model.name_span);
         let z = self.model.frame.to_file(z);
         Report::error(
-            self.model.name_span,
+            span,
             format!("no curve tells the nearest features apart near ({d:.4}, {z:.4})"),
         )
         .help("features closer than 10^-10 of the tool's size cannot be told apart")

@@ -15,6 +15,8 @@ pub(crate) enum Test {
     All(Vec<Test>),
     /// One holds.
     Any(Vec<Test>),
+    /// It holds, and not only just.
+    Strictly(Box<Test>),
 }
 
 impl Test {

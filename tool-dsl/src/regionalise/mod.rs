@@ -89,7 +89,8 @@ impl Bound {
         }
         let mut any = vec![border];
         for other in &self.unless {
-            any.push(other.test(section, graph)?);
+            // On its own border an exception is none: there the neighbour's foot is its end.
+            any.push(Test::Strictly(Box::new(other.test(section, graph)?)));
         }
         Some(Test::Any(any))
     }

@@ -369,6 +369,17 @@ pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
     [low, high]
 }
 
+/// The place of the piece that is nearest to a point.
+pub(crate) fn nearest_span(outline: &[Segment], p: Point) -> Option<Span> {
+    let distance = |segment: &Segment| {
+        let [before, after] = segment.sector(p);
+        let [from, to] = segment.ends().map(|end| norm(minus(p, end)));
+        if before < 0.0 || after < 0.0 { from.min(to) } else { segment.signed(p).abs() }
+    };
+    let nearest = outline.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.map(|segment| segment.span)
+}
+
 /// The largest radius of an outline between two heights, rounded up where it is not a given one.
 pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
     let up = |d: f64| d * (1.0 + 4.0 * f64::EPSILON);

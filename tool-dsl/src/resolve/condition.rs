@@ -64,7 +64,7 @@ impl Curves {
             self.polynomials.push(polynomial);
             (self.list.len() - 1, true)
         });
-        Formula::Atom { curve, below: below == same }
+        Formula::Atom { curve, below: below == same, strict: false }
     }
 
     /// `low ≤ high` as a formula.

@@ -8,7 +8,7 @@ use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::model::{Outside, Over, Region, Section, Surface};
-use crate::regionalise::outline::Segment;
+use crate::regionalise::outline::{Segment, nearest_span};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::report::Report;
 use crate::source::Span;
@@ -51,9 +51,10 @@ pub(super) fn derived(
     let (derived, beside) = match divided {
         Ok(both) => both,
         Err(Undivided([d, z])) => {
+            let at = nearest_span(&outline, [d, z]).unwrap_or(span);
             let z = lowering.frame.to_file(z);
             let report = Report::error(
-                span,
+                at,
                 format!(
                     "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
                 ),
@@ -134,6 +135,11 @@ pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Fo
         Test::AtMost(value) => curves.at_most(graph, *value, zero),
         Test::All(all) => Formula::All(all.iter().map(|t| formula(t, curves, graph)).collect()),
         Test::Any(any) => Formula::Any(any.iter().map(|t| formula(t, curves, graph)).collect()),
+        Test::Strictly(test) => match formula(test, curves, graph) {
+            Formula::Atom { curve, below, .. } => Formula::Atom { curve, below, strict: true },
+            // A side that is always or never so has no border.
+            other => other,
+        },
     }
 }
 
