@@ -10,7 +10,7 @@ use super::unit_or_z;
 
 /// How the profile turns at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Turn {
+pub enum Turn {
     /// An end of the profile, on the axis.
     Axis,
     /// The material fills less than a half turn: nearest from outside only.
@@ -89,6 +89,11 @@ impl Profile {
         }
         vertices.push(Vertex { at, turn: Turn::Axis });
         Self { pieces, vertices, owners }
+    }
+
+    /// How it turns behind a piece.
+    pub fn turn(&self, piece: usize) -> Turn {
+        self.vertices[piece + 1].turn
     }
 
     /// Who may own points inside, in the order of listing.

@@ -5,7 +5,7 @@
 
 use super::big::Big;
 use super::piece::Piece;
-use super::profile::{Feature, Profile};
+use super::profile::{Feature, Profile, Turn};
 use super::restated::{Point, Restated};
 use super::{Meridian, Nearest};
 
@@ -35,8 +35,8 @@ impl At {
 pub struct Reference {
     tool: Restated,
     parts: Vec<Part>,
-    /// Whether the corner behind each piece is a reflex one.
-    reflex: Vec<bool>,
+    /// How the profile turns behind each piece.
+    turns: Vec<Turn>,
     owners: Vec<Feature>,
     size: f64,
 }
@@ -95,31 +95,32 @@ impl Part {
             Far { distance: if b < a { b } else { a }, side: None }
         };
         let zero = Big::zero();
-        match &self.shape {
+        let faces = match &self.shape {
             Shape::Line { along, length } => {
-                let from = sub(p, &self.a);
-                let t = dot(&from, along);
-                if t < zero || t > length * length {
-                    return ends();
-                }
-                let off = &cross(along, &from) / length;
-                Far { distance: off.abs(), side: Some(!off.is_negative()) }
+                let t = dot(&sub(p, &self.a), along);
+                t >= zero && t <= length * length
             }
-            Shape::Arc { centre, radius, convex } => {
+            Shape::Arc { centre, convex, .. } => {
                 let from = sub(p, centre);
-                let (a, b) = (sub(&self.a, centre), sub(&self.b, centre));
-                let (first, last) = (cross(&a, &from), cross(&from, &b));
-                let faces = if *convex {
-                    first >= zero && last >= zero
-                } else {
-                    first <= zero && last <= zero
-                };
-                if !faces {
-                    return ends();
-                }
-                let inward = radius - &norm(&from);
-                let side = inward.is_negative() != *convex || inward == zero;
-                Far { distance: inward.abs(), side: Some(side) }
+                let first = cross(&sub(&self.a, centre), &from);
+                let last = cross(&from, &sub(&self.b, centre));
+                if *convex { first >= zero && last >= zero } else { first <= zero && last <= zero }
+            }
+        };
+        if !faces {
+            return ends();
+        }
+        let inward = self.inward(p);
+        Far { distance: inward.abs(), side: Some(!inward.is_negative()) }
+    }
+
+    /// How far a point lies on the inner side of the whole line or circle.
+    fn inward(&self, p: &Point) -> Big {
+        match &self.shape {
+            Shape::Line { along, length } => &cross(along, &sub(p, &self.a)) / length,
+            Shape::Arc { centre, radius, convex } => {
+                let inward = radius - &norm(&sub(p, centre));
+                if *convex { inward } else { -&inward }
             }
         }
     }
@@ -167,9 +168,9 @@ impl Reference {
             at = way.to.clone();
         }
         let owners = profile.owners().to_vec();
-        let reflex = (0..parts.len()).map(|k| owners.contains(&Feature::Corner(k))).collect();
+        let turns = (0..parts.len()).map(|piece| profile.turn(piece)).collect();
         let most = parts.iter().flat_map(|part| double(&part.b)).fold(0.0, f64::max);
-        Self { tool: tool.clone(), parts, reflex, owners, size: most }
+        Self { tool: tool.clone(), parts, turns, owners, size: most }
     }
 
     /// The tool.
@@ -200,11 +201,17 @@ impl Reference {
         }
     }
 
-    /// Whether a point whose nearest is an end of a piece is inside: in the fan of a reflex corner.
+    /// Whether a point whose nearest is an end of a piece is inside: in the fan of a reflex corner, or where rounding alone keeps it
+    /// from facing the piece.
     fn beside(&self, at: &At, place: usize) -> bool {
         let part = &self.parts[place];
         let [a, b] = [&part.a, &part.b].map(|end| norm(&sub(&at.dz, end)));
-        if b < a { self.reflex[place] } else { place > 0 && self.reflex[place - 1] }
+        let turn = if b < a { Some(place) } else { place.checked_sub(1) };
+        match turn.map(|piece| self.turns[piece]) {
+            Some(Turn::Reflex(_)) => true,
+            Some(Turn::Smooth) => !part.inward(&at.dz).is_negative(),
+            Some(Turn::Convex | Turn::Axis) | None => false,
+        }
     }
 
     /// The distance to what an owner consists of: a piece with its ends, or a corner.

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod agreement;
+mod card;
 mod partitions;
 mod points;
 
@@ -13,7 +14,7 @@ use std::path::Path;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile};
 use touchoff::tool::Interpreted;
-use touchoff_tests::oracle::{self, Nearest};
+use touchoff_tests::oracle::{self, Nearest, restated};
 
 /// Lengths of the file's unit in the part's that are tried: the same unit, and mm in inches.
 const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];
@@ -48,6 +49,12 @@ macro_rules! suites {
                 let (checked, tape) = (checked(&source), interpreted(&source));
                 let points = points::all(&oracle, 1);
                 agreement::of(tools_library::$tool, &oracle, &checked, &tape, &points);
+            }
+
+            #[test]
+            fn the_card_agrees() {
+                let Some(tool) = restated::of(stringify!($tool)) else { return };
+                card::of(&tools_library::$tool, &Nearest::new(&tool));
             }
 
             #[test]

@@ -1,0 +1,249 @@
+//! How exact compiled evaluators are, point by point against 256 bits.
+//!
+//! Both forms are asked, for one point and for lanes; they have to have the same bits, and their error is measured once.
+
+use super::points::points;
+use crate::oracle::big::Big;
+use crate::oracle::reference::{At, Reference};
+use crate::oracle::restated::{self, Restated};
+use crate::oracle::{Meridian, Nearest, Oracle};
+use touchoff::tool::{Ask, Felt, Points};
+use touchoff::{Level, Tool};
+
+/// Nearer to the surface than so many ulp(S), either side is right; and so of two owners.
+const DOUBT: f64 = 2.0;
+
+/// Points that are evaluated at a time.
+const CHUNK: usize = 1 << 15;
+
+/// The largest error of one kind, and where it is.
+#[derive(Clone, Debug, Default)]
+pub struct Worst {
+    /// How large.
+    pub error: f64,
+    /// The point, and the region that the evaluator gave it.
+    pub place: Option<([f64; 3], String)>,
+}
+
+impl Worst {
+    fn see(&mut self, error: f64, p: [f64; 3], region: &str) {
+        if error.is_nan() || error > self.error {
+            *self = Worst { error, place: Some((p, region.to_owned())) };
+        }
+    }
+
+    /// The place to the last bit.
+    pub fn exactly(&self) -> String {
+        let place = self.place.as_ref();
+        place.map_or_else(String::new, |(p, region)| format!("`{region}` at {p:?}"))
+    }
+
+    /// The place for people: region, d and z.
+    pub fn shown(&self) -> String {
+        let Some((p, region)) = &self.place else { return String::new() };
+        let [d, z] = Meridian::of(*p).dz;
+        format!("{region} ({d:.6}, {z:.6})")
+    }
+}
+
+/// Something that must not happen, how often it does, and the worst case.
+#[derive(Clone, Debug, Default)]
+pub struct Wrong {
+    /// How often.
+    pub count: usize,
+    /// By how many ulp(S) the point is beyond doubt.
+    pub worst: Worst,
+}
+
+impl Wrong {
+    fn see(&mut self, by: f64, p: [f64; 3], region: &str) {
+        self.count += 1;
+        self.worst.see(by, p, region);
+    }
+}
+
+/// What is found out about a tool.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    /// The tool.
+    pub name: String,
+    /// The word for its unit.
+    pub unit: &'static str,
+    /// The next power of two above its largest coordinate, S.
+    pub scale: f64,
+    /// Points looked at, and how many the tool has.
+    pub points: usize,
+    /// Points that the tool has.
+    pub inside: usize,
+    /// In ulp(S).
+    pub depth: Worst,
+    /// Points on the wrong side, beyond 2 ulp(S).
+    pub sides: Wrong,
+    /// Points whose owner is farther than the nearest by more than 2 ulp(S).
+    pub owners: Wrong,
+    /// Of the direction's length, in ε.
+    pub length: Worst,
+    /// Of the direction, over 8 ε max(1, S/ρ).
+    pub direction: Worst,
+    /// Of the distance outside, in ulp(S); 0 if the tool only has a bound of it.
+    pub clearance: Worst,
+    /// Points at which lanes have other bits than one point has.
+    pub unlike: usize,
+    /// Numbers that are not finite, depths and nicenesses below 0.
+    pub senseless: usize,
+}
+
+impl Row {
+    /// What misses the contract: section 1 of the accuracy reference.
+    pub fn missed(&self) -> Vec<String> {
+        let mut missed = Vec::new();
+        let mut bar = |what: &str, worst: &Worst, bound: f64| {
+            if worst.error > bound || worst.error.is_nan() {
+                missed.push(format!("{what} {:.3} > {bound} in {}", worst.error, worst.exactly()));
+            }
+        };
+        bar("depth in ulp(S)", &self.depth, 1.0);
+        bar("||u| - 1| in ε", &self.length, 4.0);
+        bar("direction over its bound", &self.direction, 1.0);
+        for (what, wrong) in [("wrong sides", &self.sides), ("wrong owners", &self.owners)] {
+            if wrong.count > 0 {
+                let (by, place) = (wrong.worst.error, wrong.worst.exactly());
+                missed.push(format!(
+                    "{} {what}, the worst by {by:.3} ulp(S) in {place}",
+                    wrong.count
+                ));
+            }
+        }
+        for (what, count) in [("lanes unlike", self.unlike), ("senseless", self.senseless)] {
+            if count > 0 {
+                missed.push(format!("{what}: {count} points"));
+            }
+        }
+        missed
+    }
+}
+
+/// The tools of the library that are profiles, with their restatements.
+pub fn tools() -> Vec<(&'static dyn Tool, Restated)> {
+    let restated = restated::all().into_iter();
+    restated.filter_map(|tool| Some((tools_library::find(tool.name)?, tool))).collect()
+}
+
+/// Measures a tool on about `count` points.
+pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) -> Row {
+    let (oracle, reference) = (Nearest::new(restated), Reference::new(restated));
+    let points = points(&oracle, count, seed);
+    let scale = reference.scale();
+    let card = tool.card();
+    let mut row = Row {
+        name: card.name.to_string(),
+        unit: card.unit.word(),
+        scale,
+        points: points.len(),
+        ..Row::default()
+    };
+    let owners = owners(tool, &oracle);
+    let judge = Judge { tool, reference: &reference, owners, ulp: scale * f64::EPSILON };
+    for chunk in points.chunks(CHUNK) {
+        let mut list = Points::default();
+        chunk.iter().for_each(|p| list.push(*p));
+        let [one, lanes] = [Level::fallback(), Level::new()].map(|level| {
+            let mut felt = Felt::default();
+            tool.evaluate(level, Ask::Everything, &list, 1.0, &mut felt);
+            felt
+        });
+        for (i, p) in chunk.iter().enumerate() {
+            row.unlike += usize::from(bits(&one, i) != bits(&lanes, i));
+            judge.point(*p, &one, i, &mut row);
+        }
+    }
+    row
+}
+
+/// Which owners of the oracle each region of a card is: of its name, or all of its surface.
+fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
+    let (names, surfaces) = (oracle.regions(), oracle.surfaces());
+    let surfaces: Vec<&str> = surfaces.map(|(surface, _)| surface).collect();
+    let places = |list: &[&str], name: &str| -> Vec<usize> {
+        (0..list.len()).filter(|k| list[*k] == name).collect()
+    };
+    let of = |name: &str| match places(&names, name) {
+        none if none.is_empty() => places(&surfaces, name),
+        some => some,
+    };
+    tool.card().regions.iter().map(|region| of(&region.name)).collect()
+}
+
+fn inside(felt: &Felt, i: usize) -> bool {
+    felt.inside[i / 8] >> (i % 8) & 1 == 1
+}
+
+/// All that is felt at a point.
+fn numbers(felt: &Felt, i: usize) -> Option<[f64; 7]> {
+    inside(felt, i).then(|| {
+        let [x, y, z] = [0, 1, 2].map(|k| felt.direction[k][i]);
+        [felt.region[i], felt.depth[i], felt.magnitude[i], felt.niceness[i], x, y, z]
+    })
+}
+
+fn bits(felt: &Felt, i: usize) -> Option<[u64; 10]> {
+    numbers(felt, i).map(|n| {
+        let g = [0, 1, 2].map(|k| felt.gradient[k][i]);
+        [n[0], n[1], n[2], n[3], n[4], n[5], n[6], g[0], g[1], g[2]].map(f64::to_bits)
+    })
+}
+
+/// What is right about a tool.
+struct Judge<'a> {
+    tool: &'a dyn Tool,
+    reference: &'a Reference,
+    owners: Vec<Vec<usize>>,
+    ulp: f64,
+}
+
+impl Judge<'_> {
+    fn point(&self, p: [f64; 3], felt: &Felt, i: usize, row: &mut Row) {
+        let at = At::new(p);
+        let exact = self.reference.depth(&at);
+        let depth = exact.to_f64();
+        let answer = numbers(felt, i);
+        if answer.is_some() != (depth > 0.0) && depth.abs() > DOUBT * self.ulp {
+            row.sides.see(depth.abs() / self.ulp, p, "");
+        }
+        let Some([region, found, magnitude, niceness, ux, uy, uz]) = answer else {
+            if self.tool.card().exact {
+                let off = (self.tool.clearance(p) + depth).abs();
+                row.clearance.see(off / self.ulp, p, "");
+            }
+            return;
+        };
+        row.inside += 1;
+        let finite = [found, magnitude, niceness, ux, uy, uz].iter().all(|v| v.is_finite());
+        row.senseless += usize::from(!finite || found < 0.0 || niceness < 0.0);
+        let region = region as usize;
+        let name = &self.tool.card().regions[region].name;
+        // Where rounding alone puts a point inside, its depth is 0.
+        let deep = if depth > 0.0 { &exact - &Big::exactly(found) } else { Big::exactly(found) };
+        row.depth.see(deep.abs().to_f64() / self.ulp, p, name);
+
+        let far = |owner: &usize| self.reference.distance_to(&at, *owner).to_f64();
+        let nearest = self.owners[region].iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        let Some(owner) = nearest.copied() else {
+            row.senseless += 1;
+            return;
+        };
+        let behind = far(&owner) - depth.abs();
+        if behind > DOUBT * self.ulp && depth > 0.0 {
+            row.owners.see(behind / self.ulp, p, name);
+        }
+        let u = [ux, uy, uz].map(Big::exactly);
+        let size = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
+        row.length.see((size.to_f64() - 1.0).abs() / f64::EPSILON, p, name);
+        let expected = self.reference.direction(&at, owner);
+        let apart = u.iter().zip(&expected).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
+        let rho = self.reference.singular(&at, owner);
+        // Exactly where no direction exists, the one that the language fixes is wanted.
+        let blur = if rho == 0.0 { 1.0 } else { (row.scale / rho).max(1.0) };
+        row.direction.see(apart.sqrt() / (8.0 * f64::EPSILON * blur), p, name);
+    }
+}

@@ -1,0 +1,5 @@
+//! Figures that the project quotes of itself, each made by a command of `src/bin`.
+
+pub mod accuracy;
+pub mod compile;
+pub mod points;

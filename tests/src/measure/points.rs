@@ -1,0 +1,105 @@
+//! Points that an evaluator of a profile finds hard, and as many ordinary ones.
+
+use crate::oracle::draw::Draw;
+use crate::oracle::{Nearest, Oracle};
+
+/// Points beside each place of a border that is looked for.
+const BESIDE: usize = 16;
+
+/// Half of `count` points anywhere in a box a tenth larger than the tool, half within 1e-6 of the surface or of a splitting curve; and
+/// every vertex, every centre and the axis.
+pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
+    let mut draw = Draw::new(seed);
+    let mut points = Vec::new();
+    anywhere(oracle, count / 2, &mut draw, &mut points);
+    beside_borders(oracle, count.div_ceil(2 * BESIDE), &mut draw, &mut points);
+    at_corners(oracle, &mut draw, &mut points);
+    on_the_axis(oracle, &mut points);
+    points
+}
+
+fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
+    [d * cos, d * sin, z]
+}
+
+fn any_azimuth(draw: &mut Draw) -> [f64; 2] {
+    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+    [cos, sin]
+}
+
+/// Exactly along x and y, and anywhere.
+fn azimuth(draw: &mut Draw) -> [f64; 2] {
+    match draw.bits() % 6 {
+        0 => [1.0, 0.0],
+        1 => [0.0, 1.0],
+        2 => [-1.0, -0.0],
+        3 => [0.0, -1.0],
+        _ => any_azimuth(draw),
+    }
+}
+
+fn anywhere(oracle: &Nearest, count: usize, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    let [radius, height] = oracle.extent();
+    for _ in 0..count {
+        let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
+        points.push([across[0], across[1], draw.between(-0.05 * height, 1.05 * height)]);
+    }
+}
+
+/// Where borders run is found by halving a stretch on whose ends the oracle disagrees.
+fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    let curves = oracle.curves();
+    let owner = |[d, z]: [f64; 2]| oracle.sense([d, 0.0, z]).map(|sense| sense.owner);
+    let mut found = 0;
+    while found < count {
+        // Short curves as often as long ones.
+        let curve = &curves[draw.bits() as usize % curves.len()];
+        let sample = curve[draw.bits() as usize % curve.len()];
+        let reach = 0.1 * oracle.extent()[0];
+        let mut near = || {
+            let mut step = || draw.between(-reach, reach);
+            [(sample[0] + step()).abs(), sample[1] + step()]
+        };
+        let (mut a, mut b) = (near(), near());
+        let first = owner(a);
+        if first == owner(b) {
+            continue;
+        }
+        found += 1;
+        for _ in 0..45 {
+            let middle = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
+            if owner(middle) == first { a = middle } else { b = middle }
+        }
+        for _ in 0..BESIDE {
+            // As many between 1e-16 and 1e-15 as between 1e-7 and 1e-6.
+            let size = 10f64.powf(draw.between(-16.0, -6.0));
+            let [cos, sin] = any_azimuth(draw);
+            points.push(over([(a[0] + size * cos).abs(), a[1] + size * sin], azimuth(draw)));
+        }
+    }
+}
+
+/// Vertices, centres and ends of known curves, and one ulp to either side in `d` and in `z`.
+fn at_corners(oracle: &Nearest, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+    let around = |v: f64| [v, v.next_up(), v.next_down()];
+    for [d, z] in oracle.corners() {
+        for d in around(d) {
+            for z in around(z) {
+                let straight = [[1.0, 0.0], [0.0, -1.0]].into_iter().chain([any_azimuth(draw)]);
+                points.extend(straight.map(|azimuth| over([d.abs(), z], azimuth)));
+            }
+        }
+    }
+}
+
+/// On the axis and as close to it as numbers go, at every height that a corner has and at others.
+fn on_the_axis(oracle: &Nearest, points: &mut Vec<[f64; 3]>) {
+    let height = oracle.extent()[1];
+    let corners = oracle.corners().into_iter().flat_map(|[_, z]| [z, z.next_up(), z.next_down()]);
+    let others = (0..=100).map(|k| height * f64::from(k) / 100.0);
+    for z in corners.chain(others).chain([-0.0, 5e-324, -5e-324]) {
+        for close in [0.0, -0.0, 5e-324, 2f64.powi(-540)] {
+            points.extend([[close, 0.0, z], [-0.0, close, z], [-close, close, z]]);
+        }
+    }
+}
