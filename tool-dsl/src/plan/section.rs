@@ -106,6 +106,13 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
     for cell in &outer {
         outside.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part)));
     }
+    // Just under the surface, where rounding may take a point of it, the same features go on.
+    for (piece, cell) in section.inner.shell(chords) {
+        let Some(part) = section.outer.part_of(section.outer.pieces() - 1 - piece) else {
+            continue;
+        };
+        outside.add(&cell, [whole(&cell, Some(part))], |_| None);
+    }
     let beside = section.outside.iter().map(|part| &part.beside).collect();
     let outside = plan(model, &shapes, size, outside, beside)?;
     let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);

@@ -59,6 +59,34 @@ pub(super) fn cells(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -
         .collect()
 }
 
+/// The layer of all slices that is this thin, in sizes.
+const LAYER: f64 = 1e-6;
+
+/// Cells beside the outline.
+pub(super) fn shell(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -> Vec<Cell> {
+    let least = 1e-16 * section.size * section.size * LAYER;
+    let layer = |slice: &&Slice| {
+        let steps = match section.features[slice.feature] {
+            Feature::Piece(piece) if section.outline[piece].circle.is_none() => 1,
+            _ => chords,
+        };
+        let at = |k: u32| {
+            let part = f64::from(k) / f64::from(steps);
+            let seat = section.seat(slice.feature, slice.from + part * (slice.to - slice.from));
+            let depth = slice.radius(section, part).min(LAYER * section.size);
+            (seat.foot, seat.at(depth))
+        };
+        let quad = |k: u32| {
+            let ((a, c), (b, d)) = (at(k), at(k + 1));
+            let straight = [steps == 1, true, true, true];
+            let (vertices, straight) = tidy(&[a, b, d, c], &straight, 1e-14 * section.size);
+            Cell { part: slice.feature, vertices, straight, samples: vec![], witnesses: vec![] }
+        };
+        (0..steps).map(quad).filter(|cell| cell.area() > least).collect::<Vec<_>>()
+    };
+    slices.iter().flatten().collect::<Vec<_>>().iter().flat_map(layer).collect()
+}
+
 fn rim(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
     if slice.stop == Stop::Centre {
         return vec![slice.rim_at(section, 0.5)];

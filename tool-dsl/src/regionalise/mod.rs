@@ -61,6 +61,28 @@ impl Partition {
         Border::Inside { piece }.test(&Section::new(&self.outline, self.outer), graph)
     }
 
+    /// The part of a piece, by its place in the outline.
+    pub(crate) fn part_of(&self, piece: usize) -> Option<usize> {
+        let section = Section::new(&self.outline, self.outer);
+        section.features.iter().position(|feature| *feature == Feature::Piece(piece))
+    }
+
+    /// A thin layer of it beside the outline, each cell with the piece that it lies on or behind.
+    pub(crate) fn shell(&self, chords: u32) -> Vec<(usize, cells::Cell)> {
+        let section = Section::new(&self.outline, self.outer);
+        let piece = |part: usize| match section.features[part] {
+            Feature::Piece(piece) => piece,
+            Feature::Corner(behind) => behind.unwrap_or(0),
+        };
+        let shell = cells::shell(&section, &self.slices, chords);
+        shell.into_iter().map(|cell| (piece(cell.part), cell)).collect()
+    }
+
+    /// How many pieces the outline has.
+    pub(crate) fn pieces(&self) -> usize {
+        self.outline.len()
+    }
+
     /// Polygons that cover it as far as is looked, with so many chords to a curved edge.
     pub(crate) fn cells(&self, chords: u32) -> Vec<cells::Cell> {
         cells::cells(&Section::new(&self.outline, self.outer), &self.slices, chords)

@@ -303,6 +303,20 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         );
         return reports;
     }
+    let axis_ends = [
+        (first, first.tangent(false), first.ends()[0]),
+        (last, last.tangent(true), last.ends()[1]),
+    ];
+    for (segment, along, at) in axis_ends {
+        if along[0].abs() < TANGENT {
+            let message = format!("this segment runs along the axis at {}", show(at));
+            reports.push(
+                Report::error(segment.span, message).help(
+                    "a needle without an angle is no solid: let it meet the axis at an angle",
+                ),
+            );
+        }
+    }
     for pair in outline.windows(2) {
         let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
         if cross(before, after).abs() < TANGENT && dot(before, after) < 0.0 {

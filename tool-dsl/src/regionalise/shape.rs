@@ -215,9 +215,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let mut add = |p: Point, side: i8| corners.push((p, side, edge));
             if sides[k] * sides[next] < 0 {
                 add(self.crossing(a, b, edge), 0);
-            } else if edge == Edge::Straight
-                && let Some((top, side)) = self.detour([a, b], [sides[k], sides[next]])
-            {
+            } else if let Some((top, side)) = self.detour([a, b], [sides[k], sides[next]], edge) {
                 if sides[k] != 0 {
                     add(self.crossing(a, top, edge), 0);
                 }
@@ -230,10 +228,27 @@ impl<'a, 'g> Cutter<'a, 'g> {
         corners
     }
 
-    /// Where a straight edge is farthest on a side that neither of its ends is on.
-    fn detour(&self, [a, b]: [Point; 2], sides: [i8; 2]) -> Option<(Point, i8)> {
+    /// Where an edge is farthest on a side that neither of its ends is on.
+    fn detour(&self, [a, b]: [Point; 2], sides: [i8; 2], edge: Edge) -> Option<(Point, i8)> {
         let shape = self.shape();
-        if shape.is_line() {
+        if let Edge::Along(other) = edge {
+            // A curve stands out from its chord, and so may reach over.
+            let chord = norm(minus(b, a));
+            let near = |p: Point| {
+                let at = shape.at(p);
+                at.value.abs() <= BULGE * chord * norm(at.gradient)
+            };
+            if other == self.curve || !(near(a) && near(b)) {
+                return None;
+            }
+            let along = Cutter { curve: other, ..*self };
+            return [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7].into_iter().find_map(|part| {
+                let top = along.bend(a, b, part)?;
+                let side = shape.side(top, self.size);
+                (side != 0 && !sides.contains(&side)).then_some((top, side))
+            });
+        }
+        if edge == Edge::Chord || shape.is_line() {
             return None;
         }
         let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| shape.at(p).value);
@@ -264,7 +279,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             }
         }
         if along != Edge::Straight && is_thin(&vertices, self.size) {
-            let bend = self.bend(*vertices.last()?, *vertices.first()?)?;
+            let bend = self.bend(*vertices.last()?, *vertices.first()?, 0.5)?;
             vertices.push(bend);
             edges.push(along);
         }
@@ -295,11 +310,11 @@ impl<'a, 'g> Cutter<'a, 'g> {
         if norm(minus(p, on_chord)) < BULGE * norm(minus(b, a)) { p } else { on_chord }
     }
 
-    /// A point of the curve beside the middle of a chord.
-    fn bend(&self, a: Point, b: Point) -> Option<Point> {
+    /// A point of the curve beside a part of a chord.
+    fn bend(&self, a: Point, b: Point, part: f64) -> Option<Point> {
         let shape = self.shape();
         let across = [-(b[1] - a[1]), b[0] - a[0]];
-        let from = between(a, b, 0.5);
+        let from = between(a, b, part);
         let at = |s: f64| [from[0] + s * across[0], from[1] + s * across[1]];
         // Secant steps along the chord's normal.
         let (mut s0, mut s1) = (0.0, 0.05);
@@ -312,7 +327,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             (s0, v0) = (s1, v1);
             (s1, v1) = (next, shape.at(at(next)).value);
         }
-        (s1.abs() < 0.6).then_some(at(s1))
+        (s1.abs() < 4.0 * BULGE).then_some(at(s1))
     }
 }
 

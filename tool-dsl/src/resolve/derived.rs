@@ -94,11 +94,12 @@ pub(super) fn derived(
         }
         Some(_) => {}
     }
+    let zero = lowering.graph.int(0);
     let outside = beside
         .iter()
         .map(|part| Outside {
             beside: formula(&part.inside, curves, &mut lowering.graph),
-            clearance: part.depth,
+            clearance: lowering.graph.max(zero, part.depth),
         })
         .collect();
     let section = Section { outline, inner, outer, outside, over };

@@ -164,11 +164,9 @@ fn by_radius(
     let short = &(radius * radius) - &(&(&chord * &chord) / &Number::int(4));
     let (r, c) = (radius.to_f64(), norm(minus(doubles(to), doubles(from))));
     // A half circle's centre is on its chord, as far as its ends are on the circle.
-    let off = if short.to_f64().abs() <= OFF_CIRCLE * c * c {
-        Some(Number::int(0))
-    } else {
-        short.sqrt()
-    };
+    let rounding = if short.is_negative() { OFF_CIRCLE } else { 1e-18 };
+    let near = short.to_f64().abs() <= rounding * c * c;
+    let off = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(off), true) = (off, r > 0.0) else {
         return Err(Report::error(span, format!("no arc of radius {r} spans a chord of {c}"))
             .help("take a larger radius, or nearer ends"));
