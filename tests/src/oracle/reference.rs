@@ -1,6 +1,6 @@
 //! The nearest feature of a restated profile in 256 bits.
 //!
-//! Which pieces can be the nearest is found in doubles, with a margin of [`MARGIN`] of the tool's size, a million times what doubles
+//! Which pieces can be the nearest is found in doubles, with a margin of 1e-9 of the tool's size, a million times what doubles
 //! lose; all that is answered is computed from these pieces to 256 bits.
 
 use super::big::Big;
