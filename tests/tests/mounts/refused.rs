@@ -110,7 +110,7 @@ fn what_does_not_go_with_mounts() {
     refused(&format!("{nut} {profile}"), &["a tool has a profile or mounts", "the profile"]);
     refused(
         &format!("{nut} region r where d <= 1 {{ depth: 1 - d; }}"),
-        &["a tool has mounts or regions by hand"],
+        &["`depth` is the profile's here"],
     );
     refused("mount \"er16.tool\" as nut cutting;", &["a mount is not `cutting`"]);
     refused("mount \"er16.tool\" as cutting;", &["no part is called `cutting`"]);
