@@ -187,11 +187,7 @@ impl Section<'_> {
     /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as [`Section::arcs`] says.
     fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
         Some(match (self.kind(this), self.kind(other)) {
-            (Kind::Line(_), Kind::Line(_)) => {
-                let (a, b) = (self.depth(graph, this)?, self.depth(graph, other)?);
-                let difference = graph.sub(a, b);
-                Test::AtMost(expanded(graph, difference))
-            }
+            (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
             (Kind::Point(p), Kind::Point(q)) => {
                 let (a, b) = (outline::squared(graph, p), outline::squared(graph, q));
                 let difference = graph.sub(a, b);
@@ -204,14 +200,46 @@ impl Section<'_> {
             }
             (Kind::Arc(arc), Kind::Line(line)) => self.arc_line(graph, arc, line, true)?,
             (Kind::Line(line), Kind::Arc(arc)) => self.arc_line(graph, arc, line, false)?,
-            (Kind::Arc(arc), Kind::Point(q)) => arc_point(graph, arc, q, true)?,
-            (Kind::Point(q), Kind::Arc(arc)) => arc_point(graph, arc, q, false)?,
-            (Kind::Arc(a), Kind::Arc(b)) => arcs(graph, a, b)?,
-            (Kind::Flat, _) | (_, Kind::Flat) => {
+            (Kind::Arc(arc), Kind::Point(q)) if self.fits(arc, q) => {
+                arc_point(graph, arc, q, true)?
+            }
+            (Kind::Point(q), Kind::Arc(arc)) if self.fits(arc, q) => {
+                arc_point(graph, arc, q, false)?
+            }
+            (Kind::Arc(arc), Kind::Point(q)) => near_arc(graph, arc, q, true)?,
+            (Kind::Point(q), Kind::Arc(arc)) => near_arc(graph, arc, q, false)?,
+            (Kind::Arc(a), Kind::Arc(b)) if self.alike(a, b) => arcs(graph, a, b)?,
+            _ => {
                 let (a, b) = (self.depth(graph, this)?, self.depth(graph, other)?);
                 Test::AtMost(graph.sub(a, b))
             }
         })
+    }
+
+    /// The difference of two lines' distances. Where neither is oblique its terms are exact; else
+    /// it is measured from where they meet, since its constant would be the sum of two offsets.
+    fn bisector(&self, graph: &mut Graph, a: usize, b: usize) -> Option<Id> {
+        let [first, second] = [a, b].map(|piece| &self.outline[piece]);
+        let ([ad, az], [bd, bz]) = (first.direction()?, second.direction()?);
+        let plain = [&ad, &az, &bd, &bz].into_iter().filter(|part| part.is_zero()).count() == 2;
+        let sine = &(&ad * &bz) - &(&az * &bd);
+        if plain || sine.to_f64().abs() < 1e-3 {
+            let (a, b) = (first.depth(graph)?, second.depth(graph)?);
+            let difference = graph.sub(a, b);
+            return Some(if plain { expanded(graph, difference) } else { difference });
+        }
+        let off = [0, 1].map(|k| &second.from[k] - &first.from[k]);
+        let along = (&(&off[0] * &bz) - &(&off[1] * &bd)).over(&sine)?;
+        let meet = [&ad, &az].map(|way| way * &along);
+        let meet = [0, 1].map(|k| &first.from[k] + &meet[k]);
+        let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        // Normals are the directions turned left.
+        let parts = [(&bz - &az, 0), (&ad - &bd, 1)].map(|(way, k)| {
+            let (way, from) = (graph.number(way), graph.number(meet[k].clone()));
+            let off = graph.sub(here[k], from);
+            graph.mul(way, off)
+        });
+        Some(graph.add(parts[0], parts[1]))
     }
 
     /// `|p - q|² - l²`. Beside a line along a coordinate one square cancels.
@@ -285,6 +313,35 @@ impl Section<'_> {
             ([number(from[0])?, number(from[1])?], [number(way[0])?, number(way[1])?]);
         outline::linear(graph, way, &from)
     }
+}
+
+impl Section<'_> {
+    /// Whether squares of an arc's radius round no more than the distance to a corner beside it can
+    /// bear: the error of `L - 2 r √A` is one of `r²`, and of the distances that by their sum.
+    fn fits(&self, arc: &Circle, q: &Place) -> bool {
+        let radius = arc.radius.to_f64();
+        let off = minus(outline::doubles(q), outline::doubles(&arc.centre));
+        let gap = (outline::norm(off) - radius).abs();
+        radius * radius <= 0.25 * self.size * gap
+    }
+
+    /// The same of two arcs, of which the smaller radius bounds the sum below if they bend in
+    /// different ways.
+    fn alike(&self, a: &Circle, b: &Circle) -> bool {
+        let [a_radius, b_radius] = [a, b].map(|arc| arc.radius.to_f64());
+        let sum = a_radius + b_radius;
+        a.convex == b.convex || sum * sum <= 0.25 * self.size * a_radius.min(b_radius)
+    }
+}
+
+/// Whether an arc is nearer than a corner: `(r - √A)² ≤ B`, with the root that its depth wants too.
+fn near_arc(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<Test> {
+    let away = outline::distance(graph, &arc.centre)?;
+    let radius = graph.number(arc.radius.clone());
+    let depth = if arc.convex { graph.sub(radius, away) } else { graph.sub(away, radius) };
+    let square = graph.mul(depth, depth);
+    let corner = outline::squared(graph, q);
+    Some(Test::AtMost(ordered(graph, square, corner, nearer)))
 }
 
 /// Expanded, so that squares which cancel are not subtracted at every point.

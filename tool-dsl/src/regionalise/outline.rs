@@ -165,7 +165,17 @@ impl Segment {
         match &self.circle {
             None => {
                 let [tx, tz] = self.direction()?;
-                linear(graph, [-&tz, tx], &self.from)
+                if tx.is_zero() || tz.is_zero() {
+                    return linear(graph, [-&tz, tx], &self.from);
+                }
+                // From a point of the line, so that what is far from the tip does not cancel.
+                let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+                let parts = [(-&tz, 0), (tx, 1)].map(|(way, k)| {
+                    let (way, from) = (graph.number(way), graph.number(self.from[k].clone()));
+                    let off = graph.sub(here[k], from);
+                    graph.mul(way, off)
+                });
+                Some(graph.add(parts[0], parts[1]))
             }
             Some(circle) => {
                 let out = distance(graph, &circle.centre)?;
