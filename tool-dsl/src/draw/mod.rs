@@ -156,7 +156,8 @@ mod tests {
             4.0,
             std::f64::consts::FRAC_PI_4,
         ];
-        for (region, expected) in expected.into_iter().enumerate() {
+        // The profile goes from the tip up, the thesis from the housing down.
+        for (region, expected) in expected.into_iter().rev().enumerate() {
             let scale = picture.view.scale;
             let area = picture.shapes[region].area() / (scale * scale);
             let name = &tool.model.regions[region].name;

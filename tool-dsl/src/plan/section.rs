@@ -393,8 +393,14 @@ impl Planner<'_> {
     fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
         let [below, above] = [&halves.below, &halves.above].map(|half| self.rim(curve, half));
         let (mut must, mut prefers) = ([false; 2], [false; 2]);
-        for p in below.points.iter().chain(&above.points) {
-            let [b, a] = [&below, &above].map(|rim| rim.first_at(p.0, 1e-9 * self.size));
+        let mut places: Vec<Point> =
+            below.points.iter().chain(&above.points).map(|(p, _)| *p).collect();
+        places.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+        // Pieces share vertices, to the last bits.
+        let close = 1e-12 * self.size;
+        places.dedup_by(|p, q| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close);
+        for p in places {
+            let [b, a] = [&below, &above].map(|rim| rim.first_at(p, 1e-9 * self.size));
             let inside = [b, a].map(|rank| rank != usize::MAX);
             match (inside, b.cmp(&a)) {
                 ([true, false], _) => must[0] = true,
