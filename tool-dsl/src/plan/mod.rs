@@ -268,6 +268,12 @@ fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
         .collect()
 }
 
+/// That a tree outgrew its bound.
+fn too_large(model: &Model) -> Report {
+    let message = format!("the regions need more than {LARGEST} tests to tell apart");
+    Report::error(model.name_span, message).help("divide the tool by fewer curves")
+}
+
 /// What a curve costs to evaluate, in additions.
 fn costs(model: &Model) -> Vec<f64> {
     use crate::expr::{Coord, Node};
@@ -328,11 +334,7 @@ impl Planner<'_> {
             }
             self.tests += 1;
             if self.tests > LARGEST {
-                return Err(Report::error(
-                    self.model.name_span,
-                    format!("the regions need more than {LARGEST} tests to tell apart"),
-                )
-                .help("divide the tool by fewer curves"));
+                return Err(too_large(self.model));
             }
             let below = self.tree(with(below), &low)?;
             let above = self.tree(with(above), &high)?;

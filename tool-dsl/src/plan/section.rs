@@ -44,16 +44,16 @@ pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id
 /// Whether a tree finds an owner far outside, where no piece was: all around, and along each line
 /// to where a strip beside it leads.
 pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> bool {
-    let (middle, size) = overlay::frame(outline::reach(&section.outline));
-    let shapes: Vec<Shape<'_>> =
-        model.curves.iter().map(|curve| Shape::new(&model.graph, curve.value, middle)).collect();
+    let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
+    let [low, high] = outline::reach(&section.outline).map(|end| end[1]);
+    let middle = low / 2.0 + high / 2.0;
     let claims =
         |p: Point| p[0] >= 0.0 && tree.at(&|curve| shapes[curve].value([p[0], p[1]])).is_some();
     let reaches = || (1..16).map(|k| size * 8f64.powi(k));
     let around = reaches().any(|reach| {
         (0..=128).any(|k| {
             let (sin, cos) = ((f64::from(k) / 128.0 - 0.5) * std::f64::consts::PI).sin_cos();
-            claims([reach * cos, middle[1] + reach * sin])
+            claims([reach * cos, middle + reach * sin])
         })
     });
     let beside = || {
@@ -76,9 +76,7 @@ pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> boo
 }
 
 fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, Tree<Id>), Report> {
-    let (middle, size) = overlay::frame(outline::reach(&section.outline));
-    let shapes: Vec<Shape<'_>> =
-        model.curves.iter().map(|curve| Shape::new(&model.graph, curve.value, middle)).collect();
+    let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
     let whole = |cell: &Cell, owner| overlay::piece(cell, owner, &shapes, size);
 
@@ -242,11 +240,7 @@ impl Planner<'_> {
         self.used[curve] = true;
         self.tests += 1;
         if self.tests > LARGEST {
-            return Err(Report::error(
-                self.model.name_span,
-                format!("the regions need more than {LARGEST} tests to tell apart"),
-            )
-            .help("divide the tool by fewer curves"));
+            return Err(super::too_large(self.model));
         }
         open.retain(|other| *other != curve);
         let (low, high): (Vec<u32>, Vec<u32>) =

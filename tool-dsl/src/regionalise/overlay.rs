@@ -1,9 +1,11 @@
 //! A partition divided once more, by conditions.
 
 use super::cells::Cell;
-use super::outline::{Point, minus, norm};
+use super::outline::{Point, Segment, minus, norm, reach};
 use super::shape::{Cut, Cutter, Edge, Piece, Shape};
+use crate::expr::Graph;
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
+use crate::model::Curve;
 
 /// A cell as a piece whose curved edges know their curve.
 pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], size: f64) -> Piece {
@@ -119,7 +121,14 @@ pub(crate) fn overlay(
     found
 }
 
-/// The middle and the diagonal of an outline's box.
-pub(crate) fn frame([low, high]: [Point; 2]) -> (Point, f64) {
-    ([0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0), norm(minus(high, low)))
+/// Curves as shapes about the middle of an outline's box, and the box's diagonal.
+pub(crate) fn shapes<'g>(
+    graph: &'g Graph,
+    curves: &[Curve],
+    outline: &[Segment],
+) -> (Vec<Shape<'g>>, f64) {
+    let [low, high] = reach(outline);
+    let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
+    let shape = |curve: &Curve| Shape::new(graph, curve.value, middle);
+    (curves.iter().map(shape).collect(), norm(minus(high, low)))
 }

@@ -9,9 +9,8 @@ use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{Region, Surface};
-use crate::regionalise::outline::{self, Segment};
+use crate::regionalise::outline::Segment;
 use crate::regionalise::overlay::{self, Overlay};
-use crate::regionalise::shape::Shape;
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Undivided};
 use crate::report::{Report, any_error, nearest};
@@ -199,12 +198,7 @@ impl Conditions<'_> {
         span: Span,
         reports: &mut Vec<Report>,
     ) -> Vec<(usize, usize)> {
-        let (middle, size) = overlay::frame(outline::reach(outline));
-        let shapes: Vec<Shape<'_>> = curves
-            .list
-            .iter()
-            .map(|curve| Shape::new(&lowering.graph, curve.value, middle))
-            .collect();
+        let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, outline);
         let Overlay { pairs, bare, double } =
             overlay::overlay(&inner.cells(8), &self.conditions, &shapes, size);
         let shown = |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
