@@ -7,21 +7,30 @@ use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::str::FromStr;
+use std::sync::OnceLock;
 
 /// Bits carried by every constant.
 const PRECISION: usize = 256;
 
 /// A real constant to 256 bits.
-#[derive(Clone, Debug)]
-pub struct Number(FBig<HalfEven, 2>);
+#[derive(Clone)]
+pub struct Number {
+    exact: FBig<HalfEven, 2>,
+    /// The nearest double, once somebody asked.
+    near: OnceLock<f64>,
+}
 
 impl Number {
+    fn new(exact: FBig<HalfEven, 2>) -> Number {
+        Number { exact, near: OnceLock::new() }
+    }
+
     /// Rounded to the precision; zero has no sign, so equal numbers are equal in every way.
     fn rounded(value: FBig<HalfEven, 2>) -> Number {
         if value.repr().significand().is_zero() {
-            return Number(FBig::ZERO.with_precision(PRECISION).value());
+            return Number::new(FBig::ZERO.with_precision(PRECISION).value());
         }
-        Number(value.with_precision(PRECISION).value())
+        Number::new(value.with_precision(PRECISION).value())
     }
 
     /// A number from a decimal literal such as `0.25` or `1e-3`.
@@ -44,22 +53,26 @@ impl Number {
 
     /// The ratio of the circle.
     pub fn pi() -> Number {
-        Number(FBig::<HalfEven, 2>::pi(PRECISION))
+        Number::new(FBig::<HalfEven, 2>::pi(PRECISION))
     }
 
     /// The nearest double; an infinity beyond the range.
     pub fn to_f64(&self) -> f64 {
-        self.0.to_f64().value()
+        *self.near.get_or_init(|| self.exact.to_f64().value())
     }
 
     /// Whether this is exactly zero.
     pub fn is_zero(&self) -> bool {
-        self.0.repr().significand().is_zero()
+        self.exact.repr().significand().is_zero()
     }
 
     /// Whether this is below zero.
     pub fn is_negative(&self) -> bool {
-        *self < Number::int(0)
+        match self.to_f64() {
+            // Below the smallest double
+            0.0 => *self < Number::int(0),
+            near => near < 0.0,
+        }
     }
 
     /// The absolute value.
@@ -74,7 +87,7 @@ impl Number {
         } else if self.is_zero() {
             Some(Number::int(0))
         } else {
-            Some(Number::rounded(self.0.sqrt()))
+            Some(Number::rounded(self.exact.sqrt()))
         }
     }
 
@@ -85,12 +98,12 @@ impl Number {
 
     /// The sine of an angle in radians.
     pub fn sin(&self) -> Number {
-        Number::rounded(self.0.sin())
+        Number::rounded(self.exact.sin())
     }
 
     /// The cosine of an angle in radians.
     pub fn cos(&self) -> Number {
-        Number::rounded(self.0.cos())
+        Number::rounded(self.exact.cos())
     }
 
     /// The exponent as a whole number of halves, if it is one between -32 and 32.
@@ -103,15 +116,22 @@ impl Number {
 
     /// Whether two constants agree but for the last few of their 256 bits.
     pub fn agrees(&self, other: &Number) -> bool {
-        let difference = (self - other).abs();
-        let scale = self.abs().max(other.abs());
-        difference.to_f64() <= scale.to_f64() * 2f64.powi(-200)
+        let (a, b) = (self.to_f64(), other.to_f64());
+        let scale = a.abs().max(b.abs());
+        // Most differ in the first digits.
+        (a - b).abs() <= 1e-9 * scale && (self - other).to_f64().abs() <= scale * 2f64.powi(-200)
+    }
+}
+
+impl std::fmt::Debug for Number {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.exact.fmt(f)
     }
 }
 
 impl PartialEq for Number {
     fn eq(&self, other: &Number) -> bool {
-        self.0.repr() == other.0.repr()
+        self.exact.repr() == other.exact.repr()
     }
 }
 
@@ -119,8 +139,8 @@ impl Eq for Number {}
 
 impl Hash for Number {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        self.0.repr().significand().hash(state);
-        self.0.repr().exponent().hash(state);
+        self.exact.repr().significand().hash(state);
+        self.exact.repr().exponent().hash(state);
     }
 }
 
@@ -132,7 +152,7 @@ impl PartialOrd for Number {
 
 impl Ord for Number {
     fn cmp(&self, other: &Number) -> Ordering {
-        self.0.cmp(&other.0)
+        self.exact.cmp(&other.exact)
     }
 }
 
@@ -141,7 +161,7 @@ macro_rules! arithmetic {
         impl $trait<&Number> for &Number {
             type Output = Number;
             fn $method(self, other: &Number) -> Number {
-                Number::rounded($trait::$method(&self.0, &other.0))
+                Number::rounded($trait::$method(&self.exact, &other.exact))
             }
         }
     )*};
@@ -152,13 +172,13 @@ impl Div<&Number> for &Number {
     type Output = Number;
     /// Division by a constant that is known not to be zero.
     fn div(self, other: &Number) -> Number {
-        Number::rounded(&self.0 / &other.0)
+        Number::rounded(&self.exact / &other.exact)
     }
 }
 
 impl Neg for &Number {
     type Output = Number;
     fn neg(self) -> Number {
-        Number::rounded(-self.0.clone())
+        Number::rounded(-self.exact.clone())
     }
 }

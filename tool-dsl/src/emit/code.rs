@@ -4,7 +4,7 @@ use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::CurveIndex;
 use crate::model::Curve;
 use crate::plan::Tree;
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -301,7 +301,7 @@ impl<'g> Writer<'g> {
                 let (below, _) = self.branch(below, always, leaf, &scope);
                 let (above, chained) = self.branch(above, always, leaf, &scope);
                 let bare = lets.is_empty();
-                if leaves && below.to_string() == "true" && above.to_string() == "false" {
+                if leaves && is_word(&below, "true") && is_word(&above, "false") {
                     (quote! { #lets #test }, false)
                 } else if chained {
                     (quote! { #lets if #test { #below } else #above }, bare)
@@ -396,6 +396,12 @@ impl<'g> Writer<'g> {
     }
 }
 
+fn is_word(code: &TokenStream, word: &str) -> bool {
+    let mut tokens = code.clone().into_iter();
+    let first = tokens.next();
+    tokens.next().is_none() && matches!(first, Some(TokenTree::Ident(ident)) if ident == word)
+}
+
 /// The curves that a tree tests, and how.
 pub(super) fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>) {
     if let Tree::Split { curve, strict, below, above } = tree {
@@ -417,8 +423,8 @@ pub(super) fn mask(curve: CurveIndex, strict: bool) -> Ident {
 pub(super) fn literal(value: f64) -> TokenStream {
     let size = value.abs();
     let plain = size == 0.0 || (1e-5..1e16).contains(&size);
-    let text = if plain { format!("{size:?}") } else { format!("{size:e}") };
-    let literal: Literal = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(size));
+    let literal = if plain { None } else { format!("{size:e}").parse().ok() };
+    let literal = literal.unwrap_or_else(|| Literal::f64_unsuffixed(size));
     if value.is_sign_negative() && size != 0.0 {
         quote! { -#literal }
     } else {

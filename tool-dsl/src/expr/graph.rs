@@ -1,7 +1,7 @@
 //! The graph and the rules by which it folds as it grows.
 
 use crate::number::Number;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// A node of a [`Graph`]. A larger id never is an operand of a smaller one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -121,18 +121,14 @@ impl Graph {
 
     /// The nodes that some roots need, operands first.
     pub fn needed(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
-        let mut wanted = vec![false; self.nodes.len()];
-        for root in roots {
-            wanted[root.index()] = true;
-        }
-        for at in (0..self.nodes.len()).rev() {
-            if wanted[at] {
-                for operand in self.nodes[at].operands() {
-                    wanted[operand.index()] = true;
-                }
+        let mut open: Vec<Id> = roots.into_iter().collect();
+        let mut wanted = BTreeSet::new();
+        while let Some(id) = open.pop() {
+            if wanted.insert(id) {
+                open.extend(self.node(id).operands());
             }
         }
-        (0..self.nodes.len() as u32).map(Id).filter(|id| wanted[id.index()]).collect()
+        wanted.into_iter().collect()
     }
 
     /// The constant that a node is, if it is one.

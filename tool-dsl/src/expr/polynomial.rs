@@ -3,7 +3,7 @@
 
 use super::{Coord, Graph, Id, Node};
 use crate::number::Number;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Exponents of (d, x, y, z); d² is the same as x² + y² only outside this module.
 pub(crate) type Monomial = [u8; 4];
@@ -27,32 +27,50 @@ pub struct Polynomial(BTreeMap<Monomial, Number>);
 /// The highest degree that is recognised.
 const DEGREE: u8 = 8;
 
+/// The polynomials that nodes are, each found once.
+#[derive(Default)]
+pub(crate) struct Polynomials(HashMap<Id, Option<Polynomial>>);
+
+impl Polynomials {
+    /// The polynomial that a node is, if it is one.
+    pub(crate) fn of(&mut self, graph: &Graph, id: Id) -> Option<&Polynomial> {
+        let mut open = vec![id];
+        while let Some(id) = open.last().copied() {
+            let before = open.len();
+            open.extend(graph.node(id).operands().filter(|operand| !self.0.contains_key(operand)));
+            if open.len() == before {
+                let polynomial = Polynomial::node(graph.node(id), |operand| self.known(*operand));
+                self.0.insert(id, polynomial);
+                open.pop();
+            }
+        }
+        self.known(id)
+    }
+
+    /// That of a node which was asked for, or of one that such a node needs.
+    pub(crate) fn known(&self, id: Id) -> Option<&Polynomial> {
+        self.0.get(&id)?.as_ref()
+    }
+}
+
 impl Polynomial {
     /// The polynomial that a node is, if it is one.
     pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
-        Polynomial::of_parts(graph, id).remove(&id).flatten()
+        let mut all = Polynomials::default();
+        all.of(graph, id);
+        all.0.remove(&id).flatten()
     }
 
-    /// The polynomials that a node and all that it needs are, if they are.
-    pub(crate) fn of_parts(graph: &Graph, id: Id) -> BTreeMap<Id, Option<Polynomial>> {
-        let mut known: BTreeMap<Id, Option<Polynomial>> = BTreeMap::new();
-        for id in graph.needed([id]) {
-            let polynomial = Polynomial::node(graph.node(id), |operand| known[operand].clone());
-            known.insert(id, polynomial);
-        }
-        known
-    }
-
-    fn node(node: &Node, of: impl Fn(&Id) -> Option<Polynomial>) -> Option<Polynomial> {
+    fn node<'p>(node: &Node, of: impl Fn(&Id) -> Option<&'p Polynomial>) -> Option<Polynomial> {
         let single = |monomial, value: Number| Polynomial(BTreeMap::from([(monomial, value)]));
         Some(match node {
             Node::Const(value) => single([0; 4], value.clone()),
             Node::Coord(Coord::Length | Coord::PerLength) => return None,
             Node::Coord(coord) => single(monomial_of(*coord), Number::int(1)),
             Node::Neg(a) => of(a)?.scaled(&Number::int(-1)),
-            Node::Add(a, b) => of(a)?.plus(&of(b)?),
-            Node::Sub(a, b) => of(a)?.plus(&of(b)?.scaled(&Number::int(-1))),
-            Node::Mul(a, b) => of(a)?.times(&of(b)?)?,
+            Node::Add(a, b) => of(a)?.clone().plus(of(b)?),
+            Node::Sub(a, b) => of(a)?.clone().plus(&of(b)?.scaled(&Number::int(-1))),
+            Node::Mul(a, b) => of(a)?.times(of(b)?)?,
             _ => return None,
         })
     }

@@ -8,7 +8,7 @@
 use crate::bound::{Prover, halves};
 use crate::domain::Domain;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
-use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
+use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
@@ -222,8 +222,9 @@ impl Variables<'_> {
 
     /// An expression as a linear form, if it is one.
     fn form(&mut self, root: Id) -> Option<Form> {
-        let polynomials = Polynomial::of_parts(self.graph, root);
-        let polynomial = |id: &Id| polynomials.get(id).and_then(Option::as_ref);
+        let mut polynomials = Polynomials::default();
+        polynomials.of(self.graph, root);
+        let polynomial = |id: &Id| polynomials.known(*id);
         // What the form is summed up from; each once, however often it is shared.
         let (mut open, mut parts) = (vec![root], BTreeSet::new());
         while let Some(id) = open.pop() {

@@ -8,6 +8,7 @@
 //! samples of the domain, cheap curves first, `bsp` before all.
 
 pub(crate) mod empty;
+mod samples;
 mod section;
 
 use crate::bound::Extent;
@@ -414,9 +415,13 @@ impl Planner<'_> {
     }
 }
 
+/// The bits that a part of a whole has, times its weight.
+fn bits(part: f64, whole: f64) -> f64 {
+    if part > 0.0 { -part * (part / whole).log2() } else { 0.0 }
+}
+
 /// Bits that a side gives about classes whose weights on the two sides are known.
 fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
-    let bits = |part: f64, whole: f64| if part > 0.0 { -part * (part / whole).log2() } else { 0.0 };
     let totals = counts.clone().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
     let all = totals[0] + totals[1];
     if all == 0.0 {

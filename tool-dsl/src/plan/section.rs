@@ -1,6 +1,7 @@
 //! The plan of a profile's tool: the partition is known as polygons, and splits cut them until one
 //! owner is left.
 
+use super::samples::{Few, Samples};
 use super::{LARGEST, Tree, costs};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
@@ -22,14 +23,9 @@ const DOUBLES: usize = 6;
 type Owners = Tree<Option<usize>>;
 
 /// Bits that an addition must be worth.
-const PRICE: f64 = 0.01;
+pub(super) const PRICE: f64 = 0.01;
 /// What a test costs that the tree does elsewhere too: lanes do it once.
 const AGAIN: f64 = 0.3;
-/// Additions that a side where several owners are left will cost at least.
-const TEST: f64 = 8.0;
-/// Bits that an owner counts for who is found again on both sides: without, trees grow by half.
-const TORN: f64 = 0.2;
-
 /// The owners' tree, and that of the features which are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Report> {
     let mut tried = try_trees(model, section, CHORDS[0]);
@@ -134,7 +130,10 @@ impl Ground {
         pieces: impl IntoIterator<Item = Piece>,
         owner: impl Fn(Point) -> Option<Option<usize>>,
     ) {
-        self.pieces.extend(pieces.into_iter().map(Rc::new));
+        for piece in pieces {
+            let origin = self.pieces.len();
+            self.pieces.push(Rc::new(Piece { origin, ..piece }));
+        }
         let samples = cell.samples.iter();
         self.samples.extend(samples.filter_map(|(p, weight)| Some((*p, *weight, owner(*p)?))));
         self.witnesses.extend(cell.witnesses.iter().filter_map(|p| Some((*p, owner(*p)?))));
@@ -172,24 +171,17 @@ fn plan<'m>(
     ground: Ground,
     inside: Vec<&'m Formula>,
 ) -> Result<Owners, Report> {
-    let samples: Vec<(u32, f64)> = ground
-        .samples
-        .iter()
-        .map(|(_, weight, owner)| (owner.map_or(0, |owner| owner as u32 + 1), *weight))
-        .collect();
-    let below = shapes
-        .iter()
-        .map(|shape| ground.samples.iter().map(|(p, ..)| shape.below(*p)).collect())
-        .collect();
-    let all = (0..samples.len() as u32).collect();
+    let samples = Samples::new(&ground.samples, shapes);
+    let all = samples.all();
     let mut planner = Planner {
         model,
         shapes,
         costs: costs(model),
         samples,
-        below,
         inside,
         used: vec![false; model.curves.len()],
+        whole: ground.pieces.iter().map(|p| (Rc::clone(p), p.about())).collect(),
+        sides: vec![Vec::new(); model.curves.len()],
         size,
         tests: 0,
     };
@@ -207,14 +199,23 @@ struct Planner<'m> {
     model: &'m Model,
     shapes: &'m [Shape<'m>],
     costs: Vec<f64>,
-    /// The owner of each sample (0 for none, else one more than its place) and its weight.
-    samples: Vec<(u32, f64)>,
-    /// Of each curve, which samples lie below it.
-    below: Vec<Vec<bool>>,
+    samples: Samples,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
+    /// The pieces before any was cut, and what is about them.
+    whole: Vec<(Rc<Piece>, [Point; 2])>,
+    /// Of each curve that was tried, where each of these lies.
+    sides: Vec<Vec<Option<Side>>>,
     size: f64,
     tests: usize,
+}
+
+/// Where a whole piece lies, and so all that is cut from it.
+#[derive(Clone, Copy)]
+enum Side {
+    Below,
+    Above,
+    Torn,
 }
 
 /// Pieces on the two sides of a curve.
@@ -227,7 +228,7 @@ impl Planner<'_> {
     fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
-        samples: Vec<u32>,
+        samples: Few,
         mut open: Vec<CurveIndex>,
     ) -> Result<Owners, Report> {
         let Some(first) = pieces.first() else { return Ok(Tree::Leaf(None)) };
@@ -243,8 +244,7 @@ impl Planner<'_> {
             return Err(super::too_large(self.model));
         }
         open.retain(|other| *other != curve);
-        let (low, high): (Vec<u32>, Vec<u32>) =
-            samples.into_iter().partition(|s| self.below[curve][*s as usize]);
+        let [low, high] = self.samples.divided(&samples, curve);
         let on = match zeros {
             Zeros::Both => Some(self.touching(curve, &halves, &open)?),
             _ => None,
@@ -263,17 +263,17 @@ impl Planner<'_> {
 
     /// The curve that tells most about the owners for what it costs, and what it divides.
     fn choose(
-        &self,
+        &mut self,
         pieces: &[Rc<Piece>],
-        samples: &[u32],
+        samples: &Few,
         open: &mut Vec<CurveIndex>,
     ) -> Option<(CurveIndex, Halves, Zeros)> {
-        let mut counts = Vec::new();
+        let uncertain = self.samples.uncertain(samples);
         let mut ranked: Vec<(f64, CurveIndex)> = open
             .iter()
             .map(|curve| {
                 let again = if self.used[*curve] { AGAIN } else { 1.0 };
-                let gain = self.gain(*curve, samples, &mut counts);
+                let gain = self.samples.gain(samples, uncertain, *curve);
                 (gain - PRICE * again * self.costs[*curve], *curve)
             })
             .collect();
@@ -350,10 +350,32 @@ impl Planner<'_> {
         .help("features closer than 10^-10 of the tool's size cannot be told apart")
     }
 
-    fn halves(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
+    fn halves(&mut self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
+        let cutter = Cutter { shapes: self.shapes, curve, size: self.size };
+        let (whole, shape) = (&self.whole, &self.shapes[curve]);
+        let sides = &mut self.sides[curve];
+        sides.resize(whole.len(), None);
+        let side = |origin: usize| {
+            let (piece, [middle, half]) = &whole[origin];
+            match shape.side_of_box(*middle, *half) {
+                -1 => return Side::Below,
+                1 => return Side::Above,
+                _ => {}
+            }
+            match piece.cut(cutter) {
+                Cut::Below => Side::Below,
+                Cut::Above => Side::Above,
+                Cut::Nothing | Cut::Both(..) => Side::Torn,
+            }
+        };
         let mut halves = Halves { below: Vec::new(), above: Vec::new() };
         for piece in pieces {
-            match piece.cut(Cutter { shapes: self.shapes, curve, size: self.size }) {
+            let cut = match *sides[piece.origin].get_or_insert_with(|| side(piece.origin)) {
+                Side::Below => Cut::Below,
+                Side::Above => Cut::Above,
+                Side::Torn => piece.cut(cutter),
+            };
+            match cut {
                 Cut::Below => halves.below.push(Rc::clone(piece)),
                 Cut::Above => halves.above.push(Rc::clone(piece)),
                 Cut::Nothing => {}
@@ -364,22 +386,6 @@ impl Planner<'_> {
             }
         }
         halves
-    }
-
-    /// What a curve's side tells about the owners of samples, in bits, less what is left to test.
-    fn gain(&self, curve: CurveIndex, samples: &[u32], counts: &mut Vec<[f64; 2]>) -> f64 {
-        counts.clear();
-        counts.resize(self.inside.len() + 1, [0.0; 2]);
-        let below = &self.below[curve];
-        for sample in samples {
-            let (owner, weight) = self.samples[*sample as usize];
-            counts[owner as usize][usize::from(!below[*sample as usize])] += weight;
-        }
-        counts.retain(|count| count[0] + count[1] > 0.0);
-        let owners = |side: usize| counts.iter().filter(|count| count[side] > 0.0).count();
-        let open = [0, 1].map(|side| if owners(side) > 1 { PRICE * TEST } else { 0.0 });
-        let torn = counts.iter().filter(|count| count[0] > 0.0 && count[1] > 0.0).count() as f64;
-        super::information(counts.iter().copied()) - open[0] - open[1] - TORN * torn
     }
 
     /// Which side the points on a curve go to: that of the solid, so that its surface is its own;
@@ -442,8 +448,8 @@ impl Planner<'_> {
             |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
         let [below, above] = [&halves.below, &halves.above]
             .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
-        let below = self.tree(&below, Vec::new(), open.to_vec())?;
-        let above = self.tree(&above, Vec::new(), open.to_vec())?;
+        let below = self.tree(&below, Few::default(), open.to_vec())?;
+        let above = self.tree(&above, Few::default(), open.to_vec())?;
         Ok(first(&below, &above))
     }
 }

@@ -25,7 +25,7 @@ pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], siz
             run.drain(..).for_each(|k| edges[k] = edge);
         }
     }
-    Piece { owner, vertices: cell.vertices.clone(), edges }
+    Piece { owner, origin: 0, vertices: cell.vertices.clone(), edges }
 }
 
 /// A piece cut until each part has conditions that hold all over it, or not at all; with each part

@@ -189,25 +189,16 @@ impl<'o> Section<'o> {
     /// How far a ball that touches a feature in a seat grows, and what stops it.
     pub(super) fn growth(&self, feature: usize, seat: &Seat) -> (f64, Stop) {
         let (mut most, mut stop) = (f64::INFINITY, Stop::Far);
-        if self.outer {
-            most = FAR * self.size;
-        }
-        if seat.normal[0] < 0.0 {
-            let to_axis = -seat.foot[0] / seat.normal[0];
-            if to_axis < most {
-                (most, stop) = (to_axis, Stop::Axis);
+        for other in [Stop::Far, Stop::Axis, Stop::Centre] {
+            let grown = self.grown(feature, seat, other);
+            if grown < most || (other == Stop::Centre && grown <= most && grown.is_finite()) {
+                (most, stop) = (grown, other);
             }
-        }
-        if let Feature::Piece(piece) = self.features[feature]
-            && let Some((_, radius, true)) = self.outline[piece].round()
-            && radius <= most
-        {
-            (most, stop) = (radius, Stop::Centre);
         }
         for other in 0..self.features.len() {
             if other != feature {
-                let grown = self.until(feature, seat, other);
-                if grown < most {
+                let grown = self.reach(seat, other);
+                if grown < most && self.touches(feature, seat, other, grown) {
                     (most, stop) = (grown, Stop::Feature(other));
                 }
             }
@@ -215,47 +206,80 @@ impl<'o> Section<'o> {
         (most, stop)
     }
 
-    /// How far the ball grows until it touches another feature; infinite if it never does.
-    pub(super) fn until(&self, feature: usize, seat: &Seat, other: usize) -> f64 {
-        if self.shares_end(feature, seat, other) {
-            return f64::INFINITY;
+    /// How far the ball grows until something stops it; infinite if that never does.
+    pub(super) fn grown(&self, feature: usize, seat: &Seat, stop: Stop) -> f64 {
+        match stop {
+            Stop::Far if self.outer => FAR * self.size,
+            Stop::Axis if seat.normal[0] < 0.0 => -seat.foot[0] / seat.normal[0],
+            Stop::Centre => match self.features[feature] {
+                Feature::Piece(piece) => match self.outline[piece].round() {
+                    Some((_, radius, true)) => radius,
+                    _ => f64::INFINITY,
+                },
+                Feature::Corner(_) => f64::INFINITY,
+            },
+            Stop::Far | Stop::Axis => f64::INFINITY,
+            Stop::Feature(other) => {
+                let grown = self.reach(seat, other);
+                let stops = grown.is_finite() && self.touches(feature, seat, other, grown);
+                if stops { grown } else { f64::INFINITY }
+            }
         }
+    }
+
+    /// How far the ball grows until it touches the whole line or circle of another feature.
+    fn reach(&self, seat: &Seat, other: usize) -> f64 {
         let (p, n) = (seat.foot, seat.normal);
-        let Feature::Piece(piece) = self.features[other] else {
-            let Feature::Corner(behind) = self.features[other] else { return f64::INFINITY };
-            let way = minus(self.corner_at(behind), p);
-            let grown = dot(way, way) / (2.0 * dot(n, way));
-            let seen = grown >= 0.0 && self.in_fan(behind, seat.at(grown));
-            return if seen { grown } else { f64::INFINITY };
-        };
-        let segment = &self.outline[piece];
-        let slack = CLOSE * self.size;
-        let grown = match segment.round() {
-            None => {
-                let along = segment.tangent(false);
-                let apart = minus(n, [-along[1], along[0]]);
-                2.0 * segment.signed(p) / dot(apart, apart)
+        let grown = match self.features[other] {
+            Feature::Corner(behind) => {
+                let way = minus(self.corner_at(behind), p);
+                dot(way, way) / (2.0 * dot(n, way))
             }
-            Some((centre, radius, convex)) => {
-                let a = minus(p, centre);
-                let (off, out) = (radius * radius - dot(a, a), dot(a, n));
-                if convex { off / (2.0 * (radius + out)) } else { -off / (2.0 * (radius - out)) }
+            Feature::Piece(piece) => {
+                let segment = &self.outline[piece];
+                match segment.round() {
+                    None => {
+                        let along = segment.tangent(false);
+                        let apart = minus(n, [-along[1], along[0]]);
+                        2.0 * segment.signed(p) / dot(apart, apart)
+                    }
+                    Some((centre, radius, convex)) => {
+                        let a = minus(p, centre);
+                        let (off, out) = (radius * radius - dot(a, a), dot(a, n));
+                        if convex {
+                            off / (2.0 * (radius + out))
+                        } else {
+                            -off / (2.0 * (radius - out))
+                        }
+                    }
+                }
             }
         };
-        if !(grown >= 0.0 && grown.is_finite()) {
-            return f64::INFINITY;
-        }
+        if grown >= 0.0 { grown } else { f64::INFINITY }
+    }
+
+    /// Whether the ball that has grown so far touches a feature itself, and not only beyond its ends
+    /// or where the two join.
+    fn touches(&self, feature: usize, seat: &Seat, other: usize, grown: f64) -> bool {
         let middle = seat.at(grown);
-        let within = match segment.round() {
-            None => segment.sector(middle).iter().all(|side| *side >= -slack),
-            Some((centre, radius, convex)) => {
-                let off = norm(minus(middle, centre));
-                let touches = !convex || grown <= radius * (1.0 + CLOSE);
-                touches
-                    && segment.sector(middle).iter().all(|side| *side >= -CLOSE * off.max(slack))
+        let within = match self.features[other] {
+            Feature::Corner(behind) => self.in_fan(behind, middle),
+            Feature::Piece(piece) => {
+                let segment = &self.outline[piece];
+                let slack = CLOSE * self.size;
+                let [start, end] = segment.sector(middle);
+                match segment.round() {
+                    None => start >= -slack && end >= -slack,
+                    Some((centre, radius, convex)) => {
+                        let slack = CLOSE * norm(minus(middle, centre)).max(slack);
+                        (!convex || grown <= radius * (1.0 + CLOSE))
+                            && start >= -slack
+                            && end >= -slack
+                    }
+                }
             }
         };
-        if within { grown } else { f64::INFINITY }
+        within && !self.shares_end(feature, seat, other)
     }
 
     /// Whether a point is between the normals of a corner's pieces. A corner and its pieces are as

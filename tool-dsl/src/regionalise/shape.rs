@@ -68,13 +68,13 @@ impl<'g> Shape<'g> {
     fn at(&self, p: Point) -> Value {
         match self {
             Shape::Conic { middle, factors: c } => {
-                let [u, v] = minus(p, *middle);
-                let terms = [c[0], c[1] * u, c[2] * v, c[3] * u * u, c[4] * u * v, c[5] * v * v];
-                let gradient = [c[1] + 2.0 * c[3] * u + c[4] * v, c[2] + c[4] * u + 2.0 * c[5] * v];
+                let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
+                let (a, b) = (c[1] * u, c[2] * v);
+                let (uu, uv, vv) = (c[3] * u * u, c[4] * u * v, c[5] * v * v);
                 Value {
-                    value: terms.iter().sum(),
-                    gradient,
-                    terms: terms.iter().map(|term| term.abs()).sum(),
+                    value: c[0] + a + b + uu + uv + vv,
+                    gradient: [c[1] + 2.0 * c[3] * u + c[4] * v, c[2] + c[4] * u + 2.0 * c[5] * v],
+                    terms: c[0].abs() + a.abs() + b.abs() + uu.abs() + uv.abs() + vv.abs(),
                 }
             }
             Shape::Other(evaluator, id) => {
@@ -106,12 +106,61 @@ impl<'g> Shape<'g> {
     }
 
     pub(crate) fn value(&self, p: Point) -> f64 {
-        self.at(p).value
+        match self {
+            Shape::Conic { middle, factors: c } => {
+                let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
+                c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v
+            }
+            Shape::Other(evaluator, id) => {
+                let mut evaluator = evaluator.borrow_mut();
+                evaluator.set(At::meridian(p[0], p[1]));
+                evaluator.get(*id)
+            }
+        }
+    }
+
+    /// The side of the curve that a whole box is on, if a rough bound shows it: -1, 1, else 0.
+    pub(crate) fn side_of_box(&self, middle: Point, half: Point) -> i8 {
+        let Shape::Conic { factors: c, .. } = self else { return 0 };
+        let Value { value, gradient: [a, b], terms } = self.at(middle);
+        let [u, v] = half;
+        let most = a.abs() * u + b.abs() * v;
+        let most = most + c[3].abs() * u * u + c[4].abs() * u * v + c[5].abs() * v * v;
+        if value.abs() <= 1.001 * most + 2.0 * ROUNDING * terms {
+            return 0;
+        }
+        if value < 0.0 { -1 } else { 1 }
+    }
+
+    /// `v0 + slope t + bend t²`, the value on the way from one point to another: of a conic exactly,
+    /// of others about.
+    fn course(&self, a: Point, b: Point) -> [f64; 3] {
+        let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
+        [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
+    }
+
+    /// How far from one point to another on the other side the curve is crossed, as a part.
+    fn zero_between(&self, a: Point, b: Point) -> f64 {
+        if matches!(self, Shape::Conic { .. }) {
+            let [v0, slope, bend] = self.course(a, b);
+            let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
+            let q = -(slope + root.copysign(slope)) / 2.0;
+            if let Some(t) = [v0 / q, q / bend].into_iter().find(|t| (0.0..=1.0).contains(t)) {
+                return t;
+            }
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        let below = self.below(a);
+        for _ in 0..60 {
+            let middle = (low + high) / 2.0;
+            if self.below(between(a, b, middle)) == below { low = middle } else { high = middle }
+        }
+        low
     }
 
     /// The sign, without tolerance.
     pub(crate) fn below(&self, p: Point) -> bool {
-        self.at(p).value <= 0.0
+        self.value(p) <= 0.0
     }
 }
 
@@ -130,6 +179,8 @@ fn add(factors: &mut [f64; 6], more: &[(usize, f64)]) {
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     pub(crate) owner: Option<usize>,
+    /// Which piece it was before it was cut, of those that who asks keeps.
+    pub(crate) origin: usize,
     pub(crate) vertices: Vec<Point>,
     pub(crate) edges: Vec<Edge>,
 }
@@ -163,7 +214,7 @@ impl Piece {
             (true, true) => {
                 let [below, above] = [-1, 1].map(|side| {
                     let (vertices, edges) = cutter.half(&corners, side)?;
-                    let part = Piece { owner: self.owner, vertices, edges };
+                    let part = Piece { vertices, edges, ..*self };
                     (!is_thin(&part.vertices, cutter.size)).then_some(part)
                 });
                 Cut::Both(below, above)
@@ -175,6 +226,19 @@ impl Piece {
             (false, false) if cutter.shape().below(self.middle()) => Cut::Below,
             (false, false) => Cut::Above,
         }
+    }
+
+    /// Where it lies for certain: the middle and half the sides of a box about it and what bulges.
+    pub(crate) fn about(&self) -> [Point; 2] {
+        let [low, high] = self.vertices.iter().fold(
+            [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+            |[low, high], p| {
+                [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+            },
+        );
+        let half = [(high[0] - low[0]) / 2.0, (high[1] - low[1]) / 2.0];
+        let bulge = 2.0 * BULGE * (half[0] + half[1]);
+        [between(low, high, 0.5), [half[0] + bulge, half[1] + bulge]]
     }
 
     /// The mean of its vertices.
@@ -251,8 +315,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
         if edge == Edge::Chord || shape.is_line() {
             return None;
         }
-        let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| shape.at(p).value);
-        let (bend, slope) = (2.0 * (v0 - 2.0 * vm + v1), 4.0 * vm - 3.0 * v0 - v1);
+        let [_, slope, bend] = shape.course(a, b);
         let turn = -slope / (2.0 * bend);
         if !(turn > 0.0 && turn < 1.0) {
             return None;
@@ -289,13 +352,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
     /// Where an edge between points on different sides crosses, on the curve that it is a chord of.
     fn crossing(&self, a: Point, b: Point, edge: Edge) -> Point {
         let shape = self.shape();
-        let (mut low, mut high) = (0.0, 1.0);
-        let below = shape.below(a);
-        for _ in 0..60 {
-            let middle = (low + high) / 2.0;
-            if shape.below(between(a, b, middle)) == below { low = middle } else { high = middle }
-        }
-        let on_chord = between(a, b, low);
+        let on_chord = between(a, b, shape.zero_between(a, b));
         let Edge::Along(other) = edge else { return on_chord };
         let mut p = on_chord;
         for _ in 0..8 {
@@ -305,6 +362,9 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let step =
                 [(own.value * d - other.value * b) / det, (other.value * a - own.value * c) / det];
             p = minus(p, step);
+            if norm(step) <= 1e-17 * self.size {
+                break;
+            }
         }
         // Where the curves hardly cross, the chord's point is as good.
         if norm(minus(p, on_chord)) < BULGE * norm(minus(b, a)) { p } else { on_chord }
@@ -318,14 +378,14 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let at = |s: f64| [from[0] + s * across[0], from[1] + s * across[1]];
         // Secant steps along the chord's normal.
         let (mut s0, mut s1) = (0.0, 0.05);
-        let (mut v0, mut v1) = (shape.at(at(s0)).value, shape.at(at(s1)).value);
+        let (mut v0, mut v1) = (shape.value(at(s0)), shape.value(at(s1)));
         for _ in 0..12 {
             if v1 == v0 {
                 break;
             }
             let next = s1 - v1 * (s1 - s0) / (v1 - v0);
             (s0, v0) = (s1, v1);
-            (s1, v1) = (next, shape.at(at(next)).value);
+            (s1, v1) = (next, shape.value(at(next)));
         }
         (s1.abs() < 4.0 * BULGE).then_some(at(s1))
     }
@@ -335,12 +395,19 @@ impl<'a, 'g> Cutter<'a, 'g> {
 fn is_thin(vertices: &[Point], size: f64) -> bool {
     let Some(&first) = vertices.first() else { return true };
     let far = |a: Point| {
-        let farther = |b: &&Point, c: &&Point| norm(minus(**b, a)).total_cmp(&norm(minus(**c, a)));
-        vertices.iter().max_by(farther).copied().unwrap_or(a)
+        let (mut most, mut farthest) = (0.0, a);
+        for b in vertices {
+            let away = minus(*b, a);
+            let square = away[0] * away[0] + away[1] * away[1];
+            if square > most {
+                (most, farthest) = (square, *b);
+            }
+        }
+        farthest
     };
     let last = far(first);
-    let (first, way) = (far(last), minus(last, far(last)));
-    let off = |p: &Point| cross(way, minus(*p, first)).abs() / norm(way);
+    let way = minus(last, far(last));
     // Points in one place have no direction, and are thin.
-    !vertices.iter().any(|p| off(p) > ON * size)
+    let least = ON * size * norm(way);
+    !vertices.iter().any(|p| cross(way, minus(*p, last)).abs() > least)
 }

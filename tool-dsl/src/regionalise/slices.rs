@@ -124,10 +124,33 @@ impl Walk<'_> {
         }
     }
 
+    /// Where one stop takes over from another, if no third is between them.
+    fn taken_over(&self, a: f64, b: f64, [first, last]: [Stop; 2]) -> Option<f64> {
+        let (mut low, mut high) = (a, b);
+        for _ in 0..HALVINGS {
+            let middle = low / 2.0 + high / 2.0;
+            if middle <= low || middle >= high {
+                break;
+            }
+            let seat = self.section.seat(self.feature, middle);
+            let [own, other] = [first, last].map(|s| self.section.grown(self.feature, &seat, s));
+            if own < other {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        (self.stop(low) == first && self.stop(high) == last).then_some(high)
+    }
+
     /// The slices between two parameters whose stops are known.
     fn divide(&mut self, (a, first): (f64, Stop), (b, last): (f64, Stop), halvings: u32) {
         if first == last {
             return self.put(a, b, first);
+        }
+        if let Some(at) = self.taken_over(a, b, [first, last]) {
+            self.put(a, at, first);
+            return self.put(at, b, last);
         }
         let (mut low, mut high) = (a, b);
         for step in 0..halvings {
@@ -180,7 +203,7 @@ impl Slice {
         let t = (self.from + part * (self.to - self.from)).clamp(ENDS[0], 1.0 - ENDS[0]);
         let seat = section.seat(self.feature, t);
         let own = match self.stop {
-            Stop::Feature(other) => section.until(self.feature, &seat, other),
+            Stop::Feature(_) => section.grown(self.feature, &seat, self.stop),
             _ => f64::INFINITY,
         };
         if own.is_finite() { own } else { section.growth(self.feature, &seat).0 }

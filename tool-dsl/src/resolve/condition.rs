@@ -1,6 +1,6 @@
 //! Conditions to formulas over splitting curves.
 
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::Polynomials;
 use crate::expr::{Graph, Id, Node};
 use crate::formula::{CurveIndex, Formula};
 use crate::model::Curve;
@@ -13,7 +13,8 @@ const PARTS: usize = 64;
 #[derive(Default)]
 pub(super) struct Curves {
     pub(super) list: Vec<Curve>,
-    polynomials: Vec<Option<Polynomial>>,
+    polynomials: Polynomials,
+    found: BTreeMap<Id, (CurveIndex, bool)>,
     names: BTreeMap<Id, String>,
 }
 
@@ -24,44 +25,43 @@ impl Curves {
     }
 
     /// The curve that an expression is zero on, and whether it has the curve's sign.
-    pub(super) fn find(&self, graph: &mut Graph, value: Id) -> Option<(CurveIndex, bool)> {
-        let polynomial = Polynomial::of(graph, value);
+    pub(super) fn find(&mut self, graph: &mut Graph, value: Id) -> Option<(CurveIndex, bool)> {
+        if let Some(found) = self.found.get(&value) {
+            return Some(*found);
+        }
+        self.polynomials.of(graph, value);
+        let own = self.polynomials.known(value);
         let opposite = graph.neg(value);
-        for (index, curve) in self.list.iter().enumerate() {
+        let found = self.list.iter().enumerate().find_map(|(index, curve)| {
             if curve.value == value {
                 return Some((index, true));
             }
             if curve.value == opposite {
                 return Some((index, false));
             }
-            if let (Some(a), Some(b)) = (&polynomial, &self.polynomials[index])
-                && let Some(factor) = a.ratio(b)
-            {
-                return Some((index, !factor.is_negative()));
-            }
-        }
-        None
+            let factor = own?.ratio(self.polynomials.known(curve.value)?)?;
+            Some((index, !factor.is_negative()))
+        })?;
+        self.found.insert(value, found);
+        Some(found)
     }
 
     /// `value ≤ 0` or, if not `below`, `value ≥ 0`.
     fn atom(&mut self, graph: &mut Graph, value: Id, below: bool) -> Formula {
-        let polynomial = Polynomial::of(graph, value);
-        if let Some(constant) = polynomial.as_ref().and_then(Polynomial::constant) {
-            return Formula::Const(constant.is_zero() || constant.is_negative() == below);
-        }
-        // No point is nearer to the axis than 0.
-        if polynomial
-            .as_ref()
-            .and_then(Polynomial::multiple_of_d)
-            .is_some_and(|factor| factor.is_negative() == below)
-        {
-            return Formula::Const(true);
+        if let Some(polynomial) = self.polynomials.of(graph, value) {
+            if let Some(constant) = polynomial.constant() {
+                return Formula::Const(constant.is_zero() || constant.is_negative() == below);
+            }
+            // No point is nearer to the axis than 0.
+            let factor = polynomial.multiple_of_d();
+            if factor.is_some_and(|factor| factor.is_negative() == below) {
+                return Formula::Const(true);
+            }
         }
         let (curve, same) = self.find(graph, value).unwrap_or_else(|| {
             let opposite = graph.neg(value);
             let name = self.names.get(&value).or_else(|| self.names.get(&opposite)).cloned();
             self.list.push(Curve { name, value });
-            self.polynomials.push(polynomial);
             (self.list.len() - 1, true)
         });
         Formula::Atom { curve, below: below == same, strict: false }

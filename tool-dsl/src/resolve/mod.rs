@@ -387,7 +387,7 @@ fn first_curves(
 fn curve_of(
     name: &Name,
     lowering: &mut Lowering,
-    curves: &Curves,
+    curves: &mut Curves,
 ) -> Result<Option<usize>, Report> {
     let Some(value) = lowering.values.get_mut(&name.word) else {
         let report = Report::error(name.span, format!("unknown curve `{}`", name.word));

@@ -1,0 +1,133 @@
+//! Points of the section whose owners are known: what a curve tells about them.
+
+use super::bits;
+use super::section::PRICE;
+use crate::formula::CurveIndex;
+use crate::regionalise::outline::Point;
+use crate::regionalise::shape::Shape;
+
+/// Additions that a side where several owners are left will cost at least.
+const TEST: f64 = 8.0;
+/// Bits that an owner counts for who is found again on both sides: without, trees grow by half.
+const TORN: f64 = 0.2;
+
+/// All samples, in words of up to 64 of one owner.
+pub(super) struct Samples {
+    owners: Vec<usize>,
+    weights: Vec<Vec<f64>>,
+    /// Of each curve, which samples lie below it.
+    below: Vec<Vec<u64>>,
+    /// Owners are below this.
+    count: usize,
+}
+
+/// Some samples: words, which of a word they are, and their weight.
+#[derive(Default)]
+pub(super) struct Few(Vec<(usize, u64, f64)>);
+
+impl Samples {
+    pub(super) fn new(all: &[(Point, f64, Option<usize>)], shapes: &[Shape<'_>]) -> Samples {
+        let runs: Vec<&[(Point, f64, Option<usize>)]> =
+            all.chunk_by(|a, b| a.2 == b.2).flat_map(|run| run.chunks(64)).collect();
+        let below = |shape: &Shape<'_>| {
+            let bits = |run: &&[(Point, f64, Option<usize>)]| {
+                let mut bits = 0;
+                for (k, (p, ..)) in run.iter().enumerate() {
+                    bits |= u64::from(shape.below(*p)) << k;
+                }
+                bits
+            };
+            runs.iter().map(bits).collect()
+        };
+        let owners: Vec<usize> =
+            runs.iter().map(|run| run[0].2.map_or(0, |owner| owner + 1)).collect();
+        Samples {
+            count: owners.iter().max().map_or(1, |most| most + 1),
+            weights: runs.iter().map(|run| run.iter().map(|sample| sample.1).collect()).collect(),
+            below: shapes.iter().map(below).collect(),
+            owners,
+        }
+    }
+
+    pub(super) fn all(&self) -> Few {
+        let word = |(at, weights): (usize, &Vec<f64>)| {
+            (at, u64::MAX >> (64 - weights.len()), weights.iter().sum())
+        };
+        Few(self.weights.iter().enumerate().map(word).collect())
+    }
+
+    /// Those below a curve, and those above.
+    pub(super) fn divided(&self, few: &Few, curve: CurveIndex) -> [Few; 2] {
+        let mut sides = [Few::default(), Few::default()];
+        for word in &few.0 {
+            for (side, (bits, weight)) in self.sides(*word, curve).into_iter().enumerate() {
+                if bits != 0 {
+                    sides[side].0.push((word.0, bits, weight));
+                }
+            }
+        }
+        sides
+    }
+
+    /// Which samples of a word are below a curve and which above, and their weights.
+    fn sides(&self, (word, bits, weight): (usize, u64, f64), curve: CurveIndex) -> [(u64, f64); 2] {
+        let below = bits & self.below[curve][word];
+        if below == bits {
+            return [(bits, weight), (0, 0.0)];
+        }
+        if below == 0 {
+            return [(0, 0.0), (bits, weight)];
+        }
+        [below, bits & !below].map(|bits| (bits, self.weight(word, bits)))
+    }
+
+    fn weight(&self, word: usize, mut bits: u64) -> f64 {
+        let mut sum = 0.0;
+        while bits != 0 {
+            sum += self.weights[word][bits.trailing_zeros() as usize];
+            bits &= bits - 1;
+        }
+        sum
+    }
+
+    /// How uncertain the owner of one of some samples is, in bits.
+    pub(super) fn uncertain(&self, few: &Few) -> f64 {
+        let mut counts = vec![0.0; self.count];
+        for (word, _, weight) in &few.0 {
+            counts[self.owners[*word]] += weight;
+        }
+        let all: f64 = counts.iter().sum();
+        counts.iter().map(|count| bits(*count, all)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
+    }
+
+    /// What a curve's side tells about the owners of some samples that were so uncertain, in bits,
+    /// less what is left to test.
+    pub(super) fn gain(&self, few: &Few, uncertain: f64, curve: CurveIndex) -> f64 {
+        let mut counts = vec![[0.0; 2]; self.count];
+        let mut totals = [0.0; 2];
+        for word in &few.0 {
+            let count = &mut counts[self.owners[word.0]];
+            for (side, (_, weight)) in self.sides(*word, curve).into_iter().enumerate() {
+                count[side] += weight;
+                totals[side] += weight;
+            }
+        }
+        if totals[0] == 0.0 || totals[1] == 0.0 {
+            return -PRICE * TEST;
+        }
+        let (mut owners, mut torn, mut left) = ([0, 0], 0.0, 0.0);
+        for count in counts {
+            for side in [0, 1] {
+                if count[side] > 0.0 {
+                    owners[side] += 1;
+                    left += bits(count[side], totals[side]);
+                }
+            }
+            if count[0] > 0.0 && count[1] > 0.0 {
+                torn += TORN;
+            }
+        }
+        let open = owners.map(|owners| if owners > 1 { PRICE * TEST } else { 0.0 });
+        uncertain - left / (totals[0] + totals[1]) - open[0] - open[1] - torn
+    }
+}
