@@ -1,11 +1,13 @@
 //! Expressions and trees as Rust.
 
+use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::CurveIndex;
 use crate::model::Curve;
+use crate::number::Number;
 use crate::plan::Tree;
-use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
-use quote::{format_ident, quote};
+use proc_macro2::TokenStream;
+use quote::quote;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The two forms of generated code.
@@ -65,18 +67,28 @@ impl<'g> Writer<'g> {
         strict: bool,
     ) -> String {
         let writer = Writer { graph, curves, form: Form::Scalar, uses: BTreeMap::new() };
-        writer.test(curve, strict).to_string()
+        let mut code = Tokens::default();
+        writer.test(&mut code, curve, strict);
+        code.done().to_string()
     }
 
-    /// The definitions of `d` and `q` where the function needs them.
-    pub(super) fn coordinates(&self) -> TokenStream {
-        let uses = |coord| self.uses.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord));
-        match (uses(Coord::D), uses(Coord::Q)) {
+    fn uses(&self, coord: Coord) -> bool {
+        self.uses.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord))
+    }
+
+    /// The definitions of what the function needs besides a point: the reciprocal of the unit of
+    /// length, `d` and `q`.
+    pub(super) fn given(&self) -> TokenStream {
+        let per_length = self.uses(Coord::PerLength).then(|| {
+            quote! { let per_length = Lane::of(length, 1.0) / length; }
+        });
+        let across = match (self.uses(Coord::D), self.uses(Coord::Q)) {
             (true, true) => quote! { let q = x * x + y * y; let d = q.sqrt(); },
             (true, false) => quote! { let d = (x * x + y * y).sqrt(); },
             (false, true) => quote! { let q = x * x + y * y; },
             (false, false) => quote! {},
-        }
+        };
+        quote! { #per_length #across }
     }
 
     /// The two sides of `c ≤ 0` as `left ≤ right`; a sum has the sign of its comparison exactly, so
@@ -108,54 +120,57 @@ impl<'g> Writer<'g> {
 
     /// The test of a curve, its operands already bound where they are shared. A constant stands on
     /// the right.
-    fn test(&self, curve: CurveIndex, strict: bool) -> TokenStream {
-        let sides = self.sides(curve);
-        let flipped = matches!(sides[0], Operand::Constant(_));
-        let [left, right] = sides.map(|side| match side {
-            Operand::Node(id) => self.value(id),
-            Operand::Constant(value) => self.constant(value),
-        });
-        match (self.form, strict, flipped) {
-            (Form::Scalar, false, false) => quote! { #left <= #right },
-            (Form::Scalar, true, false) => quote! { #left < #right },
-            (Form::Scalar, false, true) => quote! { #right >= #left },
-            (Form::Scalar, true, true) => quote! { #right > #left },
-            (Form::Lanes, false, _) => quote! { Lane::le(#left, #right) },
-            (Form::Lanes, true, _) => quote! { Lane::lt(#left, #right) },
+    fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
+        let [left, right] = self.sides(curve);
+        let operand = |code: &mut Tokens, side: &Operand| match side {
+            Operand::Node(id) => self.value(code, *id),
+            Operand::Constant(value) => self.constant(code, *value),
+        };
+        if self.form == Form::Lanes {
+            code.lane(if strict { "lt" } else { "le" }, |code| {
+                operand(code, &left);
+                code.sign(",");
+                operand(code, &right);
+            });
+            return;
         }
+        let flipped = matches!(left, Operand::Constant(_));
+        let (first, sign, second) = match (strict, flipped) {
+            (false, false) => (left, "<=", right),
+            (true, false) => (left, "<", right),
+            (false, true) => (right, ">=", left),
+            (true, true) => (right, ">", left),
+        };
+        operand(code, &first);
+        code.sign(sign);
+        operand(code, &second);
     }
 
     /// A constant as an operand of its own.
-    fn constant(&self, value: f64) -> TokenStream {
-        let literal = literal(value);
+    fn constant(&self, code: &mut Tokens, value: f64) {
         match self.form {
-            Form::Scalar => literal,
-            Form::Lanes => quote! { z.of(#literal) },
-        }
-    }
-
-    fn literal_of(&self, id: Id) -> TokenStream {
-        self.constant(self.graph.constant(id).map_or(0.0, crate::number::Number::to_f64))
+            Form::Scalar => code.number(value),
+            Form::Lanes => code.of_lanes(value),
+        };
     }
 
     /// A node where it is used: its name if it has one, else its expression.
-    fn value(&self, id: Id) -> TokenStream {
+    pub(super) fn value(&self, code: &mut Tokens, id: Id) {
         if self.named(id) {
-            let name = name(id);
-            return quote! { #name };
+            code.word(&name(id));
+            return;
         }
-        let inner = self.operation(id);
         match self.graph.node(id) {
             Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..) | Node::Neg(..) => {
-                quote! { (#inner) }
+                code.paren(|code| self.operation(code, id));
             }
-            _ => inner,
+            _ => self.operation(code, id),
         }
     }
 
     /// A node as the value of a block.
-    pub(super) fn leaf(&self, id: Id) -> TokenStream {
-        if self.named(id) { self.value(id) } else { self.operation(id) }
+    pub(super) fn leaf(&self, code: &mut Tokens, id: Id) {
+        if self.named(id) { self.value(code, id) } else { self.operation(code, id) }
     }
 
     /// Whether a node has a `let` of its own.
@@ -165,151 +180,152 @@ impl<'g> Writer<'g> {
     }
 
     /// A node's operation, whatever its name.
-    fn operation(&self, id: Id) -> TokenStream {
-        let v = |id: &Id| self.value(*id);
+    fn operation(&self, code: &mut Tokens, id: Id) {
+        let two = |code: &mut Tokens, a: &Id, sign: &str, b: &Id| {
+            self.value(code, *a);
+            code.sign(sign);
+            self.value(code, *b);
+        };
+        let call = |code: &mut Tokens, name: &str, a: &Id, b: &Id| {
+            code.lane(name, |code| two(code, a, ",", b));
+        };
+        let known = |id: &Id| self.graph.constant(*id).map(Number::to_f64);
         match self.graph.node(id) {
-            Node::Const(_) => self.literal_of(id),
+            Node::Const(value) => self.constant(code, value.to_f64()),
             Node::Coord(coord) => {
-                let name = Ident::new(
-                    match coord {
-                        Coord::X => "x",
-                        Coord::Y => "y",
-                        Coord::Z => "z",
-                        Coord::D => "d",
-                        Coord::Q => "q",
-                        Coord::Length => "length",
-                        Coord::PerLength => "per_length",
-                    },
-                    Span::call_site(),
-                );
-                quote! { #name }
+                code.word(match coord {
+                    Coord::X => "x",
+                    Coord::Y => "y",
+                    Coord::Z => "z",
+                    Coord::D => "d",
+                    Coord::Q => "q",
+                    Coord::Length => "length",
+                    Coord::PerLength => "per_length",
+                });
             }
             Node::Neg(a) => {
-                let a = v(a);
-                quote! { -#a }
+                code.sign("-");
+                self.value(code, *a);
             }
-            Node::Add(a, b) => {
-                let a = v(a);
-                match self.graph.constant(*b).map(crate::number::Number::to_f64) {
-                    Some(shift) => {
-                        let size = literal(shift.abs());
-                        if shift < 0.0 {
-                            quote! { #a - #size }
-                        } else {
-                            quote! { #a + #size }
-                        }
-                    }
-                    None => {
-                        let b = v(b);
-                        quote! { #a + #b }
-                    }
+            Node::Add(a, b) => match known(b) {
+                Some(shift) => {
+                    self.value(code, *a);
+                    code.sign(if shift < 0.0 { "-" } else { "+" }).number(shift.abs());
                 }
-            }
-            Node::Sub(a, b) => {
-                let (a, b) = (v(a), v(b));
-                quote! { #a - #b }
-            }
-            Node::Mul(a, b) => match self.graph.constant(*a).map(crate::number::Number::to_f64) {
-                Some(factor) => {
-                    let (factor, b) = (literal(factor), v(b));
-                    quote! { #b * #factor }
-                }
-                None => {
-                    let (a, b) = (v(a), v(b));
-                    quote! { #a * #b }
-                }
+                None => two(code, a, "+", b),
             },
-            Node::Div(a, b) => {
-                let (a, b) = (v(a), v(b));
-                quote! { #a / #b }
-            }
-            Node::Quotient(a, b) => {
-                let (a, b) = (v(a), v(b));
-                quote! { Lane::quotient(#a, #b) }
-            }
-            Node::Min(a, b) => {
-                let (a, b) = (v(a), v(b));
-                quote! { Lane::min(#a, #b) }
-            }
-            Node::Max(a, b) => {
-                let (a, b) = (v(a), v(b));
-                quote! { Lane::max(#a, #b) }
-            }
+            Node::Sub(a, b) => two(code, a, "-", b),
+            Node::Mul(a, b) => match known(a) {
+                Some(factor) => {
+                    self.value(code, *b);
+                    code.sign("*").number(factor);
+                }
+                None => two(code, a, "*", b),
+            },
+            Node::Div(a, b) => two(code, a, "/", b),
+            Node::Quotient(a, b) => call(code, "quotient", a, b),
+            Node::Min(a, b) => call(code, "min", a, b),
+            Node::Max(a, b) => call(code, "max", a, b),
             Node::Abs(a) => {
-                let a = v(a);
-                quote! { #a.abs() }
+                self.value(code, *a);
+                code.sign(".").word("abs").paren(|_| {});
             }
             Node::Sqrt(a) => {
-                let a = v(a);
-                quote! { #a.sqrt() }
+                self.value(code, *a);
+                code.sign(".").word("sqrt").paren(|_| {});
             }
-            Node::Select { low, high, then, other } => {
-                let (low, high, then, other) = (v(low), v(high), v(then), v(other));
-                match self.form {
-                    Form::Scalar => quote! { if #low <= #high { #then } else { #other } },
-                    Form::Lanes => quote! { Lane::select(Lane::le(#low, #high), #then, #other) },
+            Node::Select { low, high, then, other } => match self.form {
+                Form::Scalar => {
+                    code.word("if");
+                    two(code, low, "<=", high);
+                    code.brace(|code| self.value(code, *then));
+                    code.word("else").brace(|code| self.value(code, *other));
                 }
-            }
+                Form::Lanes => {
+                    code.lane("select", |code| {
+                        call(code, "le", low, high);
+                        code.sign(",");
+                        two(code, then, ",", other);
+                    });
+                }
+            },
         }
     }
 
     /// A `let` for every shared node that some roots need and that is not yet in scope.
-    fn lets(&self, roots: impl IntoIterator<Item = Id>, scope: &mut BTreeSet<Id>) -> TokenStream {
+    fn lets(
+        &self,
+        code: &mut Tokens,
+        roots: impl IntoIterator<Item = Id>,
+        scope: &mut BTreeSet<Id>,
+    ) {
         // Operands first, so every name is known where it is used.
-        let mut lets = TokenStream::new();
         for id in self.graph.needed(roots) {
             if self.named(id) && scope.insert(id) {
-                let (name, operation) = (name(id), self.operation(id));
-                lets.extend(quote! { let #name = #operation; });
+                code.word("let").word(&name(id)).sign("=");
+                self.operation(code, id);
+                code.sign(";");
             }
         }
-        lets
     }
 
     /// A tree as nested `if`s; `leaf` writes a leaf's value and `needs` names its nodes. What every
     /// way down will need is computed before the first test.
     pub(super) fn nested<L>(
         &self,
+        code: &mut Tokens,
         tree: &Tree<L>,
         needs: &impl Fn(&L) -> Vec<Id>,
-        leaf: &impl Fn(&Self, &L) -> TokenStream,
-    ) -> TokenStream {
+        leaf: &impl Fn(&mut Tokens, &L),
+    ) {
         let mut always = HashMap::new();
         self.always(tree, needs, &mut always);
-        self.branch(tree, &always, leaf, &BTreeSet::new()).0
+        self.branch(code, tree, &always, leaf, &BTreeSet::new());
     }
 
     /// A tree's code, and whether it is nothing but an `if`.
     fn branch<L>(
         &self,
+        code: &mut Tokens,
         tree: &Tree<L>,
         always: &HashMap<*const Tree<L>, BTreeSet<Id>>,
-        leaf: &impl Fn(&Self, &L) -> TokenStream,
+        leaf: &impl Fn(&mut Tokens, &L),
         scope: &BTreeSet<Id>,
-    ) -> (TokenStream, bool) {
+    ) -> bool {
         let mut scope = scope.clone();
         let needed = always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
-        let lets = self.lets(needed, &mut scope);
-        match tree {
-            Tree::Leaf(own) => {
-                let value = leaf(self, own);
-                (quote! { #lets #value }, false)
+        let mut lets = Tokens::default();
+        self.lets(&mut lets, needed, &mut scope);
+        let bare = lets.is_empty();
+        code.add(lets);
+        let Tree::Split { curve, strict, below, above } = tree else {
+            if let Tree::Leaf(own) = tree {
+                leaf(code, own);
             }
-            Tree::Split { curve, strict, below, above } => {
-                let test = self.test(*curve, *strict);
-                let leaves = matches!((&**below, &**above), (Tree::Leaf(_), Tree::Leaf(_)));
-                let (below, _) = self.branch(below, always, leaf, &scope);
-                let (above, chained) = self.branch(above, always, leaf, &scope);
-                let bare = lets.is_empty();
-                if leaves && is_word(&below, "true") && is_word(&above, "false") {
-                    (quote! { #lets #test }, false)
-                } else if chained {
-                    (quote! { #lets if #test { #below } else #above }, bare)
-                } else {
-                    (quote! { #lets if #test { #below } else { #above } }, bare)
-                }
-            }
+            return false;
+        };
+        let mut sides = [Tokens::default(), Tokens::default()];
+        self.branch(&mut sides[0], below, always, leaf, &scope);
+        let chained = self.branch(&mut sides[1], above, always, leaf, &scope);
+        let [below, above] = sides;
+        if below.is_word("true") && above.is_word("false") {
+            self.test(code, *curve, *strict);
+            return false;
         }
+        code.word("if");
+        self.test(code, *curve, *strict);
+        code.brace(|code| {
+            code.add(below);
+        });
+        code.word("else");
+        if chained {
+            code.add(above);
+        } else {
+            code.brace(|code| {
+                code.add(above);
+            });
+        }
+        bare
     }
 
     /// Notes the nodes that every way down a tree needs, for each of its trees.
@@ -336,70 +352,70 @@ impl<'g> Writer<'g> {
     /// The definitions that lanes need for some roots and tests: shared nodes, then masks.
     pub(super) fn straight(
         &self,
+        code: &mut Tokens,
         roots: &[Id],
         tested: &BTreeSet<(CurveIndex, bool)>,
-    ) -> TokenStream {
+    ) {
         let compared = tested.iter().flat_map(|(curve, _)| self.compared(*curve));
-        let mut code = self.lets(roots.iter().copied().chain(compared), &mut BTreeSet::new());
+        self.lets(code, roots.iter().copied().chain(compared), &mut BTreeSet::new());
         for (curve, strict) in tested {
-            let (mask, test) = (mask(*curve, *strict), self.test(*curve, *strict));
-            code.extend(quote! { let #mask = #test; });
-        }
-        code
-    }
-
-    /// A tree as selects over masks.
-    pub(super) fn selects(&self, tree: &Tree<Id>) -> TokenStream {
-        match tree {
-            Tree::Leaf(id) => self.value(*id),
-            Tree::Split { curve, strict, below, above } => {
-                let mask = mask(*curve, *strict);
-                let (below, above) = (self.selects(below), self.selects(above));
-                quote! { Lane::select(#mask, #below, #above) }
-            }
-        }
-    }
-
-    /// A tree of yes and no as logic over masks.
-    pub(super) fn logic(&self, tree: &Tree<bool>) -> TokenStream {
-        match tree {
-            Tree::Leaf(true) => quote! { Lane::le(z, z) },
-            Tree::Leaf(false) => quote! { Lane::lt(z, z) },
-            Tree::Split { curve, strict, below, above } => {
-                let mask = mask(*curve, *strict);
-                match (&**below, &**above) {
-                    (Tree::Leaf(true), Tree::Leaf(false)) => quote! { #mask },
-                    (Tree::Leaf(false), Tree::Leaf(true)) => quote! { !#mask },
-                    (Tree::Leaf(false), above) => {
-                        let above = self.logic(above);
-                        quote! { (!#mask & #above) }
-                    }
-                    (below, Tree::Leaf(false)) => {
-                        let below = self.logic(below);
-                        quote! { (#mask & #below) }
-                    }
-                    (Tree::Leaf(true), above) => {
-                        let above = self.logic(above);
-                        quote! { (#mask | #above) }
-                    }
-                    (below, Tree::Leaf(true)) => {
-                        let below = self.logic(below);
-                        quote! { (!#mask | #below) }
-                    }
-                    (below, above) => {
-                        let (below, above) = (self.logic(below), self.logic(above));
-                        quote! { ((#mask & #below) | (!#mask & #above)) }
-                    }
-                }
-            }
+            code.word("let").word(&mask(*curve, *strict)).sign("=");
+            self.test(code, *curve, *strict);
+            code.sign(";");
         }
     }
 }
 
-fn is_word(code: &TokenStream, word: &str) -> bool {
-    let mut tokens = code.clone().into_iter();
-    let first = tokens.next();
-    tokens.next().is_none() && matches!(first, Some(TokenTree::Ident(ident)) if ident == word)
+/// A tree as selects over masks.
+pub(super) fn selects<L>(code: &mut Tokens, tree: &Tree<L>, leaf: &impl Fn(&mut Tokens, &L)) {
+    match tree {
+        Tree::Leaf(own) => leaf(code, own),
+        Tree::Split { curve, strict, below, above } => {
+            code.lane("select", |code| {
+                code.word(&mask(*curve, *strict)).sign(",");
+                selects(code, below, leaf);
+                code.sign(",");
+                selects(code, above, leaf);
+            });
+        }
+    }
+}
+
+/// A tree of yes and no as logic over masks.
+pub(super) fn logic(code: &mut Tokens, tree: &Tree<bool>) {
+    let Tree::Split { curve, strict, below, above } = tree else {
+        let name = if *tree == Tree::Leaf(true) { "le" } else { "lt" };
+        code.lane(name, |code| {
+            code.word("z").sign(",").word("z");
+        });
+        return;
+    };
+    let mask = mask(*curve, *strict);
+    let with = |code: &mut Tokens, not: &str, sign: &str, tree: &Tree<bool>| {
+        code.paren(|code| {
+            code.sign(not).word(&mask).sign(sign);
+            logic(code, tree);
+        });
+    };
+    match (&**below, &**above) {
+        (Tree::Leaf(true), Tree::Leaf(false)) => {
+            code.word(&mask);
+        }
+        (Tree::Leaf(false), Tree::Leaf(true)) => {
+            code.sign("!").word(&mask);
+        }
+        (Tree::Leaf(false), above) => with(code, "!", "&", above),
+        (below, Tree::Leaf(false)) => with(code, "", "&", below),
+        (Tree::Leaf(true), above) => with(code, "", "|", above),
+        (below, Tree::Leaf(true)) => with(code, "!", "|", below),
+        (below, above) => {
+            code.paren(|code| {
+                with(code, "", "&", below);
+                code.sign("|");
+                with(code, "!", "&", above);
+            });
+        }
+    }
 }
 
 /// The curves that a tree tests, and how.
@@ -411,23 +427,10 @@ pub(super) fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>
     }
 }
 
-fn name(id: Id) -> Ident {
-    format_ident!("t{}", id.index())
+fn name(id: Id) -> String {
+    format!("t{}", id.index())
 }
 
-pub(super) fn mask(curve: CurveIndex, strict: bool) -> Ident {
-    if strict { format_ident!("before{curve}") } else { format_ident!("upto{curve}") }
-}
-
-/// A double as a literal that reads back as the same double.
-pub(super) fn literal(value: f64) -> TokenStream {
-    let size = value.abs();
-    let plain = size == 0.0 || (1e-5..1e16).contains(&size);
-    let literal = if plain { None } else { format!("{size:e}").parse().ok() };
-    let literal = literal.unwrap_or_else(|| Literal::f64_unsuffixed(size));
-    if value.is_sign_negative() && size != 0.0 {
-        quote! { -#literal }
-    } else {
-        quote! { #literal }
-    }
+pub(super) fn mask(curve: CurveIndex, strict: bool) -> String {
+    if strict { format!("before{curve}") } else { format!("upto{curve}") }
 }

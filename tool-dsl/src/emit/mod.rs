@@ -3,6 +3,7 @@
 
 mod code;
 mod dot;
+mod tokens;
 
 pub use dot::dot;
 
@@ -14,11 +15,12 @@ use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
 use crate::report::figure;
-use code::{Form, Writer, literal, tested};
+use code::{Form, Writer, logic, selects, tested};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use tokens::{Tokens, literal};
 
 /// The type and its evaluators. Its documentation has the tool's drawing, which only rustdoc is
 /// shown: an editor that shows documentation as text is spared it.
@@ -71,13 +73,13 @@ pub fn skeleton(name: &str) -> TokenStream {
             Form::Scalar => (quote! { bool }, quote! { Option<usize> }),
             Form::Lanes => (quote! { L::Mask }, quote! { L }),
         };
-        functions.extend(function(form, &contains, &quote! {}, &yes, &empty));
-        functions.extend(function(form, &owner, &quote! {}, &whose, &empty));
+        functions.extend(function(form, &contains, &None, &yes, &empty));
+        functions.extend(function(form, &owner, &None, &whose, &empty));
         let (clearance, _) = signature(form, "clearance");
-        functions.extend(function(form, &clearance, &quote! {}, &number, &empty));
+        functions.extend(function(form, &clearance, &None, &number, &empty));
         for output in &OUTPUTS {
             let (name, _) = signature(form, output.name);
-            let (extra, _) = length(output.with_length, &number, &empty);
+            let extra = length(output.with_length, &number);
             let result = if output.vector {
                 quote! { [#number; 3] }
             } else {
@@ -212,18 +214,18 @@ fn functions(tool: &Checked, form: Form) -> TokenStream {
         let Some(tree) = tree else { continue };
         let body = body(tool, form, &tree);
         let (name, number) = signature(form, output.name);
-        let (extra, per) = length(output.with_length, &number, &body);
+        let extra = length(output.with_length, &number);
         let result = if output.vector {
             quote! { [#number; 3] }
         } else {
             number
         };
-        all.extend(function(form, &name, &extra, &result, &quote! { #per #body }));
+        all.extend(function(form, &name, &extra, &result, &body));
     }
     let outside = tool.plan.outside.map(&|id: &Id| Some(vec![*id]));
     if let Some(tree) = outside {
         let (name, number) = signature(form, "clearance");
-        all.extend(function(form, &name, &quote! {}, &number, &body(tool, form, &tree)));
+        all.extend(function(form, &name, &None, &number, &body(tool, form, &tree)));
     }
     all
 }
@@ -236,34 +238,15 @@ fn signature(form: Form, name: &str) -> (Ident, TokenStream) {
     }
 }
 
-/// The parameter for the unit of length, and its reciprocal where the body wants it.
-fn length(with: bool, number: &TokenStream, body: &TokenStream) -> (TokenStream, TokenStream) {
-    if !with {
-        return (quote! {}, quote! {});
-    }
-    let wants = body.clone().into_iter().any(|token| mentions(&token, "per_length"));
-    let per = if wants {
-        quote! { let per_length = Lane::of(length, 1.0) / length; }
-    } else {
-        quote! {}
-    };
-    (quote! { , length: #number }, per)
-}
-
-fn mentions(token: &proc_macro2::TokenTree, word: &str) -> bool {
-    match token {
-        proc_macro2::TokenTree::Ident(ident) => ident == word,
-        proc_macro2::TokenTree::Group(group) => {
-            group.stream().into_iter().any(|t| mentions(&t, word))
-        }
-        _ => false,
-    }
+/// The parameter for the unit of length.
+fn length(with: bool, number: &TokenStream) -> Option<TokenStream> {
+    with.then(|| quote! { , length: #number })
 }
 
 fn function(
     form: Form,
     name: &Ident,
-    extra: &TokenStream,
+    extra: &Option<TokenStream>,
     result: &TokenStream,
     body: &TokenStream,
 ) -> TokenStream {
@@ -292,22 +275,37 @@ fn body(tool: &Checked, form: Form, tree: &Tree<Vec<Id>>) -> TokenStream {
         Form::Lanes => separate.iter().for_each(|tree| tested(tree, &mut tests)),
     }
     let writer = Writer::new(&model.graph, &model.curves, form, &roots, &tests);
-    let coordinates = writer.coordinates();
-    let together = |values: Vec<TokenStream>| match values.as_slice() {
-        [one] => one.clone(),
-        _ => quote! { [#(#values),*] },
-    };
-    let code = match form {
-        Form::Scalar => writer.nested(tree, &|ids: &Vec<Id>| ids.clone(), &|w, ids| {
-            together(ids.iter().map(|id| w.leaf(*id)).collect())
-        }),
-        Form::Lanes => {
-            let lets = writer.straight(&roots, &tests);
-            let values = together(separate.iter().map(|tree| writer.selects(tree)).collect());
-            quote! { #lets #values }
+    let mut code = Tokens::default();
+    match form {
+        Form::Scalar => {
+            writer.nested(&mut code, tree, &|ids: &Vec<Id>| ids.clone(), &|code, ids| {
+                together(code, ids, |code, id| writer.leaf(code, *id));
+            });
         }
-    };
-    quote! { #coordinates #code }
+        Form::Lanes => {
+            writer.straight(&mut code, &roots, &tests);
+            together(&mut code, &separate, |code, tree| {
+                selects(code, tree, &|code, id| writer.value(code, *id));
+            });
+        }
+    }
+    let (given, code) = (writer.given(), code.done());
+    quote! { #given #code }
+}
+
+/// One value as it is, several as an array.
+fn together<T>(code: &mut Tokens, values: &[T], one: impl Fn(&mut Tokens, &T)) {
+    if let [only] = values {
+        return one(code, only);
+    }
+    code.bracket(|code| {
+        for (k, value) in values.iter().enumerate() {
+            if k > 0 {
+                code.sign(",");
+            }
+            one(code, value);
+        }
+    });
 }
 
 /// The tree of one component.
@@ -332,73 +330,63 @@ fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
     }
 }
 
-fn contains(tool: &Checked, form: Form) -> TokenStream {
+/// A function of the tree of owners that needs nothing but its tests.
+fn of_tests<L>(
+    tool: &Checked,
+    (form, name, result): (Form, &str, &TokenStream),
+    tree: &Tree<L>,
+    leaf: &impl Fn(&mut Tokens, &L),
+    lanes: impl FnOnce(&mut Tokens),
+) -> TokenStream {
     let model = &tool.model;
-    let tree = &tool.plan.inside;
     let mut tests = BTreeSet::new();
     tested(tree, &mut tests);
     let writer = Writer::new(&model.graph, &model.curves, form, &[], &tests);
-    let coordinates = writer.coordinates();
-    let (name, _) = signature(form, "contains");
+    let mut code = Tokens::default();
     match form {
-        Form::Scalar => {
-            let code = writer.nested(tree, &|_| vec![], &|_, inside| quote! { #inside });
-            function(form, &name, &quote! {}, &quote! { bool }, &quote! { #coordinates #code })
-        }
+        Form::Scalar => writer.nested(&mut code, tree, &|_| vec![], leaf),
         Form::Lanes => {
-            let lets = writer.straight(&[], &tests);
-            let logic = writer.logic(tree);
-            let body = quote! { #coordinates #lets #logic };
-            function(form, &name, &quote! {}, &quote! { L::Mask }, &body)
+            writer.straight(&mut code, &[], &tests);
+            lanes(&mut code);
         }
     }
+    let (given, code) = (writer.given(), code.done());
+    function(form, &signature(form, name).0, &None, result, &quote! { #given #code })
+}
+
+/// Whether a point is inside.
+fn contains(tool: &Checked, form: Form) -> TokenStream {
+    let tree = &tool.plan.inside;
+    let result = match form {
+        Form::Scalar => quote! { bool },
+        Form::Lanes => quote! { L::Mask },
+    };
+    let leaf = |code: &mut Tokens, inside: &bool| {
+        code.word(if *inside { "true" } else { "false" });
+    };
+    of_tests(tool, (form, "contains", &result), tree, &leaf, |code| logic(code, tree))
 }
 
 /// The place of a point's region in the list; `None`, or -1 in lanes, outside.
 fn owner(tool: &Checked, form: Form) -> TokenStream {
-    let model = &tool.model;
     let tree = &tool.plan.owner;
-    let mut tests = BTreeSet::new();
-    tested(tree, &mut tests);
-    let writer = Writer::new(&model.graph, &model.curves, form, &[], &tests);
-    let coordinates = writer.coordinates();
-    let (name, _) = signature(form, "owner");
-    match form {
-        Form::Scalar => {
-            let leaf = |_: &Writer<'_>, owner: &Option<usize>| match owner {
-                Some(index) => quote! { Some(#index) },
-                None => quote! { None },
-            };
-            let code = writer.nested(tree, &|_| vec![], &leaf);
-            function(
-                form,
-                &name,
-                &quote! {},
-                &quote! { Option<usize> },
-                &quote! { #coordinates #code },
-            )
-        }
-        Form::Lanes => {
-            let lets = writer.straight(&[], &tests);
-            let indices = owner_lanes(tree);
-            let body = quote! { #coordinates #lets #indices };
-            function(form, &name, &quote! {}, &quote! { L }, &body)
-        }
-    }
-}
-
-fn owner_lanes(tree: &Tree<Option<usize>>) -> TokenStream {
-    match tree {
-        Tree::Leaf(owner) => {
-            let index = literal(owner.map_or(-1.0, |index| index as f64));
-            quote! { z.of(#index) }
-        }
-        Tree::Split { curve, strict, below, above } => {
-            let mask = code::mask(*curve, *strict);
-            let (below, above) = (owner_lanes(below), owner_lanes(above));
-            quote! { Lane::select(#mask, #below, #above) }
-        }
-    }
+    let result = match form {
+        Form::Scalar => quote! { Option<usize> },
+        Form::Lanes => quote! { L },
+    };
+    let leaf = |code: &mut Tokens, owner: &Option<usize>| {
+        match owner {
+            Some(index) => code.word("Some").paren(|code| {
+                code.count(*index);
+            }),
+            None => code.word("None"),
+        };
+    };
+    of_tests(tool, (form, "owner", &result), tree, &leaf, |code| {
+        selects(code, tree, &|code, owner| {
+            code.of_lanes(owner.map_or(-1.0, |index| index as f64));
+        });
+    })
 }
 
 /// The code as a person reads it, without the drawing in its documentation.

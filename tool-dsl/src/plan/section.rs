@@ -9,7 +9,7 @@ use crate::model::{Model, Over, Section};
 use crate::regionalise::cells::Cell;
 use crate::regionalise::outline::{self, Point, minus, norm};
 use crate::regionalise::overlay;
-use crate::regionalise::shape::{Cut, Cutter, Edge, Piece, Shape};
+use crate::regionalise::shape::{Cut, Cutter, Edge, Piece, Shape, is_along};
 use crate::report::Report;
 use std::cmp::Ordering;
 use std::rc::Rc;
@@ -120,6 +120,7 @@ struct Ground {
     pieces: Vec<Rc<Piece>>,
     samples: Vec<(Point, f64, Option<usize>)>,
     witnesses: Vec<(Point, Option<usize>)>,
+    corners: Vec<Point>,
 }
 
 impl Ground {
@@ -134,6 +135,7 @@ impl Ground {
             let origin = self.pieces.len();
             self.pieces.push(Rc::new(Piece { origin, ..piece }));
         }
+        self.corners.extend(&cell.corners);
         let samples = cell.samples.iter();
         self.samples.extend(samples.filter_map(|(p, weight)| Some((*p, *weight, owner(*p)?))));
         self.witnesses.extend(cell.witnesses.iter().filter_map(|p| Some((*p, owner(*p)?))));
@@ -173,11 +175,14 @@ fn plan<'m>(
 ) -> Result<Owners, Report> {
     let samples = Samples::new(&ground.samples, shapes);
     let all = samples.all();
+    let corners = corners(&ground, size);
+    let every = (0..corners.len()).collect();
     let mut planner = Planner {
         model,
         shapes,
         costs: costs(model),
         samples,
+        corners,
         inside,
         used: vec![false; model.curves.len()],
         whole: ground.pieces.iter().map(|p| (Rc::clone(p), p.about())).collect(),
@@ -186,7 +191,7 @@ fn plan<'m>(
         tests: 0,
     };
     let open = (0..model.curves.len()).collect();
-    let tree = planner.tree(&ground.pieces, all, open)?;
+    let tree = planner.tree(&ground.pieces, (all, every), open)?;
     for (p, owner) in ground.witnesses {
         if *tree.at(&|curve| shapes[curve].value(p)) != owner {
             return Err(planner.inseparable(p));
@@ -195,11 +200,42 @@ fn plan<'m>(
     Ok(tree)
 }
 
+/// Where pieces meet, and whose they are.
+struct Corner {
+    at: Point,
+    owners: Vec<Option<usize>>,
+}
+
+fn corners(ground: &Ground, size: f64) -> Vec<Corner> {
+    let close = 1e-9 * size;
+    let near = |p: Point, q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
+    let mut places = ground.corners.clone();
+    places.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    places.dedup_by(|p, q| near(*p, *q));
+    let about: Vec<[Point; 2]> = ground.pieces.iter().map(|piece| piece.about()).collect();
+    let corner = |at: Point| {
+        let mut owners = Vec::new();
+        for (piece, [middle, half]) in ground.pieces.iter().zip(&about) {
+            let [u, v] = minus(at, *middle);
+            if u.abs() <= half[0] + close
+                && v.abs() <= half[1] + close
+                && !owners.contains(&piece.owner)
+                && (piece.vertices.iter().any(|p| near(*p, at)) || piece.has_on_edge(at, close))
+            {
+                owners.push(piece.owner);
+            }
+        }
+        Corner { at, owners }
+    };
+    places.into_iter().map(corner).collect()
+}
+
 struct Planner<'m> {
     model: &'m Model,
     shapes: &'m [Shape<'m>],
     costs: Vec<f64>,
     samples: Samples,
+    corners: Vec<Corner>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
     /// The pieces before any was cut, and what is about them.
@@ -228,15 +264,15 @@ impl Planner<'_> {
     fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
-        samples: Few,
+        (samples, corners): (Few, Vec<usize>),
         mut open: Vec<CurveIndex>,
     ) -> Result<Owners, Report> {
-        let Some(first) = pieces.first() else { return Ok(Tree::Leaf(None)) };
-        if pieces.iter().all(|piece| piece.owner == first.owner) {
-            return Ok(Tree::Leaf(first.owner));
+        let first = pieces.first().and_then(|piece| piece.owner);
+        if pieces.iter().all(|piece| piece.owner == first) {
+            return Ok(self.leaf(first, pieces, &corners));
         }
         let Some((curve, halves, zeros)) = self.choose(pieces, &samples, &mut open) else {
-            return Ok(Tree::Leaf(self.settle(pieces)));
+            return Ok(self.leaf(self.settle(pieces), pieces, &corners));
         };
         self.used[curve] = true;
         self.tests += 1;
@@ -246,11 +282,12 @@ impl Planner<'_> {
         open.retain(|other| *other != curve);
         let [low, high] = self.samples.divided(&samples, curve);
         let on = match zeros {
-            Zeros::Both => Some(self.touching(curve, &halves, &open)?),
+            Zeros::Both => Some(self.touching(curve, &halves, &corners, &open)?),
             _ => None,
         };
-        let below = self.tree(&halves.below, low, open.clone())?;
-        let above = self.tree(&halves.above, high, open)?;
+        let [here, there] = [-1, 1].map(|side| self.corners_on(side, curve, &corners));
+        let below = self.tree(&halves.below, (low, here), open.clone())?;
+        let above = self.tree(&halves.above, (high, there), open)?;
         Ok(match on {
             Some(on) if on == above => Tree::split(curve, true, below, above),
             Some(on) if on != below => {
@@ -259,6 +296,39 @@ impl Planner<'_> {
             }
             _ => Tree::split(curve, zeros == Zeros::Above, below, above),
         })
+    }
+
+    /// The corners that rounding may find on a side of a curve.
+    fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
+        let there = |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
+        corners.iter().copied().filter(there).collect()
+    }
+
+    /// An owner, but for corners where some pieces meet that are not his: rounding may bring a point
+    /// of theirs here, where nobody else has a piece, so they are split off.
+    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Owners {
+        let stray = |at: &&usize| !self.corners[**at].owners.contains(&owner);
+        let Some(corner) = corners.iter().find(stray).map(|at| &self.corners[*at]) else {
+            return Tree::Leaf(owner);
+        };
+        let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
+        if pieces.is_empty() {
+            return Tree::Leaf(*first);
+        }
+        let mut curves: Vec<(CurveIndex, i8)> = (0..self.shapes.len())
+            .map(|curve| (curve, self.shapes[curve].side(corner.at, self.size)))
+            .filter(|(_, side)| *side != 0)
+            .collect();
+        curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
+        let apart = curves.into_iter().find(|(curve, side)| {
+            let off = |p: &Point| self.shapes[*curve].side(*p, self.size) != *side;
+            pieces.iter().all(|piece| piece.vertices.iter().all(off))
+        });
+        let Some((curve, side)) = apart else { return Tree::Leaf(owner) };
+        let [here, there] = [side, -side].map(|side| self.corners_on(side, curve, corners));
+        let (here, there) = (self.leaf(*first, &[], &here), self.leaf(owner, pieces, &there));
+        let (below, above) = if side < 0 { (here, there) } else { (there, here) };
+        Tree::split(curve, side < 0, below, above)
     }
 
     /// The curve that tells most about the owners for what it costs, and what it divides.
@@ -441,6 +511,7 @@ impl Planner<'_> {
         &mut self,
         curve: CurveIndex,
         halves: &Halves,
+        corners: &[usize],
         open: &[CurveIndex],
     ) -> Result<Owners, Report> {
         let shape = &self.shapes[curve];
@@ -448,8 +519,9 @@ impl Planner<'_> {
             |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
         let [below, above] = [&halves.below, &halves.above]
             .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
-        let below = self.tree(&below, Few::default(), open.to_vec())?;
-        let above = self.tree(&above, Few::default(), open.to_vec())?;
+        let [here, there] = [-1, 1].map(|side| self.corners_on(side, curve, corners));
+        let below = self.tree(&below, (Few::default(), here), open.to_vec())?;
+        let above = self.tree(&above, (Few::default(), there), open.to_vec())?;
         Ok(first(&below, &above))
     }
 }
@@ -466,14 +538,8 @@ impl Rim {
     fn first_at(&self, p: Point, close: f64) -> usize {
         let near = |q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
         let points = self.points.iter().filter(|(q, _)| near(*q)).map(|(_, rank)| *rank);
-        let along = |[a, b]: [Point; 2]| {
-            let (way, off) = (minus(b, a), minus(p, a));
-            let length = norm(way);
-            let along = (way[0] * off[0] + way[1] * off[1]) / length;
-            let across = (way[0] * off[1] - way[1] * off[0]) / length;
-            across.abs() < close && (0.0..=length).contains(&along)
-        };
-        let edges = self.edges.iter().filter(|(edge, _)| along(*edge)).map(|(_, rank)| *rank);
+        let edges =
+            self.edges.iter().filter(|(edge, _)| is_along(p, *edge, close)).map(|(_, rank)| *rank);
         points.chain(edges).min().unwrap_or(usize::MAX)
     }
 }

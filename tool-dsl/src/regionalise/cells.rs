@@ -14,6 +14,8 @@ pub(crate) struct Cell {
     pub(crate) vertices: Vec<Point>,
     /// Whether each edge is straight, rather than a chord of a curve.
     pub(crate) straight: Vec<bool>,
+    /// Where other cells meet it, as far as it is an end of its slice.
+    pub(crate) corners: Vec<Point>,
     /// Points inside with the weight of their surroundings.
     pub(crate) samples: Vec<(Point, f64)>,
     /// Points beside every border.
@@ -80,7 +82,8 @@ pub(super) fn shell(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -
             let ((a, c), (b, d)) = (at(k), at(k + 1));
             let straight = [steps == 1, true, true, true];
             let (vertices, straight) = tidy(&[a, b, d, c], &straight, 1e-14 * section.size);
-            Cell { part: slice.feature, vertices, straight, samples: vec![], witnesses: vec![] }
+            let (samples, witnesses) = (vec![], vec![]);
+            Cell { part: slice.feature, vertices, straight, corners: vec![], samples, witnesses }
         };
         (0..steps).map(quad).filter(|cell| cell.area() > least).collect::<Vec<_>>()
     };
@@ -154,7 +157,14 @@ fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Ve
             let straight = [!curved, true, straight_rim, true];
             let (vertices, straight) = tidy(&vertices, &straight, 1e-14 * section.size);
             let (samples, witnesses) = (take(&mut samples), take(&mut witnesses));
-            Cell { part: slice.feature, vertices, straight, samples, witnesses }
+            let mut corners = Vec::new();
+            if k == 0 {
+                corners.extend([feet[0], rim[0]]);
+            }
+            if k + 1 == steps {
+                corners.extend([feet[steps], rim[steps]]);
+            }
+            Cell { part: slice.feature, vertices, straight, corners, samples, witnesses }
         })
         .collect()
 }

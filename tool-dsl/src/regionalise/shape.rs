@@ -10,6 +10,8 @@ use crate::formula::CurveIndex;
 const ON: f64 = 1e-10;
 /// How far a curve may stand out from its chord, in chords: beyond, another branch is meant.
 const BULGE: f64 = 0.15;
+/// The step, in chords, by which it is seen where a curve's value turns back.
+const NARROW: f64 = 1e-3;
 /// Rounding of a polynomial's value, in parts of the sum of its terms' sizes.
 const ROUNDING: f64 = 2e-14;
 
@@ -254,6 +256,12 @@ impl Piece {
         self.area() < 0.05 * long * long
     }
 
+    /// Whether a point lies on an edge, or its chord.
+    pub(crate) fn has_on_edge(&self, p: Point, close: f64) -> bool {
+        let count = self.vertices.len();
+        (0..count).any(|k| is_along(p, [self.vertices[k], self.vertices[(k + 1) % count]], close))
+    }
+
     /// Twice its area.
     pub(crate) fn area(&self) -> f64 {
         let first = self.vertices[0];
@@ -295,34 +303,50 @@ impl<'a, 'g> Cutter<'a, 'g> {
     /// Where an edge is farthest on a side that neither of its ends is on.
     fn detour(&self, [a, b]: [Point; 2], sides: [i8; 2], edge: Edge) -> Option<(Point, i8)> {
         let shape = self.shape();
-        if let Edge::Along(other) = edge {
-            // A curve stands out from its chord, and so may reach over.
-            let chord = norm(minus(b, a));
-            let near = |p: Point| {
-                let at = shape.at(p);
-                at.value.abs() <= BULGE * chord * norm(at.gradient)
-            };
-            if other == self.curve || !(near(a) && near(b)) {
+        let there = |top: Point| {
+            let side = shape.side(top, self.size);
+            (side != 0 && !sides.contains(&side)).then_some((top, side))
+        };
+        let other = match edge {
+            Edge::Straight => return there(between(a, b, self.turn(a, b)?)),
+            Edge::Along(other) if other != self.curve => other,
+            Edge::Along(_) | Edge::Chord => return None,
+        };
+        // A curve stands out from its chord, and so may reach over.
+        let along = Cutter { curve: other, ..*self };
+        let chord = norm(minus(b, a));
+        let near = |p: Point| {
+            let at = shape.at(p);
+            at.value.abs() <= BULGE * chord * norm(at.gradient)
+        };
+        if near(a) && near(b) {
+            let parts = [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7];
+            return parts.into_iter().find_map(|part| there(along.bend(a, b, part)?));
+        }
+        // A narrow curve may cross it twice and be far from both ends.
+        let mut part = self.turn(a, b)?;
+        let top = between(a, b, part);
+        if there(top).is_none() && !near(top) {
+            return None;
+        }
+        for _ in 0..6 {
+            let values = [part - NARROW, part, part + NARROW]
+                .map(|part| along.bend(a, b, part).map_or(f64::NAN, |p| shape.value(p)));
+            let [before, here, after] = values;
+            let step = NARROW / 2.0 * (before - after) / (before - 2.0 * here + after);
+            if !step.is_finite() {
                 return None;
             }
-            let along = Cutter { curve: other, ..*self };
-            return [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7].into_iter().find_map(|part| {
-                let top = along.bend(a, b, part)?;
-                let side = shape.side(top, self.size);
-                (side != 0 && !sides.contains(&side)).then_some((top, side))
-            });
+            part = (part + step).clamp(0.0, 1.0);
         }
-        if edge == Edge::Chord || shape.is_line() {
-            return None;
-        }
-        let [_, slope, bend] = shape.course(a, b);
+        there(along.bend(a, b, part)?)
+    }
+
+    /// Where along a line the curve's value turns back.
+    fn turn(&self, a: Point, b: Point) -> Option<f64> {
+        let [_, slope, bend] = self.shape().course(a, b);
         let turn = -slope / (2.0 * bend);
-        if !(turn > 0.0 && turn < 1.0) {
-            return None;
-        }
-        let top = between(a, b, turn);
-        let side = shape.side(top, self.size);
-        (side != 0 && !sides.contains(&side)).then_some((top, side))
+        (turn > 0.0 && turn < 1.0).then_some(turn)
     }
 
     /// What lies on one side.
@@ -389,6 +413,14 @@ impl<'a, 'g> Cutter<'a, 'g> {
         }
         (s1.abs() < 4.0 * BULGE).then_some(at(s1))
     }
+}
+
+/// Whether a point is this close to a line between two others.
+pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], close: f64) -> bool {
+    let (way, off) = (minus(b, a), minus(p, a));
+    let length = norm(way);
+    let along = (way[0] * off[0] + way[1] * off[1]) / length;
+    cross(way, off).abs() / length < close && (0.0..=length).contains(&along)
 }
 
 /// Whether all vertices are in a line, but for rounding.

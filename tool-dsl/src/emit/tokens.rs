@@ -1,0 +1,104 @@
+//! Tokens, written one behind the other: what is written is never copied.
+
+use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+use quote::TokenStreamExt;
+
+/// Code as it grows.
+#[derive(Default)]
+pub(super) struct Tokens(TokenStream);
+
+impl Tokens {
+    pub(super) fn done(self) -> TokenStream {
+        self.0
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(super) fn add(&mut self, more: Tokens) -> &mut Tokens {
+        self.0.extend(more.0);
+        self
+    }
+
+    /// A name or a keyword.
+    pub(super) fn word(&mut self, word: &str) -> &mut Tokens {
+        self.0.append(Ident::new(word, Span::call_site()));
+        self
+    }
+
+    /// An operator or other punctuation.
+    pub(super) fn sign(&mut self, sign: &str) -> &mut Tokens {
+        let mut rest = sign.chars().peekable();
+        while let Some(char) = rest.next() {
+            let spacing = if rest.peek().is_some() { Spacing::Joint } else { Spacing::Alone };
+            self.0.append(Punct::new(char, spacing));
+        }
+        self
+    }
+
+    /// A double as a literal that reads back as the same double.
+    pub(super) fn number(&mut self, value: f64) -> &mut Tokens {
+        let size = value.abs();
+        if value.is_sign_negative() && size != 0.0 {
+            self.sign("-");
+        }
+        let plain = size == 0.0 || (1e-5..1e16).contains(&size);
+        let literal = if plain { None } else { format!("{size:e}").parse().ok() };
+        self.0.append(literal.unwrap_or_else(|| Literal::f64_unsuffixed(size)));
+        self
+    }
+
+    pub(super) fn count(&mut self, value: usize) -> &mut Tokens {
+        self.0.append(Literal::usize_suffixed(value));
+        self
+    }
+
+    /// What is between parentheses.
+    pub(super) fn paren(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
+        self.group(Delimiter::Parenthesis, inner)
+    }
+
+    /// What is between braces.
+    pub(super) fn brace(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
+        self.group(Delimiter::Brace, inner)
+    }
+
+    /// What is between brackets.
+    pub(super) fn bracket(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
+        self.group(Delimiter::Bracket, inner)
+    }
+
+    fn group(&mut self, delimiter: Delimiter, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
+        let mut tokens = Tokens::default();
+        inner(&mut tokens);
+        self.0.append(Group::new(delimiter, tokens.0));
+        self
+    }
+
+    /// A call of one of `Lane`'s functions.
+    pub(super) fn lane(&mut self, name: &str, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
+        self.word("Lane").sign("::").word(name).paren(inner)
+    }
+
+    /// A constant for all lanes.
+    pub(super) fn of_lanes(&mut self, value: f64) -> &mut Tokens {
+        self.word("z").sign(".").word("of").paren(|code| {
+            code.number(value);
+        })
+    }
+
+    /// Whether this is one word and nothing else.
+    pub(super) fn is_word(&self, word: &str) -> bool {
+        let mut tokens = self.0.clone().into_iter();
+        let first = tokens.next();
+        tokens.next().is_none() && matches!(first, Some(TokenTree::Ident(ident)) if ident == word)
+    }
+}
+
+/// A double as a literal.
+pub(super) fn literal(value: f64) -> TokenStream {
+    let mut tokens = Tokens::default();
+    tokens.number(value);
+    tokens.done()
+}
