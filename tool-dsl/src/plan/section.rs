@@ -9,7 +9,7 @@ use crate::model::{Model, Over, Section};
 use crate::regionalise::cells::Cell;
 use crate::regionalise::outline::{self, Point, minus, norm};
 use crate::regionalise::overlay;
-use crate::regionalise::shape::{Cut, Cutter, Edge, Piece, Shape, is_along};
+use crate::regionalise::shape::{Cut, Cutter, Edge, NEAR, Piece, Shape, is_along};
 use crate::report::Report;
 use std::cmp::Ordering;
 use std::rc::Rc;
@@ -175,7 +175,7 @@ fn plan<'m>(
 ) -> Result<Owners, Report> {
     let samples = Samples::new(&ground.samples, shapes);
     let all = samples.all();
-    let corners = corners(&ground, size);
+    let corners = corners(&ground, shapes, size);
     let every = (0..corners.len()).collect();
     let mut planner = Planner {
         model,
@@ -206,8 +206,8 @@ struct Corner {
     owners: Vec<Option<usize>>,
 }
 
-fn corners(ground: &Ground, size: f64) -> Vec<Corner> {
-    let close = 1e-9 * size;
+fn corners(ground: &Ground, shapes: &[Shape<'_>], size: f64) -> Vec<Corner> {
+    let close = NEAR * size;
     let near = |p: Point, q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
     let mut places = ground.corners.clone();
     places.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
@@ -220,7 +220,8 @@ fn corners(ground: &Ground, size: f64) -> Vec<Corner> {
             if u.abs() <= half[0] + close
                 && v.abs() <= half[1] + close
                 && !owners.contains(&piece.owner)
-                && (piece.vertices.iter().any(|p| near(*p, at)) || piece.has_on_edge(at, close))
+                && (piece.vertices.iter().any(|p| near(*p, at))
+                    || piece.has_on_edge(at, shapes, size))
             {
                 owners.push(piece.owner);
             }
@@ -321,8 +322,14 @@ impl Planner<'_> {
             .collect();
         curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
         let apart = curves.into_iter().find(|(curve, side)| {
-            let off = |p: &Point| self.shapes[*curve].side(*p, self.size) != *side;
-            pieces.iter().all(|piece| piece.vertices.iter().all(off))
+            let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
+            let off = |piece: &Rc<Piece>| match piece.cut(cutter) {
+                Cut::Below => *side > 0,
+                Cut::Above => *side < 0,
+                Cut::Nothing => true,
+                Cut::Both(..) => false,
+            };
+            pieces.iter().all(off)
         });
         let Some((curve, side)) = apart else { return Tree::Leaf(owner) };
         let [here, there] = [side, -side].map(|side| self.corners_on(side, curve, corners));
@@ -470,7 +477,7 @@ impl Planner<'_> {
         let close = 1e-12 * self.size;
         places.dedup_by(|p, q| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close);
         for p in places {
-            let [b, a] = [&below, &above].map(|rim| rim.first_at(p, 1e-9 * self.size));
+            let [b, a] = [&below, &above].map(|rim| rim.first_at(p, NEAR * self.size));
             let inside = [b, a].map(|rank| rank != usize::MAX);
             match (inside, b.cmp(&a)) {
                 ([true, false], _) => must[0] = true,

@@ -1,6 +1,6 @@
 //! Curves and polygons of the section in doubles, and the cutting of the ones by the others.
 
-use super::outline::{Point, cross, minus, norm};
+use super::outline::{Point, cross, dot, minus, norm};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Graph, Id};
@@ -8,6 +8,8 @@ use crate::formula::CurveIndex;
 
 /// What is closer to a curve than this part of the section's size lies on it.
 const ON: f64 = 1e-10;
+/// Places this close are one, in sizes.
+pub(crate) const NEAR: f64 = 1e-9;
 /// How far a curve may stand out from its chord, in chords: beyond, another branch is meant.
 const BULGE: f64 = 0.15;
 /// The step, in chords, by which it is seen where a curve's value turns back.
@@ -256,10 +258,21 @@ impl Piece {
         self.area() < 0.05 * long * long
     }
 
-    /// Whether a point lies on an edge, or its chord.
-    pub(crate) fn has_on_edge(&self, p: Point, close: f64) -> bool {
+    /// Whether a point lies on an edge, or may lie on what a chord stands for.
+    pub(crate) fn has_on_edge(&self, p: Point, shapes: &[Shape<'_>], size: f64) -> bool {
+        let close = NEAR * size;
+        let on = |[a, b]: [Point; 2], edge: Edge| {
+            let bulge = BULGE * norm(minus(b, a)) + close;
+            match edge {
+                Edge::Straight => is_along(p, [a, b], close),
+                Edge::Along(curve) => {
+                    shapes[curve].side(p, size) == 0 && is_along(p, [a, b], bulge)
+                }
+                Edge::Chord => is_along(p, [a, b], bulge),
+            }
+        };
         let count = self.vertices.len();
-        (0..count).any(|k| is_along(p, [self.vertices[k], self.vertices[(k + 1) % count]], close))
+        (0..count).any(|k| on([self.vertices[k], self.vertices[(k + 1) % count]], self.edges[k]))
     }
 
     /// Twice its area.
@@ -323,6 +336,10 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let parts = [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7];
             return parts.into_iter().find_map(|part| there(along.bend(a, b, part)?));
         }
+        // It may begin on the curve and leave to the one side, its chord to the other.
+        if let Some(found) = self.leaves([a, b], sides, other) {
+            return Some(found);
+        }
         // A narrow curve may cross it twice and be far from both ends.
         let mut part = self.turn(a, b)?;
         let top = between(a, b, part);
@@ -340,6 +357,28 @@ impl<'a, 'g> Cutter<'a, 'g> {
             part = (part + step).clamp(0.0, 1.0);
         }
         there(along.bend(a, b, part)?)
+    }
+
+    /// Where an edge of another curve is on the other side than its farther end, if it begins on the
+    /// curve and leaves to there.
+    fn leaves(&self, ends: [Point; 2], sides: [i8; 2], other: CurveIndex) -> Option<(Point, i8)> {
+        let (from, far) = match sides {
+            [0, far] if far != 0 => (0, far),
+            [far, 0] if far != 0 => (1, far),
+            _ => return None,
+        };
+        let (a, b) = (ends[from], ends[1 - from]);
+        let (own, along) = (self.shape().at(a).gradient, self.shapes[other].at(a).gradient);
+        let (way, chord) = ([-along[1], along[0]], minus(b, a));
+        let slope = dot(own, way) * dot(way, chord).signum();
+        if slope * f64::from(far) >= -ON * norm(own) * norm(along) {
+            return None;
+        }
+        let edge = Cutter { curve: other, ..*self };
+        (1..40).find_map(|halvings| {
+            let top = edge.bend(a, b, 0.5f64.powi(halvings))?;
+            (self.shape().side(top, self.size) == -far).then_some((top, -far))
+        })
     }
 
     /// Where along a line the curve's value turns back.
