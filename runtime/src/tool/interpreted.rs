@@ -2,19 +2,18 @@
 
 use super::{Ask, Card, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool};
 use crate::Unit;
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
 use std::path::Path;
 use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Tape, Walk};
+use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Walk};
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile_with, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
     card: Card,
-    owner: Tape,
     felt: Vec<Tape>,
     walk: Walk,
     outside: Tape,
@@ -63,7 +62,6 @@ impl Interpreted {
         match compiled.tool {
             Some(tool) if !report::any_error(&compiled.reports) => Ok(Interpreted {
                 card: card(&tool),
-                owner: Tape::owner(&tool),
                 felt: (0..tool.model.regions.len()).map(|k| Tape::felt(&tool, k)).collect(),
                 walk: Walk::new(&tool),
                 outside: Tape::outside(&tool),
@@ -114,18 +112,29 @@ impl Tool for Interpreted {
     }
 
     fn clearance(&self, point: [f64; 3]) -> f64 {
-        let block = point.map(|part| [part; BLOCK]);
-        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
-        self.owner.run(block.each_ref(), 1.0, &mut registers, &mut results);
-        if results[0][0] >= 0.0 {
+        let mut owner = [0.0];
+        self.walk.run(point, 1.0, &mut Scratch::default(), &mut owner);
+        if owner[0] >= 0.0 {
             return 0.0;
         }
-        self.outside.run(block.each_ref(), 1.0, &mut registers, &mut results);
+        let block = point.map(|part| [part; BLOCK]);
+        let (mut registers, mut results) = (Vec::new(), [[0.0; BLOCK]]);
+        self.outside.run((block.each_ref(), 1), 1.0, &mut registers, &mut results);
         results[0][0]
     }
 
-    fn evaluate(&self, _: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
+    fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, ask);
+        dispatch!(level, simd => simd.vectorize(
+            #[inline(always)]
+            || self.all(ask, points, length, felt),
+        ));
+    }
+}
+
+impl Interpreted {
+    #[inline(always)]
+    fn all(&self, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         // Results are owner, depth, magnitude, niceness, direction, gradient.
         let wanted = match ask {
             Ask::Inside => 1,
@@ -145,9 +154,9 @@ impl Tool for Interpreted {
 }
 
 /// Up to so many points of a block are walked one by one: the tape does all of a block's lanes.
-const FEW: usize = 24;
+const FEW: usize = 8;
 /// From so many points of a region on, its tape is faster than as many walks.
-const SEVERAL: usize = 12;
+const SEVERAL: usize = 8;
 
 impl Interpreted {
     fn one_by_one(
@@ -169,6 +178,7 @@ impl Interpreted {
         }
     }
 
+    #[inline(always)]
     fn block(
         &self,
         start: usize,
@@ -178,14 +188,14 @@ impl Interpreted {
         felt: &mut Felt,
     ) {
         let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
-        let mut owners = [[-1.0; BLOCK]];
+        let mut owners = [-1.0; BLOCK];
         let count = BLOCK.min(total - start);
         for (part, list) in block.iter_mut().zip(coordinates) {
             part[..count].copy_from_slice(&list[start..start + count]);
         }
-        self.owner.run(block.each_ref(), length, &mut felt.registers, &mut owners);
-        let owners = &owners[0][..count];
-        for (at, _) in owners.iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
+        let points = (block.each_ref(), count);
+        self.walk.owners(points, length, &mut felt.lanes, &mut owners);
+        for (at, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
             felt.inside[(start + at) / LANES] |= 1 << (at % LANES);
         }
         if ask == Ask::Inside {
@@ -217,7 +227,7 @@ impl Interpreted {
             } else {
                 let tape = &self.felt[region as usize];
                 let results = &mut results[1..wanted];
-                tape.run(gathered.each_ref(), length, &mut felt.registers, results);
+                tape.run((gathered.each_ref(), own.len()), length, &mut felt.registers, results);
             }
             put(felt, ask, |list, result| {
                 for (lane, at) in own.iter().enumerate() {

@@ -143,6 +143,9 @@ pub struct Felt {
     /// What it remembers of a point.
     #[cfg(feature = "interpreter")]
     pub(crate) scratch: tool_dsl::interpret::Scratch,
+    /// The same of a block of points
+    #[cfg(feature = "interpreter")]
+    pub(crate) lanes: tool_dsl::interpret::Registers,
 }
 
 impl Felt {

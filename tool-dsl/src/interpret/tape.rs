@@ -23,13 +23,6 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// The tape of the owners: its only output is a region's place in the list, -1 outside.
-    pub fn owner(tool: &Checked) -> Tape {
-        let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
-        let slot = writer.owner(&tool.plan.owner);
-        Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
-    }
-
     /// The tape of what is felt in a region: depth, magnitude, niceness, direction, gradient.
     pub fn felt(tool: &Checked, region: usize) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
@@ -48,12 +41,14 @@ impl Tape {
         Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
     }
 
-    /// Evaluates as many of the first outputs as there are results at a block of points of the
-    /// tool's frame, in the file's unit; `length` is the file's unit of length measured in the
-    /// part's. `registers` are kept between calls.
+    /// Evaluates as many of the first outputs as there are results at the first points of a block,
+    /// given in the tool's frame and the file's unit; `length` is the file's unit of length measured
+    /// in the part's. `registers` are kept between calls. It is inlined so that its loops are
+    /// compiled for the vectors that the caller has.
+    #[inline(always)]
     pub fn run(
         &self,
-        points: [&Lanes; 3],
+        (points, count): ([&Lanes; 3], usize),
         length: f64,
         registers: &mut Vec<Lanes>,
         results: &mut [Lanes],
@@ -63,10 +58,11 @@ impl Tape {
         if registers.len() < self.operations.len() {
             registers.resize(self.operations.len(), [0.0; BLOCK]);
         }
+        let count = whole(count);
         for (at, operation) in self.operations[..*end].iter().enumerate() {
             let (done, rest) = registers.split_at_mut(at);
             if let Some(result) = rest.first_mut() {
-                perform(operation, points, length, done, result);
+                perform(operation, (points, count), length, done, result);
             }
         }
         for (result, (slot, _)) in results.iter_mut().zip(&self.outputs) {
@@ -75,57 +71,71 @@ impl Tape {
     }
 }
 
-fn perform(operation: &Operation, p: [&Lanes; 3], length: f64, done: &[Lanes], result: &mut Lanes) {
-    let v = |slot: Slot| &done[slot as usize];
-    let mut one = |a: Slot, f: fn(f64) -> f64| {
-        for (r, a) in result.iter_mut().zip(v(a)) {
-            *r = f(*a);
-        }
-    };
-    match *operation {
-        Operation::Neg(a) => return one(a, |a| -a),
-        Operation::Abs(a) => return one(a, f64::abs),
-        Operation::Sqrt(a) => return one(a, f64::sqrt),
-        _ => {}
+/// So many lanes that vectors are full.
+pub(super) fn whole(count: usize) -> usize {
+    count.next_multiple_of(8).min(BLOCK)
+}
+
+/// One operation on a block. The loops stand here, not in closures, which would be compiled without
+/// the vector instructions of the caller.
+#[inline(always)]
+pub(super) fn perform(
+    operation: &Operation,
+    (p, count): ([&Lanes; 3], usize),
+    length: f64,
+    done: &[Lanes],
+    result: &mut Lanes,
+) {
+    let result = &mut result[..count];
+    let p = p.map(|list| &list[..count]);
+    macro_rules! each {
+        ($(let $name:ident = $slot:expr;)* $value:expr) => {{
+            $(let $name = &done[$slot as usize][..count];)*
+            for i in 0..count {
+                $(let $name = $name[i];)*
+                result[i] = $value;
+            }
+        }};
     }
-    let mut two = |a: Slot, b: Slot, f: fn(f64, f64) -> f64| {
-        for ((r, a), b) in result.iter_mut().zip(v(a)).zip(v(b)) {
-            *r = f(*a, *b);
-        }
-    };
     match *operation {
-        Operation::Add(a, b) => two(a, b, |a, b| a + b),
-        Operation::Sub(a, b) => two(a, b, |a, b| a - b),
-        Operation::Mul(a, b) => two(a, b, |a, b| a * b),
-        Operation::Div(a, b) => two(a, b, |a, b| a / b),
-        Operation::Quotient(a, b) => two(a, b, quotient),
-        Operation::Min(a, b) => two(a, b, min),
-        Operation::Max(a, b) => two(a, b, max),
-        Operation::Const(value) => *result = [value; BLOCK],
-        Operation::Coord(Coord::X) => *result = *p[0],
-        Operation::Coord(Coord::Y) => *result = *p[1],
-        Operation::Coord(Coord::Z) => *result = *p[2],
-        Operation::Coord(Coord::Length) => *result = [length; BLOCK],
-        Operation::Coord(Coord::PerLength) => *result = [1.0 / length; BLOCK],
-        Operation::Coord(coord @ (Coord::Q | Coord::D)) => {
-            for ((r, x), y) in result.iter_mut().zip(p[0]).zip(p[1]) {
-                let q = x * x + y * y;
-                *r = if coord == Coord::Q { q } else { q.sqrt() };
+        Operation::Neg(a) => each! { let a = a; -a },
+        Operation::Abs(a) => each! { let a = a; a.abs() },
+        Operation::Sqrt(a) => each! { let a = a; a.sqrt() },
+        Operation::Add(a, b) => each! { let a = a; let b = b; a + b },
+        Operation::Sub(a, b) => each! { let a = a; let b = b; a - b },
+        Operation::Mul(a, b) => each! { let a = a; let b = b; a * b },
+        Operation::Div(a, b) => each! { let a = a; let b = b; a / b },
+        Operation::Quotient(a, b) => each! { let a = a; let b = b; quotient(a, b) },
+        Operation::Min(a, b) => each! { let a = a; let b = b; min(a, b) },
+        Operation::Max(a, b) => each! { let a = a; let b = b; max(a, b) },
+        Operation::Const(value) => result.fill(value),
+        Operation::Coord(Coord::X) => result.copy_from_slice(p[0]),
+        Operation::Coord(Coord::Y) => result.copy_from_slice(p[1]),
+        Operation::Coord(Coord::Z) => result.copy_from_slice(p[2]),
+        Operation::Coord(Coord::Length) => result.fill(length),
+        Operation::Coord(Coord::PerLength) => result.fill(1.0 / length),
+        Operation::Coord(Coord::Q) => {
+            for i in 0..count {
+                result[i] = p[0][i] * p[0][i] + p[1][i] * p[1][i];
             }
         }
-        Operation::Select { low, high, then, other } => {
-            for (i, r) in result.iter_mut().enumerate() {
-                *r = if v(low)[i] <= v(high)[i] { v(then)[i] } else { v(other)[i] };
+        Operation::Coord(Coord::D) => {
+            for i in 0..count {
+                result[i] = (p[0][i] * p[0][i] + p[1][i] * p[1][i]).sqrt();
             }
         }
-        Operation::Side { value, strict, then, other } => {
-            for (i, r) in result.iter_mut().enumerate() {
-                let value = v(value)[i];
-                let below = if strict { value < 0.0 } else { value <= 0.0 };
-                *r = if below { v(then)[i] } else { v(other)[i] };
-            }
-        }
-        Operation::Neg(_) | Operation::Abs(_) | Operation::Sqrt(_) => {}
+        Operation::Select { low, high, then, other } => each! {
+            let low = low; let high = high; let then = then; let other = other;
+            if low <= high { then } else { other }
+        },
+        Operation::Side { value, strict: false, then, other } => each! {
+            let value = value; let then = then; let other = other;
+            if value <= 0.0 { then } else { other }
+        },
+        Operation::Side { value, strict: true, then, other } => each! {
+            let value = value; let then = then; let other = other;
+            if value < 0.0 { then } else { other }
+        },
     }
 }
 
@@ -164,18 +174,6 @@ impl TapeWriter<'_> {
             Tree::Leaf(id) => self.expression(*id),
             Tree::Split { curve, strict, below, above } => {
                 let (then, other) = (self.tree(below), self.tree(above));
-                self.split(*curve, *strict, then, other)
-            }
-        }
-    }
-
-    fn owner(&mut self, tree: &Tree<Option<usize>>) -> Slot {
-        match tree {
-            Tree::Leaf(owner) => {
-                self.put(Operation::Const(owner.map_or(-1.0, |index| index as f64)))
-            }
-            Tree::Split { curve, strict, below, above } => {
-                let (then, other) = (self.owner(below), self.owner(above));
                 self.split(*curve, *strict, then, other)
             }
         }

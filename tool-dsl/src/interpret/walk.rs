@@ -1,6 +1,7 @@
 //! The plan for one point after another.
 
-use super::{OUTPUTS, Operation, Slot, roots};
+use super::tape::{perform as block, whole};
+use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot, roots};
 use crate::Checked;
 use crate::expr::value::{max, min, quotient};
 use crate::expr::{Coord, Id};
@@ -38,6 +39,17 @@ pub struct Scratch {
     /// When each value was computed last.
     done: Vec<u32>,
     now: u32,
+}
+
+/// What a walk remembers of a block of points; kept between calls.
+#[derive(Clone, Debug, Default)]
+pub struct Registers {
+    values: Vec<Lanes>,
+    /// When each was computed last.
+    done: Vec<u32>,
+    now: u32,
+    /// Places of the plan that are still to be gone to, and which lanes go there.
+    open: Vec<(usize, u64)>,
 }
 
 impl Walk {
@@ -86,6 +98,58 @@ impl Walk {
         self.felt_in(owner, point, length, scratch, rest);
     }
 
+    /// The owners of the first points of a block: a region's place in the list, -1 outside. Only what
+    /// some point needs is computed. It is inlined so that its loops are compiled for the vectors
+    /// that the caller has.
+    #[inline(always)]
+    pub fn owners(
+        &self,
+        (points, count): ([&Lanes; 3], usize),
+        length: f64,
+        registers: &mut Registers,
+        owners: &mut Lanes,
+    ) {
+        registers.start(self.operations.len());
+        let lanes = whole(count);
+        let Registers { values, done, now, open } = registers;
+        open.clear();
+        open.push((0, u64::MAX >> (64 - lanes)));
+        while let Some((at, here)) = open.pop() {
+            match &self.forks[at] {
+                Fork::Owner(owner) => {
+                    let owner = owner.map_or(-1.0, |owner| owner as f64);
+                    for (lane, result) in owners[..lanes].iter_mut().enumerate() {
+                        if here >> lane & 1 == 1 {
+                            *result = owner;
+                        }
+                    }
+                }
+                Fork::Test { curve, strict, above } => {
+                    let mut value = 0;
+                    for &slot in &self.curves[*curve] {
+                        value = slot as usize;
+                        if done[value] != *now {
+                            done[value] = *now;
+                            let (before, rest) = values.split_at_mut(value);
+                            let operation = &self.operations[value];
+                            block(operation, (points, lanes), length, before, &mut rest[0]);
+                        }
+                    }
+                    let mut below = 0;
+                    for (lane, value) in values[value][..lanes].iter().enumerate() {
+                        let is = if *strict { *value < 0.0 } else { *value <= 0.0 };
+                        below |= u64::from(is) << lane;
+                    }
+                    for (place, lanes) in [(*above, here & !below), (at + 1, here & below)] {
+                        if lanes != 0 {
+                            open.push((place, lanes));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     /// What is felt at a point of a region, as [`Tape::felt`](super::Tape::felt) gives it.
     pub fn felt(
         &self,
@@ -131,6 +195,18 @@ impl Scratch {
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
             self.values.resize(slots, 0.0);
+            self.done = vec![0; self.values.len()];
+            self.now = 0;
+        }
+        self.now += 1;
+    }
+}
+
+impl Registers {
+    /// Forgets the last block.
+    fn start(&mut self, slots: usize) {
+        if self.values.len() < slots || self.now == u32::MAX {
+            self.values.resize(slots, [0.0; BLOCK]);
             self.done = vec![0; self.values.len()];
             self.now = 0;
         }
