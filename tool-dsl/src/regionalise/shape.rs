@@ -429,8 +429,22 @@ impl<'a, 'g> Cutter<'a, 'g> {
                 break;
             }
         }
-        // Where the curves hardly cross, the chord's point is as good.
-        if norm(minus(p, on_chord)) < BULGE * norm(minus(b, a)) { p } else { on_chord }
+        let (way, chord) = (minus(b, a), norm(minus(b, a)));
+        let part = dot(minus(p, a), way) / (chord * chord);
+        if norm(minus(p, on_chord)) < BULGE * chord && (0.0..=1.0).contains(&part) {
+            return p;
+        }
+        // Newton's method found where they cross elsewhere. Where they hardly cross at all, the
+        // chord's point is as good.
+        let along = Cutter { curve: other, ..*self };
+        let (mut low, mut high) = (0.0, 1.0);
+        let below = shape.below(a);
+        for _ in 0..50 {
+            let middle = (low + high) / 2.0;
+            let Some(here) = along.bend(a, b, middle) else { return on_chord };
+            if shape.below(here) == below { low = middle } else { high = middle }
+        }
+        along.bend(a, b, low).unwrap_or(on_chord)
     }
 
     /// A point of the curve beside a part of a chord.
@@ -439,6 +453,13 @@ impl<'a, 'g> Cutter<'a, 'g> {
         let across = [-(b[1] - a[1]), b[0] - a[0]];
         let from = between(a, b, part);
         let at = |s: f64| [from[0] + s * across[0], from[1] + s * across[1]];
+        if matches!(shape, Shape::Conic { .. }) {
+            let [v0, slope, bend] = shape.course(from, at(1.0));
+            // The root nearer to the chord, by the form that does not cancel.
+            let root = (slope * slope - 4.0 * bend * v0).sqrt();
+            let s = -2.0 * v0 / (slope + root.copysign(slope));
+            return (s.abs() < 4.0 * BULGE).then_some(at(s));
+        }
         // Secant steps along the chord's normal.
         let (mut s0, mut s1) = (0.0, 0.05);
         let (mut v0, mut v1) = (shape.value(at(s0)), shape.value(at(s1)));
