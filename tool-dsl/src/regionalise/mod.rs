@@ -3,11 +3,15 @@
 //! Features are the pieces of the profile and its reflex corners; the axis is a mirror and not a
 //! feature, and a tangent joint owns nothing. The outside is the inside of the profile walked the
 //! other way. `section` knows the features, `slices` the exact partition, `curve` the expressions of
-//! borders, `cells` the partition as polygons; here borders are put together to conditions.
+//! borders and `nearer` those between two features, `cells` the partition as polygons; here borders
+//! are put together to conditions.
 
 pub(crate) mod cells;
+pub(crate) mod check;
 mod crossing;
 mod curve;
+pub(crate) mod cut;
+mod nearer;
 pub(crate) mod outline;
 pub(crate) mod overlay;
 mod section;

@@ -1,11 +1,9 @@
-//! A profile as geometry: pieces, their distance functions and what is wrong with them.
+//! A profile as geometry: pieces and their distance functions.
 //!
 //! Everything is in the tool's frame, `[d, z]`, counter-clockwise: the material lies on the left.
 
-use super::crossing::meeting;
 use crate::expr::{Coord, Graph, Id};
 use crate::number::Number;
-use crate::report::Report;
 use crate::source::Span;
 
 /// A point by constants.
@@ -14,7 +12,7 @@ pub(crate) type Place = [Number; 2];
 pub(crate) type Point = [f64; 2];
 
 /// Two directions closer than this are tangent.
-const TANGENT: f64 = 1e-9;
+pub(super) const TANGENT: f64 = 1e-9;
 
 /// The circle of an arc.
 #[derive(Clone, Debug)]
@@ -254,102 +252,6 @@ pub(crate) fn distance(graph: &mut Graph, place: &Place) -> Option<Id> {
 pub(crate) fn turn(incoming: Point, outgoing: Point) -> f64 {
     let sine = cross(incoming, outgoing);
     if sine.abs() < TANGENT && dot(incoming, outgoing) > 0.0 { 0.0 } else { sine }
-}
-
-/// What is wrong with a profile as a whole: where it begins and ends, its sense, crossings.
-pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Report> {
-    let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
-    let mut reports = Vec::new();
-    let ends = [(first, doubles(&first.from), "begins"), (last, doubles(&last.to), "ends")];
-    for (segment, [d, z], verb) in ends {
-        if d != 0.0 {
-            let place = show([d, z]);
-            let axis = show([0.0, z]);
-            reports.push(
-                Report::error(
-                    segment.span,
-                    format!("the profile {verb} at {place}, not on the axis"),
-                )
-                .help(format!("let it run from the axis to the axis: add `line to {axis}`")),
-            );
-        }
-    }
-    let points: Vec<Point> = outline.iter().flat_map(along).collect();
-    let [_, high] = reach(outline);
-    for (index, segment) in outline.iter().enumerate() {
-        let [[from, _], [to, _]] = segment.ends();
-        // An arc's own points, without its ends where they are the profile's.
-        let within = segment.flat.circle.filter(|(centre, radius, _)| {
-            segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
-        });
-        let lowest = within.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
-        let touches =
-            lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
-        if segment.flat.circle.is_none() && from == 0.0 && to == 0.0 {
-            reports.push(
-                Report::error(segment.span, "this segment lies on the axis")
-                    .help("leave it out: the axis closes the profile by itself"),
-            );
-        } else if lowest < -1e-12 * high[0] || from < 0.0 || to < 0.0 {
-            reports.push(
-                Report::error(segment.span, "this segment crosses the axis")
-                    .help("`d` is a radius and never negative"),
-            );
-        } else if touches {
-            reports.push(
-                Report::error(segment.span, "this segment touches the axis")
-                    .help("a profile is on the axis at its two ends only"),
-            );
-        }
-    }
-    if !reports.is_empty() {
-        return reports;
-    }
-    let area: f64 = points.windows(2).map(|pair| cross(pair[0], pair[1])).sum();
-    if area <= 0.0 {
-        reports.push(
-            Report::error(first.span, "the profile runs clockwise")
-                .help("start at its low end and keep the material on the left"),
-        );
-        return reports;
-    }
-    let axis_ends = [
-        (first, first.tangent(false), first.ends()[0]),
-        (last, last.tangent(true), last.ends()[1]),
-    ];
-    for (segment, along, at) in axis_ends {
-        if along[0].abs() < TANGENT {
-            let message = format!("this segment runs along the axis at {}", show(at));
-            reports.push(
-                Report::error(segment.span, message).help(
-                    "a needle without an angle is no solid: let it meet the axis at an angle",
-                ),
-            );
-        }
-    }
-    for pair in outline.windows(2) {
-        let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
-        if cross(before, after).abs() < TANGENT && dot(before, after) < 0.0 {
-            let at = show(pair[0].ends()[1]);
-            reports.push(
-                Report::error(pair[1].span, format!("this segment turns straight back at {at}"))
-                    .and(pair[0].span, "from this one")
-                    .help("a needle without an angle is no solid: move a corner"),
-            );
-        }
-    }
-    for (i, a) in outline.iter().enumerate() {
-        for (j, b) in outline.iter().enumerate().skip(i + 1) {
-            if let Some(at) = meeting(a, b, j == i + 1) {
-                reports.push(
-                    Report::error(b.span, format!("this segment meets that one at {}", show(at)))
-                        .and(a.span, "that one")
-                        .help("a profile never crosses or touches itself"),
-                );
-            }
-        }
-    }
-    reports
 }
 
 /// Points along a segment, its ends among them.

@@ -1,8 +1,9 @@
 //! A partition divided once more, by conditions.
 
 use super::cells::Cell;
+use super::cut::{Cut, Cutter, Edge, Piece};
 use super::outline::{Point, Segment, minus, norm, reach};
-use super::shape::{Cut, Cutter, Edge, Piece, Shape};
+use super::shape::Shape;
 use crate::expr::Graph;
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::model::Curve;

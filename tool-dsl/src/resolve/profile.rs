@@ -3,7 +3,8 @@
 use super::lower::Lowering;
 use crate::model::Surface;
 use crate::number::Number;
-use crate::regionalise::outline::{Circle, Place, Segment, check, doubles, minus, norm};
+use crate::regionalise::check::check;
+use crate::regionalise::outline::{Circle, Place, Segment, doubles, minus, norm};
 use crate::report::Report;
 use crate::source::Span;
 use crate::syntax::tree::{Arc, Expr, Piece, Profile, Round, Tuple};

@@ -1,0 +1,236 @@
+//! Which of two features is nearer, told without square roots as far as may be.
+
+use super::curve::Test;
+use super::outline::{self, Circle, Place, minus};
+use super::section::{Feature, Section};
+use crate::expr::polynomial::Polynomial;
+use crate::expr::{Coord, Graph, Id};
+use crate::number::Number;
+
+/// What a feature is to a comparison of distances.
+enum Kind<'o> {
+    Line(usize),
+    Point(&'o Place),
+    Arc(&'o Circle),
+    /// An arc too flat to be compared by squares.
+    Flat,
+}
+
+impl Section<'_> {
+    fn kind(&self, feature: usize) -> Kind<'_> {
+        match self.features[feature] {
+            Feature::Corner(behind) => Kind::Point(self.corner(behind)),
+            Feature::Piece(piece) => match &self.outline[piece].circle {
+                None => Kind::Line(piece),
+                Some(circle) if self.flat(circle) => Kind::Flat,
+                Some(circle) => Kind::Arc(circle),
+            },
+        }
+    }
+
+    /// Whether one feature is no farther than another, inside: by squares instead of roots, in
+    /// coordinates about the corner or centre, so that nothing large cancels.
+    ///
+    /// With `A = |p - c|²`, `B` the same of the other, `l` the distance to a line, `r` a radius:
+    /// a corner is nearer than a line where `A ≤ l²`, a concave arc where `A ≤ (l + r)²`, a convex
+    /// one where `l ≥ r` or `(r - l)² ≤ A`, an arc is nearer than a corner where
+    /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as [`Section::arcs`] says.
+    pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
+        Some(match (self.kind(this), self.kind(other)) {
+            (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
+            (Kind::Point(p), Kind::Point(q)) => {
+                let (a, b) = (outline::squared(graph, p), outline::squared(graph, q));
+                let difference = graph.sub(a, b);
+                Test::AtMost(expanded(graph, difference))
+            }
+            (Kind::Point(q), Kind::Line(line)) => Test::AtMost(self.parabola(graph, q, line)?),
+            (Kind::Line(line), Kind::Point(q)) => {
+                let parabola = self.parabola(graph, q, line)?;
+                Test::AtMost(graph.neg(parabola))
+            }
+            (Kind::Arc(arc), Kind::Line(line)) => self.arc_line(graph, arc, line, true)?,
+            (Kind::Line(line), Kind::Arc(arc)) => self.arc_line(graph, arc, line, false)?,
+            (Kind::Arc(arc), Kind::Point(q)) if self.fits(arc, q) => {
+                arc_point(graph, arc, q, true)?
+            }
+            (Kind::Point(q), Kind::Arc(arc)) if self.fits(arc, q) => {
+                arc_point(graph, arc, q, false)?
+            }
+            (Kind::Arc(arc), Kind::Point(q)) => near_arc(graph, arc, q, true)?,
+            (Kind::Point(q), Kind::Arc(arc)) => near_arc(graph, arc, q, false)?,
+            (Kind::Arc(a), Kind::Arc(b)) if self.alike(a, b) => arcs(graph, a, b)?,
+            _ => {
+                let (a, b) = (self.depth(graph, this)?, self.depth(graph, other)?);
+                Test::AtMost(graph.sub(a, b))
+            }
+        })
+    }
+
+    /// The difference of two lines' distances. Where neither is oblique its terms are exact; else
+    /// it is measured from where they meet, since its constant would be the sum of two offsets.
+    fn bisector(&self, graph: &mut Graph, a: usize, b: usize) -> Option<Id> {
+        let [first, second] = [a, b].map(|piece| &self.outline[piece]);
+        let ([ad, az], [bd, bz]) = (first.direction()?, second.direction()?);
+        let plain = [&ad, &az, &bd, &bz].into_iter().filter(|part| part.is_zero()).count() == 2;
+        let sine = &(&ad * &bz) - &(&az * &bd);
+        if plain || sine.to_f64().abs() < 1e-3 {
+            let (a, b) = (first.depth(graph)?, second.depth(graph)?);
+            let difference = graph.sub(a, b);
+            return Some(if plain { expanded(graph, difference) } else { difference });
+        }
+        let off = [0, 1].map(|k| &second.from[k] - &first.from[k]);
+        let along = (&(&off[0] * &bz) - &(&off[1] * &bd)).over(&sine)?;
+        let meet = [&ad, &az].map(|way| way * &along);
+        let meet = [0, 1].map(|k| &first.from[k] + &meet[k]);
+        let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        // Normals are the directions turned left.
+        let parts = [(&bz - &az, 0), (&ad - &bd, 1)].map(|(way, k)| {
+            let (way, from) = (graph.number(way), graph.number(meet[k].clone()));
+            let off = graph.sub(here[k], from);
+            graph.mul(way, off)
+        });
+        Some(graph.add(parts[0], parts[1]))
+    }
+
+    /// `|p - q|² - l²`. Beside a line along a coordinate one square cancels.
+    fn parabola(&self, graph: &mut Graph, q: &Place, line: usize) -> Option<Id> {
+        let segment = &self.outline[line];
+        let [tx, tz] = segment.direction()?;
+        let ways = [-&tz, tx];
+        let off = [0, 1].map(|k| &q[k] - &segment.from[k]);
+        let here = &(&ways[0] * &off[0]) + &(&ways[1] * &off[1]);
+        let locals = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let locals = [0, 1].map(|k| {
+            let there = graph.number(q[k].clone());
+            graph.sub(locals[k], there)
+        });
+        for k in 0..2 {
+            if ways[1 - k].is_zero() {
+                // l = here ± u, so u² + v² - l² = v² - here · (here ± 2 u).
+                let square = graph.mul(locals[1 - k], locals[1 - k]);
+                let slope = graph.number(&(&here * &ways[k]) * &Number::int(2));
+                let (rise, constant) = (graph.mul(slope, locals[k]), graph.number(&here * &here));
+                let line = graph.add(rise, constant);
+                return Some(graph.sub(square, line));
+            }
+        }
+        let (away, depth) = (outline::squared(graph, q), segment.depth(graph)?);
+        let square = graph.mul(depth, depth);
+        Some(graph.sub(away, square))
+    }
+
+    fn arc_line(&self, graph: &mut Graph, arc: &Circle, line: usize, nearer: bool) -> Option<Test> {
+        let depth = self.outline[line].depth(graph)?;
+        let radius = graph.number(arc.radius.clone());
+        let away = outline::squared(graph, &arc.centre);
+        if !arc.convex {
+            let sum = graph.add(depth, radius);
+            let square = graph.mul(sum, sum);
+            return Some(Test::AtMost(ordered(graph, away, square, nearer)));
+        }
+        let rest = graph.sub(radius, depth);
+        let square = graph.mul(rest, rest);
+        Some(either(graph, rest, (square, away), nearer))
+    }
+
+    /// Whether squares of an arc's radius round no more than the distance to a corner beside it can
+    /// bear: the error of `L - 2 r √A` is one of `r²`, and of the distances that by their sum.
+    fn fits(&self, arc: &Circle, q: &Place) -> bool {
+        let radius = arc.radius.to_f64();
+        let off = minus(outline::doubles(q), outline::doubles(&arc.centre));
+        let gap = (outline::norm(off) - radius).abs();
+        radius * radius <= 0.25 * self.size * gap
+    }
+
+    /// The same of two arcs, of which the smaller radius bounds the sum below if they bend in
+    /// different ways.
+    fn alike(&self, a: &Circle, b: &Circle) -> bool {
+        let [a_radius, b_radius] = [a, b].map(|arc| arc.radius.to_f64());
+        let sum = a_radius + b_radius;
+        a.convex == b.convex || sum * sum <= 0.25 * self.size * a_radius.min(b_radius)
+    }
+}
+
+/// Whether an arc is nearer than a corner: `(r - √A)² ≤ B`, with the root that its depth wants too.
+fn near_arc(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<Test> {
+    let away = outline::distance(graph, &arc.centre)?;
+    let radius = graph.number(arc.radius.clone());
+    let depth = if arc.convex { graph.sub(radius, away) } else { graph.sub(away, radius) };
+    let square = graph.mul(depth, depth);
+    let corner = outline::squared(graph, q);
+    Some(Test::AtMost(ordered(graph, square, corner, nearer)))
+}
+
+/// Expanded, so that squares which cancel are not subtracted at every point.
+fn expanded(graph: &mut Graph, difference: Id) -> Id {
+    match Polynomial::of(graph, difference) {
+        Some(polynomial) => polynomial.expression(graph),
+        None => difference,
+    }
+}
+
+/// `a - b` or, the other way round, `b - a`.
+fn ordered(graph: &mut Graph, a: Id, b: Id, forward: bool) -> Id {
+    if forward { graph.sub(a, b) } else { graph.sub(b, a) }
+}
+
+/// `edge ≤ 0` or `a ≤ b`; the opposite: `edge ≥ 0` and `a ≥ b`.
+fn either(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test {
+    let curve = ordered(graph, a, b, positive);
+    let edge = if positive { edge } else { graph.neg(edge) };
+    let both = vec![Test::AtMost(edge), Test::AtMost(curve)];
+    if positive { Test::Any(both) } else { Test::All(both) }
+}
+
+/// `|p - a|² - |p - b|² + extra` as a linear expression.
+fn lead(graph: &mut Graph, a: &Place, b: &Place, extra: &Number) -> Option<Id> {
+    let two = Number::int(2);
+    let way = [0, 1].map(|k| &two * &(&b[k] - &a[k]));
+    let apart = &(&way[0] * &way[0]) + &(&way[1] * &way[1]);
+    let rise = outline::linear(graph, way, a)?;
+    let constant = graph.number(extra - &(&apart / &Number::int(4)));
+    Some(graph.add(rise, constant))
+}
+
+fn arc_point(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<Test> {
+    let square = &arc.radius * &arc.radius;
+    let lead = lead(graph, &arc.centre, q, &square)?;
+    let (left, right) = conic(graph, lead, &arc.radius, &arc.centre);
+    Some(either(graph, lead, (left, right), nearer))
+}
+
+/// The two sides of `lead² ≤ 4 t² |p - c|²`.
+fn conic(graph: &mut Graph, lead: Id, t: &Number, centre: &Place) -> (Id, Id) {
+    let left = graph.mul(lead, lead);
+    let factor = graph.number(&(t * t) * &Number::int(4));
+    let away = outline::squared(graph, centre);
+    (left, graph.mul(factor, away))
+}
+
+/// Whether one arc is no farther than another.
+///
+/// Both convex, `D = r₂ - r₁ ≥ 0`, `M = B - A - D²`: the second is nearer where `M ≥ 0` and
+/// `M² ≥ 4 D² A`. Both concave: where `M ≤ 0` or `M² ≤ 4 D² A`. The first convex, the second
+/// concave, `T = r₁ + r₂`, `L = T² + A - B`: where `L ≥ 0` and `L² ≥ 4 T² A`.
+fn arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
+    if this.convex != other.convex {
+        let (first, second) = if this.convex { (this, other) } else { (other, this) };
+        let sum = &first.radius + &second.radius;
+        let lead = lead(graph, &first.centre, &second.centre, &(&sum * &sum))?;
+        let (left, right) = conic(graph, lead, &sum, &first.centre);
+        // Where the first is nearer: L ≤ 0 or L² ≤ 4 T² A.
+        return Some(either(graph, lead, (left, right), this.convex));
+    }
+    let swapped = this.radius > other.radius;
+    let (first, second) = if swapped { (other, this) } else { (this, other) };
+    let difference = &second.radius - &first.radius;
+    let square = &difference * &difference;
+    let lead = lead(graph, &second.centre, &first.centre, &-&square)?;
+    // Concave: the second is nearer where M ≤ 0; convex: the first is.
+    let positive = swapped != this.convex;
+    if difference.is_zero() {
+        return Some(Test::AtMost(if positive { lead } else { graph.neg(lead) }));
+    }
+    let (left, right) = conic(graph, lead, &difference, &first.centre);
+    Some(either(graph, lead, (left, right), positive))
+}
