@@ -1,18 +1,19 @@
 //! The plan of a profile's tool: the partition is known as polygons, and splits cut them until one
 //! owner is left.
 
+use super::corners::{Corner, corners};
 use super::samples::{Few, Samples};
+use super::zeros::Zeros;
 use super::{LARGEST, Tree, costs};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
 use crate::model::{Model, Over, Section};
 use crate::regionalise::cells::Cell;
-use crate::regionalise::cut::{Cut, Cutter, Edge, NEAR, Piece, is_along};
+use crate::regionalise::cut::{Cut, Cutter, Piece};
 use crate::regionalise::outline::{self, Point, minus, norm};
 use crate::regionalise::overlay;
 use crate::regionalise::shape::Shape;
 use crate::report::Report;
-use std::cmp::Ordering;
 use std::rc::Rc;
 
 /// Chords of a curved edge, at first and where so few misled.
@@ -21,7 +22,7 @@ const CHORDS: [u32; 2] = [8, 40];
 /// Curves that are passed over because their points belong to both sides.
 const DOUBLES: usize = 6;
 
-type Owners = Tree<Option<usize>>;
+pub(super) type Owners = Tree<Option<usize>>;
 
 /// Bits that an addition must be worth.
 pub(super) const PRICE: f64 = 0.01;
@@ -117,11 +118,11 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
 
 /// What is to be told apart: pieces, points with their weights, and points to check the tree by.
 #[derive(Default)]
-struct Ground {
-    pieces: Vec<Rc<Piece>>,
+pub(super) struct Ground {
+    pub(super) pieces: Vec<Rc<Piece>>,
     samples: Vec<(Point, f64, Option<usize>)>,
     witnesses: Vec<(Point, Option<usize>)>,
-    corners: Vec<Point>,
+    pub(super) corners: Vec<Point>,
 }
 
 impl Ground {
@@ -201,50 +202,19 @@ fn plan<'m>(
     Ok(tree)
 }
 
-/// Where pieces meet, and whose they are.
-struct Corner {
-    at: Point,
-    owners: Vec<Option<usize>>,
-}
-
-fn corners(ground: &Ground, shapes: &[Shape<'_>], size: f64) -> Vec<Corner> {
-    let close = NEAR * size;
-    let near = |p: Point, q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
-    let mut places = ground.corners.clone();
-    places.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
-    places.dedup_by(|p, q| near(*p, *q));
-    let about: Vec<[Point; 2]> = ground.pieces.iter().map(|piece| piece.about()).collect();
-    let corner = |at: Point| {
-        let mut owners = Vec::new();
-        for (piece, [middle, half]) in ground.pieces.iter().zip(&about) {
-            let [u, v] = minus(at, *middle);
-            if u.abs() <= half[0] + close
-                && v.abs() <= half[1] + close
-                && !owners.contains(&piece.owner)
-                && (piece.vertices.iter().any(|p| near(*p, at))
-                    || piece.has_on_edge(at, shapes, size))
-            {
-                owners.push(piece.owner);
-            }
-        }
-        Corner { at, owners }
-    };
-    places.into_iter().map(corner).collect()
-}
-
-struct Planner<'m> {
+pub(super) struct Planner<'m> {
     model: &'m Model,
-    shapes: &'m [Shape<'m>],
-    costs: Vec<f64>,
+    pub(super) shapes: &'m [Shape<'m>],
+    pub(super) costs: Vec<f64>,
     samples: Samples,
-    corners: Vec<Corner>,
+    pub(super) corners: Vec<Corner>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
     /// The pieces before any was cut, and what is about them.
     whole: Vec<(Rc<Piece>, [Point; 2])>,
     /// Of each curve that was tried, where each of these lies.
     sides: Vec<Vec<Option<Side>>>,
-    size: f64,
+    pub(super) size: f64,
     tests: usize,
 }
 
@@ -257,13 +227,13 @@ enum Side {
 }
 
 /// Pieces on the two sides of a curve.
-struct Halves {
-    below: Vec<Rc<Piece>>,
-    above: Vec<Rc<Piece>>,
+pub(super) struct Halves {
+    pub(super) below: Vec<Rc<Piece>>,
+    pub(super) above: Vec<Rc<Piece>>,
 }
 
 impl Planner<'_> {
-    fn tree(
+    pub(super) fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
         (samples, corners): (Few, Vec<usize>),
@@ -298,45 +268,6 @@ impl Planner<'_> {
             }
             _ => Tree::split(curve, zeros == Zeros::Above, below, above),
         })
-    }
-
-    /// The corners that rounding may find on a side of a curve.
-    fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
-        let there = |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
-        corners.iter().copied().filter(there).collect()
-    }
-
-    /// An owner, but for corners where some pieces meet that are not his: rounding may bring a point
-    /// of theirs here, where nobody else has a piece, so they are split off.
-    fn leaf(&self, owner: Option<usize>, pieces: &[Rc<Piece>], corners: &[usize]) -> Owners {
-        let stray = |at: &&usize| !self.corners[**at].owners.contains(&owner);
-        let Some(corner) = corners.iter().find(stray).map(|at| &self.corners[*at]) else {
-            return Tree::Leaf(owner);
-        };
-        let Some(first) = corner.owners.first() else { return Tree::Leaf(owner) };
-        if pieces.is_empty() {
-            return Tree::Leaf(*first);
-        }
-        let mut curves: Vec<(CurveIndex, i8)> = (0..self.shapes.len())
-            .map(|curve| (curve, self.shapes[curve].side(corner.at, self.size)))
-            .filter(|(_, side)| *side != 0)
-            .collect();
-        curves.sort_by(|a, b| self.costs[a.0].total_cmp(&self.costs[b.0]));
-        let apart = curves.into_iter().find(|(curve, side)| {
-            let cutter = Cutter { shapes: self.shapes, curve: *curve, size: self.size };
-            let off = |piece: &Rc<Piece>| match piece.cut(cutter) {
-                Cut::Below => *side > 0,
-                Cut::Above => *side < 0,
-                Cut::Nothing => true,
-                Cut::Both(..) => false,
-            };
-            pieces.iter().all(off)
-        });
-        let Some((curve, side)) = apart else { return Tree::Leaf(owner) };
-        let [here, there] = [side, -side].map(|side| self.corners_on(side, curve, corners));
-        let (here, there) = (self.leaf(*first, &[], &here), self.leaf(owner, pieces, &there));
-        let (below, above) = if side < 0 { (here, there) } else { (there, here) };
-        Tree::split(curve, side < 0, below, above)
     }
 
     /// The curve that tells most about the owners for what it costs, and what it divides.
@@ -464,114 +395,5 @@ impl Planner<'_> {
             }
         }
         halves
-    }
-
-    /// Which side the points on a curve go to: that of the solid, so that its surface is its own;
-    /// where both are, that of the owner listed first, if one side is so all along.
-    fn zeros(&self, curve: CurveIndex, halves: &Halves) -> Zeros {
-        let [below, above] = [&halves.below, &halves.above].map(|half| self.rim(curve, half));
-        let (mut must, mut prefers) = ([false; 2], [false; 2]);
-        let mut places: Vec<Point> =
-            below.points.iter().chain(&above.points).map(|(p, _)| *p).collect();
-        places.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
-        // Pieces share vertices, to the last bits.
-        let close = 1e-12 * self.size;
-        places.dedup_by(|p, q| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close);
-        for p in places {
-            let [b, a] = [&below, &above].map(|rim| rim.first_at(p, NEAR * self.size));
-            let inside = [b, a].map(|rank| rank != usize::MAX);
-            match (inside, b.cmp(&a)) {
-                ([true, false], _) => must[0] = true,
-                ([false, true], _) => must[1] = true,
-                (_, Ordering::Less) => prefers[0] = true,
-                (_, Ordering::Greater) => prefers[1] = true,
-                _ => {}
-            }
-        }
-        match (must, prefers) {
-            ([true, true], _) => Zeros::Both,
-            ([false, true], _) | ([false, false], [false, true]) => Zeros::Above,
-            _ => Zeros::Below,
-        }
-    }
-
-    /// What of some pieces lies on a curve.
-    fn rim(&self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Rim {
-        let shape = &self.shapes[curve];
-        let mut rim = Rim::default();
-        for piece in pieces {
-            let rank = piece.owner.unwrap_or(usize::MAX);
-            let on: Vec<bool> =
-                piece.vertices.iter().map(|p| shape.side(*p, self.size) == 0).collect();
-            for (k, p) in piece.vertices.iter().enumerate().filter(|(k, _)| on[*k]) {
-                rim.points.push((*p, rank));
-                let next = (k + 1) % on.len();
-                if on[next] && piece.edges[k] == Edge::Straight {
-                    rim.edges.push(([*p, piece.vertices[next]], rank));
-                }
-            }
-        }
-        rim
-    }
-
-    /// The owners of the points on a curve: the first of both sides'.
-    fn touching(
-        &mut self,
-        curve: CurveIndex,
-        halves: &Halves,
-        corners: &[usize],
-        open: &[CurveIndex],
-    ) -> Result<Owners, Report> {
-        let shape = &self.shapes[curve];
-        let touches =
-            |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);
-        let [below, above] = [&halves.below, &halves.above]
-            .map(|pieces| pieces.iter().filter(touches).cloned().collect::<Vec<_>>());
-        let [here, there] = [-1, 1].map(|side| self.corners_on(side, curve, corners));
-        let below = self.tree(&below, (Few::default(), here), open.to_vec())?;
-        let above = self.tree(&above, (Few::default(), there), open.to_vec())?;
-        Ok(first(&below, &above))
-    }
-}
-
-/// Points and straight edges on a curve, with the rank of their owner: its place in the list.
-#[derive(Default)]
-struct Rim {
-    points: Vec<(Point, usize)>,
-    edges: Vec<([Point; 2], usize)>,
-}
-
-impl Rim {
-    /// The first of the owners that touch a point.
-    fn first_at(&self, p: Point, close: f64) -> usize {
-        let near = |q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
-        let points = self.points.iter().filter(|(q, _)| near(*q)).map(|(_, rank)| *rank);
-        let edges =
-            self.edges.iter().filter(|(edge, _)| is_along(p, *edge, close)).map(|(_, rank)| *rank);
-        points.chain(edges).min().unwrap_or(usize::MAX)
-    }
-}
-
-/// The side that a curve's own points go to.
-#[derive(Clone, Copy, PartialEq)]
-enum Zeros {
-    Below,
-    Above,
-    Both,
-}
-
-/// The tree that gives the first listed of two trees' owners.
-fn first(a: &Owners, b: &Owners) -> Owners {
-    match a {
-        Tree::Leaf(own) => {
-            let rank = |owner: &Option<usize>| owner.unwrap_or(usize::MAX);
-            let least =
-                |other: &Option<usize>| Some(if rank(other) < rank(own) { *other } else { *own });
-            b.map(&least).unwrap_or(Tree::Leaf(*own))
-        }
-        Tree::Split { curve, strict, below, above } => {
-            let [low, high] = [true, false].map(|holds| b.knowing(*curve, *strict, holds));
-            Tree::split(*curve, *strict, first(below, &low), first(above, &high))
-        }
     }
 }

@@ -1,0 +1,189 @@
+//! The plan of regions by hand: only their conditions are known, and splits decide them by signs.
+
+use super::empty::Void;
+use super::{LARGEST, Tree, bits, costs, spread, too_large};
+use crate::bound::Extent;
+use crate::expr::value::{At, Evaluator};
+use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::model::Model;
+use crate::report::Report;
+
+/// The owners' tree of written regions, of which only the conditions are known.
+pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Report> {
+    let samples = samples(model, extent);
+    let all: Vec<u32> = (0..samples.len() as u32).collect();
+    let costs = costs(model);
+    let mut planner =
+        Planner { model, samples: &samples, costs: &costs, void: Void::new(model), tests: 0 };
+    planner.tree(vec![ANY; model.curves.len()], &all)
+}
+
+/// A point: the side of each curve, and the owner.
+struct Sample {
+    signs: Vec<Signs>,
+    owner: Option<usize>,
+}
+
+fn samples(model: &Model, extent: &Extent) -> Vec<Sample> {
+    let values = model.curves.iter().map(|curve| curve.value);
+    let mut evaluator = Evaluator::new(&model.graph, values);
+    spread(model.domain, extent, 2000, 0.05)
+        .map(|[x, y, z]| {
+            evaluator.set(At::point(x, y, z));
+            let value = |curve: CurveIndex| evaluator.get(model.curves[curve].value);
+            let owner = model.regions.iter().position(|region| region.inside.holds(&value));
+            let signs = (0..model.curves.len())
+                .map(|curve| match value(curve) {
+                    v if v < 0.0 => NEGATIVE,
+                    v if v > 0.0 => POSITIVE,
+                    _ => ZERO,
+                })
+                .collect();
+            Sample { signs, owner }
+        })
+        .collect()
+}
+
+struct Planner<'m> {
+    model: &'m Model,
+    samples: &'m [Sample],
+    costs: &'m [f64],
+    void: Void<'m>,
+    tests: usize,
+}
+
+impl Planner<'_> {
+    /// The tree for the points whose curves have these signs.
+    fn tree(
+        &mut self,
+        mut signs: Vec<Signs>,
+        samples: &[u32],
+    ) -> Result<Tree<Option<usize>>, Report> {
+        loop {
+            let possible = self.possible(&signs);
+            if let [only] = possible.as_slice() {
+                return Ok(Tree::Leaf(*only));
+            }
+            let (curve, strict) = self.choose(&signs, &possible, samples);
+            let (below, above) = sides(signs[curve], strict);
+            let of = |side: Signs| -> Vec<u32> {
+                samples
+                    .iter()
+                    .copied()
+                    .filter(|s| self.samples[*s as usize].signs[curve] & side != 0)
+                    .collect()
+            };
+            let (low, high) = (of(below), of(above));
+            // Nobody is asked about a side that has no point.
+            let with = |side| {
+                let mut signs = signs.clone();
+                signs[curve] = side;
+                signs
+            };
+            if low.is_empty() && self.void.proved(&with(below)) {
+                signs[curve] = above;
+                continue;
+            }
+            if high.is_empty() && self.void.proved(&with(above)) {
+                signs[curve] = below;
+                continue;
+            }
+            self.tests += 1;
+            if self.tests > LARGEST {
+                return Err(too_large(self.model));
+            }
+            let below = self.tree(with(below), &low)?;
+            let above = self.tree(with(above), &high)?;
+            return Ok(Tree::split(curve, strict, below, above));
+        }
+    }
+
+    /// Who can own a point with these signs, in the order of the list.
+    fn possible(&self, signs: &[Signs]) -> Vec<Option<usize>> {
+        let mut possible = Vec::new();
+        for (index, region) in self.model.regions.iter().enumerate() {
+            match region.inside.decided(signs) {
+                Some(true) => {
+                    possible.push(Some(index));
+                    return possible;
+                }
+                Some(false) => {}
+                None => possible.push(Some(index)),
+            }
+        }
+        possible.push(None);
+        possible
+    }
+
+    /// The next test: a curve, and whether its zeros go above.
+    fn choose(
+        &self,
+        signs: &[Signs],
+        possible: &[Option<usize>],
+        samples: &[u32],
+    ) -> (CurveIndex, bool) {
+        let mut atoms = Vec::new();
+        for region in possible.iter().flatten() {
+            self.model.regions[*region].inside.open(signs, &mut atoms);
+        }
+        let mut tried: Vec<CurveIndex> = Vec::new();
+        let mut best: Option<(f64, CurveIndex)> = None;
+        let listed = self.model.first.iter().find(|first| atoms.iter().any(|(c, _)| c == *first));
+        for (curve, _) in &atoms {
+            if tried.contains(curve) {
+                continue;
+            }
+            tried.push(*curve);
+            let gain = self.gain(*curve, samples) - 0.01 * self.costs[*curve];
+            if best.is_none_or(|(most, _)| gain > most) {
+                best = Some((gain, *curve));
+            }
+        }
+        let curve = listed.copied().or(best.map(|(_, curve)| curve)).unwrap_or(0);
+        // The zero goes to the side of the region listed earlier.
+        let below = atoms.iter().find(|(c, _)| *c == curve).is_none_or(|(_, below)| *below);
+        let strict = match signs[curve] {
+            s if s & (NEGATIVE | POSITIVE) == NEGATIVE => true,
+            s if s & (NEGATIVE | POSITIVE) == POSITIVE => false,
+            _ => !below,
+        };
+        (curve, strict)
+    }
+
+    /// Bits of information that a curve's sign gives about the owners of samples.
+    fn gain(&self, curve: CurveIndex, samples: &[u32]) -> f64 {
+        let mut counts: Vec<(Option<usize>, [f64; 2])> = Vec::new();
+        for sample in samples {
+            let sample = &self.samples[*sample as usize];
+            let own = sample.owner;
+            let side = usize::from(sample.signs[curve] == POSITIVE);
+            match counts.iter_mut().find(|(l, _)| *l == own) {
+                Some((_, count)) => count[side] += 1.0,
+                None => {
+                    let mut count = [0.0; 2];
+                    count[side] = 1.0;
+                    counts.push((own, count));
+                }
+            }
+        }
+        information(counts.iter().map(|(_, count)| *count))
+    }
+}
+
+/// Bits that a side gives about classes whose weights on the two sides are known.
+fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
+    let totals = counts.clone().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
+    let all = totals[0] + totals[1];
+    if all == 0.0 {
+        return 0.0;
+    }
+    let before: f64 = counts.clone().map(|c| bits(c[0] + c[1], all)).sum();
+    let after: f64 = counts.map(|c| bits(c[0], totals[0]) + bits(c[1], totals[1])).sum();
+    (before - after) / all
+}
+
+/// The signs on the two sides of a test.
+fn sides(signs: Signs, strict: bool) -> (Signs, Signs) {
+    let below = if strict { NEGATIVE } else { NEGATIVE | ZERO };
+    (signs & below, signs & !below)
+}
