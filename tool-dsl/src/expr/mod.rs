@@ -11,7 +11,9 @@
 pub mod derive;
 mod graph;
 pub mod interval;
+mod node;
 pub mod polynomial;
 pub mod value;
 
-pub use graph::{Coord, Graph, Id, Node};
+pub use graph::Graph;
+pub use node::{Coord, Id, Node};

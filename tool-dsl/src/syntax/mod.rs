@@ -4,6 +4,7 @@
 //! name, with a remedy (`refuse`). Items are parsed each for itself, so that one mistake does
 //! not hide the next.
 
+mod expression;
 mod mount;
 mod parse;
 mod refuse;
