@@ -3,6 +3,7 @@
 
 mod code;
 mod dot;
+mod masks;
 mod tokens;
 
 pub use dot::dot;
@@ -15,7 +16,8 @@ use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
 use crate::report::figure;
-use code::{Form, Writer, logic, selects, tested};
+use code::{Form, Writer};
+use masks::{logic, selects, tested};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeSet;

@@ -1,9 +1,10 @@
 //! The regions of a profile: derived, named, and given their laws.
 
 use super::condition::Curves;
+use super::law::Laws;
 use super::lower::Lowering;
 use super::over::Divider;
-use super::region::{Felt, Laws, Said};
+use super::region::{Felt, Said};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;

@@ -6,6 +6,7 @@ mod dimension;
 mod direction;
 mod given;
 mod join;
+mod law;
 mod lower;
 mod mount;
 mod outputs;
@@ -19,16 +20,14 @@ use crate::model::{Model, Surface, Unit};
 use crate::regionalise::outline::Segment;
 use crate::report::{Report, any_error, nearest};
 use crate::source::{Sources, Span};
-use crate::syntax::tree::{
-    Definition, Expr, Item, Law, Mount, Name, Profile, Quantity, Region, Tool,
-};
+use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
 use derived::FromProfile;
 use given::Given;
+use law::Laws;
 use lower::Lowering;
 use mount::Along;
 use over::Divider;
-use region::Laws;
 use std::collections::BTreeMap;
 
 /// Resolves a tool with what its params are given; the files that it mounts are read on the way.
@@ -399,9 +398,4 @@ fn curve_of(
     value.used = true;
     let id = value.id;
     Ok(curves.find(&mut lowering.graph, id).map(|(curve, _)| curve))
-}
-
-/// Which rule a law is of.
-fn is(quantity: Quantity) -> impl Fn(&&&Law) -> bool {
-    move |law| law.quantity == quantity
 }

@@ -2,8 +2,9 @@
 
 use super::given::{self, Given};
 use super::join::{OFF_TIP, Unjoined, join, moved};
+use super::law::Laws;
 use super::lower::{Lowering, May};
-use super::region::{Laws, quantity};
+use super::region::quantity;
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};

@@ -2,9 +2,10 @@
 
 use super::condition::Curves;
 use super::derived::{Part, formula};
+use super::law::{Laws, idle_niceness};
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{Felt, Laws, Said, idle_niceness, mention};
+use super::region::{Felt, Said, mention};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;

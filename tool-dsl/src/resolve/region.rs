@@ -1,118 +1,19 @@
-//! Regions and laws: who says what is felt where.
+//! Regions: what is felt where, as they or the laws say.
 
 use super::condition::Curves;
 use super::dimension::Dimension;
+use super::law::{Laws, idle_niceness};
 use super::lower::{Lowering, May};
-use super::mount::Along;
-use super::{is, outputs};
+use super::outputs;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{Region, Surface};
-use crate::report::{Report, nearest};
+use crate::report::Report;
 use crate::source::Span;
-use crate::syntax::tree::{self, Compare, Expr, Item, Law, Quantity, Tool};
-use std::collections::BTreeMap;
+use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Tool};
 
 /// The most regions that a tool may have: more take the planner minutes.
 const MOST: usize = 256;
-
-/// A tool's laws.
-pub(super) struct Laws<'t> {
-    own: &'t [&'t Law],
-    /// The niceness that comes along with the surfaces of mounted files.
-    along: BTreeMap<String, Along>,
-}
-
-impl<'t> Laws<'t> {
-    pub(super) fn new(own: &'t [&'t Law], along: BTreeMap<String, Along>) -> Laws<'t> {
-        Laws { own, along }
-    }
-
-    /// The law for a surface: for the surface itself, for `cutting`, for all.
-    pub(super) fn find(&self, quantity: Quantity, surface: &Surface) -> Option<&'t Law> {
-        let for_word = |word: &str| {
-            self.own
-                .iter()
-                .filter(is(quantity))
-                .find(|law| law.surfaces.iter().any(|name| name.word == word))
-        };
-        for_word(&surface.name)
-            .or_else(|| if surface.cutting { for_word("cutting") } else { None })
-            .or_else(|| self.own.iter().filter(is(quantity)).find(|law| law.surfaces.is_empty()))
-            .copied()
-    }
-
-    /// What is wrong with the laws themselves.
-    pub(super) fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
-        let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
-        for law in self.own {
-            let what = law.quantity.word();
-            if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
-                reports.push(
-                    Report::error(law.span, "for which surfaces is this niceness?")
-                        .help("write `niceness cutting: …;` or name the surfaces"),
-                );
-            }
-            let words: Vec<(&str, Span)> = if law.surfaces.is_empty() {
-                vec![("", law.span)]
-            } else {
-                law.surfaces.iter().map(|name| (name.word.as_str(), name.span)).collect()
-            };
-            for (word, span) in words {
-                if let Some((.., first)) =
-                    seen.iter().find(|(q, w, _)| *q == law.quantity && *w == word)
-                {
-                    let of =
-                        if word.is_empty() { "everything".to_owned() } else { format!("`{word}`") };
-                    reports.push(
-                        Report::error(span, format!("two laws give the {what} of {of}"))
-                            .label("this one")
-                            .and(*first, "and that one")
-                            .help("drop one"),
-                    );
-                }
-                seen.push((law.quantity, word, span));
-                let surface = surfaces.iter().find(|surface| surface.name == word);
-                if word.is_empty() || word == "cutting" {
-                    continue;
-                }
-                match surface {
-                    None => {
-                        let report = Report::error(span, format!("unknown surface `{word}`"));
-                        let known = surfaces.iter().map(|s| s.name.as_str());
-                        reports.push(match nearest(word, known) {
-                            Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                            None => report.help(named(word, surfaces)),
-                        });
-                    }
-                    Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
-                        reports.push(idle_niceness(span, word));
-                    }
-                    Some(_) => {}
-                }
-            }
-        }
-    }
-}
-
-/// Which surfaces there are: those of a mounted part, if it is named.
-fn named(word: &str, surfaces: &[Surface]) -> String {
-    let of = format!("{word}.");
-    let part: Vec<String> = surfaces
-        .iter()
-        .filter(|surface| surface.name.starts_with(&of))
-        .map(|surface| format!("`{}`", surface.name))
-        .collect();
-    match part.as_slice() {
-        [] => "name a surface of a region: `region … as NAME`".to_owned(),
-        part => format!("name a surface of the part: {}", part.join(", ")),
-    }
-}
-
-pub(super) fn idle_niceness(span: Span, surface: &str) -> Report {
-    Report::error(span, format!("`{surface}` does not cut, its niceness is 0"))
-        .help("make it `cutting` or drop the rule")
-}
 
 /// All surfaces and regions.
 pub(super) fn regions(
