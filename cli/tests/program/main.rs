@@ -1,89 +1,11 @@
 //! The program as a user meets it: what it prints, and how it refuses.
 
+mod bench;
+
+use bench::{Bench, rows, shared, stderr, stdout, touchoff};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use touchoff::mesh::shapes;
-use touchoff::{Mesh, Unit};
-
-fn touchoff(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_touchoff")).args(arguments).output().expect("the program runs")
-}
-
-fn stdout(output: &Output) -> String {
-    String::from_utf8(output.stdout.clone()).expect("UTF-8")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).expect("UTF-8")
-}
-
-fn rows(output: &Output) -> Vec<Value> {
-    assert!(output.status.success(), "{}", stderr(output));
-    stdout(output).lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
-}
-
-/// A folder with a block, 6 × 6 × 2 under z = 0, and a path into it.
-struct Bench {
-    folder: tempfile::TempDir,
-}
-
-impl Bench {
-    fn new() -> Bench {
-        let bench = Bench { folder: tempfile::tempdir().expect("a folder") };
-        let low = nalgebra::Point3::new(-3.0, -3.0, -2.0);
-        let high = nalgebra::Point3::new(3.0, 3.0, 0.0);
-        bench.part("block.stl", &shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
-        bench.write("path.csv", "# a comment\n0,0,1,0,0,1\n0,0,-0.5,0,0,1\n");
-        bench
-    }
-
-    fn part(&self, name: &str, mesh: &Mesh) {
-        let mut bytes = Vec::new();
-        mesh.write_stl(&mut bytes).expect("memory");
-        self.write(name, bytes);
-    }
-
-    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
-        let path = self.folder.path().join(name);
-        std::fs::write(&path, content).expect("a writable folder");
-        path.display().to_string()
-    }
-
-    /// `touchoff run` with a part, a path and a tool of this folder, and more.
-    fn run(&self, part: &str, path: &str, tool: &str, more: &[&str]) -> Output {
-        let place = |name: &str| self.folder.path().join(name).display().to_string();
-        let (part, path) = (place(part), place(path));
-        let tool = if tool.ends_with(".tool") { place(tool) } else { tool.to_owned() };
-        let mut all = vec!["run", "--part", &part, "--path", &path, "--tool", &tool];
-        if !more.contains(&"--unit") {
-            all.extend(["--unit", "mm"]);
-        }
-        all.extend(more);
-        touchoff(&all)
-    }
-
-    /// A run that fails with status 1 and says all of `words`, and writes no row.
-    fn refused(&self, part: &str, path: &str, tool: &str, words: &[&str]) {
-        let output = self.run(part, path, tool, &["--json"]);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{said}");
-        assert!(output.stdout.is_empty(), "a row was written: {}", stdout(&output));
-        for word in words {
-            assert!(said.contains(word), "`{word}` is missing in:\n{said}");
-        }
-        assert!(!said.contains("panicked"), "{said}");
-    }
-}
-
-fn shared() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is not there", folder.display());
-        return None;
-    }
-    Some(folder)
-}
+use std::path::Path;
+use std::process::Output;
 
 #[test]
 fn a_run_writes_one_object_a_pose() {
