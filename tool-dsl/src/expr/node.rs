@@ -2,7 +2,7 @@
 
 use crate::number::Number;
 
-/// A node of a [`Graph`]. A larger id never is an operand of a smaller one.
+/// A node of a [`Graph`](super::Graph). A larger id never is an operand of a smaller one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub(super) u32);
 
