@@ -5,8 +5,6 @@ use crate::failure::Failure;
 use serde::Serialize;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use tool_dsl::domain::Domain;
-use tool_dsl::report::{self, Severity};
 use tool_dsl::{Checked, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
@@ -120,65 +118,6 @@ impl Found {
             Found::File(tool) => &**tool,
         }
     }
-}
-
-/// Shows what is wrong with files, and what those that are right are like.
-pub(crate) fn check(files: &[PathBuf], given: &Given) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    let styled = std::io::stderr().is_terminal();
-    let mut wrong = 0;
-    for file in files {
-        let source = match Interpreted::source(file) {
-            Ok(source) => source,
-            Err(error) => {
-                say!("error: {error}");
-                wrong += 1;
-                continue;
-            }
-        };
-        let compiled = compile_with(&source, &given.sources());
-        for report in &compiled.reports {
-            say!("{}\n", report.render(&compiled.sources, styled));
-        }
-        match &compiled.tool {
-            Some(tool) => {
-                let is_warning = |r: &&tool_dsl::report::Report| r.severity == Severity::Warning;
-                let warnings = compiled.reports.iter().filter(is_warning).count();
-                writeln!(out, "{}: {}", file.display(), described(tool, warnings))?;
-            }
-            None => wrong += 1,
-        }
-    }
-    out.flush()?;
-    if wrong > 0 { Err(Failure::Files { wrong, all: files.len() }) } else { Ok(()) }
-}
-
-fn described(tool: &Checked, warnings: usize) -> String {
-    let model = &tool.model;
-    let unit = model.unit.word();
-    let cutting: Vec<&str> =
-        model.surfaces.iter().filter(|s| s.cutting).map(|s| s.name.as_str()).collect();
-    let extent = &tool.extent;
-    let size = match model.domain {
-        Domain::HalfPlane => format!(
-            "{} {unit} long and {} {unit} in radius",
-            report::figure(extent.high - extent.low),
-            report::figure(extent.radius),
-        ),
-        Domain::Space => {
-            let sides = extent.cell().sides;
-            let [x, y, z] = sides.map(|side| report::figure(side.high - side.low));
-            format!("a solid of {x} by {y} by {z} {unit}")
-        }
-    };
-    format!(
-        "{} is {size}; {} regions, {} curves, cutting: {}; {warnings} {}",
-        model.name,
-        model.regions.len(),
-        model.curves.len(),
-        if cutting.is_empty() { "nothing".to_owned() } else { cutting.join(", ") },
-        if warnings == 1 { "warning" } else { "warnings" },
-    )
 }
 
 /// A file's tool; what there is to say of the file is said.

@@ -9,6 +9,7 @@ macro_rules! say {
 }
 
 mod arguments;
+mod check;
 mod demo;
 mod draw;
 mod failure;
@@ -27,7 +28,7 @@ fn main() -> ExitCode {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
-        Some(Command::Check { files, given }) => files::check(&files, &given),
+        Some(Command::Check { files, given }) => check::check(&files, &given, arguments.json),
         Some(Command::Expand { file, plan, given }) => files::expand(&file, plan, &given),
         Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
         Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),

@@ -51,21 +51,33 @@ impl Formula {
 
     /// Whether it holds, as far as the known signs decide.
     pub fn decided(&self, signs: &[Signs]) -> Option<bool> {
-        match self {
-            Formula::Const(constant) => Some(*constant),
+        self.decided_by(&mut |curve| signs[curve])
+    }
+
+    /// The same where what is known of a curve is found out when it is asked for.
+    pub fn decided_by(&self, sign: &mut impl FnMut(CurveIndex) -> Signs) -> Option<bool> {
+        let mut known = Some(true);
+        let (parts, any) = match self {
+            Formula::Const(constant) => return Some(*constant),
             Formula::Atom { curve, below, strict } => {
                 let inside = side(*below, *strict);
-                match signs[*curve] {
+                return match sign(*curve) {
                     known if known & !inside == 0 => Some(true),
                     known if known & inside == 0 => Some(false),
                     _ => None,
-                }
+                };
             }
-            Formula::All(parts) => all(parts.iter().map(|part| part.decided(signs))),
-            Formula::Any(parts) => {
-                all(parts.iter().map(|part| part.decided(signs).map(|d| !d))).map(|d| !d)
+            Formula::All(parts) => (parts, false),
+            Formula::Any(parts) => (parts, true),
+        };
+        for part in parts {
+            match part.decided_by(sign) {
+                Some(holds) if holds == any => return Some(any),
+                None => known = None,
+                _ => {}
             }
         }
+        known.map(|_| !any)
     }
 
     /// Narrows the signs to those that every point has for which this holds, as far as single
@@ -110,16 +122,4 @@ impl Formula {
 fn side(below: bool, strict: bool) -> Signs {
     let open = if below { NEGATIVE } else { POSITIVE };
     if strict { open } else { open | ZERO }
-}
-
-fn all(parts: impl Iterator<Item = Option<bool>>) -> Option<bool> {
-    let mut result = Some(true);
-    for part in parts {
-        match part {
-            Some(false) => return Some(false),
-            Some(true) => {}
-            None => result = None,
-        }
-    }
-    result
 }

@@ -21,6 +21,7 @@ mod look;
 pub mod model;
 pub mod number;
 pub mod plan;
+pub mod prove;
 mod regionalise;
 pub mod report;
 pub mod resolve;

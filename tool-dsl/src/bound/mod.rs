@@ -7,7 +7,7 @@ pub use envelope::{Slab, across, envelope};
 
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval};
-use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::{Model, Region};
 use crate::plan::empty::Linear;
 use crate::regionalise::outline;
@@ -33,7 +33,6 @@ enum Place {
 pub struct Prover<'m> {
     model: &'m Model,
     encloser: Encloser<'m>,
-    signs: Vec<Signs>,
     /// A box that each region does not leave.
     reaches: Vec<Cell>,
 }
@@ -44,12 +43,7 @@ impl<'m> Prover<'m> {
         let values = model.curves.iter().map(|curve| curve.value);
         let encloser = Encloser::new(&model.graph, values);
         let everywhere = Cell { sides: [EVERYTHING; 3] };
-        Prover {
-            model,
-            encloser,
-            signs: vec![ANY; model.curves.len()],
-            reaches: vec![everywhere; model.regions.len()],
-        }
+        Prover { model, encloser, reaches: vec![everywhere; model.regions.len()] }
     }
 
     /// One that knows how far the regions reach by their linear curves, which boxes would find out
@@ -74,23 +68,25 @@ impl<'m> Prover<'m> {
         Prover { reaches: model.regions.iter().map(reach).collect(), ..Prover::new(model) }
     }
 
-    /// The signs that the curves can have in a box.
-    pub fn signs(&mut self, cell: Cell) -> &[Signs] {
+    /// Moves to a box.
+    pub fn set(&mut self, cell: Cell) {
         self.encloser.set(cell);
-        for (sign, curve) in self.signs.iter_mut().zip(&self.model.curves) {
-            *sign = possible(self.encloser.get(curve.value));
-        }
-        &self.signs
+    }
+
+    /// The signs that a curve can have in the box.
+    pub fn sign(&mut self, curve: CurveIndex) -> Signs {
+        possible(self.encloser.get(self.model.curves[curve].value))
     }
 
     fn place(&mut self, cell: Cell) -> Place {
-        self.signs(cell);
+        self.set(cell);
+        let model = self.model;
         let mut place = Place::Outside;
-        for (region, reach) in self.model.regions.iter().zip(&self.reaches) {
-            if !reach.meets(&cell) {
+        for (index, region) in model.regions.iter().enumerate() {
+            if !self.reaches[index].meets(&cell) {
                 continue;
             }
-            match region.inside.decided(&self.signs) {
+            match region.inside.decided_by(&mut |curve| self.sign(curve)) {
                 Some(true) => return Place::Inside,
                 Some(false) => {}
                 None => place = Place::Unknown,
@@ -136,7 +132,7 @@ impl<'m> Prover<'m> {
 }
 
 /// The signs of the numbers in an interval.
-fn possible(value: Interval) -> Signs {
+pub(crate) fn possible(value: Interval) -> Signs {
     let mut signs = 0;
     if value.low < 0.0 {
         signs |= NEGATIVE;

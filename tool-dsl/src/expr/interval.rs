@@ -2,6 +2,8 @@
 //! value over a box lies between the ends.
 
 use super::{Coord, Graph, Id, Node};
+use crate::number::Number;
+use std::collections::HashMap;
 
 /// All numbers between two ends. A quantity that may be undefined encloses everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +17,11 @@ pub struct Interval {
 /// Nothing but 0.
 pub const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
 
+/// Nothing but 1.
+pub(crate) const ONE: Interval = Interval { low: 1.0, high: 1.0 };
+/// Nothing but -1.
+const MINUS_ONE: Interval = Interval { low: -1.0, high: -1.0 };
+
 /// Every number.
 pub const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
@@ -24,8 +31,27 @@ impl Interval {
         Interval { low, high }
     }
 
+    /// A constant, of which only its double is known.
+    pub(crate) fn about(value: &Number) -> Interval {
+        let nearest = value.to_f64();
+        // Most are doubles.
+        if Number::from_f64(nearest).as_ref() == Some(value) {
+            return Interval { low: nearest, high: nearest };
+        }
+        Interval::out(nearest, nearest)
+    }
+
+    pub(crate) fn negated(self) -> Interval {
+        Interval { low: -self.high, high: -self.low }
+    }
+
+    /// What two intervals that enclose the same have in common.
+    pub(crate) fn common(self, other: Interval) -> Interval {
+        Interval { low: self.low.max(other.low), high: self.high.min(other.high) }
+    }
+
     /// Rounds outward; a NaN end means that nothing is known.
-    fn out(low: f64, high: f64) -> Interval {
+    pub(crate) fn out(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
             return EVERYTHING;
         }
@@ -37,12 +63,23 @@ impl Interval {
         if sure { Interval { low: self.low.max(0.0), ..self } } else { self }
     }
 
-    fn plus(self, other: Interval) -> Interval {
+    pub(crate) fn plus(self, other: Interval) -> Interval {
+        // Nothing is rounded.
+        if self == ZERO || other == ZERO {
+            return if self == ZERO { other } else { self };
+        }
         let sum = Interval::out(self.low + other.low, self.high + other.high);
         sum.at_least_0(self.low >= 0.0 && other.low >= 0.0)
     }
 
-    fn times(self, other: Interval) -> Interval {
+    pub(crate) fn times(self, other: Interval) -> Interval {
+        match (self, other) {
+            // Nothing is rounded.
+            (ZERO, _) | (_, ZERO) => return ZERO,
+            (ONE, value) | (value, ONE) => return value,
+            (MINUS_ONE, value) | (value, MINUS_ONE) => return value.negated(),
+            _ => {}
+        }
         // 0 · ∞ stands for a product of finite numbers with a factor 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let ends = [
@@ -58,18 +95,28 @@ impl Interval {
         .at_least_0(self.low >= 0.0 && other.low >= 0.0)
     }
 
-    fn reciprocal(self) -> Interval {
+    pub(crate) fn reciprocal(self) -> Interval {
         if self.low <= 0.0 && self.high >= 0.0 {
             return EVERYTHING;
         }
         Interval::out(1.0 / self.high, 1.0 / self.low)
     }
 
-    fn hull(self, other: Interval) -> Interval {
+    pub(crate) fn hull(self, other: Interval) -> Interval {
         Interval { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    fn abs(self) -> Interval {
+    /// The smaller of two.
+    pub(crate) fn min(self, other: Interval) -> Interval {
+        Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
+    }
+
+    /// The larger of two.
+    pub(crate) fn max(self, other: Interval) -> Interval {
+        Interval { low: self.low.max(other.low), high: self.high.max(other.high) }
+    }
+
+    pub(crate) fn abs(self) -> Interval {
         if self.low >= 0.0 {
             self
         } else if self.high <= 0.0 {
@@ -79,13 +126,22 @@ impl Interval {
         }
     }
 
-    fn square(self) -> Interval {
+    pub(crate) fn square(self) -> Interval {
         let abs = self.abs();
         Interval::out(abs.low * abs.low, abs.high * abs.high).at_least_0(true)
     }
 
+    pub(crate) fn power(self, exponent: u8) -> Interval {
+        match exponent {
+            0 => ONE,
+            1 => self,
+            2 => self.square(),
+            _ => self.square().times(self.power(exponent - 2)),
+        }
+    }
+
     /// Undefined somewhere: then nothing is known.
-    fn sqrt(self) -> Interval {
+    pub(crate) fn sqrt(self) -> Interval {
         if self.low < 0.0 {
             return EVERYTHING;
         }
@@ -135,7 +191,7 @@ impl Cell {
     }
 
     /// The square of the distance from the axis.
-    fn squared_radius(&self) -> Interval {
+    pub(crate) fn squared_radius(&self) -> Interval {
         let [x, y, _] = self.sides;
         // Exact where it can be.
         if y == ZERO { x.square() } else { x.square().plus(y.square()) }
@@ -148,71 +204,93 @@ impl Cell {
     }
 }
 
-/// Encloses chosen nodes of a graph over one box after another.
+/// Encloses chosen nodes of a graph over one box after another; what nobody asks of a box is not
+/// computed.
 #[derive(Clone, Debug)]
 pub struct Encloser<'g> {
     graph: &'g Graph,
-    order: Vec<Id>,
+    /// What each root needs, operands first, constants left out.
+    needed: HashMap<Id, Vec<Id>>,
     values: Vec<Interval>,
+    /// For which box each was computed last.
+    done: Vec<u32>,
+    now: u32,
+    cell: Cell,
 }
 
 impl<'g> Encloser<'g> {
     /// An encloser of some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Encloser<'g> {
-        let mut order = graph.needed(roots);
         let mut values = vec![EVERYTHING; graph.nodes().len()];
-        order.retain(|id| match graph.constant(*id) {
-            Some(value) => {
-                let nearest = value.to_f64();
-                values[id.index()] = Interval::out(nearest, nearest);
-                false
-            }
-            None => true,
-        });
-        Encloser { graph, order, values }
+        let mut needed = HashMap::new();
+        for root in roots {
+            let mut order = graph.needed([root]);
+            order.retain(|id| match graph.constant(*id) {
+                Some(value) => {
+                    values[id.index()] = Interval::about(value);
+                    false
+                }
+                None => true,
+            });
+            needed.insert(root, order);
+        }
+        let done = vec![0; values.len()];
+        Encloser { graph, needed, values, done, now: 0, cell: Cell { sides: [ZERO; 3] } }
     }
 
     /// Moves to a box.
     pub fn set(&mut self, cell: Cell) {
-        for &id in &self.order {
-            let v = |id: Id| self.values[id.index()];
-            self.values[id.index()] = match self.graph.node(id) {
-                Node::Const(_) => v(id),
-                Node::Coord(Coord::X) => cell.sides[0],
-                Node::Coord(Coord::Y) => cell.sides[1],
-                Node::Coord(Coord::Z) => cell.sides[2],
-                Node::Coord(Coord::D) => cell.radius(),
-                Node::Coord(Coord::Q) => cell.squared_radius(),
-                Node::Coord(Coord::Length | Coord::PerLength) => EVERYTHING,
-                Node::Neg(a) => Interval { low: -v(*a).high, high: -v(*a).low },
-                Node::Add(a, b) => v(*a).plus(v(*b)),
-                Node::Sub(a, b) => Interval::out(v(*a).low - v(*b).high, v(*a).high - v(*b).low),
-                Node::Mul(a, b) if a == b => v(*a).square(),
-                Node::Mul(a, b) => v(*a).times(v(*b)),
-                Node::Div(a, b) | Node::Quotient(a, b) => v(*a).times(v(*b).reciprocal()),
-                Node::Min(a, b) => {
-                    Interval { low: v(*a).low.min(v(*b).low), high: v(*a).high.min(v(*b).high) }
-                }
-                Node::Max(a, b) => {
-                    Interval { low: v(*a).low.max(v(*b).low), high: v(*a).high.max(v(*b).high) }
-                }
-                Node::Abs(a) => v(*a).abs(),
-                Node::Sqrt(a) => v(*a).sqrt(),
-                Node::Select { low, high, then, other } => {
-                    if v(*low).high <= v(*high).low {
-                        v(*then)
-                    } else if v(*low).low > v(*high).high {
-                        v(*other)
-                    } else {
-                        v(*then).hull(v(*other))
-                    }
-                }
-            };
+        self.cell = cell;
+        self.now = self.now.wrapping_add(1);
+        if self.now == 0 {
+            self.done.fill(0);
+            self.now = 1;
         }
     }
 
-    /// The enclosure of a node over the present box.
-    pub fn get(&self, id: Id) -> Interval {
-        self.values[id.index()]
+    /// The enclosure of one of the nodes over the present box.
+    pub fn get(&mut self, root: Id) -> Interval {
+        let Some(order) = self.needed.get(&root) else { return EVERYTHING };
+        for &id in order {
+            let at = id.index();
+            if self.done[at] != self.now {
+                self.done[at] = self.now;
+                self.values[at] = self.node(id);
+            }
+        }
+        self.values[root.index()]
+    }
+
+    fn node(&self, id: Id) -> Interval {
+        let v = |id: &Id| self.values[id.index()];
+        let cell = &self.cell;
+        match self.graph.node(id) {
+            Node::Const(_) => v(&id),
+            Node::Coord(Coord::X) => cell.sides[0],
+            Node::Coord(Coord::Y) => cell.sides[1],
+            Node::Coord(Coord::Z) => cell.sides[2],
+            Node::Coord(Coord::D) => cell.radius(),
+            Node::Coord(Coord::Q) => cell.squared_radius(),
+            Node::Coord(Coord::Length | Coord::PerLength) => EVERYTHING,
+            Node::Neg(a) => v(a).negated(),
+            Node::Add(a, b) => v(a).plus(v(b)),
+            Node::Sub(a, b) => v(a).plus(v(b).negated()),
+            Node::Mul(a, b) if a == b => v(a).square(),
+            Node::Mul(a, b) => v(a).times(v(b)),
+            Node::Div(a, b) | Node::Quotient(a, b) => v(a).times(v(b).reciprocal()),
+            Node::Min(a, b) => v(a).min(v(b)),
+            Node::Max(a, b) => v(a).max(v(b)),
+            Node::Abs(a) => v(a).abs(),
+            Node::Sqrt(a) => v(a).sqrt(),
+            Node::Select { low, high, then, other } => {
+                if v(low).high <= v(high).low {
+                    v(then)
+                } else if v(low).low > v(high).high {
+                    v(other)
+                } else {
+                    v(then).hull(v(other))
+                }
+            }
+        }
     }
 }

@@ -2,6 +2,7 @@
 //! are equal up to a factor.
 
 use super::{Coord, Graph, Id, Node};
+use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::number::Number;
 use std::collections::{BTreeMap, HashMap};
 
@@ -75,11 +76,11 @@ impl Polynomial {
         })
     }
 
-    fn scaled(&self, factor: &Number) -> Polynomial {
+    pub(crate) fn scaled(&self, factor: &Number) -> Polynomial {
         Polynomial(self.0.iter().map(|(m, c)| (*m, c * factor)).collect())
     }
 
-    fn plus(mut self, other: &Polynomial) -> Polynomial {
+    pub(crate) fn plus(mut self, other: &Polynomial) -> Polynomial {
         for (monomial, value) in &other.0 {
             let sum = match self.0.get(monomial) {
                 Some(own) if own.agrees(&-value) => Number::int(0),
@@ -92,7 +93,7 @@ impl Polynomial {
         self
     }
 
-    fn times(&self, other: &Polynomial) -> Option<Polynomial> {
+    pub(crate) fn times(&self, other: &Polynomial) -> Option<Polynomial> {
         let mut product = Polynomial(BTreeMap::new());
         for (left, a) in &self.0 {
             for (right, b) in &other.0 {
@@ -107,6 +108,164 @@ impl Polynomial {
             }
         }
         Some(product)
+    }
+
+    /// Nothing.
+    pub(crate) fn zero() -> Polynomial {
+        Polynomial(BTreeMap::new())
+    }
+
+    /// A constant.
+    pub(crate) fn constantly(value: &Number) -> Polynomial {
+        Polynomial::zero().plus(&Polynomial(BTreeMap::from([([0; 4], value.clone())])))
+    }
+
+    /// Whether it is zero wherever another is, as far as that shows: it is nothing, a multiple of the
+    /// other or of its square, or, if the other is linear, vanishes when that is put in.
+    pub(crate) fn vanishes_on(&self, other: &Polynomial) -> bool {
+        if self.is_nothing() || self.ratio(other).is_some() || self.is_square_of(other) {
+            return true;
+        }
+        self.where_zero(other).is_some_and(|left| left.0.is_empty())
+    }
+
+    /// Whether it is 0 all over.
+    pub(crate) fn is_nothing(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether it is a multiple of another's square.
+    pub(crate) fn is_square_of(&self, other: &Polynomial) -> bool {
+        other.times(other).is_some_and(|square| self.ratio(&square).is_some())
+    }
+
+    /// What is left of it on a straight line, in one coordinate less.
+    fn where_zero(&self, line: &Polynomial) -> Option<Polynomial> {
+        let degree = |monomial: &Monomial| monomial.iter().sum::<u8>();
+        let linear = line.0.keys().all(|monomial| degree(monomial) <= 1);
+        let steep =
+            |(_, a): &(&Monomial, &Number), (_, b): &(&Monomial, &Number)| a.abs().cmp(&b.abs());
+        let sloped = line.0.iter().filter(|(monomial, _)| degree(monomial) == 1);
+        let (leader, factor) = sloped.max_by(steep).filter(|_| linear)?;
+        let axis = leader.iter().position(|exponent| *exponent == 1)?;
+        // leader = -(the rest) / factor
+        let mut rest = line.clone();
+        rest.0.remove(leader);
+        let rest = rest.scaled(&Number::int(-1).over(factor)?);
+        let mut left = Polynomial::zero();
+        for (monomial, value) in &self.0 {
+            let mut others = *monomial;
+            let power = std::mem::take(&mut others[axis]);
+            let mut term = Polynomial(BTreeMap::from([(others, value.clone())]));
+            for _ in 0..power {
+                term = term.times(&rest)?;
+            }
+            left = left.plus(&term);
+        }
+        // What nearly cancels is rounding of constants with 256 bits.
+        let most = self.0.values().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
+        left.0.retain(|_, value| value.to_f64().abs() > most * 2f64.powi(-190));
+        Some(left)
+    }
+
+    /// Its values over a box.
+    pub(crate) fn over(&self, cell: &Cell) -> Interval {
+        let bases = [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]];
+        let term = |(monomial, value): (&Monomial, &Number)| {
+            let powers = monomial.iter().zip(bases).map(|(exponent, base)| base.power(*exponent));
+            powers.fold(Interval::about(value), Interval::times)
+        };
+        self.0.iter().map(term).fold(ZERO, Interval::plus)
+    }
+
+    /// Of a conic and a straight line that do not cross but may touch: the sign that the conic has on
+    /// one whole side of the line (whether positive), and whether that side is where the line is
+    /// negative. Where the conic has the other sign it is convex, and so lies on one side of each of
+    /// its tangents.
+    pub(crate) fn clear_of(&self, line: &Polynomial) -> Option<(bool, bool)> {
+        let planar = |m: &Monomial| m[1] == 0 && m[2] == 0 && m[0] + m[3] <= 2;
+        if !self.0.keys().chain(line.0.keys()).all(planar) || !line.is_linear() {
+            return None;
+        }
+        let [dd, dz, zz] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(|m| self.factor(m));
+        let bent = 4.0 * dd * zz - dz * dz;
+        if dd + zz == 0.0 || bent < -1e-12 * (dd * dd + dz * dz + zz * zz) || dd * zz < 0.0 {
+            return None;
+        }
+        let left = self.where_zero(line)?;
+        let mut factors = [Number::int(0), Number::int(0), Number::int(0)];
+        for (monomial, value) in &left.0 {
+            factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
+        }
+        let [c, b, a] = factors;
+        // No two roots: b² ≤ 4 a c, up to the 256 bits of constants.
+        let (square, four) = (&b * &b, &Number::int(4) * &(&a * &c));
+        let apart = (&square - &four).to_f64();
+        if apart > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
+            return None;
+        }
+        // Where it is nearest to the line it falls toward the side of the other sign.
+        let lowest = if a.is_zero() { 0.0 } else { -b.to_f64() / (2.0 * a.to_f64()) };
+        let [line_d, line_z] = [[1, 0, 0, 0], [0, 0, 0, 1]].map(|m| line.factor(m));
+        let rest = line.factor([0; 4]);
+        let (d, z) = if line_d.abs() > line_z.abs() {
+            (-(rest + line_z * lowest) / line_d, lowest)
+        } else {
+            (lowest, -(rest + line_d * lowest) / line_z)
+        };
+        let way = [
+            2.0 * dd * d + dz * z + self.factor([1, 0, 0, 0]),
+            dz * d + 2.0 * zz * z + self.factor([0, 0, 0, 1]),
+        ];
+        let rise = way[0] * line_d + way[1] * line_z;
+        let scale = (way[0].abs() + way[1].abs()) * (line_d.abs() + line_z.abs());
+        let positive = dd + zz > 0.0;
+        (rise.abs() > 1e-6 * scale).then_some((positive, (rise > 0.0) != positive))
+    }
+
+    fn factor(&self, monomial: Monomial) -> f64 {
+        self.0.get(&monomial).map_or(0.0, Number::to_f64)
+    }
+
+    /// Whether it is linear.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.0.keys().all(|monomial| monomial.iter().sum::<u8>() <= 1)
+    }
+
+    /// The square of its gradient's length, if it is linear.
+    pub(crate) fn slope_squared(&self) -> Option<Number> {
+        let mut sum = Number::int(0);
+        for (monomial, value) in &self.0 {
+            match monomial.iter().sum::<u8>() {
+                0 => {}
+                1 => sum = &sum + &(value * value),
+                _ => return None,
+            }
+        }
+        Some(sum)
+    }
+
+    /// Whether this is the square of the distance from a point: in d and z, or in x, y and z.
+    pub(crate) fn is_squared_distance(&self) -> bool {
+        let (one, four) = (Number::int(1), Number::int(4));
+        let mut sum = Number::int(0);
+        for (monomial, value) in &self.0 {
+            match (monomial.iter().sum::<u8>(), monomial.iter().max()) {
+                (2, Some(2)) if value.agrees(&one) => {}
+                (1, _) => sum = &sum + &(value * value),
+                (0, _) => {}
+                _ => return false,
+            }
+        }
+        // p - m² with the middle m: nothing is left beside the squares. Each linear term has its
+        // square.
+        let squared = |monomial: &Monomial| {
+            monomial.iter().sum::<u8>() != 1 || self.0.contains_key(&monomial.map(|e| 2 * e))
+        };
+        let constant = self.0.get(&[0; 4]).cloned().unwrap_or_else(|| Number::int(0));
+        let middle = sum.over(&four).unwrap_or_else(|| Number::int(0));
+        let rounding = (&constant - &middle).to_f64().abs();
+        self.0.keys().all(squared) && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
     }
 
     /// The sum of its terms: what cancels is gone from it.

@@ -56,8 +56,9 @@ impl<'m> Void<'m> {
             Domain::Space => BOXES_OF_SPACE,
         };
         while let Some(cell) = open.pop() {
-            let here = self.prover.signs(cell);
-            if here.iter().zip(signs).any(|(here, wanted)| *wanted != ANY && here & wanted == 0) {
+            self.prover.set(cell);
+            let mut asked = signs.iter().enumerate().filter(|(_, wanted)| **wanted != ANY);
+            if asked.any(|(curve, wanted)| self.prover.sign(curve) & wanted == 0) {
                 continue;
             }
             if left == 0 {
@@ -171,7 +172,7 @@ impl Linear {
         conditions
     }
 
-    fn contradictory(&self, signs: &[Signs]) -> bool {
+    pub(crate) fn contradictory(&self, signs: &[Signs]) -> bool {
         let conditions = without(self.conditions(signs), (0..self.variables).collect());
         let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
         conditions.is_some_and(|conditions| conditions.iter().any(absurd))

@@ -1,0 +1,94 @@
+//! The domain as boxes: each with the regions that it can have points of, by the tests of the tree
+//! that is emitted.
+
+use crate::bound::{halves, possible};
+use crate::expr::interval::{Cell, Encloser};
+use crate::formula::{ANY, CurveIndex, NEGATIVE, Signs, ZERO};
+use crate::model::Model;
+use crate::plan::Tree;
+
+/// A leaf that a box can have points of, and the signs that its way down the tree demands.
+#[derive(Clone, Debug)]
+pub(super) struct Claim {
+    pub(super) owner: Option<usize>,
+    pub(super) signs: Vec<(CurveIndex, Signs)>,
+}
+
+/// Asks which leaves a box can have points of.
+pub(super) struct Cover<'m> {
+    model: &'m Model,
+    tree: &'m Tree<Option<usize>>,
+    encloser: Encloser<'m>,
+}
+
+impl<'m> Cover<'m> {
+    pub(super) fn new(model: &'m Model, tree: &'m Tree<Option<usize>>) -> Cover<'m> {
+        let values = model.curves.iter().map(|curve| curve.value);
+        Cover { model, tree, encloser: Encloser::new(&model.graph, values) }
+    }
+
+    /// The signs that a curve can have in the present box.
+    pub(super) fn sign(&mut self, curve: CurveIndex) -> Signs {
+        possible(self.encloser.get(self.model.curves[curve].value))
+    }
+
+    /// The claims to a box.
+    pub(super) fn claims(&mut self, cell: Cell) -> Vec<Claim> {
+        self.encloser.set(cell);
+        let mut claims = Vec::new();
+        self.descend(self.tree, &mut Vec::new(), &mut claims);
+        claims
+    }
+
+    fn descend(
+        &mut self,
+        tree: &Tree<Option<usize>>,
+        way: &mut Vec<(CurveIndex, Signs)>,
+        claims: &mut Vec<Claim>,
+    ) {
+        let Tree::Split { curve, strict, below, above } = tree else {
+            if let Tree::Leaf(owner) = tree {
+                claims.push(Claim { owner: *owner, signs: way.clone() });
+            }
+            return;
+        };
+        let known = way.iter().filter(|(known, _)| known == curve).map(|(_, signs)| *signs);
+        let here = known.fold(self.sign(*curve), |all, signs| all & signs);
+        let low = if *strict { NEGATIVE } else { NEGATIVE | ZERO };
+        for (side, signs) in [(below, here & low), (above, here & !low & ANY)] {
+            if signs != 0 {
+                way.push((*curve, signs));
+                self.descend(side, way, claims);
+                way.pop();
+            }
+        }
+    }
+}
+
+/// Boxes that are still to be looked at, largest first.
+pub(super) struct Boxes {
+    open: Vec<Cell>,
+    /// How many were looked at.
+    pub(super) count: usize,
+}
+
+impl Boxes {
+    pub(super) fn new(whole: Cell) -> Boxes {
+        Boxes { open: vec![whole], count: 0 }
+    }
+
+    pub(super) fn next(&mut self) -> Option<Cell> {
+        self.count += 1;
+        self.open.pop()
+    }
+
+    pub(super) fn divide(&mut self, cell: Cell) {
+        self.open.extend(halves(cell));
+    }
+}
+
+/// Half of a box's diagonal.
+pub(super) fn reach(cell: &Cell) -> f64 {
+    let squares = cell.sides.iter().map(|side| (side.high - side.low) * (side.high - side.low));
+    squares.sum::<f64>().sqrt() / 2.0
+}

@@ -1,0 +1,134 @@
+//! What is proved about a tool: by interval branch and bound over its domain, on the expressions
+//! that are emitted, and by identities of polynomials where a box cannot tell 0 from nearly 0.
+//!
+//! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
+//! `root` whether depths agree on a curve, `touch` what conics that touch imply of each other,
+//! `parting` what parts two regions; `survey` goes from box to box.
+
+mod cover;
+mod parting;
+mod root;
+mod slope;
+mod survey;
+mod touch;
+
+use crate::Checked;
+use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::formula::CurveIndex;
+
+/// At points where three regions or more meet, depths are known to agree to this part of the tool's
+/// size.
+const TOLERANCE: f64 = 1e-6;
+
+/// What is proved about a tool.
+#[derive(Clone, Debug)]
+pub struct Certificate {
+    /// Of each region.
+    pub regions: Vec<RegionFacts>,
+    /// Of each pair of neighbours and each curve that parts them.
+    pub borders: Vec<Border>,
+    /// Where a proof did not come to an end.
+    pub undecided: Vec<Undecided>,
+    /// How much depth may change at points where several regions meet, in the file's unit.
+    pub tolerance: f64,
+    /// How many boxes were looked at.
+    pub boxes: usize,
+    /// The least slope of the depth toward the surface.
+    least: f64,
+}
+
+/// What is proved about a region.
+#[derive(Clone, Debug)]
+pub struct RegionFacts {
+    /// Its part of the section's area, of a solid's volume: counted, not proved.
+    pub share: f64,
+    /// The depths of its points, in the file's unit.
+    pub depth: Interval,
+    /// How steep the depth is: lengths of its gradient.
+    pub steepness: Interval,
+    /// Whether the depth is the distance to a line, a circle or a point.
+    pub distance: bool,
+    /// Magnitudes.
+    pub magnitude: Interval,
+    /// Niceness, before what is below 0 counts as 0.
+    pub niceness: Interval,
+    /// Whether niceness nowhere grows with depth.
+    pub falls: bool,
+}
+
+impl RegionFacts {
+    const NONE: RegionFacts = RegionFacts {
+        share: 0.0,
+        depth: ZERO,
+        steepness: ZERO,
+        distance: false,
+        magnitude: ZERO,
+        niceness: ZERO,
+        falls: true,
+    };
+}
+
+/// What is proved about two neighbours, or about a region and the outside.
+#[derive(Clone, Debug)]
+pub struct Border {
+    /// A region and another, `None` for the outside.
+    pub between: (usize, Option<usize>),
+    /// A curve that parts them.
+    pub curve: CurveIndex,
+    /// How far their depths differ on it, 0 if they agree exactly; outside the depth is 0.
+    pub jump: Interval,
+    /// The angle between their directions, in radians.
+    pub turn: Interval,
+    /// The same where they meet on the surface, if they do.
+    pub turn_on_surface: Option<Interval>,
+    /// The depths at which they meet.
+    pub depth: Interval,
+}
+
+/// A box where a proof did not come to an end, and what was to be proved.
+#[derive(Clone, Debug)]
+pub struct Undecided {
+    /// The box, in the tool's frame.
+    pub cell: Cell,
+    /// What.
+    pub what: String,
+}
+
+impl Border {
+    /// Whether this is a whole border, on which depths agree exactly, and not a point where others
+    /// come between.
+    pub fn is_joined(&self) -> bool {
+        self.jump.high == 0.0
+    }
+}
+
+impl Certificate {
+    /// Proves what can be proved about a tool.
+    pub fn of(tool: &Checked) -> Certificate {
+        survey::survey(tool)
+    }
+
+    /// Whether depth is continuous and 0 on the surface, but for [`Certificate::tolerance`].
+    pub fn is_continuous(&self) -> bool {
+        let joined = |border: &Border| border.jump.high <= self.tolerance;
+        self.undecided.is_empty() && self.borders.iter().all(joined)
+    }
+
+    /// `L`, if it is proved: no depth is more than `L` times the distance to the surface, and depth
+    /// changes by no more than `L` times the way.
+    pub fn lipschitz(&self) -> Option<f64> {
+        let steepest = self.regions.iter().map(|region| region.steepness.high).fold(0.0, f64::max);
+        (self.is_continuous() && steepest.is_finite()).then_some(steepest)
+    }
+
+    /// `c`, if it is proved: no depth is less than `c` times the distance to the surface.
+    pub fn least(&self) -> Option<f64> {
+        (self.is_continuous() && self.least > 0.0).then_some(self.least)
+    }
+
+    /// Whether depth is proved to be the distance to the surface.
+    pub fn is_exact(&self) -> bool {
+        let one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < 1e-12);
+        one(self.lipschitz()) && one(self.least())
+    }
+}

@@ -1,0 +1,273 @@
+//! What parts two owners of a box: a curve on whose two sides they are, and whether depth goes on
+//! across it without a jump.
+
+use super::cover::{Claim, Cover};
+use super::root::{Agreement, Forms, Rooted};
+use super::touch::Touch;
+use crate::expr::Node;
+use crate::expr::interval::Cell;
+use crate::expr::polynomial::Polynomial;
+use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::model::Model;
+use crate::plan::empty::Linear;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Boxes from which it is looked where two conics touch.
+const TRIES: u32 = 12;
+
+/// A region and another, `None` for the outside, where depth is 0.
+pub(super) type Pair = (usize, Option<usize>);
+
+/// How depth goes on from one owner to another.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Joint {
+    /// Nothing is known.
+    None,
+    /// Without a jump.
+    Kinked,
+    /// Without a jump, and neither does its slope.
+    Smooth,
+}
+
+/// Where two curves touch, and how often that was looked for.
+type Tried = (u32, Option<Touch>);
+
+pub(super) struct Parting<'m> {
+    model: &'m Model,
+    size: f64,
+    depths: Vec<Option<Rooted>>,
+    /// Each curve as a polynomial, and what must be positive for that to have its sign.
+    curves: Vec<Option<(Polynomial, Option<Polynomial>)>>,
+    nothing: Rooted,
+    /// The curves on which the depths of two owners agree.
+    joints: BTreeMap<Pair, Vec<CurveIndex>>,
+    agree: BTreeMap<(Pair, CurveIndex), Option<Agreement>>,
+    /// The sign that a conic has on a whole side of a line, and whether that is below it.
+    apart: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
+    /// The signs of a curve that linear curves leave.
+    by_linear: HashMap<(Vec<(CurveIndex, Signs)>, CurveIndex), Signs>,
+    linear: Linear,
+    touches: HashMap<(CurveIndex, CurveIndex), Tried>,
+    /// The present box.
+    cell: Cell,
+}
+
+impl<'m> Parting<'m> {
+    pub(super) fn new(model: &'m Model, size: f64, cell: Cell) -> Parting<'m> {
+        let mut forms = Forms::new(&model.graph);
+        Parting {
+            model,
+            size,
+            depths: model.regions.iter().map(|region| forms.of(region.depth)).collect(),
+            curves: model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect(),
+            nothing: Rooted::zero(),
+            joints: BTreeMap::new(),
+            agree: BTreeMap::new(),
+            apart: BTreeMap::new(),
+            by_linear: HashMap::new(),
+            linear: Linear::new(model),
+            touches: HashMap::new(),
+            cell,
+        }
+    }
+
+    /// Whether a region's depth is the distance to a line, a circle or a point.
+    pub(super) fn is_distance(&self, region: usize) -> bool {
+        self.depths[region].as_ref().is_some_and(Rooted::is_distance)
+    }
+
+    /// A curve on whose sides two claims to a box are, and how their depths agree on it.
+    pub(super) fn of(
+        &mut self,
+        pair: Pair,
+        [a, b]: [&Claim; 2],
+        (cover, cell): (&mut Cover<'_>, Cell),
+    ) -> Option<(CurveIndex, Joint)> {
+        self.cell = cell;
+        let parting = parting(a, b);
+        let mut joint = parting.iter().copied().find(|curve| self.agree(pair, *curve).is_some());
+        joint = joint.or_else(|| {
+            self.joints(pair).into_iter().find(|curve| {
+                let [a, b] = [a, b].map(|claim| self.sign_on(claim, *curve, cover));
+                a & b & !ZERO == 0
+            })
+        });
+        let Some(curve) = joint else {
+            return parting.first().map(|curve| (*curve, Joint::None));
+        };
+        let joint = match self.agree(pair, curve) {
+            // A curve that is where the two do not differ.
+            None => Joint::Kinked,
+            Some(Agreement { branch: Some(branch), .. }) if branch.over(&cell).high < 0.0 => {
+                Joint::None
+            }
+            Some(Agreement { smooth: true, .. }) => Joint::Smooth,
+            Some(_) => Joint::Kinked,
+        };
+        Some((curve, joint))
+    }
+
+    /// The curves on which the depths of two owners agree.
+    fn joints(&mut self, pair: Pair) -> Vec<CurveIndex> {
+        if let Some(known) = self.joints.get(&pair) {
+            return known.clone();
+        }
+        // Neighbours have their border among their own conditions.
+        let mut atoms = Vec::new();
+        for owner in [Some(pair.0), pair.1].into_iter().flatten() {
+            self.model.regions[owner].inside.open(&vec![ANY; self.curves.len()], &mut atoms);
+        }
+        let asked: BTreeSet<CurveIndex> = atoms.into_iter().map(|(curve, _)| curve).collect();
+        let mut joints = self.differences(pair);
+        joints.extend(asked.into_iter().filter(|curve| self.agree(pair, *curve).is_some()));
+        self.joints.insert(pair, joints.clone());
+        joints
+    }
+
+    /// How two owners' depths agree on a curve, if they do.
+    fn agree(&mut self, pair: Pair, curve: CurveIndex) -> Option<Agreement> {
+        if let Some(known) = self.agree.get(&(pair, curve)) {
+            return known.clone();
+        }
+        let other = pair.1.map_or(Some(&self.nothing), |other| self.depths[other].as_ref());
+        let agree = match (&self.depths[pair.0], other, &self.curves[curve]) {
+            (Some(own), Some(other), Some((curve, _))) => own.agrees_on(other, curve),
+            _ => None,
+        };
+        self.agree.insert((pair, curve), agree.clone());
+        agree
+    }
+
+    /// The curves that are said to be where two depths do not differ.
+    fn differences(&self, (own, other): (usize, Option<usize>)) -> Vec<CurveIndex> {
+        let model = &self.model;
+        let [own, other] = [Some(own), other].map(|owner| owner.map(|r| model.regions[r].depth));
+        let is = |curve: &CurveIndex| match *model.graph.node(model.curves[*curve].value) {
+            Node::Sub(a, b) => [(Some(a), Some(b)), (Some(b), Some(a))].contains(&(own, other)),
+            _ => false,
+        };
+        (0..model.curves.len()).filter(is).collect()
+    }
+
+    /// The signs that a curve can have at a claim's points of the present box: by the box, by the way
+    /// down the tree, and by what straight curves on that way imply.
+    fn sign_on(&mut self, claim: &Claim, curve: CurveIndex, cover: &mut Cover<'_>) -> Signs {
+        let own = claim.signs.iter().filter(|(other, _)| *other == curve);
+        let mut signs = own.fold(cover.sign(curve), |all, (_, signs)| all & signs);
+        for (other, side) in &claim.signs {
+            if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
+                signs &= self.implied((*other, *side & NEGATIVE != 0), curve);
+            }
+        }
+        if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
+            signs &= self.by_linear(claim, curve);
+        }
+        if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
+            signs &= self.by_touch(claim, curve);
+        }
+        signs
+    }
+
+    /// A curve as a polynomial that has its sign all over the present box.
+    fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
+        let (polynomial, positive) = self.curves[curve].as_ref()?;
+        let same = positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
+        same.then_some(polynomial)
+    }
+
+    /// The signs that a curve can have beside a conic on a claim's way that it touches near here.
+    fn by_touch(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let here = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
+        let mut signs = ANY;
+        for (other, known) in &claim.signs {
+            let from = match known & !ZERO {
+                NEGATIVE => -1.0,
+                POSITIVE => 1.0,
+                _ => continue,
+            };
+            let (Some(conic), Some(own)) = (self.signed(*other), self.signed(curve)) else {
+                continue;
+            };
+            if conic.is_linear() || own.is_linear() {
+                continue;
+            }
+            let place = (*other, curve);
+            let (tried, known) = self.touches.get(&place).unwrap_or(&(0, None));
+            let touch = match known {
+                None if *tried < TRIES => Touch::near(conic, own, here, self.size),
+                _ => known.clone(),
+            };
+            let tried = tried + 1;
+            self.touches.insert(place, (tried, touch.clone()));
+            if let Some(touch) = &touch {
+                for (to, without) in [(1.0, NEGATIVE), (-1.0, POSITIVE)] {
+                    if touch.implies(from, to) {
+                        signs &= !without;
+                    }
+                }
+            }
+        }
+        signs
+    }
+
+    /// The signs that a curve can have by all linear curves on a claim's way together.
+    fn by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let ways: Vec<(CurveIndex, Signs)> =
+            claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY).collect();
+        let key = (ways, curve);
+        if let Some(known) = self.by_linear.get(&key) {
+            return *known;
+        }
+        let mut signs = vec![ANY; self.curves.len()];
+        for (other, known) in &key.0 {
+            signs[*other] &= known;
+        }
+        let mut possible = ANY;
+        for side in [NEGATIVE, POSITIVE] {
+            signs[curve] = side;
+            if self.linear.contradictory(&signs) {
+                possible &= !side;
+            }
+        }
+        self.by_linear.insert(key, possible);
+        possible
+    }
+
+    /// The signs that a curve can have on one side of another, if one of them is straight and the two
+    /// do not cross.
+    fn implied(&mut self, (known, below): (CurveIndex, bool), curve: CurveIndex) -> Signs {
+        let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
+        match (self.apart(known, curve), self.apart(curve, known)) {
+            (Some((positive, clear)), _) if clear == below => side(positive),
+            // Inside the conic, which is on the other side of the line.
+            (_, Some((positive, clear))) if positive == below => side(clear),
+            _ => ANY,
+        }
+    }
+
+    /// The sign that a conic has on a whole side of a line, and whether that is below it.
+    fn apart(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
+        if let Some(known) = self.apart.get(&(line, curve)) {
+            return *known;
+        }
+        let known = match (&self.curves[line], &self.curves[curve]) {
+            (Some((line, None)), Some((conic, None))) if !conic.is_linear() => conic.clear_of(line),
+            _ => None,
+        };
+        self.apart.insert((line, curve), known);
+        known
+    }
+}
+
+/// The curves whose sides the ways to two claims demand against one another.
+fn parting(a: &Claim, b: &Claim) -> Vec<CurveIndex> {
+    let mut curves = Vec::new();
+    for (curve, signs) in &a.signs {
+        let against =
+            b.signs.iter().any(|(other, others)| other == curve && signs & others & !ZERO == 0);
+        if against && !curves.contains(curve) {
+            curves.push(*curve);
+        }
+    }
+    curves
+}

@@ -1,0 +1,184 @@
+//! Depths as what they usually are, a polynomial and at most one root: `l + k √P`. So it can be
+//! decided exactly, up to the 256 bits of constants, whether they vanish or agree on a curve.
+
+use crate::expr::polynomial::{Polynomial, Polynomials};
+use crate::expr::{Graph, Id, Node};
+use crate::number::Number;
+use std::collections::HashMap;
+
+/// `l + k √P`
+#[derive(Clone, Debug)]
+pub(super) struct Rooted {
+    plain: Polynomial,
+    root: Option<(Number, Polynomial)>,
+}
+
+/// How two depths agree on a curve.
+#[derive(Clone, Debug)]
+pub(super) struct Agreement {
+    /// Whether their slopes do too.
+    pub(super) smooth: bool,
+    /// What is not negative where it is so.
+    pub(super) branch: Option<Polynomial>,
+}
+
+/// Finds the forms of nodes, each once.
+pub(super) struct Forms<'g> {
+    graph: &'g Graph,
+    polynomials: Polynomials,
+    known: HashMap<Id, Option<Rooted>>,
+}
+
+impl<'g> Forms<'g> {
+    pub(super) fn new(graph: &'g Graph) -> Forms<'g> {
+        Forms { graph, polynomials: Polynomials::default(), known: HashMap::new() }
+    }
+
+    /// The form of a node, if it has one.
+    pub(super) fn of(&mut self, id: Id) -> Option<Rooted> {
+        for id in self.graph.needed([id]) {
+            if !self.known.contains_key(&id) {
+                let form = self.node(id);
+                self.known.insert(id, form);
+            }
+        }
+        self.known.get(&id).cloned().flatten()
+    }
+
+    fn node(&mut self, id: Id) -> Option<Rooted> {
+        if let Some(plain) = self.polynomials.of(self.graph, id) {
+            return Some(Rooted { plain: plain.clone(), root: None });
+        }
+        let of = |id: &Id| self.known.get(id)?.as_ref();
+        match self.graph.node(id) {
+            Node::Sqrt(a) => {
+                let inner = of(a)?;
+                let root = (inner.root.is_none()).then(|| (Number::int(1), inner.plain.clone()))?;
+                Some(Rooted { plain: Polynomial::zero(), root: Some(root) })
+            }
+            Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
+            Node::Add(a, b) => of(a)?.plus(of(b)?),
+            Node::Sub(a, b) => of(a)?.plus(&of(b)?.scaled(&Number::int(-1))),
+            Node::Mul(a, b) => match (self.graph.constant(*a), self.graph.constant(*b)) {
+                (Some(factor), _) => Some(of(b)?.scaled(factor)),
+                (_, Some(factor)) => Some(of(a)?.scaled(factor)),
+                _ if a == b => of(a)?.square(),
+                _ => None,
+            },
+            Node::Div(a, b) | Node::Quotient(a, b) => of(a)?.over(of(b)?),
+            _ => None,
+        }
+    }
+}
+
+impl Rooted {
+    /// 0
+    pub(super) fn zero() -> Rooted {
+        Rooted { plain: Polynomial::zero(), root: None }
+    }
+
+    /// A polynomial that is zero wherever the form is, and what must be positive for it to have the
+    /// form's sign too, if not all over.
+    pub(super) fn curve(&self) -> Option<(Polynomial, Option<Polynomial>)> {
+        let Some((k, p)) = &self.root else { return Some((self.plain.clone(), None)) };
+        // (l + k √P) (l - k √P) = l² - k² P, and of the factors the second has the sign of l where
+        // that of k is the other.
+        let square = self.plain.times(&self.plain)?.plus(&p.scaled(&-&(k * k)));
+        let sign = Number::int(if k.is_negative() { 1 } else { -1 });
+        Some((square.scaled(&sign), Some(self.plain.scaled(&sign))))
+    }
+
+    fn scaled(&self, factor: &Number) -> Rooted {
+        Rooted {
+            plain: self.plain.scaled(factor),
+            root: self.root.as_ref().map(|(k, p)| (k * factor, p.clone())),
+        }
+    }
+
+    fn plus(&self, other: &Rooted) -> Option<Rooted> {
+        let root = match (&self.root, &other.root) {
+            (root, None) | (None, root) => root.clone(),
+            (Some((k, p)), Some((m, q))) => {
+                let same = p.ratio(q).is_some_and(|ratio| ratio.agrees(&Number::int(1)));
+                let sum = k + m;
+                same.then(|| (!sum.is_zero()).then(|| (sum, p.clone())))?
+            }
+        };
+        Some(Rooted { plain: self.plain.clone().plus(&other.plain), root })
+    }
+
+    /// `(c + k √P)² = c² + k² P + 2 c k √P`
+    fn square(&self) -> Option<Rooted> {
+        let (c, (k, p)) = (self.plain.constant()?, self.root.as_ref()?);
+        let plain = Polynomial::constantly(&(&c * &c)).plus(&p.scaled(&(k * k)));
+        let twice = &(&Number::int(2) * &c) * k;
+        Some(Rooted { plain, root: (!twice.is_zero()).then(|| (twice, p.clone())) })
+    }
+
+    /// `(m² - k² P) γ / (m + k √P) = γ (m - k √P)`, the way in which depths below flat arcs are
+    /// written.
+    fn over(&self, divisor: &Rooted) -> Option<Rooted> {
+        if self.root.is_some() {
+            return None;
+        }
+        let conjugate = Rooted {
+            plain: divisor.plain.clone(),
+            root: divisor.root.as_ref().map(|(k, p)| (-k, p.clone())),
+        };
+        let Some((k, p)) = &divisor.root else {
+            let divisor = divisor.plain.constant()?;
+            return Some(self.scaled(&Number::int(1).over(&divisor)?));
+        };
+        let square = divisor.plain.times(&divisor.plain)?;
+        let product = square.plus(&p.scaled(&-&(k * k)));
+        Some(conjugate.scaled(&self.plain.ratio(&product)?))
+    }
+
+    /// How two forms agree wherever a curve's polynomial is zero, if they do.
+    ///
+    /// Roots are squared away, which also finds where a form agrees with another's opposite branch: so
+    /// a polynomial comes along that is at least 0 where it is this one.
+    pub(super) fn agrees_on(&self, other: &Rooted, curve: &Polynomial) -> Option<Agreement> {
+        let minus = Number::int(-1);
+        let (difference, branch) = match self.plus(&other.scaled(&minus)) {
+            Some(Rooted { plain, root: None }) => (plain, None),
+            Some(Rooted { plain, root: Some((k, p)) }) => {
+                // l + k √P = 0 where l² = k² P, and l has not the sign of k.
+                let square = plain.times(&plain)?.plus(&p.scaled(&-&(&k * &k)));
+                let sign = Number::int(if k.is_negative() { 1 } else { -1 });
+                (square, Some(plain.scaled(&sign)))
+            }
+            None => {
+                let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
+                let beside = self.plain.clone().plus(&other.plain.scaled(&minus)).constant()?;
+                let (a, b) = (p.scaled(&(k * k)), q.scaled(&(m * m)));
+                let apart = a.clone().plus(&b.scaled(&minus));
+                if beside.is_zero() {
+                    (k.is_negative() == m.is_negative()).then_some((apart, None))?
+                } else {
+                    // c + k √P = m √Q where L = c² + k² P - m² Q is -2 c k √P.
+                    let square = &beside * &beside;
+                    let lead = apart.plus(&Polynomial::constantly(&square));
+                    let four = &Number::int(4) * &square;
+                    let left = lead.times(&lead)?.plus(&a.scaled(&-&four));
+                    let opposite = beside.is_negative() == k.is_negative();
+                    (left, Some(lead.scaled(&Number::int(if opposite { -1 } else { 1 }))))
+                }
+            }
+        };
+        let smooth = difference.is_nothing() || difference.is_square_of(curve);
+        (smooth || difference.vanishes_on(curve)).then_some(Agreement { smooth, branch })
+    }
+
+    /// Whether this is `c ± |p - centre|` or a linear function with a gradient of 1: a distance.
+    pub(super) fn is_distance(&self) -> bool {
+        match &self.root {
+            None => self.plain.slope_squared().is_some_and(|s| s.agrees(&Number::int(1))),
+            Some((k, p)) => {
+                k.abs().agrees(&Number::int(1))
+                    && self.plain.constant().is_some()
+                    && p.is_squared_distance()
+            }
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! Enclosures of expressions together with their slopes: how steep a function can be over a box.
+
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, EVERYTHING, Interval, ONE, ZERO};
+use crate::expr::{Coord, Graph, Id, Node};
+use std::collections::HashMap;
+
+/// A function over a box: its values, its partial derivatives by x (for a tool, by the distance
+/// from the axis), y and z, and the length of its gradient, which is often known better.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slope {
+    pub(super) value: Interval,
+    pub(super) parts: [Interval; 3],
+    pub(super) length: Interval,
+}
+
+const FLAT: [Interval; 3] = [ZERO; 3];
+
+impl Slope {
+    fn constant(value: Interval) -> Slope {
+        Slope { value, parts: FLAT, length: ZERO }
+    }
+
+    fn new(value: Interval, parts: [Interval; 3]) -> Slope {
+        Slope { value, parts, length: length(parts) }
+    }
+
+    /// The same with what is known otherwise of its gradient's length.
+    fn with(self, known: Interval) -> Slope {
+        let length = Interval {
+            low: self.length.low.max(known.low),
+            high: self.length.high.min(known.high),
+        };
+        let within = Interval { low: -length.high, high: length.high };
+        Slope { length, parts: self.parts.map(|part| part.common(within)), ..self }
+    }
+
+    fn is_constant(&self) -> bool {
+        self.length == ZERO
+    }
+
+    fn scaled(self, factor: Interval) -> Slope {
+        Slope {
+            value: self.value.times(factor),
+            parts: self.parts.map(|part| part.times(factor)),
+            length: self.length.times(factor.abs()),
+        }
+    }
+
+    fn plus(self, other: Slope, sign: Interval) -> Slope {
+        let other = other.scaled(sign);
+        let value = self.value.plus(other.value);
+        if self.is_constant() || other.is_constant() {
+            let sloped = if self.is_constant() { other } else { self };
+            return Slope { value, ..sloped };
+        }
+        let parts = [0, 1, 2].map(|k| self.parts[k].plus(other.parts[k]));
+        let most = self.length.plus(other.length).high;
+        Slope::new(value, parts).with(Interval { low: 0.0, high: most })
+    }
+
+    fn times(self, other: Slope) -> Slope {
+        if self.is_constant() {
+            return Slope { value: self.value.times(other.value), ..other.scaled(self.value) };
+        }
+        if other.is_constant() {
+            return other.times(self);
+        }
+        let part =
+            |k: usize| self.parts[k].times(other.value).plus(other.parts[k].times(self.value));
+        Slope::new(self.value.times(other.value), [0, 1, 2].map(part))
+    }
+
+    fn square(self) -> Slope {
+        let twice = self.value.plus(self.value);
+        let length = self.length.times(twice.abs());
+        Slope {
+            value: self.value.square(),
+            parts: self.parts.map(|part| part.times(twice)),
+            length,
+        }
+    }
+
+    fn over(self, other: Slope) -> Slope {
+        let reciprocal = other.value.reciprocal();
+        if other.is_constant() {
+            return Slope { value: self.value.times(reciprocal), ..self.scaled(reciprocal) };
+        }
+        let value = self.value.times(reciprocal);
+        let part = |k: usize| {
+            let down = value.times(other.parts[k]);
+            self.parts[k].plus(down.negated()).times(reciprocal)
+        };
+        Slope::new(value, [0, 1, 2].map(part))
+    }
+
+    fn sqrt(self) -> Slope {
+        let value = self.value.sqrt();
+        let half = value.plus(value).reciprocal();
+        Slope {
+            value,
+            parts: self.parts.map(|part| part.times(half)),
+            length: self.length.times(half.abs()),
+        }
+    }
+
+    fn hull(self, other: Slope) -> Slope {
+        Slope {
+            value: self.value.hull(other.value),
+            parts: [0, 1, 2].map(|k| self.parts[k].hull(other.parts[k])),
+            length: self.length.hull(other.length),
+        }
+    }
+}
+
+/// The length of a vector of these parts.
+fn length(parts: [Interval; 3]) -> Interval {
+    // Exact along an axis.
+    if let [part, ZERO, ZERO] | [ZERO, part, ZERO] | [ZERO, ZERO, part] = parts {
+        return part.abs();
+    }
+    let squares = parts.map(Interval::square);
+    squares[0].plus(squares[1]).plus(squares[2]).sqrt()
+}
+
+/// The root of a sum of squares `u² + v² + …` is the length of the vector `(u, v, …)`, and its
+/// gradient that of a unit vector by the slopes of the parts: defined but for where all are 0, and
+/// then no longer than the largest singular value of the slopes.
+fn norm(parts: &[Slope]) -> Slope {
+    let squares = parts.iter().map(|part| part.value.square());
+    let value = squares.fold(ZERO, Interval::plus).sqrt();
+    let unit = Interval { low: -1.0, high: 1.0 };
+    // A length is not negative.
+    let away = Interval { low: (1.0 / value.high).next_down(), high: (1.0 / value.low).next_up() };
+    let way: Vec<Interval> = parts.iter().map(|part| part.value.times(away).common(unit)).collect();
+    let slope = |k: usize| {
+        parts.iter().zip(&way).fold(ZERO, |sum, (part, way)| sum.plus(part.parts[k].times(*way)))
+    };
+    // The squares of the singular values lie about the diagonal of J Jᵀ, within its rows
+    // (Gershgorin 1931).
+    let mut singular: Option<Interval> = None;
+    for (i, a) in parts.iter().enumerate() {
+        let mut circle = a.length.square();
+        for (j, b) in parts.iter().enumerate() {
+            if i != j {
+                let mut product = ZERO;
+                for k in 0..3 {
+                    product = product.plus(a.parts[k].times(b.parts[k]));
+                }
+                let off = product.abs().high;
+                circle = circle.plus(Interval { low: -off, high: off });
+            }
+        }
+        singular = Some(singular.map_or(circle, |all| all.hull(circle)));
+    }
+    let squared = singular.unwrap_or(ZERO);
+    let known = Interval { low: squared.low.max(0.0), ..squared }.sqrt();
+    Slope::new(value, [0, 1, 2].map(slope)).with(known)
+}
+
+/// Encloses chosen nodes of a graph with their slopes, over one box after another; what nobody asks
+/// of a box is not computed.
+pub(super) struct Slopes<'g> {
+    graph: &'g Graph,
+    domain: Domain,
+    /// What each root needs, operands first, constants left out.
+    needed: HashMap<Id, Vec<Id>>,
+    values: Vec<Slope>,
+    /// For which box each was computed last.
+    done: Vec<u32>,
+    now: u32,
+    cell: Cell,
+}
+
+impl<'g> Slopes<'g> {
+    pub(super) fn new(
+        graph: &'g Graph,
+        domain: Domain,
+        roots: impl IntoIterator<Item = Id>,
+    ) -> Slopes<'g> {
+        let unknown = Slope { value: EVERYTHING, parts: [EVERYTHING; 3], length: EVERYTHING };
+        let mut values = vec![unknown; graph.nodes().len()];
+        let mut needed = HashMap::new();
+        for root in roots {
+            let mut order = graph.needed([root]);
+            order.retain(|id| match graph.constant(*id) {
+                Some(value) => {
+                    values[id.index()] = Slope::constant(Interval::about(value));
+                    false
+                }
+                None => true,
+            });
+            needed.insert(root, order);
+        }
+        let done = vec![0; values.len()];
+        let cell = Cell { sides: [ZERO; 3] };
+        Slopes { graph, domain, needed, values, done, now: 0, cell }
+    }
+
+    /// Moves to a box.
+    pub(super) fn set(&mut self, cell: Cell) {
+        self.cell = cell;
+        self.now += 1;
+    }
+
+    /// One of the nodes over the present box.
+    pub(super) fn get(&mut self, root: Id) -> Slope {
+        for &id in self.needed.get(&root).into_iter().flatten() {
+            let at = id.index();
+            if self.done[at] != self.now {
+                self.done[at] = self.now;
+                self.values[at] = self.node(id, self.cell);
+            }
+        }
+        self.values[root.index()]
+    }
+
+    fn node(&self, id: Id, cell: Cell) -> Slope {
+        let v = |id: &Id| self.values[id.index()];
+        match self.graph.node(id) {
+            Node::Const(_) => v(&id),
+            Node::Coord(coord) => self.coordinate(*coord, cell),
+            Node::Neg(a) => v(a).scaled(ONE.negated()),
+            Node::Add(a, b) => v(a).plus(v(b), ONE),
+            Node::Sub(a, b) => v(a).plus(v(b), ONE.negated()),
+            Node::Mul(a, b) if a == b => v(a).square(),
+            Node::Mul(a, b) => v(a).times(v(b)),
+            Node::Div(a, b) | Node::Quotient(a, b) => v(a).over(v(b)),
+            Node::Min(a, b) if v(a).value.high <= v(b).value.low => v(a),
+            Node::Min(a, b) if v(b).value.high <= v(a).value.low => v(b),
+            Node::Max(a, b) if v(a).value.low >= v(b).value.high => v(a),
+            Node::Max(a, b) if v(b).value.low >= v(a).value.high => v(b),
+            Node::Min(a, b) => {
+                let (a, b) = (v(a), v(b));
+                Slope { value: a.value.min(b.value), ..a.hull(b) }
+            }
+            Node::Max(a, b) => {
+                let (a, b) = (v(a), v(b));
+                Slope { value: a.value.max(b.value), ..a.hull(b) }
+            }
+            Node::Abs(a) => {
+                let a = v(a);
+                let other = a.scaled(ONE.negated());
+                match a.value {
+                    Interval { low, .. } if low >= 0.0 => a,
+                    Interval { high, .. } if high <= 0.0 => other,
+                    value => Slope { value: value.abs(), ..a.hull(other) },
+                }
+            }
+            Node::Sqrt(a) => {
+                let mut squares = Vec::new();
+                match self.squares(*a, cell, &mut squares) {
+                    true => norm(&squares),
+                    false => v(a).sqrt(),
+                }
+            }
+            Node::Select { low, high, then, other } => {
+                if v(low).value.high <= v(high).value.low {
+                    v(then)
+                } else if v(low).value.low > v(high).value.high {
+                    v(other)
+                } else {
+                    v(then).hull(v(other))
+                }
+            }
+        }
+    }
+
+    /// What a sum is the sum of squares of, if it is one.
+    fn squares(&self, id: Id, cell: Cell, parts: &mut Vec<Slope>) -> bool {
+        match self.graph.node(id) {
+            Node::Mul(a, b) if a == b => {
+                parts.push(self.values[a.index()]);
+                true
+            }
+            Node::Coord(Coord::Q) => {
+                parts.push(self.coordinate(Coord::D, cell));
+                true
+            }
+            Node::Add(a, b) => self.squares(*a, cell, parts) && self.squares(*b, cell, parts),
+            _ => false,
+        }
+    }
+
+    fn coordinate(&self, coord: Coord, cell: Cell) -> Slope {
+        let along = |axis: usize| {
+            let mut parts = FLAT;
+            parts[axis] = ONE;
+            Slope { value: cell.sides[axis], parts, length: ONE }
+        };
+        match coord {
+            Coord::X => along(0),
+            Coord::Y => along(1),
+            Coord::Z => along(2),
+            Coord::D if self.domain == Domain::HalfPlane => along(0),
+            Coord::D => norm(&[along(0), along(1)]),
+            Coord::Q => {
+                let d = self.coordinate(Coord::D, cell);
+                Slope { value: cell.squared_radius(), ..d.square() }
+            }
+            Coord::Length | Coord::PerLength => {
+                Slope { value: EVERYTHING, parts: FLAT, length: ZERO }
+            }
+        }
+    }
+}

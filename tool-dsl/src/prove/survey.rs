@@ -1,0 +1,389 @@
+//! Box after box: what is felt in each region, and what changes from one to the next.
+
+use super::cover::{Boxes, Claim, Cover, reach};
+use super::parting::{Joint, Pair, Parting};
+use super::slope::{Slope, Slopes};
+use super::{Border, Certificate, RegionFacts, TOLERANCE, Undecided};
+use crate::Checked;
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+use crate::expr::value::{At, Evaluator};
+use crate::formula::{CurveIndex, POSITIVE};
+use crate::plan::spread;
+use std::collections::BTreeMap;
+
+/// Boxes on a border are divided to this part of the tool's size.
+const FINE: f64 = 1.0 / 56.0;
+/// Where depths differ, it is looked whether their owners are neighbours in boxes of this part.
+const SMALL: f64 = 1.0 / 1024.0;
+/// Boxes that one tool may take.
+const BUDGET: usize = 40_000;
+/// Boxes where nothing explains a border are divided to this part of the tool's size.
+const FINEST: f64 = TOLERANCE / 10.0;
+/// Points at which shares are counted.
+const SPREAD: usize = 10_000;
+/// Inside a region a box is divided until its slope is known so well.
+const SLACK: f64 = 0.02;
+/// What of a slope is rounding.
+const ROUNDING: f64 = 1e-9;
+
+pub(super) fn survey(tool: &Checked) -> Certificate {
+    let mut survey = Survey::new(tool);
+    survey.run();
+    survey.certificate()
+}
+
+/// Two claims to a box that a curve parts.
+struct Met {
+    pair: Pair,
+    curve: CurveIndex,
+    joint: Joint,
+    /// Whether the region is where the curve is negative.
+    below: bool,
+    /// Whether points of both were seen side by side.
+    seen: bool,
+}
+
+struct Survey<'t> {
+    tool: &'t Checked,
+    cover: Cover<'t>,
+    slopes: Slopes<'t>,
+    values: Evaluator<'t>,
+    parting: Parting<'t>,
+    size: f64,
+    regions: Vec<Option<RegionFacts>>,
+    borders: BTreeMap<(Pair, CurveIndex), Border>,
+    /// The least slope toward the surface.
+    least: f64,
+    undecided: Vec<Undecided>,
+    boxes: usize,
+}
+
+impl<'t> Survey<'t> {
+    fn new(tool: &'t Checked) -> Survey<'t> {
+        let model = &tool.model;
+        let felt = model.regions.iter().flat_map(|region| {
+            [region.depth, region.magnitude, region.niceness].into_iter().chain(region.direction)
+        });
+        let roots = felt.chain(model.curves.iter().map(|curve| curve.value));
+        let depths = model.regions.iter().map(|region| region.depth);
+        let asked = depths.chain(model.curves.iter().map(|curve| curve.value));
+        let whole = tool.extent.cell();
+        Survey {
+            tool,
+            cover: Cover::new(model, &tool.plan.owner),
+            slopes: Slopes::new(&model.graph, model.domain, roots),
+            values: Evaluator::new(&model.graph, asked),
+            parting: Parting::new(model, reach(&whole), whole),
+            size: reach(&whole),
+            regions: vec![None; model.regions.len()],
+            borders: BTreeMap::new(),
+            least: f64::INFINITY,
+            undecided: Vec::new(),
+            boxes: 0,
+        }
+    }
+
+    fn run(&mut self) {
+        let mut boxes = Boxes::new(self.tool.extent.cell());
+        while let Some(cell) = boxes.next() {
+            let claims = self.cover.claims(cell);
+            let fine = reach(&cell) <= FINE * self.size;
+            let mut owners: Vec<Option<usize>> = claims.iter().map(|claim| claim.owner).collect();
+            owners.sort_unstable();
+            owners.dedup();
+            match owners.as_slice() {
+                [None] => {}
+                [Some(owner)] => {
+                    self.slopes.set(cell);
+                    let depth = self.slopes.get(self.tool.model.regions[*owner].depth);
+                    let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
+                    let positive = depth.value.low >= -TOLERANCE * self.size;
+                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > BUDGET;
+                    if finest || (positive && (known || fine)) {
+                        self.felt(*owner, cell);
+                        if !positive {
+                            let name = &self.tool.model.regions[*owner].name;
+                            let what = format!("that depth is not negative in `{name}`");
+                            self.undecided.push(Undecided { cell, what });
+                        }
+                    } else {
+                        boxes.divide(cell);
+                    }
+                }
+                _ if !fine && boxes.count <= BUDGET => boxes.divide(cell),
+                _ => {
+                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > BUDGET;
+                    if self.meet(cell, &claims, finest) {
+                        owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
+                    } else {
+                        boxes.divide(cell);
+                    }
+                }
+            }
+        }
+        self.boxes = boxes.count;
+    }
+
+    /// Notes what is felt in a box, of a region that has all of it or a part.
+    fn felt(&mut self, owner: usize, cell: Cell) {
+        let region = &self.tool.model.regions[owner];
+        self.slopes.set(cell);
+        let depth = self.slopes.get(region.depth);
+        let niceness = self.slopes.get(region.niceness);
+        let along =
+            (0..3).fold(NOTHING, |sum, k| sum.plus(depth.parts[k].times(niceness.parts[k])));
+        // A point of the region is not outside.
+        let positive = |value: Interval| Interval { low: value.low.max(0.0), ..value };
+        let here = RegionFacts {
+            depth: positive(depth.value),
+            steepness: depth.length,
+            magnitude: self.slopes.get(region.magnitude).value,
+            niceness: niceness.value,
+            falls: along.high <= ROUNDING * depth.length.high * niceness.length.high,
+            ..RegionFacts::NONE
+        };
+        self.at_axis(depth, cell);
+        let facts = &mut self.regions[owner];
+        *facts = Some(match facts.take() {
+            None => here,
+            Some(known) => RegionFacts {
+                depth: known.depth.hull(here.depth),
+                steepness: known.steepness.hull(here.steepness),
+                magnitude: known.magnitude.hull(here.magnitude),
+                niceness: known.niceness.hull(here.niceness),
+                falls: known.falls && here.falls,
+                ..known
+            },
+        });
+    }
+
+    /// A depth that grows away from the axis has a kink there, at which only its slope along the
+    /// axis leads down.
+    fn at_axis(&mut self, depth: Slope, cell: Cell) {
+        let tool = self.tool.model.domain == Domain::HalfPlane;
+        if tool && cell.sides[0].low <= 0.0 && depth.parts[0].high > ROUNDING {
+            self.least = self.least.min(depth.parts[2].abs().low);
+        }
+    }
+
+    /// How much of the solid each region has, of evenly spread points.
+    fn shares(&mut self) -> Vec<f64> {
+        let mut counts = vec![0.0; self.regions.len()];
+        for point in spread(self.tool.model.domain, &self.tool.extent, SPREAD, 0.0) {
+            if let Some(owner) = self.owner(point) {
+                counts[owner] += 1.0;
+            }
+        }
+        let all: f64 = counts.iter().sum();
+        counts.iter().map(|count| count / all.max(1.0)).collect()
+    }
+
+    /// Whether what happens between the owners of a box is known well enough.
+    fn meet(&mut self, cell: Cell, claims: &[Claim], finest: bool) -> bool {
+        let mut all = Vec::new();
+        for (k, a) in claims.iter().enumerate() {
+            for b in &claims[k + 1..] {
+                // The region first, of two the one listed earlier.
+                let (a, b) = match (a.owner, b.owner) {
+                    (x, y) if x == y => continue,
+                    (None, _) => (b, a),
+                    (Some(x), Some(y)) if y < x => (b, a),
+                    _ => (a, b),
+                };
+                let Some(own) = a.owner else { continue };
+                let pair = (own, b.owner);
+                if let Some((curve, joint)) = self.parting.of(pair, [a, b], (&mut self.cover, cell))
+                {
+                    let below =
+                        a.signs.iter().all(|(c, signs)| *c != curve || signs & POSITIVE == 0);
+                    all.push(Met { pair, curve, joint, below, seen: false });
+                }
+            }
+        }
+        self.slopes.set(cell);
+        let small = reach(&cell) <= SMALL * self.size;
+        for met in &mut all {
+            let apart = self.jump(met.pair).low > 0.0;
+            if apart {
+                met.joint = Joint::None;
+            }
+            met.seen = apart && (small || finest) && self.beside(met.pair, cell);
+            if met.joint == Joint::None && !met.seen && !finest {
+                return false;
+            }
+        }
+        all.iter().for_each(|met| self.note(met, cell));
+        true
+    }
+
+    /// Whether two owners have points side by side in a box, of a few.
+    fn beside(&mut self, (own, other): Pair, cell: Cell) -> bool {
+        let steps = 6;
+        let at = |axis: usize, k: u32| {
+            let side = cell.sides[axis];
+            side.low + (side.high - side.low) * f64::from(k) / f64::from(steps)
+        };
+        let axes: &[usize] = match self.tool.model.domain {
+            Domain::HalfPlane => &[0, 2],
+            Domain::Space => &[0, 1, 2],
+        };
+        // Along diagonals and across, from each of a row of points to the next.
+        let mut before = None;
+        for first in 0..=steps {
+            for second in 0..=steps {
+                let mut p = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+                for (k, axis) in axes.iter().enumerate() {
+                    p[*axis] = at(*axis, if k == 0 { first } else { second });
+                }
+                let here = self.owner(p);
+                if let Some((last, owner)) = before
+                    && [[owner, here], [here, owner]].contains(&[Some(own), other])
+                    && self.jumps([last, p], [owner, here])
+                {
+                    return true;
+                }
+                before = (second < steps).then_some((p, here));
+            }
+        }
+        false
+    }
+
+    /// Whether two points of different owners have their border between them, and depth jumps there.
+    fn jumps(&mut self, [mut a, mut b]: [[f64; 3]; 2], owners: [Option<usize>; 2]) -> bool {
+        for _ in 0..60 {
+            let middle = [0, 1, 2].map(|k| a[k] / 2.0 + b[k] / 2.0);
+            match self.owner(middle) {
+                owner if owner == owners[0] => a = middle,
+                owner if owner == owners[1] => b = middle,
+                _ => return false,
+            }
+        }
+        let regions = &self.tool.model.regions;
+        self.owner(a);
+        let [first, second] =
+            owners.map(|owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth)));
+        (first - second).abs() > TOLERANCE * self.size
+    }
+
+    fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
+        self.values.set(At::point(x, y, z));
+        let curves = &self.tool.model.curves;
+        *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
+    }
+
+    /// How far apart two depths are in the present box.
+    fn jump(&mut self, (own, other): Pair) -> Interval {
+        let regions = &self.tool.model.regions;
+        let own = self.slopes.get(regions[own].depth).value;
+        let other = other.map_or(NOTHING, |other| self.slopes.get(regions[other].depth).value);
+        own.plus(other.negated()).abs()
+    }
+
+    fn note(&mut self, met: &Met, cell: Cell) {
+        let regions = &self.tool.model.regions;
+        let (own, other) = met.pair;
+        let jump = if met.joint != Joint::None { NOTHING } else { self.jump(met.pair) };
+        let depth = self.slopes.get(regions[own].depth);
+        let turn = match other {
+            None => NOTHING,
+            Some(other) => {
+                let [a, b] = [own, other]
+                    .map(|owner| regions[owner].direction.map(|id| self.slopes.get(id).value));
+                angle(a, b)
+            }
+        };
+        if let (Joint::Kinked, Some(other)) = (met.joint, other) {
+            let curve = self.slopes.get(self.tool.model.curves[met.curve].value);
+            let other = self.slopes.get(regions[other].depth);
+            self.least = self.least.min(across(depth, other, curve, met.below));
+        }
+        // At the finest, a jump that may be none is one of a corner.
+        if met.joint == Joint::None && !met.seen && jump.high > TOLERANCE * self.size {
+            let to = other.map_or_else(
+                || "the outside".to_owned(),
+                |other| format!("`{}`", regions[other].name),
+            );
+            let what = format!("that depth goes on from `{}` to {to}", regions[own].name);
+            self.undecided.push(Undecided { cell, what });
+        }
+        let here = Border {
+            between: met.pair,
+            curve: met.curve,
+            jump,
+            turn,
+            turn_on_surface: (depth.value.low <= 0.0).then_some(turn),
+            depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
+        };
+        self.borders
+            .entry((met.pair, met.curve))
+            .and_modify(|known| {
+                known.jump = known.jump.hull(here.jump);
+                known.turn = known.turn.hull(here.turn);
+                known.turn_on_surface = match (known.turn_on_surface, here.turn_on_surface) {
+                    (Some(a), Some(b)) => Some(a.hull(b)),
+                    (one, other) => one.or(other),
+                };
+                known.depth = known.depth.hull(here.depth);
+            })
+            .or_insert(here);
+    }
+
+    fn certificate(mut self) -> Certificate {
+        let shares = self.shares();
+        let facts = self.regions.into_iter().zip(shares).enumerate();
+        let regions: Vec<RegionFacts> = facts
+            .map(|(index, (facts, share))| RegionFacts {
+                share,
+                distance: self.parting.is_distance(index),
+                ..facts.unwrap_or(RegionFacts::NONE)
+            })
+            .collect();
+        let shallow = regions.iter().map(|region| region.steepness.low);
+        Certificate {
+            least: shallow.fold(self.least, f64::min),
+            regions,
+            borders: self.borders.into_values().collect(),
+            undecided: self.undecided,
+            tolerance: TOLERANCE * self.size,
+            boxes: self.boxes,
+        }
+    }
+}
+
+/// The angle between two unit vectors, in radians.
+fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
+    let product = (0..3).fold(NOTHING, |sum, k| sum.plus(a[k].times(b[k])));
+    let [low, high] = [product.high, product.low].map(|cos| cos.clamp(-1.0, 1.0).acos());
+    // acos is known to a few units of the last place.
+    Interval { low: (low - 1e-15).max(0.0), high: high + 1e-15 }
+}
+
+/// How steeply depth falls at least toward one of the sides of a border on which two depths agree.
+///
+/// Where each is the smaller on its own side, both ways lead down. Else depth falls along every
+/// combination of the two slopes, and so by the shortest of them at least (Clarke 1983).
+fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> f64 {
+    let mut rise = NOTHING;
+    let mut combined = [[0.0; 2]; 3];
+    let mut slack = 0.0f64;
+    for k in 0..3 {
+        let difference = own.parts[k].plus(other.parts[k].negated());
+        rise = rise.plus(difference.times(curve.parts[k]));
+        for (end, part) in [own.parts[k], other.parts[k]].into_iter().enumerate() {
+            combined[k][end] = part.low / 2.0 + part.high / 2.0;
+            slack = slack.max(part.high - part.low);
+        }
+    }
+    let falls = if below { rise.low } else { -rise.high };
+    if falls >= -ROUNDING * curve.length.high {
+        return f64::INFINITY;
+    }
+    let way = combined.map(|[a, b]| b - a);
+    let [start, long] =
+        [combined.map(|[a, _]| a), way].map(|v| v.iter().zip(way).map(|(a, b)| a * b).sum::<f64>());
+    let part = if long > 0.0 { (-start / long).clamp(0.0, 1.0) } else { 0.0 };
+    let nearest = combined.map(|[a, b]| a + part * (b - a));
+    // Each end is known to half its width.
+    nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack
+}
