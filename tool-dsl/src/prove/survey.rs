@@ -10,7 +10,7 @@ use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{CurveIndex, POSITIVE};
 use crate::plan::spread;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Boxes on a border are divided to this part of the tool's size.
 const FINE: f64 = 1.0 / 56.0;
@@ -24,6 +24,8 @@ const FINEST: f64 = TOLERANCE / 10.0;
 const SPREAD: usize = 10_000;
 /// Inside a region a box is divided until its slope is known so well.
 const SLACK: f64 = 0.02;
+/// A border where depth may fall less steeply is looked at in smaller boxes.
+const SLOPING: f64 = 0.9;
 /// What of a slope is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -53,6 +55,8 @@ struct Survey<'t> {
     size: f64,
     regions: Vec<Option<RegionFacts>>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
+    /// Where two owners were seen side by side, with a jump between.
+    jumping: BTreeSet<(Pair, CurveIndex)>,
     /// The least slope toward the surface.
     least: f64,
     undecided: Vec<Undecided>,
@@ -78,6 +82,7 @@ impl<'t> Survey<'t> {
             size: reach(&whole),
             regions: vec![None; model.regions.len()],
             borders: BTreeMap::new(),
+            jumping: BTreeSet::new(),
             least: f64::INFINITY,
             undecided: Vec::new(),
             boxes: 0,
@@ -203,18 +208,45 @@ impl<'t> Survey<'t> {
         }
         self.slopes.set(cell);
         let small = reach(&cell) <= SMALL * self.size;
+        let mut least = f64::INFINITY;
         for met in &mut all {
             let apart = self.jump(met.pair).low > 0.0;
             if apart {
                 met.joint = Joint::None;
             }
-            met.seen = apart && (small || finest) && self.beside(met.pair, cell);
+            let place = (met.pair, met.curve);
+            met.seen = apart
+                && (small || finest)
+                && (self.jumping.contains(&place) || self.beside(met.pair, cell));
+            if met.seen {
+                self.jumping.insert(place);
+            }
             if met.joint == Joint::None && !met.seen && !finest {
                 return false;
             }
+            // The finest boxes are of points where others come between.
+            if !finest {
+                least = least.min(self.across(met));
+            }
         }
+        // Less than that, it may be the box that is too large to tell.
+        if least < SLOPING && !small {
+            return false;
+        }
+        self.least = self.least.min(least);
         all.iter().for_each(|met| self.note(met, cell));
         true
+    }
+
+    /// How steeply depth falls toward one of the sides of a border at least.
+    fn across(&mut self, met: &Met) -> f64 {
+        let regions = &self.tool.model.regions;
+        let (Joint::Kinked, (own, Some(other))) = (met.joint, met.pair) else {
+            return f64::INFINITY;
+        };
+        let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
+        let curve = self.slopes.get(self.tool.model.curves[met.curve].value);
+        across(own, other, curve, met.below)
     }
 
     /// Whether two owners have points side by side in a box, of a few.
@@ -293,11 +325,6 @@ impl<'t> Survey<'t> {
                 angle(a, b)
             }
         };
-        if let (Joint::Kinked, Some(other)) = (met.joint, other) {
-            let curve = self.slopes.get(self.tool.model.curves[met.curve].value);
-            let other = self.slopes.get(regions[other].depth);
-            self.least = self.least.min(across(depth, other, curve, met.below));
-        }
         // At the finest, a jump that may be none is one of a corner.
         if met.joint == Joint::None && !met.seen && jump.high > TOLERANCE * self.size {
             let to = other.map_or_else(
@@ -364,17 +391,13 @@ fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
 /// Where each is the smaller on its own side, both ways lead down. Else depth falls along every
 /// combination of the two slopes, and so by the shortest of them at least (Clarke 1983).
 fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> f64 {
-    let mut rise = NOTHING;
-    let mut combined = [[0.0; 2]; 3];
-    let mut slack = 0.0f64;
-    for k in 0..3 {
-        let difference = own.parts[k].plus(other.parts[k].negated());
-        rise = rise.plus(difference.times(curve.parts[k]));
-        for (end, part) in [own.parts[k], other.parts[k]].into_iter().enumerate() {
-            combined[k][end] = part.low / 2.0 + part.high / 2.0;
-            slack = slack.max(part.high - part.low);
-        }
-    }
+    let middle = |part: Interval| part.low / 2.0 + part.high / 2.0;
+    let rises =
+        [0, 1, 2].map(|k| own.parts[k].plus(other.parts[k].negated()).times(curve.parts[k]));
+    let rise = rises.into_iter().fold(NOTHING, Interval::plus);
+    let combined = [0, 1, 2].map(|k| [middle(own.parts[k]), middle(other.parts[k])]);
+    let widths = own.parts.iter().chain(&other.parts).map(|part| part.high - part.low);
+    let slack = widths.fold(0.0, f64::max);
     let falls = if below { rise.low } else { -rise.high };
     if falls >= -ROUNDING * curve.length.high {
         return f64::INFINITY;

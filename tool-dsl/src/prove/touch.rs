@@ -77,7 +77,7 @@ impl Touch {
         let ([ad, az], [bd, bz]) = (slope(a, self.at), slope(b, self.at));
         let length = ad * ad + az * az;
         let share = to * from * (ad * bd + az * bz) / length;
-        if !(share > 0.0) {
+        if share.is_nan() || share <= 0.0 {
             return false;
         }
         let bent = |k: usize| to * b[k] - share * from * a[k];
