@@ -77,6 +77,18 @@ fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
 }
 
 #[test]
+fn cards_carry_the_bounds() {
+    use touchoff::Tool;
+    let card = tools_library::Fig73.card();
+    assert!(card.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
+    assert!(card.depth.least.is_some_and(|least| (least - 1.0).abs() < 1e-12));
+    for tool in tools_library::TOOLS.iter().filter(|tool| tool.card().exact) {
+        let depth = tool.card().depth;
+        assert_eq!([depth.least, depth.lipschitz], [Some(1.0); 2], "{}", tool.card().name);
+    }
+}
+
+#[test]
 fn the_exact_tool_is_exact() {
     let tool = of_library("fig_7_3_exact.tool");
     let proved = Certificate::of(&tool);

@@ -24,6 +24,18 @@ pub struct Card {
     /// clearance is a lower bound. Without a profile, depth is what the file says and clearance a
     /// lower bound everywhere.
     pub exact: bool,
+    /// What is proved of depth.
+    pub depth: Depth,
+}
+
+/// What is proved of a tool's depth and the distance to its surface, of all points inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depth {
+    /// `c`: no depth is less than `c` times the distance to the surface. `None` if none is proved.
+    pub least: Option<f64>,
+    /// `L`: no depth is more than `L` times the distance to the surface, and depth changes by no more
+    /// than `L` times the way. `None` if none is proved.
+    pub lipschitz: Option<f64>,
 }
 
 /// Whether a tool looks the same however it is turned about z.
@@ -48,6 +60,7 @@ impl Card {
         regions: &'static [Region],
         envelope: &'static [Slab],
         exact: bool,
+        depth: Depth,
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -58,6 +71,7 @@ impl Card {
             envelope: Cow::Borrowed(envelope),
             shape: Shape::Revolved,
             exact,
+            depth,
         }
     }
 
@@ -70,6 +84,7 @@ impl Card {
         regions: &'static [Region],
         envelope: &'static [Slab],
         across: [[f64; 2]; 2],
+        depth: Depth,
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -80,6 +95,7 @@ impl Card {
             envelope: Cow::Borrowed(envelope),
             shape: Shape::Solid { across },
             exact: false,
+            depth,
         }
     }
 

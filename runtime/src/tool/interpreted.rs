@@ -1,6 +1,6 @@
 //! Tools that are loaded at run time.
 
-use super::{Ask, Card, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool};
+use super::{Ask, Card, Depth, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool};
 use crate::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
@@ -8,6 +8,7 @@ use std::path::Path;
 use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Walk};
+use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile_with, model, report};
 
@@ -103,6 +104,10 @@ fn card(tool: &Checked) -> Card {
             Domain::Space => Shape::Solid { across: across(&tool.extent) },
         },
         exact: model.is_exact(),
+        depth: {
+            let [least, lipschitz] = Certificate::bounds(tool);
+            Depth { least, lipschitz }
+        },
     }
 }
 

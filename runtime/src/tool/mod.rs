@@ -9,7 +9,7 @@ mod compiled;
 mod interpreted;
 mod lane;
 
-pub use card::{Card, Region, Shape, Slab, Surface};
+pub use card::{Card, Depth, Region, Shape, Slab, Surface};
 pub use compiled::Evaluators;
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};

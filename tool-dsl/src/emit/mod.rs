@@ -15,6 +15,7 @@ use crate::draw::{self, Lettering};
 use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
+use crate::prove::Certificate;
 use crate::report::figure;
 use code::{Form, Writer};
 use masks::{logic, selects, tested};
@@ -51,7 +52,7 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
 
         #[allow(clippy::all, clippy::pedantic, unused_variables, unused_parens)]
         const _: () = {
-            use ::touchoff::tool::{Card, Evaluators, Lane, Region, Slab, Surface};
+            use ::touchoff::tool::{Card, Depth, Evaluators, Lane, Region, Slab, Surface};
 
             impl Evaluators for #name {
                 #card
@@ -157,9 +158,17 @@ fn card(tool: &Checked) -> TokenStream {
         let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
         quote! { Slab::new(#low, #high, #radius) }
     });
+    let [least, lipschitz] = Certificate::bounds(tool).map(|bound| match bound {
+        Some(bound) => {
+            let bound = literal(bound);
+            quote! { Some(#bound) }
+        }
+        None => quote! { None },
+    });
+    let depth = quote! { Depth { least: #least, lipschitz: #lipschitz } };
     let made = match model.domain {
         Domain::HalfPlane => quote! {
-            Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, #exact)
+            Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, #exact, #depth)
         },
         Domain::Space => {
             let [x, y] = across(&tool.extent).map(|ends| {
@@ -168,7 +177,7 @@ fn card(tool: &Checked) -> TokenStream {
             });
             quote! {
                 Card::solid(
-                    #name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, [#x, #y]
+                    #name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, [#x, #y], #depth
                 )
             }
         }

@@ -20,6 +20,10 @@ use crate::formula::CurveIndex;
 /// size.
 const TOLERANCE: f64 = 1e-6;
 
+/// Boxes that a proof may take, and one while a tool is compiled.
+const MANY: usize = 40_000;
+const FEW: usize = 4_000;
+
 /// What is proved about a tool.
 #[derive(Clone, Debug)]
 pub struct Certificate {
@@ -105,7 +109,18 @@ impl Border {
 impl Certificate {
     /// Proves what can be proved about a tool.
     pub fn of(tool: &Checked) -> Certificate {
-        survey::survey(tool)
+        survey::survey(tool, MANY)
+    }
+
+    /// `c` and `L` (see [`Certificate::least`] and [`Certificate::lipschitz`]), as far as they are found
+    /// while a tool is compiled. The depth of a profile is the distance by construction, which
+    /// [`Certificate::of`] proves once more; regions by hand are looked at in a few thousand boxes.
+    pub fn bounds(tool: &Checked) -> [Option<f64>; 2] {
+        if tool.model.is_exact() {
+            return [Some(1.0); 2];
+        }
+        let certificate = survey::survey(tool, FEW);
+        [certificate.least(), certificate.lipschitz()]
     }
 
     /// Whether depth is continuous and 0 on the surface, but for [`Certificate::tolerance`].

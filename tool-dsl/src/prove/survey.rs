@@ -16,8 +16,6 @@ use std::collections::{BTreeMap, BTreeSet};
 const FINE: f64 = 1.0 / 56.0;
 /// Where depths differ, it is looked whether their owners are neighbours in boxes of this part.
 const SMALL: f64 = 1.0 / 1024.0;
-/// Boxes that one tool may take.
-const BUDGET: usize = 40_000;
 /// Boxes where nothing explains a border are divided to this part of the tool's size.
 const FINEST: f64 = TOLERANCE / 10.0;
 /// Points at which shares are counted.
@@ -29,9 +27,10 @@ const SLOPING: f64 = 0.9;
 /// What of a slope is rounding.
 const ROUNDING: f64 = 1e-9;
 
-pub(super) fn survey(tool: &Checked) -> Certificate {
+/// Proves what can be proved in so many boxes.
+pub(super) fn survey(tool: &Checked, boxes: usize) -> Certificate {
     let mut survey = Survey::new(tool);
-    survey.run();
+    survey.run(boxes);
     survey.certificate()
 }
 
@@ -89,7 +88,7 @@ impl<'t> Survey<'t> {
         }
     }
 
-    fn run(&mut self) {
+    fn run(&mut self, budget: usize) {
         let mut boxes = Boxes::new(self.tool.extent.cell());
         while let Some(cell) = boxes.next() {
             let claims = self.cover.claims(cell);
@@ -104,7 +103,7 @@ impl<'t> Survey<'t> {
                     let depth = self.slopes.get(self.tool.model.regions[*owner].depth);
                     let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
                     let positive = depth.value.low >= -TOLERANCE * self.size;
-                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > BUDGET;
+                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > budget;
                     if finest || (positive && (known || fine)) {
                         self.felt(*owner, cell);
                         if !positive {
@@ -116,9 +115,9 @@ impl<'t> Survey<'t> {
                         boxes.divide(cell);
                     }
                 }
-                _ if !fine && boxes.count <= BUDGET => boxes.divide(cell),
+                _ if !fine && boxes.count <= budget => boxes.divide(cell),
                 _ => {
-                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > BUDGET;
+                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > budget;
                     if self.meet(cell, &claims, finest) {
                         owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
                     } else {
