@@ -85,18 +85,19 @@ fn table(out: &mut impl Write, tool: &Checked, certificate: &Certificate) -> std
     let names = wide(&mut model.regions.iter().map(|region| region.name.len()));
     writeln!(
         out,
-        "  {:<names$}  {:>7}  {:>13}  {:>15}  {:>13}  is",
-        "region", "share", "depth", "steepness", "niceness"
+        "  {:<names$}  {:>7}  {:>13}  {:>15}  {:>13}  {:>8}  is",
+        "region", "share", "depth", "steepness", "niceness", "rounding"
     )?;
     for (region, facts) in model.regions.iter().zip(&certificate.regions) {
         writeln!(
             out,
-            "  {:<names$}  {:>5.1} %  {:>13}  {:>15}  {:>13}  {}",
+            "  {:<names$}  {:>5.1} %  {:>13}  {:>15}  {:>13}  {:>8.0e}  {}",
             region.name,
             100.0 * facts.share,
             range(facts.depth),
             range(facts.steepness),
             range(niceness(facts)),
+            facts.rounding[0],
             kind(facts),
         )?;
     }
@@ -222,6 +223,8 @@ struct ProvedRegion<'t> {
     distance: bool,
     niceness: [f64; 2],
     falls: bool,
+    /// Of depth in f64 and in f32
+    rounding: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -252,6 +255,7 @@ impl<'t> Proved<'t> {
             distance: facts.distance,
             niceness: ends(niceness(facts)),
             falls: facts.falls,
+            rounding: facts.rounding,
         };
         let name = |owner: Option<usize>| {
             owner.map_or("outside", |owner| model.regions[owner].name.as_str())

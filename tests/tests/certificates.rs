@@ -6,7 +6,13 @@ use tool_dsl::interpret::Interpreter;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile};
+use touchoff::Level;
+use touchoff::tool::{Ask, Felt, Points};
+use touchoff_tests::measure::accuracy::{owners, tools};
+use touchoff_tests::oracle::Nearest;
+use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::reference::{At, Reference};
 
 fn library() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
@@ -184,6 +190,66 @@ fn cored(depth: &str) -> Certificate {
            region shell where 1 <= r <= 3 {{ depth: 3 - r; direction: away from (0, 3); }}
          }}"
     )))
+}
+
+/// Points of a region that show how much it rounds.
+const ENOUGH: usize = 300;
+
+#[test]
+fn rounding_stays_below_its_bound_and_within_ten_times() {
+    let read = |file: &PathBuf| checked(&Source::read(file).expect("it can be read"));
+    let all: Vec<Box<Checked>> = library().iter().map(read).collect();
+    let mut loosest = (0.0, String::new());
+    for (compiled, restated) in tools() {
+        let name = &compiled.card().name;
+        let tool = all.iter().find(|tool| tool.model.name == **name).expect("each has a file");
+        let proved = Certificate::of(tool);
+        let reference = Reference::new(&restated);
+        let owners = owners(compiled, &Nearest::new(&restated));
+        let mut worst = vec![0.0f64; proved.regions.len()];
+        let mut counts = vec![0; proved.regions.len()];
+        let mut draw = Draw::new(11);
+        let [x, _, z] = tool.extent.cell().sides;
+        let mut list = Points::default();
+        let points: Vec<[f64; 3]> = (0..40_000)
+            .map(|_| {
+                let (d, turn) =
+                    (draw.between(x.low, x.high), draw.between(0.0, std::f64::consts::TAU));
+                [d * turn.cos(), d * turn.sin(), draw.between(z.low, z.high)]
+            })
+            .collect();
+        points.iter().for_each(|p| list.push(*p));
+        let mut felt = Felt::default();
+        compiled.evaluate(Level::new(), Ask::Everything, &list, 1.0, &mut felt);
+        for (k, p) in points.iter().enumerate() {
+            if felt.inside[k / 8] >> (k % 8) & 1 == 0 {
+                continue;
+            }
+            let region = felt.region[k] as usize;
+
+            let at = At::new(*p);
+            let exact = owners[region].iter().map(|owner| reference.distance_to(&at, *owner));
+            let off = exact.map(|exact| (&Big::exactly(felt.depth[k]) - &exact).abs().to_f64());
+            let off = off.fold(f64::INFINITY, f64::min);
+            worst[region] = worst[region].max(off);
+            counts[region] += 1;
+        }
+        for (region, facts) in proved.regions.iter().enumerate() {
+            let (bound, seen) = (facts.rounding[0], worst[region]);
+            let place = format!("{name}, {}", tool.model.regions[region].name);
+            // The reference has 256 bits.
+            assert!(seen <= bound + 1e-60, "{place}: {seen:e} over {bound:e}");
+            // A proof that did not come to its end has boxes that are too large to be tight.
+            if proved.undecided.is_empty()
+                && counts[region] >= ENOUGH
+                && seen > 1e-60
+                && bound / seen > loosest.0
+            {
+                loosest = (bound / seen, place);
+            }
+        }
+    }
+    assert!(loosest.0 < 10.0, "{loosest:?}");
 }
 
 #[test]

@@ -51,16 +51,13 @@ pub enum Shape {
 }
 
 impl Card {
-    /// A tool's card from constants, as generated code writes it.
+    /// A card from constants, as generated code writes it.
     pub const fn new(
-        name: &'static str,
-        title: &'static str,
+        [name, title]: [&'static str; 2],
         unit: Unit,
-        surfaces: &'static [Surface],
-        regions: &'static [Region],
-        envelope: &'static [Slab],
-        exact: bool,
-        depth: Depth,
+        (surfaces, regions): (&'static [Surface], &'static [Region]),
+        (shape, envelope): (Shape, &'static [Slab]),
+        (exact, depth): (bool, Depth),
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -69,32 +66,8 @@ impl Card {
             surfaces: Cow::Borrowed(surfaces),
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
-            shape: Shape::Revolved,
+            shape,
             exact,
-            depth,
-        }
-    }
-
-    /// A solid's card from constants; `across` says from where to where it reaches along x and y.
-    pub const fn solid(
-        name: &'static str,
-        title: &'static str,
-        unit: Unit,
-        surfaces: &'static [Surface],
-        regions: &'static [Region],
-        envelope: &'static [Slab],
-        across: [[f64; 2]; 2],
-        depth: Depth,
-    ) -> Card {
-        Card {
-            name: Cow::Borrowed(name),
-            title: Cow::Borrowed(title),
-            unit,
-            surfaces: Cow::Borrowed(surfaces),
-            regions: Cow::Borrowed(regions),
-            envelope: Cow::Borrowed(envelope),
-            shape: Shape::Solid { across },
-            exact: false,
             depth,
         }
     }

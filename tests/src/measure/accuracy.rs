@@ -161,7 +161,7 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
 }
 
 /// Which owners of the oracle each region of a card is: of its name, or all of its surface.
-fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
+pub fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
     let (names, surfaces) = (oracle.regions(), oracle.surfaces());
     let surfaces: Vec<&str> = surfaces.map(|(surface, _)| surface).collect();
     let places = |list: &[&str], name: &str| -> Vec<usize> {

@@ -52,7 +52,7 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
 
         #[allow(clippy::all, clippy::pedantic, unused_variables, unused_parens)]
         const _: () = {
-            use ::touchoff::tool::{Card, Depth, Evaluators, Lane, Region, Slab, Surface};
+            use ::touchoff::tool::{Card, Depth, Evaluators, Lane, Region, Shape, Slab, Surface};
 
             impl Evaluators for #name {
                 #card
@@ -165,21 +165,14 @@ fn card(tool: &Checked) -> TokenStream {
         }
         None => quote! { None },
     });
-    let depth = quote! { Depth { least: #least, lipschitz: #lipschitz } };
-    let made = match model.domain {
-        Domain::HalfPlane => quote! {
-            Card::new(#name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, #exact, #depth)
-        },
+    let shape = match model.domain {
+        Domain::HalfPlane => quote! { Shape::Revolved },
         Domain::Space => {
             let [x, y] = across(&tool.extent).map(|ends| {
                 let ends = ends.map(literal);
                 quote! { [#(#ends),*] }
             });
-            quote! {
-                Card::solid(
-                    #name, #title, ::touchoff::Unit::#unit, SURFACES, REGIONS, SLABS, [#x, #y], #depth
-                )
-            }
+            quote! { Shape::Solid { across: [#x, #y] } }
         }
     };
     quote! {
@@ -187,7 +180,13 @@ fn card(tool: &Checked) -> TokenStream {
             static SURFACES: &[Surface] = &[#(#surfaces),*];
             static REGIONS: &[Region] = &[#(#regions),*];
             static SLABS: &[Slab] = &[#(#slabs),*];
-            static CARD: Card = #made;
+            static CARD: Card = Card::new(
+                [#name, #title],
+                ::touchoff::Unit::#unit,
+                (SURFACES, REGIONS),
+                (#shape, SLABS),
+                (#exact, Depth { least: #least, lipschitz: #lipschitz }),
+            );
             &CARD
         }
     }

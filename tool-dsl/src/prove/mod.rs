@@ -2,12 +2,13 @@
 //! that are emitted, and by identities of polynomials where a box cannot tell 0 from nearly 0.
 //!
 //! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
-//! `root` whether depths agree on a curve, `touch` what conics that touch imply of each other,
+//! `rounding` how far computed depths err, `root` whether depths agree on a curve, `touch` what conics that touch imply of each other,
 //! `parting` what parts two regions; `survey` goes from box to box.
 
 mod cover;
 mod parting;
 mod root;
+mod rounding;
 mod slope;
 mod survey;
 mod touch;
@@ -58,6 +59,9 @@ pub struct RegionFacts {
     pub niceness: Interval,
     /// Whether niceness nowhere grows with depth.
     pub falls: bool,
+    /// How far rounding can take the computed depth from its expression's true value, in the file's
+    /// unit: of `f64`, and of `f32`, each of a point that is given in that format.
+    pub rounding: [f64; 2],
 }
 
 impl RegionFacts {
@@ -69,6 +73,7 @@ impl RegionFacts {
         magnitude: ZERO,
         niceness: ZERO,
         falls: true,
+        rounding: [0.0; 2],
     };
 }
 

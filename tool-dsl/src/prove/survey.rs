@@ -2,6 +2,7 @@
 
 use super::cover::{Boxes, Claim, Cover, reach};
 use super::parting::{Joint, Pair, Parting};
+use super::rounding::Errors;
 use super::slope::{Slope, Slopes};
 use super::{Border, Certificate, RegionFacts, TOLERANCE, Undecided};
 use crate::Checked;
@@ -50,6 +51,7 @@ struct Survey<'t> {
     cover: Cover<'t>,
     slopes: Slopes<'t>,
     values: Evaluator<'t>,
+    errors: Errors<'t>,
     parting: Parting<'t>,
     size: f64,
     regions: Vec<Option<RegionFacts>>,
@@ -76,6 +78,11 @@ impl<'t> Survey<'t> {
             tool,
             cover: Cover::new(model, &tool.plan.owner),
             slopes: Slopes::new(&model.graph, model.domain, roots),
+            errors: Errors::new(
+                &model.graph,
+                model.domain,
+                model.regions.iter().map(|region| region.depth),
+            ),
             values: Evaluator::new(&model.graph, asked),
             parting: Parting::new(model, reach(&whole), whole),
             size: reach(&whole),
@@ -145,6 +152,7 @@ impl<'t> Survey<'t> {
             magnitude: self.slopes.get(region.magnitude).value,
             niceness: niceness.value,
             falls: along.high <= ROUNDING * depth.length.high * niceness.length.high,
+            rounding: self.errors.over(region.depth, &cell),
             ..RegionFacts::NONE
         };
         self.at_axis(depth, cell);
@@ -157,6 +165,7 @@ impl<'t> Survey<'t> {
                 magnitude: known.magnitude.hull(here.magnitude),
                 niceness: known.niceness.hull(here.niceness),
                 falls: known.falls && here.falls,
+                rounding: [0, 1].map(|k| known.rounding[k].max(here.rounding[k])),
                 ..known
             },
         });
