@@ -28,8 +28,8 @@ fn broken(text: &str) -> Vec<String> {
         let word = at > 0 && (bytes[at - 1].is_ascii_alphanumeric() || bytes[at - 1] == b'_');
         if rest.starts_with("//") {
             at += rest.find('\n').unwrap_or(rest.len());
-        } else if rest.starts_with('"') {
-            at += 1 + rest[1..].find('"').map_or(rest.len() - 1, |end| end + 1);
+        } else if let Some(quoted) = rest.strip_prefix('"') {
+            at += 2 + quoted.find('"').unwrap_or(quoted.len());
         } else if bytes[at].is_ascii_digit() && !word {
             let number = |c: char| !(c.is_ascii_digit() || c == '.');
             let length = rest.find(number).unwrap_or(rest.len());
