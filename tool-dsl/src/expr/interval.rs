@@ -3,7 +3,6 @@
 
 use super::{Coord, Graph, Id, Node};
 use crate::number::Number;
-use std::collections::HashMap;
 
 /// All numbers between two ends. A quantity that may be undefined encloses everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,8 +208,8 @@ impl Cell {
 #[derive(Clone, Debug)]
 pub struct Encloser<'g> {
     graph: &'g Graph,
-    /// What each root needs, operands first, constants left out.
-    needed: HashMap<Id, Vec<Id>>,
+    /// What each root needs, operands first, constants left out; of other nodes nothing.
+    needed: Vec<Vec<Id>>,
     values: Vec<Interval>,
     /// For which box each was computed last.
     done: Vec<u32>,
@@ -222,7 +221,7 @@ impl<'g> Encloser<'g> {
     /// An encloser of some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Encloser<'g> {
         let mut values = vec![EVERYTHING; graph.nodes().len()];
-        let mut needed = HashMap::new();
+        let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
             let mut order = graph.needed([root]);
             order.retain(|id| match graph.constant(*id) {
@@ -232,7 +231,7 @@ impl<'g> Encloser<'g> {
                 }
                 None => true,
             });
-            needed.insert(root, order);
+            needed[root.index()] = order;
         }
         let done = vec![0; values.len()];
         Encloser { graph, needed, values, done, now: 0, cell: Cell { sides: [ZERO; 3] } }
@@ -250,8 +249,8 @@ impl<'g> Encloser<'g> {
 
     /// The enclosure of one of the nodes over the present box.
     pub fn get(&mut self, root: Id) -> Interval {
-        let Some(order) = self.needed.get(&root) else { return EVERYTHING };
-        for &id in order {
+        for k in 0..self.needed[root.index()].len() {
+            let id = self.needed[root.index()][k];
             let at = id.index();
             if self.done[at] != self.now {
                 self.done[at] = self.now;

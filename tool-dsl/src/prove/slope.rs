@@ -3,7 +3,6 @@
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, EVERYTHING, Interval, ONE, ZERO};
 use crate::expr::{Coord, Graph, Id, Node};
-use std::collections::HashMap;
 
 /// A function over a box: its values, its partial derivatives by x (for a tool, by the distance
 /// from the axis), y and z, and the length of its gradient, which is often known better.
@@ -163,8 +162,8 @@ fn norm(parts: &[Slope]) -> Slope {
 pub(super) struct Slopes<'g> {
     graph: &'g Graph,
     domain: Domain,
-    /// What each root needs, operands first, constants left out.
-    needed: HashMap<Id, Vec<Id>>,
+    /// What each root needs, operands first, constants left out; of other nodes nothing.
+    needed: Vec<Vec<Id>>,
     values: Vec<Slope>,
     /// For which box each was computed last.
     done: Vec<u32>,
@@ -180,7 +179,7 @@ impl<'g> Slopes<'g> {
     ) -> Slopes<'g> {
         let unknown = Slope { value: EVERYTHING, parts: [EVERYTHING; 3], length: EVERYTHING };
         let mut values = vec![unknown; graph.nodes().len()];
-        let mut needed = HashMap::new();
+        let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
             let mut order = graph.needed([root]);
             order.retain(|id| match graph.constant(*id) {
@@ -190,7 +189,7 @@ impl<'g> Slopes<'g> {
                 }
                 None => true,
             });
-            needed.insert(root, order);
+            needed[root.index()] = order;
         }
         let done = vec![0; values.len()];
         let cell = Cell { sides: [ZERO; 3] };
@@ -205,7 +204,8 @@ impl<'g> Slopes<'g> {
 
     /// One of the nodes over the present box.
     pub(super) fn get(&mut self, root: Id) -> Slope {
-        for &id in self.needed.get(&root).into_iter().flatten() {
+        for k in 0..self.needed[root.index()].len() {
+            let id = self.needed[root.index()][k];
             let at = id.index();
             if self.done[at] != self.now {
                 self.done[at] = self.now;

@@ -19,6 +19,8 @@ const FINE: f64 = 1.0 / 56.0;
 const SMALL: f64 = 1.0 / 1024.0;
 /// Boxes where nothing explains a border are divided to this part of the tool's size.
 const FINEST: f64 = TOLERANCE / 10.0;
+/// More claims to a box are not compared two by two.
+const CROWD: usize = 48;
 /// Points at which shares are counted.
 const SPREAD: usize = 10_000;
 /// Inside a region a box is divided until its slope is known so well.
@@ -123,6 +125,14 @@ impl<'t> Survey<'t> {
                     }
                 }
                 _ if !fine && boxes.count <= budget => boxes.divide(cell),
+                _ if claims.len() > CROWD => {
+                    if boxes.count <= budget {
+                        boxes.divide(cell);
+                    } else {
+                        let what = format!("which of {} regions meet", owners.len());
+                        self.undecided.push(Undecided { cell, what });
+                    }
+                }
                 _ => {
                     let finest = reach(&cell) <= FINEST * self.size || boxes.count > budget;
                     if self.meet(cell, &claims, finest) {
