@@ -131,6 +131,7 @@ impl<'t> Survey<'t> {
                     } else {
                         let what = format!("which of {} regions meet", owners.len());
                         self.undecided.push(Undecided { cell, what });
+                        owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
                     }
                 }
                 _ => {
