@@ -5,6 +5,7 @@ use super::cut::{Cut, Cutter, Edge, Piece};
 use super::outline::{Point, Segment, minus, norm, reach};
 use super::shape::Shape;
 use crate::expr::Graph;
+use crate::expr::polynomial::Polynomials;
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::model::Curve;
 
@@ -130,6 +131,7 @@ pub(crate) fn shapes<'g>(
 ) -> (Vec<Shape<'g>>, f64) {
     let [low, high] = reach(outline);
     let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
-    let shape = |curve: &Curve| Shape::new(graph, curve.value, middle);
+    let mut polynomials = Polynomials::default();
+    let shape = |curve: &Curve| Shape::new(graph, curve.value, middle, &mut polynomials);
     (curves.iter().map(shape).collect(), norm(minus(high, low)))
 }

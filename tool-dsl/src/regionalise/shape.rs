@@ -1,7 +1,7 @@
 //! Curves of the section in doubles: their values, and the sides that points and boxes are on.
 
 use super::outline::{Point, norm};
-use crate::expr::polynomial::Polynomial;
+use crate::expr::polynomial::Polynomials;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Graph, Id};
 
@@ -26,9 +26,14 @@ pub(super) struct Value {
 }
 
 impl<'g> Shape<'g> {
-    pub(crate) fn new(graph: &'g Graph, id: Id, middle: Point) -> Shape<'g> {
+    pub(crate) fn new(
+        graph: &'g Graph,
+        id: Id,
+        middle: Point,
+        polynomials: &mut Polynomials,
+    ) -> Shape<'g> {
         let other = || Shape::Other(Evaluator::new(graph, [id]).into(), id);
-        let Some(polynomial) = Polynomial::of(graph, id) else { return other() };
+        let Some(polynomial) = polynomials.of(graph, id) else { return other() };
         let mut factors = [0.0; 6];
         let [m, n] = middle;
         for (monomial, factor) in polynomial.terms() {
