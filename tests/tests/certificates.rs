@@ -1,7 +1,7 @@
 //! What is proved about tools: against what is known of the thesis's, against the values themselves,
 //! and of tools that are wrong.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
@@ -9,19 +9,11 @@ use tool_dsl::{Checked, compile};
 use touchoff::Level;
 use touchoff::tool::{Ask, Felt, Points};
 use touchoff_tests::measure::accuracy::{owners, tools};
+use touchoff_tests::measure::compile::library;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Draw;
 use touchoff_tests::oracle::reference::{At, Reference};
-
-fn library() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
-    let entries = std::fs::read_dir(folder).expect("the library's folder").flatten();
-    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    files.retain(|file| file.extension().is_some_and(|end| end == "tool"));
-    files.sort();
-    files
-}
 
 fn checked(source: &Source) -> Box<Checked> {
     let compiled = compile(source);
@@ -30,9 +22,13 @@ fn checked(source: &Source) -> Box<Checked> {
 }
 
 fn of_library(name: &str) -> Box<Checked> {
-    let files = library();
-    let file = files.iter().find(|file| file.ends_with(name)).expect("a tool of the library");
-    checked(&Source::read(file).expect("it can be read"))
+    let sources = library();
+    checked(
+        sources
+            .iter()
+            .find(|source| Path::new(&source.name).ends_with(name))
+            .expect("a tool of the library"),
+    )
 }
 
 fn text(text: &str) -> Box<Checked> {
@@ -117,8 +113,8 @@ const OPEN: [(&str, &str); 5] = [
 #[test]
 fn every_tool_of_the_library_is_proved_but_for_these() {
     let mut open = Vec::new();
-    for file in library() {
-        let tool = checked(&Source::read(&file).expect("it can be read"));
+    for source in library() {
+        let tool = checked(&source);
         let proved = Certificate::of(&tool);
         let distance = proved.is_exact() || tool.model.name == "Fig73";
         if !(distance && proved.is_continuous()) {
@@ -131,8 +127,8 @@ fn every_tool_of_the_library_is_proved_but_for_these() {
 
 #[test]
 fn values_keep_what_is_proved() {
-    for file in library() {
-        let tool = checked(&Source::read(&file).expect("it can be read"));
+    for source in library() {
+        let tool = checked(&source);
         let proved = Certificate::of(&tool);
         let cell = tool.extent.cell();
         let mut draw = Draw::new(7);
@@ -197,8 +193,7 @@ const ENOUGH: usize = 300;
 
 #[test]
 fn rounding_stays_below_its_bound_and_within_ten_times() {
-    let read = |file: &PathBuf| checked(&Source::read(file).expect("it can be read"));
-    let all: Vec<Box<Checked>> = library().iter().map(read).collect();
+    let all: Vec<Box<Checked>> = library().iter().map(checked).collect();
     let mut loosest = (0.0, String::new());
     for (compiled, restated) in tools() {
         let name = &compiled.card().name;

@@ -6,6 +6,7 @@ use std::time::Instant;
 use touchoff::scenes::{Path, tube};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff::{Part, Pose, Probe};
+use touchoff_tests::measure::compile::library;
 
 /// Poses of a row; each is asked for once, so that nothing is learnt.
 const POSES: usize = 4_000;
@@ -13,7 +14,6 @@ const POSES: usize = 4_000;
 fn main() {
     let mesh = tube();
     let part = Part::from_mesh(&mesh, 20_000, 1).expect("the tube has a surface");
-    let folder = File::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
     println!(
         "# What a tool costs that is loaded at run time
 
@@ -28,13 +28,13 @@ The forces are equal to the bit.
     println!("| tool | path | contacts | compiled | interpreted | ratio |");
     println!("|---|---|---|---|---|---|");
     let mut ratios = Vec::new();
-    let entries = std::fs::read_dir(&folder).expect("the library's folder").flatten();
-    let mut files: Vec<_> = entries.map(|entry| entry.path()).collect();
-    files.sort();
     let only: Vec<String> = std::env::args().skip(1).collect();
-    files.retain(|file| only.is_empty() || only.iter().any(|name| file.ends_with(name)));
-    for file in files {
-        let Ok(loaded) = Interpreted::load(file) else { continue };
+    let mut sources = library();
+    sources.retain(|source| {
+        only.is_empty() || only.iter().any(|name| File::new(&source.name).ends_with(name))
+    });
+    for source in sources {
+        let Ok(loaded) = Interpreted::parse(&source) else { continue };
         let Some(compiled) = tools_library::find(&loaded.card().name) else { continue };
         for path in [Path::Outside, Path::Inside] {
             let (contacts, [fast, slow]) = measure(&part, [compiled, &loaded], path);

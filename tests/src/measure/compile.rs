@@ -29,15 +29,26 @@ const ASSEMBLY: &str = r#"tool Assembly30 "12 mm bull nose end mill, ER32, HSK-A
 /// # Panics
 /// If the library's folder cannot be read.
 pub fn sources() -> Vec<Source> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
-    let files = std::fs::read_dir(&folder).expect("the library's folder");
+    let mut sources = library();
+    sources.push(Source::new("Assembly30", ASSEMBLY).held_by(folder().join("assembly.tool")));
+    sources
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools")
+}
+
+/// Every tool of the library, by its file's name.
+///
+/// # Panics
+/// If the library's folder cannot be read.
+pub fn library() -> Vec<Source> {
+    let files = std::fs::read_dir(folder()).expect("the library's folder");
     let mut files: Vec<PathBuf> = files.filter_map(|file| Some(file.ok()?.path())).collect();
     files.retain(|path| path.extension().is_some_and(|end| end == "tool"));
     files.sort();
     let read = |path| Source::read(path).expect("the library has the file");
-    let mut sources: Vec<Source> = files.into_iter().map(read).collect();
-    sources.push(Source::new("Assembly30", ASSEMBLY).held_by(folder.join("assembly.tool")));
-    sources
+    files.into_iter().map(read).collect()
 }
 
 /// Seconds from a text to its tokens, of several times.

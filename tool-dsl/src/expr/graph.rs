@@ -41,6 +41,21 @@ impl Graph {
         wanted.into_iter().collect()
     }
 
+    /// What a node is the sum of squares of, if it is one: nodes, and `None` for the distance from the
+    /// axis.
+    pub(crate) fn squares_of(&self, id: Id) -> Option<Vec<Option<Id>>> {
+        match self.node(id) {
+            Node::Mul(a, b) if a == b => Some(vec![Some(*a)]),
+            Node::Coord(Coord::Q) => Some(vec![None]),
+            Node::Add(a, b) => {
+                let mut parts = self.squares_of(*a)?;
+                parts.extend(self.squares_of(*b)?);
+                Some(parts)
+            }
+            _ => None,
+        }
+    }
+
     /// The constant that a node is, if it is one.
     pub fn constant(&self, id: Id) -> Option<&Number> {
         match self.node(id) {

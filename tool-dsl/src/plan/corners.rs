@@ -1,7 +1,7 @@
 //! Corners where pieces meet: a leaf sends those that rounding may bring astray to their owner.
 
 use super::Tree;
-use super::section::{Ground, Owners, Planner};
+use super::section::{Owners, Planner};
 use crate::formula::CurveIndex;
 use crate::regionalise::cut::{Cut, Cutter, NEAR, Piece};
 use crate::regionalise::outline::{Point, minus};
@@ -14,16 +14,19 @@ pub(super) struct Corner {
     owners: Vec<Option<usize>>,
 }
 
-pub(super) fn corners(ground: &Ground, shapes: &[Shape<'_>], size: f64) -> Vec<Corner> {
+/// The places where whole pieces meet, each piece with the box about it.
+pub(super) fn corners(
+    mut places: Vec<Point>,
+    whole: &[(Rc<Piece>, [Point; 2])],
+    (shapes, size): (&[Shape<'_>], f64),
+) -> Vec<Corner> {
     let close = NEAR * size;
     let near = |p: Point, q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
-    let mut places = ground.corners.clone();
     places.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
     places.dedup_by(|p, q| near(*p, *q));
-    let about: Vec<[Point; 2]> = ground.pieces.iter().map(|piece| piece.about()).collect();
     let corner = |at: Point| {
         let mut owners = Vec::new();
-        for (piece, [middle, half]) in ground.pieces.iter().zip(&about) {
+        for (piece, [middle, half]) in whole {
             let [u, v] = minus(at, *middle);
             if u.abs() <= half[0] + close
                 && v.abs() <= half[1] + close

@@ -177,7 +177,9 @@ fn plan<'m>(
 ) -> Result<Owners, Report> {
     let samples = Samples::new(&ground.samples, shapes);
     let all = samples.all();
-    let corners = corners(&ground, shapes, size);
+    let about = |piece: &Rc<Piece>| (Rc::clone(piece), piece.about());
+    let whole: Vec<_> = ground.pieces.iter().map(about).collect();
+    let corners = corners(ground.corners, &whole, (shapes, size));
     let every = (0..corners.len()).collect();
     let mut planner = Planner {
         model,
@@ -187,7 +189,7 @@ fn plan<'m>(
         corners,
         inside,
         used: vec![false; model.curves.len()],
-        whole: ground.pieces.iter().map(|p| (Rc::clone(p), p.about())).collect(),
+        whole,
         sides: vec![Vec::new(); model.curves.len()],
         size,
         tests: 0,

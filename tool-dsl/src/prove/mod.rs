@@ -2,8 +2,9 @@
 //! that are emitted, and by identities of polynomials where a box cannot tell 0 from nearly 0.
 //!
 //! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
-//! `rounding` how far computed depths err, `root` whether depths agree on a curve, `touch` what conics that touch imply of each other,
-//! `parting` what parts two regions; `survey` goes from box to box.
+//! `rounding` how far computed depths err, `root` whether depths agree on a curve, `touch` what
+//! conics that touch imply of each other, `parting` what parts two regions; `survey` goes from box
+//! to box.
 
 mod cover;
 mod parting;

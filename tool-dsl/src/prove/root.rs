@@ -83,9 +83,13 @@ impl Rooted {
         let Some((k, p)) = &self.root else { return Some((self.plain.clone(), None)) };
         // (l + k √P) (l - k √P) = l² - k² P, and of the factors the second has the sign of l where
         // that of k is the other.
-        let square = self.plain.times(&self.plain)?.plus(&p.scaled(&-&(k * k)));
         let sign = Number::int(if k.is_negative() { 1 } else { -1 });
-        Some((square.scaled(&sign), Some(self.plain.scaled(&sign))))
+        Some((self.times_conjugate(k, p)?.scaled(&sign), Some(self.plain.scaled(&sign))))
+    }
+
+    /// `l² - k² P`
+    fn times_conjugate(&self, k: &Number, p: &Polynomial) -> Option<Polynomial> {
+        Some(self.plain.times(&self.plain)?.plus(&p.scaled(&-&(k * k))))
     }
 
     fn scaled(&self, factor: &Number) -> Rooted {
@@ -129,9 +133,7 @@ impl Rooted {
             let divisor = divisor.plain.constant()?;
             return Some(self.scaled(&Number::int(1).over(&divisor)?));
         };
-        let square = divisor.plain.times(&divisor.plain)?;
-        let product = square.plus(&p.scaled(&-&(k * k)));
-        Some(conjugate.scaled(&self.plain.ratio(&product)?))
+        Some(conjugate.scaled(&self.plain.ratio(&divisor.times_conjugate(k, p)?)?))
     }
 
     /// How two forms agree wherever a curve's polynomial is zero, if they do.
@@ -141,13 +143,8 @@ impl Rooted {
     pub(super) fn agrees_on(&self, other: &Rooted, curve: &Polynomial) -> Option<Agreement> {
         let minus = Number::int(-1);
         let (difference, branch) = match self.plus(&other.scaled(&minus)) {
-            Some(Rooted { plain, root: None }) => (plain, None),
-            Some(Rooted { plain, root: Some((k, p)) }) => {
-                // l + k √P = 0 where l² = k² P, and l has not the sign of k.
-                let square = plain.times(&plain)?.plus(&p.scaled(&-&(&k * &k)));
-                let sign = Number::int(if k.is_negative() { 1 } else { -1 });
-                (square, Some(plain.scaled(&sign)))
-            }
+            // l + k √P = 0 where l² = k² P, and l has not the sign of k.
+            Some(difference) => difference.curve()?,
             None => {
                 let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
                 let beside = self.plain.clone().plus(&other.plain.scaled(&minus)).constant()?;

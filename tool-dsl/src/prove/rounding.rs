@@ -100,8 +100,14 @@ impl<'g> Errors<'g> {
                 Rounded { value, error: both(a, b, &f64::max) }
             }
             Node::Sqrt(a) => {
-                let mut parts = Vec::new();
-                if self.squares(*a, cell, &mut parts) {
+                if let Some(parts) = self.graph.squares_of(*a) {
+                    // As a length, x² + y² brings what its root would without the root's own rounding.
+                    let axis = || {
+                        let value = cell.radius();
+                        Rounded { value, error: [value.abs().high; 2] }
+                    };
+                    let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
+                    let parts: Vec<Rounded> = parts.iter().map(part).collect();
                     let sum =
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();
@@ -145,24 +151,6 @@ impl<'g> Errors<'g> {
             Coord::Length | Coord::PerLength => {
                 Rounded { value: EVERYTHING, error: [f64::INFINITY; 2] }
             }
-        }
-    }
-
-    /// What a sum is the sum of squares of, if it is one.
-    fn squares(&self, id: Id, cell: &Cell, parts: &mut Vec<Rounded>) -> bool {
-        match self.graph.node(id) {
-            Node::Mul(a, b) if a == b => {
-                parts.push(self.values[a.index()]);
-                true
-            }
-            Node::Coord(Coord::Q) => {
-                // As a length it brings what its root would without the root's own rounding.
-                let value = cell.radius();
-                parts.push(Rounded { value, error: [value.abs().high; 2] });
-                true
-            }
-            Node::Add(a, b) => self.squares(*a, cell, parts) && self.squares(*b, cell, parts),
-            _ => false,
         }
     }
 }

@@ -247,13 +247,14 @@ impl<'g> Slopes<'g> {
                     value => Slope { value: value.abs(), ..a.hull(other) },
                 }
             }
-            Node::Sqrt(a) => {
-                let mut squares = Vec::new();
-                match self.squares(*a, cell, &mut squares) {
-                    true => norm(&squares),
-                    false => v(a).sqrt(),
+            Node::Sqrt(a) => match self.graph.squares_of(*a) {
+                Some(parts) => {
+                    let axis = || self.coordinate(Coord::D, cell);
+                    let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
+                    norm(&parts.iter().map(part).collect::<Vec<_>>())
                 }
-            }
+                None => v(a).sqrt(),
+            },
             Node::Select { low, high, then, other } => {
                 if v(low).value.high <= v(high).value.low {
                     v(then)
@@ -263,22 +264,6 @@ impl<'g> Slopes<'g> {
                     v(then).hull(v(other))
                 }
             }
-        }
-    }
-
-    /// What a sum is the sum of squares of, if it is one.
-    fn squares(&self, id: Id, cell: Cell, parts: &mut Vec<Slope>) -> bool {
-        match self.graph.node(id) {
-            Node::Mul(a, b) if a == b => {
-                parts.push(self.values[a.index()]);
-                true
-            }
-            Node::Coord(Coord::Q) => {
-                parts.push(self.coordinate(Coord::D, cell));
-                true
-            }
-            Node::Add(a, b) => self.squares(*a, cell, parts) && self.squares(*b, cell, parts),
-            _ => false,
         }
     }
 
