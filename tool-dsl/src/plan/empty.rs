@@ -73,7 +73,7 @@ impl<'m> Void<'m> {
 
 /// The curves that are linear in the coordinates or in monomials of them.
 pub(crate) struct Linear {
-    /// Each curve as a linear form, if it is one.
+    /// Each curve as a linear form, if it is one, and behind them regions' depths.
     forms: Vec<Option<(Vec<f64>, f64)>>,
     variables: usize,
     /// The variable that is the coordinate along each axis that the domain has.
@@ -87,13 +87,23 @@ const RADIUS: Monomial = [1, 0, 0, 0];
 
 impl Linear {
     pub(crate) fn new(model: &Model) -> Linear {
+        Linear::of(model, [])
+    }
+
+    /// With the regions' depths.
+    pub(crate) fn with_depths(model: &Model) -> Linear {
+        Linear::of(model, model.regions.iter().map(|region| region.depth))
+    }
+
+    fn of(model: &Model, depths: impl IntoIterator<Item = Id>) -> Linear {
         let mut variables = Variables { graph: &model.graph, known: BTreeMap::new() };
         let mut axes = [None; 3];
         for (coord, axis, _) in model.domain.coordinates() {
             axes[*axis] = Some(variables.of(Variable::Monomial(monomial_of(*coord))));
         }
+        let curves = model.curves.iter().map(|curve| curve.value);
         let forms: Vec<Option<Form>> =
-            model.curves.iter().map(|curve| variables.form(curve.value)).collect();
+            curves.chain(depths).map(|value| variables.form(value)).collect();
         let facts = variables.facts();
         let count = variables.known.len();
         let dense = |form: Form| {
@@ -173,7 +183,29 @@ impl Linear {
     }
 
     pub(crate) fn contradictory(&self, signs: &[Signs]) -> bool {
-        let conditions = without(self.conditions(signs), (0..self.variables).collect());
+        self.absurd(self.conditions(signs))
+    }
+
+    /// Whether one region is nowhere deeper than another, or than the outside, where curves have
+    /// these signs.
+    pub(crate) fn no_deeper(&self, signs: &[Signs], a: Option<usize>, b: Option<usize>) -> bool {
+        let nothing = (vec![0.0; self.variables], 0.0);
+        let form = |region: Option<usize>| match region {
+            Some(region) => self.forms[signs.len() + region].as_ref(),
+            None => Some(&nothing),
+        };
+        let (Some(a), Some(b)) = (form(a), form(b)) else { return false };
+        let mut conditions = self.conditions(signs);
+        conditions.push(Condition {
+            factors: b.0.iter().zip(&a.0).map(|(b, a)| b - a).collect(),
+            constant: b.1 - a.1,
+            strict: true,
+        });
+        self.absurd(conditions)
+    }
+
+    fn absurd(&self, conditions: Vec<Condition>) -> bool {
+        let conditions = without(conditions, (0..self.variables).collect());
         let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
         conditions.is_some_and(|conditions| conditions.iter().any(absurd))
     }

@@ -23,11 +23,16 @@ pub(super) type Pair = (usize, Option<usize>);
 pub(super) enum Joint {
     /// Nothing is known.
     None,
+    /// Without a jump; of two depths each is the lesser on its own side.
+    Lower,
     /// Without a jump.
     Kinked,
     /// Without a jump, and neither does its slope.
     Smooth,
 }
+
+/// The signs that a way down the tree demands.
+type Ways = Vec<(CurveIndex, Signs)>;
 
 /// Where two curves touch, and how often that was looked for.
 type Tried = (u32, Option<Touch>);
@@ -45,8 +50,10 @@ pub(super) struct Parting<'m> {
     /// The sign that a conic has on a whole side of a line, and whether that is below it.
     apart: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
     /// The signs of a curve that linear curves leave.
-    by_linear: HashMap<(Vec<(CurveIndex, Signs)>, CurveIndex), Signs>,
+    by_linear: HashMap<(Ways, CurveIndex), Signs>,
     linear: Linear,
+    /// Whether of two depths each is the lesser where its own claim is.
+    lower: HashMap<(Pair, [Ways; 2]), bool>,
     touches: HashMap<(CurveIndex, CurveIndex), Tried>,
     /// The present box.
     cell: Cell,
@@ -65,7 +72,8 @@ impl<'m> Parting<'m> {
             agree: BTreeMap::new(),
             apart: BTreeMap::new(),
             by_linear: HashMap::new(),
-            linear: Linear::new(model),
+            linear: Linear::with_depths(model),
+            lower: HashMap::new(),
             touches: HashMap::new(),
             cell,
         }
@@ -74,6 +82,11 @@ impl<'m> Parting<'m> {
     /// Whether a region's depth is the distance to a line, a circle or a point.
     pub(super) fn is_distance(&self, region: usize) -> bool {
         self.depths[region].as_ref().is_some_and(Rooted::is_distance)
+    }
+
+    /// Whether a region's depth is a root without more.
+    pub(super) fn is_length(&self, region: usize) -> bool {
+        self.depths[region].as_ref().is_some_and(Rooted::is_length)
     }
 
     /// A curve on whose sides two claims to a box are, and how their depths agree on it.
@@ -93,7 +106,8 @@ impl<'m> Parting<'m> {
             })
         });
         let Some(curve) = joint else {
-            return parting.first().map(|curve| (*curve, Joint::None));
+            let joint = if self.lower(pair, [a, b]) { Joint::Lower } else { Joint::None };
+            return parting.first().map(|curve| (*curve, joint));
         };
         let joint = match self.agree(pair, curve) {
             // A curve that is where the two do not differ.
@@ -210,18 +224,43 @@ impl<'m> Parting<'m> {
         signs
     }
 
+    /// Whether, by all that is linear on the ways to two claims, each's depth is the lesser where it
+    /// is. The outside is where its own depth is 0, and a depth is 0 at most where it meets that.
+    fn lower(&mut self, pair: Pair, [a, b]: [&Claim; 2]) -> bool {
+        let key = (pair, [ways(a), ways(b)]);
+        if let Some(known) = self.lower.get(&key) {
+            return *known;
+        }
+        let [mut at_a, mut at_b] = [&key.1[0], &key.1[1]].map(|ways| self.signs(ways));
+        let (own, other) = (Some(pair.0), pair.1);
+        if other.is_none() {
+            // Where the two meet both have their ways' signs, borders included.
+            for (a, b) in at_a.iter_mut().zip(&at_b) {
+                *a = closed(*a) & closed(*b);
+            }
+            at_b = at_a.clone();
+        }
+        let lower = self.linear.no_deeper(&at_a, own, other)
+            && (other.is_none() || self.linear.no_deeper(&at_b, other, own));
+        self.lower.insert(key, lower);
+        lower
+    }
+
+    fn signs(&self, ways: &Ways) -> Vec<Signs> {
+        let mut signs = vec![ANY; self.curves.len()];
+        for (curve, known) in ways {
+            signs[*curve] &= known;
+        }
+        signs
+    }
+
     /// The signs that a curve can have by all linear curves on a claim's way together.
     fn by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let ways: Vec<(CurveIndex, Signs)> =
-            claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY).collect();
-        let key = (ways, curve);
+        let key = (ways(claim), curve);
         if let Some(known) = self.by_linear.get(&key) {
             return *known;
         }
-        let mut signs = vec![ANY; self.curves.len()];
-        for (other, known) in &key.0 {
-            signs[*other] &= known;
-        }
+        let mut signs = self.signs(&key.0);
         let mut possible = ANY;
         for side in [NEGATIVE, POSITIVE] {
             signs[curve] = side;
@@ -257,6 +296,15 @@ impl<'m> Parting<'m> {
         self.apart.insert((line, curve), known);
         known
     }
+}
+
+fn ways(claim: &Claim) -> Ways {
+    claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY).collect()
+}
+
+/// The signs at points that can be approached with these.
+fn closed(signs: Signs) -> Signs {
+    if signs & (NEGATIVE | POSITIVE) != 0 { signs | ZERO } else { signs }
 }
 
 /// The curves whose sides the ways to two claims demand against one another.

@@ -11,17 +11,42 @@ pub(super) struct Slope {
     pub(super) value: Interval,
     pub(super) parts: [Interval; 3],
     pub(super) length: Interval,
+    /// Whether it may have kinks that point down, as lengths and the larger of two have, and kinks
+    /// that point up.
+    kinks: [bool; 2],
+}
+
+const SMOOTH: [bool; 2] = [false; 2];
+const DOWN: [bool; 2] = [true, false];
+const UP: [bool; 2] = [false, true];
+
+/// What kinks sums of functions have.
+fn either(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
+    [a[0] || b[0], a[1] || b[1]]
+}
+
+/// What kinks products and the like have.
+fn mixed(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
+    [a.into_iter().chain(b).any(|kinked| kinked); 2]
 }
 
 const FLAT: [Interval; 3] = [ZERO; 3];
 
 impl Slope {
     fn constant(value: Interval) -> Slope {
-        Slope { value, parts: FLAT, length: ZERO }
+        Slope { value, parts: FLAT, length: ZERO, kinks: SMOOTH }
     }
 
-    fn new(value: Interval, parts: [Interval; 3]) -> Slope {
-        Slope { value, parts, length: length(parts) }
+    fn new(value: Interval, parts: [Interval; 3], kinks: [bool; 2]) -> Slope {
+        Slope { value, parts, length: length(parts), kinks }
+    }
+
+    /// How steeply it falls at least, from any point of the box, some way.
+    ///
+    /// At a kink that points up every slope beside it leads down. At one that points down it takes a
+    /// mean of the slopes beside it (Clarke 1983), and so one within what encloses them.
+    pub(super) fn fall(&self) -> f64 {
+        if self.kinks[0] { length(self.parts).low } else { self.length.low }
     }
 
     /// The same with what is known otherwise of its gradient's length.
@@ -43,6 +68,11 @@ impl Slope {
             value: self.value.times(factor),
             parts: self.parts.map(|part| part.times(factor)),
             length: self.length.times(factor.abs()),
+            kinks: match self.kinks {
+                kinks if factor.low >= 0.0 => kinks,
+                [down, up] if factor.high <= 0.0 => [up, down],
+                kinks => mixed(kinks, SMOOTH),
+            },
         }
     }
 
@@ -55,7 +85,8 @@ impl Slope {
         }
         let parts = [0, 1, 2].map(|k| self.parts[k].plus(other.parts[k]));
         let most = self.length.plus(other.length).high;
-        Slope::new(value, parts).with(Interval { low: 0.0, high: most })
+        let kinks = either(self.kinks, other.kinks);
+        Slope::new(value, parts, kinks).with(Interval { low: 0.0, high: most })
     }
 
     fn times(self, other: Slope) -> Slope {
@@ -67,7 +98,8 @@ impl Slope {
         }
         let part =
             |k: usize| self.parts[k].times(other.value).plus(other.parts[k].times(self.value));
-        Slope::new(self.value.times(other.value), [0, 1, 2].map(part))
+        let kinks = mixed(self.kinks, other.kinks);
+        Slope::new(self.value.times(other.value), [0, 1, 2].map(part), kinks)
     }
 
     fn square(self) -> Slope {
@@ -77,6 +109,7 @@ impl Slope {
             value: self.value.square(),
             parts: self.parts.map(|part| part.times(twice)),
             length,
+            kinks: mixed(self.kinks, SMOOTH),
         }
     }
 
@@ -90,7 +123,7 @@ impl Slope {
             let down = value.times(other.parts[k]);
             self.parts[k].plus(down.negated()).times(reciprocal)
         };
-        Slope::new(value, [0, 1, 2].map(part))
+        Slope::new(value, [0, 1, 2].map(part), mixed(self.kinks, other.kinks))
     }
 
     fn sqrt(self) -> Slope {
@@ -100,6 +133,7 @@ impl Slope {
             value,
             parts: self.parts.map(|part| part.times(half)),
             length: self.length.times(half.abs()),
+            kinks: if value.low > 0.0 { self.kinks } else { [true; 2] },
         }
     }
 
@@ -108,7 +142,13 @@ impl Slope {
             value: self.value.hull(other.value),
             parts: [0, 1, 2].map(|k| self.parts[k].hull(other.parts[k])),
             length: self.length.hull(other.length),
+            kinks: either(self.kinks, other.kinks),
         }
+    }
+
+    /// The same with more kinks.
+    fn kinked(self, more: [bool; 2]) -> Slope {
+        Slope { kinks: either(self.kinks, more), ..self }
     }
 }
 
@@ -154,7 +194,9 @@ fn norm(parts: &[Slope]) -> Slope {
     }
     let squared = singular.unwrap_or(ZERO);
     let known = Interval { low: squared.low.max(0.0), ..squared }.sqrt();
-    Slope::new(value, [0, 1, 2].map(slope)).with(known)
+    let of_parts = parts.iter().fold(SMOOTH, |all, part| mixed(all, part.kinks));
+    let kinks = if value.low > 0.0 { of_parts } else { either(of_parts, DOWN) };
+    Slope::new(value, [0, 1, 2].map(slope), kinks).with(known)
 }
 
 /// Encloses chosen nodes of a graph with their slopes, over one box after another; what nobody asks
@@ -177,7 +219,7 @@ impl<'g> Slopes<'g> {
         domain: Domain,
         roots: impl IntoIterator<Item = Id>,
     ) -> Slopes<'g> {
-        let unknown = Slope { value: EVERYTHING, parts: [EVERYTHING; 3], length: EVERYTHING };
+        let unknown = Slope::new(EVERYTHING, [EVERYTHING; 3], [true; 2]);
         let mut values = vec![unknown; graph.nodes().len()];
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
@@ -232,11 +274,11 @@ impl<'g> Slopes<'g> {
             Node::Max(a, b) if v(b).value.low >= v(a).value.high => v(b),
             Node::Min(a, b) => {
                 let (a, b) = (v(a), v(b));
-                Slope { value: a.value.min(b.value), ..a.hull(b) }
+                Slope { value: a.value.min(b.value), ..a.hull(b).kinked(UP) }
             }
             Node::Max(a, b) => {
                 let (a, b) = (v(a), v(b));
-                Slope { value: a.value.max(b.value), ..a.hull(b) }
+                Slope { value: a.value.max(b.value), ..a.hull(b).kinked(DOWN) }
             }
             Node::Abs(a) => {
                 let a = v(a);
@@ -244,7 +286,7 @@ impl<'g> Slopes<'g> {
                 match a.value {
                     Interval { low, .. } if low >= 0.0 => a,
                     Interval { high, .. } if high <= 0.0 => other,
-                    value => Slope { value: value.abs(), ..a.hull(other) },
+                    value => Slope { value: value.abs(), ..a.hull(other).kinked(DOWN) },
                 }
             }
             Node::Sqrt(a) => match self.graph.squares_of(*a) {
@@ -261,7 +303,7 @@ impl<'g> Slopes<'g> {
                 } else if v(low).value.low > v(high).value.high {
                     v(other)
                 } else {
-                    v(then).hull(v(other))
+                    v(then).hull(v(other)).kinked([true; 2])
                 }
             }
         }
@@ -271,7 +313,7 @@ impl<'g> Slopes<'g> {
         let along = |axis: usize| {
             let mut parts = FLAT;
             parts[axis] = ONE;
-            Slope { value: cell.sides[axis], parts, length: ONE }
+            Slope { value: cell.sides[axis], parts, length: ONE, kinks: SMOOTH }
         };
         match coord {
             Coord::X => along(0),
@@ -281,10 +323,10 @@ impl<'g> Slopes<'g> {
             Coord::D => norm(&[along(0), along(1)]),
             Coord::Q => {
                 let d = self.coordinate(Coord::D, cell);
-                Slope { value: cell.squared_radius(), ..d.square() }
+                Slope { value: cell.squared_radius(), kinks: SMOOTH, ..d.square() }
             }
             Coord::Length | Coord::PerLength => {
-                Slope { value: EVERYTHING, parts: FLAT, length: ZERO }
+                Slope { value: EVERYTHING, ..Slope::constant(ZERO) }
             }
         }
     }

@@ -13,8 +13,9 @@ use crate::formula::{CurveIndex, POSITIVE};
 use crate::plan::spread;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Boxes on a border are divided to this part of the tool's size.
+/// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
 const FINE: f64 = 1.0 / 56.0;
+const FINE_OF_SPACE: f64 = 1.0 / 14.0;
 /// Where depths differ, it is looked whether their owners are neighbours in boxes of this part.
 const SMALL: f64 = 1.0 / 1024.0;
 /// Boxes where nothing explains a border are divided to this part of the tool's size.
@@ -27,6 +28,8 @@ const SPREAD: usize = 10_000;
 const SLACK: f64 = 0.02;
 /// A border where depth may fall less steeply is looked at in smaller boxes.
 const SLOPING: f64 = 0.9;
+/// How far it is looked about points, as parts of the tool's size.
+const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// What of a slope is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -35,6 +38,24 @@ pub(super) fn survey(tool: &Checked, boxes: usize) -> Certificate {
     let mut survey = Survey::new(tool);
     survey.run(boxes);
     survey.certificate()
+}
+
+/// How small a box is.
+#[derive(Clone, Copy, PartialEq)]
+enum Grain {
+    Coarse,
+    /// Small enough for a border that is explained.
+    Fine,
+    /// As good as a point.
+    Point,
+    /// Not small, but no more are divided.
+    Last,
+}
+
+impl Grain {
+    fn is_last(self) -> bool {
+        matches!(self, Grain::Point | Grain::Last)
+    }
 }
 
 /// Two claims to a box that a curve parts.
@@ -56,12 +77,16 @@ struct Survey<'t> {
     errors: Errors<'t>,
     parting: Parting<'t>,
     size: f64,
+    /// Boxes on a border are divided to this part of the tool's size.
+    fine: f64,
     regions: Vec<Option<RegionFacts>>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// Where two owners were seen side by side, with a jump between.
     jumping: BTreeSet<(Pair, CurveIndex)>,
     /// The least slope toward the surface.
     least: f64,
+    /// The same from boxes that are as good as points.
+    least_from_points: f64,
     undecided: Vec<Undecided>,
     boxes: usize,
 }
@@ -88,10 +113,15 @@ impl<'t> Survey<'t> {
             values: Evaluator::new(&model.graph, asked),
             parting: Parting::new(model, reach(&whole), whole),
             size: reach(&whole),
+            fine: match model.domain {
+                Domain::HalfPlane => FINE,
+                Domain::Space => FINE_OF_SPACE,
+            },
             regions: vec![None; model.regions.len()],
             borders: BTreeMap::new(),
             jumping: BTreeSet::new(),
             least: f64::INFINITY,
+            least_from_points: f64::INFINITY,
             undecided: Vec::new(),
             boxes: 0,
         }
@@ -101,50 +131,120 @@ impl<'t> Survey<'t> {
         let mut boxes = Boxes::new(self.tool.extent.cell());
         while let Some(cell) = boxes.next() {
             let claims = self.cover.claims(cell);
-            let fine = reach(&cell) <= FINE * self.size;
             let mut owners: Vec<Option<usize>> = claims.iter().map(|claim| claim.owner).collect();
             owners.sort_unstable();
             owners.dedup();
-            match owners.as_slice() {
-                [None] => {}
-                [Some(owner)] => {
-                    self.slopes.set(cell);
-                    let depth = self.slopes.get(self.tool.model.regions[*owner].depth);
-                    let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
-                    let positive = depth.value.low >= -TOLERANCE * self.size;
-                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > budget;
-                    if finest || (positive && (known || fine)) {
-                        self.felt(*owner, cell);
-                        if !positive {
-                            let name = &self.tool.model.regions[*owner].name;
-                            let what = format!("that depth is not negative in `{name}`");
-                            self.undecided.push(Undecided { cell, what });
-                        }
-                    } else {
-                        boxes.divide(cell);
-                    }
-                }
-                _ if !fine && boxes.count <= budget => boxes.divide(cell),
-                _ if claims.len() > CROWD => {
-                    if boxes.count <= budget {
-                        boxes.divide(cell);
-                    } else {
-                        let what = format!("which of {} regions meet", owners.len());
-                        self.undecided.push(Undecided { cell, what });
-                        owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
-                    }
-                }
-                _ => {
-                    let finest = reach(&cell) <= FINEST * self.size || boxes.count > budget;
-                    if self.meet(cell, &claims, finest) {
-                        owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
-                    } else {
-                        boxes.divide(cell);
-                    }
-                }
+            let grain = match reach(&cell) / self.size {
+                reach if reach <= FINEST => Grain::Point,
+                _ if boxes.count > budget => Grain::Last,
+                reach if reach <= self.fine => Grain::Fine,
+                _ => Grain::Coarse,
+            };
+            let done = match owners.as_slice() {
+                [None] => true,
+                [Some(owner)] => self.within(*owner, cell, grain),
+                _ if grain == Grain::Coarse => false,
+                _ if claims.len() > CROWD && grain == Grain::Fine => false,
+                _ => self.between(cell, &claims, &owners, grain),
+            };
+            if !done {
+                boxes.divide(cell);
             }
         }
         self.boxes = boxes.count;
+    }
+
+    /// Whether enough is known of a box that one region has.
+    fn within(&mut self, owner: usize, cell: Cell, grain: Grain) -> bool {
+        self.slopes.set(cell);
+        let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+        let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
+        let positive = depth.value.low >= -TOLERANCE * self.size;
+        let falls = self.fall(owner) > 0.0;
+        if !grain.is_last() && !(positive && falls && (known || grain == Grain::Fine)) {
+            return false;
+        }
+        if !positive {
+            let name = &self.tool.model.regions[owner].name;
+            let what = format!("that depth is not negative in `{name}`");
+            self.undecided.push(Undecided { cell, what });
+        }
+        self.felt(owner, cell);
+        self.descend(&[Some(owner)], cell, grain);
+        true
+    }
+
+    /// Whether enough is known of a box that several have.
+    fn between(
+        &mut self,
+        cell: Cell,
+        claims: &[Claim],
+        owners: &[Option<usize>],
+        grain: Grain,
+    ) -> bool {
+        self.slopes.set(cell);
+        let falls = owners.iter().flatten().all(|owner| self.fall(*owner) > 0.0);
+        if !grain.is_last() && !falls {
+            return false;
+        }
+        if claims.len() > CROWD {
+            let what = format!("which of {} regions meet", owners.len());
+            self.undecided.push(Undecided { cell, what });
+        } else if !self.meet(cell, claims, grain) {
+            return false;
+        }
+        owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
+        self.descend(owners, cell, grain);
+        true
+    }
+
+    /// How steeply a region's depth falls at least in the present box.
+    fn fall(&mut self, owner: usize) -> f64 {
+        let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+        // The kink of a length is where it is 0: at the surface.
+        if self.parting.is_length(owner) { depth.length.low } else { depth.fall() }
+    }
+
+    /// Notes how steeply depth falls from any point of a box.
+    fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
+        if grain == Grain::Point {
+            let least = self.fall_from(owners, cell);
+            self.least_from_points = self.least_from_points.min(least);
+        } else {
+            for owner in owners.iter().flatten() {
+                self.least = self.least.min(self.fall(*owner));
+            }
+        }
+    }
+
+    /// How much less deep it is some way from a box that is as good as a point, by that way.
+    fn fall_from(&mut self, owners: &[Option<usize>], cell: Cell) -> f64 {
+        let middle = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+        let deep = self.depth(middle);
+        if deep <= TOLERANCE * self.size {
+            return f64::INFINITY;
+        }
+        self.slopes.set(Cell { sides: middle.map(|at| Interval::new(at, at)) });
+        let mut steepest = 0.0f64;
+        for owner in owners.iter().flatten() {
+            let slope = self.slopes.get(self.tool.model.regions[*owner].depth);
+            let up = slope.parts.map(|part| part.low / 2.0 + part.high / 2.0);
+            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
+            for part in STEPS {
+                let way = (part * self.size).min(deep);
+                let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
+                if to.iter().all(|part| part.is_finite()) {
+                    steepest = steepest.max((deep - self.depth(to)) / way);
+                }
+            }
+        }
+        steepest
+    }
+
+    /// The depth at a point, 0 outside.
+    fn depth(&mut self, point: [f64; 3]) -> f64 {
+        let owner = self.owner(point);
+        owner.map_or(0.0, |owner| self.values.get(self.tool.model.regions[owner].depth))
     }
 
     /// Notes what is felt in a box, of a region that has all of it or a part.
@@ -204,7 +304,7 @@ impl<'t> Survey<'t> {
     }
 
     /// Whether what happens between the owners of a box is known well enough.
-    fn meet(&mut self, cell: Cell, claims: &[Claim], finest: bool) -> bool {
+    fn meet(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
         let mut all = Vec::new();
         for (k, a) in claims.iter().enumerate() {
             for b in &claims[k + 1..] {
@@ -235,21 +335,21 @@ impl<'t> Survey<'t> {
             }
             let place = (met.pair, met.curve);
             met.seen = apart
-                && (small || finest)
+                && (small || grain.is_last())
                 && (self.jumping.contains(&place) || self.beside(met.pair, cell));
             if met.seen {
                 self.jumping.insert(place);
             }
-            if met.joint == Joint::None && !met.seen && !finest {
+            if met.joint == Joint::None && !met.seen && !grain.is_last() {
                 return false;
             }
-            // The finest boxes are of points where others come between.
-            if !finest {
+            // At points others come between.
+            if grain != Grain::Point {
                 least = least.min(self.across(met));
             }
         }
         // Less than that, it may be the box that is too large to tell.
-        if least < SLOPING && !small {
+        if least < SLOPING && !small && !grain.is_last() {
             return false;
         }
         self.least = self.least.min(least);
@@ -344,7 +444,7 @@ impl<'t> Survey<'t> {
                 angle(a, b)
             }
         };
-        // At the finest, a jump that may be none is one of a corner.
+        // Where no more is divided, a jump that may be none is one of a corner.
         if met.joint == Joint::None && !met.seen && jump.high > TOLERANCE * self.size {
             let to = other.map_or_else(
                 || "the outside".to_owned(),
@@ -385,9 +485,10 @@ impl<'t> Survey<'t> {
                 ..facts.unwrap_or(RegionFacts::NONE)
             })
             .collect();
-        let shallow = regions.iter().map(|region| region.steepness.low);
+        // From points it is as steep as it was seen to be, but for rounding.
+        let from_points = self.least_from_points * (1.0 + ROUNDING);
         Certificate {
-            least: shallow.fold(self.least, f64::min),
+            least: if from_points < self.least { from_points } else { self.least },
             regions,
             borders: self.borders.into_values().collect(),
             undecided: self.undecided,
