@@ -9,7 +9,7 @@ use crate::domain::Domain;
 use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval};
 use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::{Model, Region};
-use crate::plan::empty::Linear;
+use crate::plan::linear::Linear;
 use crate::regionalise::outline;
 use crate::report::Report;
 

@@ -8,7 +8,8 @@
 //! samples of the domain, cheap curves first, `bsp` before all.
 
 mod corners;
-pub(crate) mod empty;
+mod empty;
+pub(crate) mod linear;
 mod samples;
 mod section;
 mod signs;

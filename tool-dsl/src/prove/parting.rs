@@ -9,7 +9,7 @@ use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
-use crate::plan::empty::Linear;
+use crate::plan::linear::Linear;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Boxes from which it is looked where two conics touch.
@@ -232,6 +232,8 @@ impl<'m> Parting<'m> {
             return *known;
         }
         let [mut at_a, mut at_b] = [&key.1[0], &key.1[1]].map(|ways| self.signs(ways));
+        self.model.regions[pair.0].inside.demand(&mut at_a);
+        if let Some(o) = pair.1 { self.model.regions[o].inside.demand(&mut at_b); }
         let (own, other) = (Some(pair.0), pair.1);
         if other.is_none() {
             // Where the two meet both have their ways' signs, borders included.

@@ -28,6 +28,8 @@ const SPREAD: usize = 10_000;
 const SLACK: f64 = 0.02;
 /// A border where depth may fall less steeply is looked at in smaller boxes.
 const SLOPING: f64 = 0.9;
+/// And so far as boxes go, where it may be less steep than that.
+const FLAT: f64 = 0.1;
 /// How far it is looked about points, as parts of the tool's size.
 const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// What of a slope is rounding.
@@ -348,8 +350,9 @@ impl<'t> Survey<'t> {
                 least = least.min(self.across(met));
             }
         }
-        // Less than that, it may be the box that is too large to tell.
-        if least < SLOPING && !small && !grain.is_last() {
+        // So flat may be only what a large box tells.
+        let may_be_larger = if small { least < FLAT } else { least < SLOPING };
+        if may_be_larger && !grain.is_last() {
             return false;
         }
         self.least = self.least.min(least);
