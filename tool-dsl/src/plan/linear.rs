@@ -2,6 +2,7 @@
 //! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
 //! sees where borders meet in a corner, to a part in 10^12.
 
+use crate::domain::Domain;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
 use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
@@ -31,25 +32,30 @@ pub(crate) struct Linear {
     axes: [Option<usize>; 3],
     /// What holds everywhere.
     facts: Vec<Condition>,
-    /// Of each absolute value that it is no more than what is in it, or no more than minus that: one
-    /// of both holds.
-    absolutes: Vec<[Condition; 2]>,
+    /// Conditions of which one holds everywhere, for each of several roots.
+    choices: Vec<(usize, Vec<Condition>)>,
 }
 
-/// The most absolute values of which the signs are told apart.
-const ABSOLUTES: usize = 3;
+/// The most combinations of choices.
+const CHOICES: usize = 8;
 
 /// The distance from the axis.
 const RADIUS: Monomial = [1, 0, 0, 0];
 
 impl Linear {
+    /// What is known at once.
     pub(crate) fn new(model: &Model) -> Linear {
-        Linear::of(model, [])
+        Linear { choices: Vec::new(), ..Linear::of(model, []) }
     }
 
-    /// With the regions' depths.
+    /// With the regions' depths, and in space with what takes a choice. In the half plane regions meet
+    /// in points, which need none.
     pub(crate) fn with_depths(model: &Model) -> Linear {
-        Linear::of(model, model.regions.iter().map(|region| region.depth))
+        let known = Linear::of(model, model.regions.iter().map(|region| region.depth));
+        match model.domain {
+            Domain::HalfPlane => Linear { choices: Vec::new(), ..known },
+            Domain::Space => known,
+        }
     }
 
     fn of(model: &Model, depths: impl IntoIterator<Item = Id>) -> Linear {
@@ -61,7 +67,7 @@ impl Linear {
         let curves = model.curves.iter().map(|curve| curve.value);
         let forms: Vec<Option<Form>> =
             curves.chain(depths).map(|value| variables.form(value)).collect();
-        let (facts, absolutes) = variables.facts();
+        let (facts, choices) = variables.facts();
         let count = variables.known.len();
         let dense = |form: Form| {
             let all = (0..count).map(|v| form.factors.get(&v).copied().unwrap_or(0.0));
@@ -76,10 +82,9 @@ impl Linear {
             variables: count,
             axes,
             facts: facts.into_iter().map(condition).collect(),
-            absolutes: absolutes
+            choices: choices
                 .into_iter()
-                .take(ABSOLUTES)
-                .map(|sides| sides.map(condition))
+                .map(|(root, choices)| (root, choices.into_iter().map(condition).collect()))
                 .collect(),
         }
     }
@@ -166,14 +171,29 @@ impl Linear {
         self.absurd(conditions)
     }
 
-    /// Whether no point keeps the conditions, whatever the signs of what is in absolute values.
+    /// Whether no point keeps the conditions, whatever is chosen for roots in them.
     fn absurd(&self, conditions: Vec<Condition>) -> bool {
-        (0..1usize << self.absolutes.len()).all(|signs| {
+        let mentioned = |(root, _): &&(usize, Vec<Condition>)| {
+            conditions[self.facts.len()..].iter().any(|condition| condition.factors[*root] != 0.0)
+        };
+        let mut count = 1;
+        let asked: Vec<&Vec<Condition>> = (self.choices.iter().filter(mentioned))
+            .map(|(_, choices)| choices)
+            .take_while(|choices| {
+                count *= choices.len();
+                count <= CHOICES
+            })
+            .collect();
+        self.none_keeps(conditions.clone()) || !asked.is_empty() && self.none_of(conditions, &asked)
+    }
+
+    /// Whether every choice is absurd.
+    fn none_of(&self, conditions: Vec<Condition>, choices: &[&Vec<Condition>]) -> bool {
+        let Some((first, rest)) = choices.split_first() else { return self.none_keeps(conditions) };
+        first.iter().all(|choice| {
             let mut conditions = conditions.clone();
-            for (k, sides) in self.absolutes.iter().enumerate() {
-                conditions.push(sides[signs >> k & 1].clone());
-            }
-            self.none_keeps(conditions)
+            conditions.push(choice.clone());
+            self.none_of(conditions, rest)
         })
     }
 
@@ -275,10 +295,10 @@ impl Variables<'_> {
     }
 
     /// What is nowhere above 0: minus a square, a distance or a root; and whatever is squared
-    /// under a root, less the root. Beside them, of each absolute value two of which one is
-    /// nowhere above 0.
-    fn facts(&mut self) -> (Vec<Form>, Vec<[Form; 2]>) {
-        let (mut facts, mut absolutes) = (Vec::new(), Vec::new());
+    /// under a root, less the root. Beside them, of each root those of which one is nowhere above 0:
+    /// the root, less what is squared under it, each with the one sign or the other.
+    fn facts(&mut self) -> (Vec<Form>, Vec<(usize, Vec<Form>)>) {
+        let (mut facts, mut choices) = (Vec::new(), Vec::new());
         for (variable, at) in self.known.clone() {
             let minus = Form::default().plus(&Form::variable(at), -1.0);
             let mut parts = Vec::new();
@@ -293,47 +313,51 @@ impl Variables<'_> {
                     }
                 }
                 Variable::Root(root) => {
-                    let squares = squares(self.graph, root);
+                    let (squares, all) = squares(self.graph, root);
+                    let count = squares.len();
                     // Of more variables than there are nothing is known.
-                    let count = self.known.len();
+                    let variables = self.known.len();
                     parts.extend(squares.into_iter().filter_map(|part| self.form(part)));
-                    parts.retain(|form| form.factors.keys().all(|v| *v < count));
-                    self.known.retain(|_, at| *at < count);
+                    parts.retain(|form| form.factors.keys().all(|v| *v < variables));
+                    self.known.retain(|_, at| *at < variables);
+                    if all && parts.len() == count {
+                        let side = |signs: usize| {
+                            parts.iter().enumerate().fold(Form::variable(at), |sum, (k, part)| {
+                                sum.plus(part, if signs >> k & 1 == 0 { 1.0 } else { -1.0 })
+                            })
+                        };
+                        choices.push((at, (0..1 << count).map(side).collect()));
+                    }
                 }
-            }
-            if let (Variable::Root(root), [part]) = (variable, parts.as_slice())
-                && matches!(self.graph.node(root), Node::Abs(_))
-            {
-                let side = |sign: f64| Form::variable(at).plus(part, sign);
-                absolutes.push([side(1.0), side(-1.0)]);
             }
             for part in parts {
                 facts.extend([1.0, -1.0].map(|sign| minus.clone().plus(&part, sign)));
             }
             facts.push(minus);
         }
-        (facts, absolutes)
+        (facts, choices)
     }
 }
 
-/// What is squared in a root of a sum of squares, of which an absolute value is one.
-fn squares(graph: &Graph, root: Id) -> Vec<Id> {
+/// What is squared in a root of a sum of squares, of which an absolute value is one, and whether that
+/// is all of the sum.
+fn squares(graph: &Graph, root: Id) -> (Vec<Id>, bool) {
     let sum = match *graph.node(root) {
         Node::Sqrt(sum) => sum,
-        Node::Abs(part) => return vec![part],
-        _ => return Vec::new(),
+        Node::Abs(part) => return (vec![part], true),
+        _ => return (Vec::new(), false),
     };
-    let (mut open, mut parts) = (vec![sum], Vec::new());
+    let (mut open, mut parts, mut all) = (vec![sum], Vec::new(), true);
     while let Some(id) = open.pop() {
         match *graph.node(id) {
             Node::Add(a, b) => open.extend([a, b]),
             Node::Mul(a, b) if a == b => parts.push(a),
-            Node::Coord(Coord::Q) => {}
-            Node::Const(ref value) if !value.is_negative() => {}
-            _ => return Vec::new(),
+            Node::Coord(Coord::Q) => all = false,
+            Node::Const(ref value) if !value.is_negative() => all = false,
+            _ => return (Vec::new(), false),
         }
     }
-    parts
+    (parts, all)
 }
 
 /// The conditions that remain when some variables may be anything, those first that leave fewest;

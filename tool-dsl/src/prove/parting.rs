@@ -23,12 +23,20 @@ pub(super) type Pair = (usize, Option<usize>);
 pub(super) enum Joint {
     /// Nothing is known.
     None,
-    /// Without a jump; of two depths each is the lesser on its own side.
+    /// Without a jump; of two depths each is the lesser on its own side, or both are 0.
     Lower,
     /// Without a jump.
     Kinked,
     /// Without a jump, and neither does its slope.
     Smooth,
+}
+
+/// What parts two claims to a box.
+pub(super) struct Parted {
+    pub(super) curve: CurveIndex,
+    pub(super) joint: Joint,
+    /// Whether the first is where the curve is negative.
+    pub(super) below: bool,
 }
 
 /// The signs that a way down the tree demands.
@@ -52,7 +60,7 @@ pub(super) struct Parting<'m> {
     /// The signs of a curve that linear curves leave.
     by_linear: HashMap<(Ways, CurveIndex), Signs>,
     linear: Linear,
-    /// Whether of two depths each is the lesser where its own claim is.
+    /// Whether of two depths each is the lesser where its own claim is, or both are 0.
     lower: HashMap<(Pair, [Ways; 2]), bool>,
     touches: HashMap<(CurveIndex, CurveIndex), Tried>,
     /// The present box.
@@ -89,13 +97,15 @@ impl<'m> Parting<'m> {
         self.depths[region].as_ref().is_some_and(Rooted::is_length)
     }
 
-    /// A curve on whose sides two claims to a box are, and how their depths agree on it.
+    /// A curve on whose sides two claims to a box are, and how their depths agree where they meet; none
+    /// if they do not meet there, by what depths are known `apart`.
     pub(super) fn of(
         &mut self,
         pair: Pair,
         [a, b]: [&Claim; 2],
         (cover, cell): (&mut Cover<'_>, Cell),
-    ) -> Option<(CurveIndex, Joint)> {
+        apart: bool,
+    ) -> Option<Parted> {
         self.cell = cell;
         let parting = parting(a, b);
         let mut joint = parting.iter().copied().find(|curve| self.agree(pair, *curve).is_some());
@@ -106,19 +116,33 @@ impl<'m> Parting<'m> {
             })
         });
         let Some(curve) = joint else {
-            let joint = if self.lower(pair, [a, b]) { Joint::Lower } else { Joint::None };
-            return parting.first().map(|curve| (*curve, joint));
+            let curve = *parting.first()?;
+            let lower = self.lower(pair, [a, b], &parting);
+            let parted = |joint| Parted { curve, joint, below: false };
+            return match (lower, apart) {
+                (true, true) => None,
+                (true, false) => Some(parted(Joint::Lower)),
+                (false, _) => Some(parted(Joint::None)),
+            };
         };
-        let joint = match self.agree(pair, curve) {
+        let [of_a, of_b] = [a, b].map(|claim| self.sign_on(claim, curve, cover));
+        let below = of_a & POSITIVE == 0 || of_b & NEGATIVE == 0;
+        let parted = |joint| Parted { curve, joint, below };
+        let (smooth, branch) = match self.agree(pair, curve) {
             // A curve that is where the two do not differ.
-            None => Joint::Kinked,
-            Some(Agreement { branch: Some(branch), .. }) if branch.over(&cell).high < 0.0 => {
-                Joint::None
-            }
-            Some(Agreement { smooth: true, .. }) => Joint::Smooth,
-            Some(_) => Joint::Kinked,
+            None => (false, None),
+            Some(Agreement { smooth, branch }) => (smooth, branch),
         };
-        Some((curve, joint))
+        // Where it may be the other branch that agrees, nothing is known of this one.
+        let branch = branch.map(|branch| branch.over(&cell));
+        let other = branch.is_some_and(|branch| branch.high < 0.0);
+        let sure = branch.is_none_or(|branch| branch.low > 0.0);
+        match (other || apart, sure) {
+            (true, true) => None,
+            (true, false) => Some(parted(Joint::None)),
+            _ if smooth => Some(parted(Joint::Smooth)),
+            _ => Some(parted(Joint::Kinked)),
+        }
     }
 
     /// The curves on which the depths of two owners agree.
@@ -224,28 +248,64 @@ impl<'m> Parting<'m> {
         signs
     }
 
-    /// Whether, by all that is linear on the ways to two claims, each's depth is the lesser where it
-    /// is. The outside is where its own depth is 0, and a depth is 0 at most where it meets that.
-    fn lower(&mut self, pair: Pair, [a, b]: [&Claim; 2]) -> bool {
+    /// Whether, by all that is linear on the ways to two claims, each's depth is the lesser where it is,
+    /// or both are 0 where they meet.
+    fn lower(&mut self, pair: Pair, [a, b]: [&Claim; 2], parting: &[CurveIndex]) -> bool {
         let key = (pair, [ways(a), ways(b)]);
         if let Some(known) = self.lower.get(&key) {
             return *known;
         }
         let [mut at_a, mut at_b] = [&key.1[0], &key.1[1]].map(|ways| self.signs(ways));
         self.model.regions[pair.0].inside.demand(&mut at_a);
-        if let Some(o) = pair.1 { self.model.regions[o].inside.demand(&mut at_b); }
-        let (own, other) = (Some(pair.0), pair.1);
-        if other.is_none() {
-            // Where the two meet both have their ways' signs, borders included.
-            for (a, b) in at_a.iter_mut().zip(&at_b) {
-                *a = closed(*a) & closed(*b);
-            }
-            at_b = at_a.clone();
+        if let Some(other) = pair.1 {
+            self.model.regions[other].inside.demand(&mut at_b);
         }
-        let lower = self.linear.no_deeper(&at_a, own, other)
-            && (other.is_none() || self.linear.no_deeper(&at_b, other, own));
+        let lower = self.zero_where_they_meet(pair, [&at_a, &at_b])
+            || pair.1.is_some_and(|other| {
+                let sides = [(pair.0, at_a.as_slice()), (other, at_b.as_slice())];
+                self.each_lesser(sides, parting)
+            });
         self.lower.insert(key, lower);
         lower
+    }
+
+    fn zero_where_they_meet(&self, (own, other): Pair, [at_a, at_b]: [&[Signs]; 2]) -> bool {
+        let both = |(a, b): (&Signs, &Signs)| closed(*a) & closed(*b);
+        let meeting: Vec<Signs> = at_a.iter().zip(at_b).map(both).collect();
+        self.linear.no_deeper(&meeting, Some(own), None)
+            && self.linear.no_deeper(&meeting, other, None)
+    }
+
+    /// Whether each of two depths is the lesser where its own signs are, or one of them no more than a
+    /// third that goes on smoothly as the other on one of the curves that part them.
+    fn each_lesser(&mut self, sides: [(usize, &[Signs]); 2], parting: &[CurveIndex]) -> bool {
+        let [(a, at_a), (b, at_b)] = sides;
+        let lesser = |linear: &Linear, at: &[Signs], own: usize, other: usize| {
+            linear.no_deeper(at, Some(own), Some(other))
+        };
+        let known = [lesser(&self.linear, at_a, a, b), lesser(&self.linear, at_b, b, a)];
+        let ((own, at), other) = match known {
+            [true, true] => return true,
+            [true, false] => ((b, at_b), a),
+            [false, true] => ((a, at_a), b),
+            [false, false] => return false,
+        };
+        (0..self.depths.len()).any(|third| {
+            let smooth = |curve: &CurveIndex| match self.agree((other, Some(third)), *curve) {
+                Some(Agreement { smooth, branch }) => {
+                    // A depth is not negative in its own region.
+                    let depth = self.depths[other].as_ref().and_then(Rooted::plain);
+                    let ratio = |branch: &Polynomial| branch.ratio(depth?);
+                    let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
+                    smooth && branch.as_ref().is_none_or(own)
+                }
+                None => false,
+            };
+            third != own
+                && third != other
+                && parting.iter().any(smooth)
+                && lesser(&self.linear, at, own, third)
+        })
     }
 
     fn signs(&self, ways: &Ways) -> Vec<Signs> {

@@ -167,6 +167,11 @@ impl Rooted {
         (smooth || difference.vanishes_on(curve)).then_some(Agreement { smooth, branch })
     }
 
+    /// The polynomial, if it is no more than that.
+    pub(super) fn plain(&self) -> Option<&Polynomial> {
+        self.root.is_none().then_some(&self.plain)
+    }
+
     /// Whether this is a root without more: nowhere below 0, and kinked only where it is 0.
     pub(super) fn is_length(&self) -> bool {
         self.plain.is_nothing() && self.root.as_ref().is_some_and(|(k, _)| !k.is_negative())

@@ -1,7 +1,7 @@
 //! Box after box: what is felt in each region, and what changes from one to the next.
 
 use super::cover::{Boxes, Claim, Cover, reach};
-use super::parting::{Joint, Pair, Parting};
+use super::parting::{Joint, Pair, Parted, Parting};
 use super::rounding::Errors;
 use super::slope::{Slope, Slopes};
 use super::{Border, Certificate, RegionFacts, TOLERANCE, Undecided};
@@ -9,7 +9,7 @@ use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::expr::value::{At, Evaluator};
-use crate::formula::{CurveIndex, POSITIVE};
+use crate::formula::CurveIndex;
 use crate::plan::spread;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,8 +28,8 @@ const SPREAD: usize = 10_000;
 const SLACK: f64 = 0.02;
 /// A border where depth may fall less steeply is looked at in smaller boxes.
 const SLOPING: f64 = 0.9;
-/// And so far as boxes go, where it may be less steep than that.
-const FLAT: f64 = 0.1;
+/// And in still smaller ones, as long as slopes are known no better than that.
+const VAGUE: f64 = 0.1;
 /// How far it is looked about points, as parts of the tool's size.
 const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 /// What of a slope is rounding.
@@ -63,10 +63,7 @@ impl Grain {
 /// Two claims to a box that a curve parts.
 struct Met {
     pair: Pair,
-    curve: CurveIndex,
-    joint: Joint,
-    /// Whether the region is where the curve is negative.
-    below: bool,
+    by: Parted,
     /// Whether points of both were seen side by side.
     seen: bool,
 }
@@ -307,6 +304,7 @@ impl<'t> Survey<'t> {
 
     /// Whether what happens between the owners of a box is known well enough.
     fn meet(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
+        self.slopes.set(cell);
         let mut all = Vec::new();
         for (k, a) in claims.iter().enumerate() {
             for b in &claims[k + 1..] {
@@ -319,40 +317,36 @@ impl<'t> Survey<'t> {
                 };
                 let Some(own) = a.owner else { continue };
                 let pair = (own, b.owner);
-                if let Some((curve, joint)) = self.parting.of(pair, [a, b], (&mut self.cover, cell))
-                {
-                    let below =
-                        a.signs.iter().all(|(c, signs)| *c != curve || signs & POSITIVE == 0);
-                    all.push(Met { pair, curve, joint, below, seen: false });
+                let apart = self.jump(pair).low > 0.0;
+                let place = (&mut self.cover, cell);
+                if let Some(by) = self.parting.of(pair, [a, b], place, apart) {
+                    all.push(Met { pair, by, seen: false });
                 }
             }
         }
-        self.slopes.set(cell);
         let small = reach(&cell) <= SMALL * self.size;
-        let mut least = f64::INFINITY;
+        let (mut least, mut vague) = (f64::INFINITY, false);
         for met in &mut all {
-            let apart = self.jump(met.pair).low > 0.0;
-            if apart {
-                met.joint = Joint::None;
-            }
-            let place = (met.pair, met.curve);
+            let apart = met.by.joint == Joint::None && self.jump(met.pair).low > 0.0;
+            let place = (met.pair, met.by.curve);
             met.seen = apart
                 && (small || grain.is_last())
                 && (self.jumping.contains(&place) || self.beside(met.pair, cell));
             if met.seen {
                 self.jumping.insert(place);
             }
-            if met.joint == Joint::None && !met.seen && !grain.is_last() {
+            if met.by.joint == Joint::None && !met.seen && !grain.is_last() {
                 return false;
             }
             // At points others come between.
             if grain != Grain::Point {
-                least = least.min(self.across(met));
+                let (fall, slack) = self.across(met);
+                vague |= fall < SLOPING && slack > VAGUE;
+                least = least.min(fall);
             }
         }
         // So flat may be only what a large box tells.
-        let may_be_larger = if small { least < FLAT } else { least < SLOPING };
-        if may_be_larger && !grain.is_last() {
+        if (vague || least < SLOPING && !small) && !grain.is_last() {
             return false;
         }
         self.least = self.least.min(least);
@@ -360,15 +354,15 @@ impl<'t> Survey<'t> {
         true
     }
 
-    /// How steeply depth falls toward one of the sides of a border at least.
-    fn across(&mut self, met: &Met) -> f64 {
+    /// How steeply depth falls toward one of the sides of a border at least, and how well that is known.
+    fn across(&mut self, met: &Met) -> (f64, f64) {
         let regions = &self.tool.model.regions;
-        let (Joint::Kinked, (own, Some(other))) = (met.joint, met.pair) else {
-            return f64::INFINITY;
+        let (Joint::Kinked, (own, Some(other))) = (met.by.joint, met.pair) else {
+            return (f64::INFINITY, 0.0);
         };
         let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
-        let curve = self.slopes.get(self.tool.model.curves[met.curve].value);
-        across(own, other, curve, met.below)
+        let curve = self.slopes.get(self.tool.model.curves[met.by.curve].value);
+        across(own, other, curve, met.by.below)
     }
 
     /// Whether two owners have points side by side in a box, of a few.
@@ -437,7 +431,7 @@ impl<'t> Survey<'t> {
     fn note(&mut self, met: &Met, cell: Cell) {
         let regions = &self.tool.model.regions;
         let (own, other) = met.pair;
-        let jump = if met.joint != Joint::None { NOTHING } else { self.jump(met.pair) };
+        let jump = if met.by.joint != Joint::None { NOTHING } else { self.jump(met.pair) };
         let depth = self.slopes.get(regions[own].depth);
         let turn = match other {
             None => NOTHING,
@@ -448,7 +442,7 @@ impl<'t> Survey<'t> {
             }
         };
         // Where no more is divided, a jump that may be none is one of a corner.
-        if met.joint == Joint::None && !met.seen && jump.high > TOLERANCE * self.size {
+        if met.by.joint == Joint::None && !met.seen && jump.high > TOLERANCE * self.size {
             let to = other.map_or_else(
                 || "the outside".to_owned(),
                 |other| format!("`{}`", regions[other].name),
@@ -458,14 +452,14 @@ impl<'t> Survey<'t> {
         }
         let here = Border {
             between: met.pair,
-            curve: met.curve,
+            curve: met.by.curve,
             jump,
             turn,
             turn_on_surface: (depth.value.low <= 0.0).then_some(turn),
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };
         self.borders
-            .entry((met.pair, met.curve))
+            .entry((met.pair, met.by.curve))
             .and_modify(|known| {
                 known.jump = known.jump.hull(here.jump);
                 known.turn = known.turn.hull(here.turn);
@@ -509,11 +503,12 @@ fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
     Interval { low: (low - 1e-15).max(0.0), high: high + 1e-15 }
 }
 
-/// How steeply depth falls at least toward one of the sides of a border on which two depths agree.
+/// How steeply depth falls at least toward one of the sides of a border on which two depths agree, and
+/// how well that is known.
 ///
 /// Where each is the smaller on its own side, both ways lead down. Else depth falls along every
 /// combination of the two slopes, and so by the shortest of them at least (Clarke 1983).
-fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> f64 {
+fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f64, f64) {
     let middle = |part: Interval| part.low / 2.0 + part.high / 2.0;
     let rises =
         [0, 1, 2].map(|k| own.parts[k].plus(other.parts[k].negated()).times(curve.parts[k]));
@@ -523,7 +518,7 @@ fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> f64 {
     let slack = widths.fold(0.0, f64::max);
     let falls = if below { rise.low } else { -rise.high };
     if falls >= -ROUNDING * curve.length.high {
-        return f64::INFINITY;
+        return (f64::INFINITY, 0.0);
     }
     let way = combined.map(|[a, b]| b - a);
     let [start, long] =
@@ -531,5 +526,5 @@ fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> f64 {
     let part = if long > 0.0 { (-start / long).clamp(0.0, 1.0) } else { 0.0 };
     let nearest = combined.map(|[a, b]| a + part * (b - a));
     // Each end is known to half its width.
-    nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack
+    (nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack, slack)
 }
