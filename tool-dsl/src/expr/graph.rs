@@ -68,6 +68,11 @@ impl Graph {
         self.constant(id).is_some_and(|c| *c == Number::int(value))
     }
 
+    /// Where a node is, if it is in the graph.
+    pub(crate) fn find(&self, node: &Node) -> Option<Id> {
+        self.known.get(node).copied()
+    }
+
     fn put(&mut self, node: Node) -> Id {
         if let Some(id) = self.known.get(&node) {
             return *id;

@@ -2,19 +2,18 @@
 //! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
 //! sees where borders meet in a corner, to a part in 10^12.
 
-use crate::domain::Domain;
+use super::forms::{Form, Variable, Variables, compares_roots};
+use crate::expr::Id;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
-use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
-use crate::expr::{Coord, Graph, Id, Node};
+use crate::expr::polynomial::monomial_of;
 use crate::formula::{NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
-use crate::number::Number;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// A residue below this, relative to the curve's largest coefficient, is rounding.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 /// The most conditions that elimination may grow to.
 const CONDITIONS: usize = 600;
+
 /// `Σ factor · variable + constant ≤ 0`, or `< 0`.
 #[derive(Clone, Debug)]
 struct Condition {
@@ -39,36 +38,43 @@ pub(crate) struct Linear {
 /// The most combinations of choices.
 const CHOICES: usize = 8;
 
-/// The distance from the axis.
-const RADIUS: Monomial = [1, 0, 0, 0];
-
 impl Linear {
     /// What is known at once.
     pub(crate) fn new(model: &Model) -> Linear {
-        Linear { choices: Vec::new(), ..Linear::of(model, []) }
+        Linear { choices: Vec::new(), ..Linear::of(model, [], None) }
     }
 
-    /// With the regions' depths, and in space with what takes a choice. In the half plane regions meet
-    /// in points, which need none.
-    pub(crate) fn with_depths(model: &Model) -> Linear {
-        let known = Linear::of(model, model.regions.iter().map(|region| region.depth));
-        match model.domain {
-            Domain::HalfPlane => Linear { choices: Vec::new(), ..known },
-            Domain::Space => known,
-        }
+    /// With the regions' depths, and with what takes a choice.
+    ///
+    /// Where curves compare squares of roots, all that compare squares are taken for comparisons of
+    /// what is squared, as far as its sign is known in a box that has the tool.
+    pub(crate) fn with_depths(model: &Model, cell: Cell) -> Linear {
+        let mut values = model.curves.iter().map(|curve| curve.value);
+        let roots = values.any(|value| compares_roots(&model.graph, value)).then_some(cell);
+        Linear::of(model, model.regions.iter().map(|region| region.depth), roots)
     }
 
-    fn of(model: &Model, depths: impl IntoIterator<Item = Id>) -> Linear {
-        let mut variables = Variables { graph: &model.graph, known: BTreeMap::new() };
+    fn of(model: &Model, depths: impl IntoIterator<Item = Id>, roots: Option<Cell>) -> Linear {
+        let mut variables = Variables::new(model);
         let mut axes = [None; 3];
         for (coord, axis, _) in model.domain.coordinates() {
             axes[*axis] = Some(variables.of(Variable::Monomial(monomial_of(*coord))));
         }
         let curves = model.curves.iter().map(|curve| curve.value);
-        let forms: Vec<Option<Form>> =
+        let mut forms: Vec<Option<Form>> =
             curves.chain(depths).map(|value| variables.form(value)).collect();
-        let (facts, choices) = variables.facts();
-        let count = variables.known.len();
+        if let Some(cell) = roots {
+            for (form, curve) in forms.iter_mut().zip(&model.curves) {
+                if let Some(compared) = variables.compared(curve.value, cell) {
+                    *form = Some(compared);
+                }
+            }
+        }
+        let (mut facts, choices) = variables.facts();
+        if roots.is_some() {
+            facts.extend(variables.projections(forms[model.curves.len()..].iter().flatten()));
+        }
+        let count = variables.count();
         let dense = |form: Form| {
             let all = (0..count).map(|v| form.factors.get(&v).copied().unwrap_or(0.0));
             (all.collect(), form.constant)
@@ -153,6 +159,20 @@ impl Linear {
         self.absurd(self.conditions(signs))
     }
 
+    /// The same in a region, whose depth is not negative.
+    pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
+        let mut conditions = self.conditions(signs);
+        let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
+        if let Some((factors, constant)) = depth {
+            conditions.push(Condition {
+                factors: factors.iter().map(|factor| -factor).collect(),
+                constant: -constant,
+                strict: false,
+            });
+        }
+        self.absurd(conditions)
+    }
+
     /// Whether one region is nowhere deeper than another, or than the outside, where curves have
     /// these signs.
     pub(crate) fn no_deeper(&self, signs: &[Signs], a: Option<usize>, b: Option<usize>) -> bool {
@@ -172,19 +192,32 @@ impl Linear {
     }
 
     /// Whether no point keeps the conditions, whatever is chosen for roots in them.
-    fn absurd(&self, conditions: Vec<Condition>) -> bool {
-        let mentioned = |(root, _): &&(usize, Vec<Condition>)| {
-            conditions[self.facts.len()..].iter().any(|condition| condition.factors[*root] != 0.0)
+    fn absurd(&self, mut conditions: Vec<Condition>) -> bool {
+        // What is known of variables that nothing else mentions leads nowhere.
+        let asked = conditions.split_off(self.facts.len());
+        let mentioned: Vec<bool> = (0..self.variables)
+            .map(|variable| {
+                let mentions = |condition: &Condition| condition.factors[variable] != 0.0;
+                self.axes.contains(&Some(variable)) || asked.iter().any(mentions)
+            })
+            .collect();
+        let known = |condition: &Condition| {
+            let mut used = condition.factors.iter().zip(&mentioned);
+            used.all(|(factor, mentioned)| *factor == 0.0 || *mentioned)
         };
+        conditions.retain(known);
+        conditions.extend(asked);
         let mut count = 1;
-        let asked: Vec<&Vec<Condition>> = (self.choices.iter().filter(mentioned))
+        let choices: Vec<&Vec<Condition>> = (self.choices.iter())
+            .filter(|(root, choices)| mentioned[*root] && choices.iter().all(known))
             .map(|(_, choices)| choices)
             .take_while(|choices| {
                 count *= choices.len();
                 count <= CHOICES
             })
             .collect();
-        self.none_keeps(conditions.clone()) || !asked.is_empty() && self.none_of(conditions, &asked)
+        self.none_keeps(conditions.clone())
+            || !choices.is_empty() && self.none_of(conditions, &choices)
     }
 
     /// Whether every choice is absurd.
@@ -202,162 +235,6 @@ impl Linear {
         let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
         conditions.is_some_and(|conditions| conditions.iter().any(absurd))
     }
-}
-
-/// What elimination takes for a variable of its own.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Variable {
-    /// A product of powers of coordinates.
-    Monomial(Monomial),
-    /// A root or an absolute value.
-    Root(Id),
-}
-
-/// `Σ factor · variable + constant`
-#[derive(Clone, Default)]
-struct Form {
-    factors: BTreeMap<usize, f64>,
-    constant: f64,
-}
-
-impl Form {
-    fn variable(variable: usize) -> Form {
-        Form { factors: BTreeMap::from([(variable, 1.0)]), constant: 0.0 }
-    }
-
-    fn plus(mut self, other: &Form, factor: f64) -> Form {
-        for (variable, more) in &other.factors {
-            *self.factors.entry(*variable).or_default() += factor * more;
-        }
-        self.constant += factor * other.constant;
-        self
-    }
-}
-
-/// The variables met so far.
-struct Variables<'m> {
-    graph: &'m Graph,
-    known: BTreeMap<Variable, usize>,
-}
-
-impl Variables<'_> {
-    fn of(&mut self, variable: Variable) -> usize {
-        let next = self.known.len();
-        *self.known.entry(variable).or_insert(next)
-    }
-
-    /// An expression as a linear form, if it is one.
-    fn form(&mut self, root: Id) -> Option<Form> {
-        let mut polynomials = Polynomials::default();
-        polynomials.of(self.graph, root);
-        let polynomial = |id: &Id| polynomials.known(*id);
-        // What the form is summed up from; each once, however often it is shared.
-        let (mut open, mut parts) = (vec![root], BTreeSet::new());
-        while let Some(id) = open.pop() {
-            if parts.insert(id) && polynomial(&id).is_none() {
-                match *self.graph.node(id) {
-                    Node::Neg(a) => open.push(a),
-                    Node::Add(a, b) | Node::Sub(a, b) => open.extend([a, b]),
-                    Node::Mul(factor, b) if self.graph.constant(factor).is_some() => open.push(b),
-                    Node::Sqrt(_) | Node::Abs(_) => {}
-                    _ => return None,
-                }
-            }
-        }
-        let mut forms: BTreeMap<Id, Form> = BTreeMap::new();
-        for id in parts {
-            let form = match (polynomial(&id), self.graph.node(id)) {
-                (Some(polynomial), _) => self.of_polynomial(polynomial),
-                (None, Node::Neg(a)) => Form::default().plus(&forms[a], -1.0),
-                (None, Node::Add(a, b)) => forms[a].clone().plus(&forms[b], 1.0),
-                (None, Node::Sub(a, b)) => forms[a].clone().plus(&forms[b], -1.0),
-                (None, Node::Mul(factor, b)) => {
-                    let factor = self.graph.constant(*factor).map_or(0.0, Number::to_f64);
-                    Form::default().plus(&forms[b], factor)
-                }
-                _ => Form::variable(self.of(Variable::Root(id))),
-            };
-            forms.insert(id, form);
-        }
-        forms.remove(&root)
-    }
-
-    fn of_polynomial(&mut self, polynomial: &Polynomial) -> Form {
-        let mut form = Form::default();
-        for (monomial, factor) in polynomial.terms() {
-            if monomial == [0; 4] {
-                form.constant = factor.to_f64();
-            } else {
-                form.factors.insert(self.of(Variable::Monomial(monomial)), factor.to_f64());
-            }
-        }
-        form
-    }
-
-    /// What is nowhere above 0: minus a square, a distance or a root; and whatever is squared
-    /// under a root, less the root. Beside them, of each root those of which one is nowhere above 0:
-    /// the root, less what is squared under it, each with the one sign or the other.
-    fn facts(&mut self) -> (Vec<Form>, Vec<(usize, Vec<Form>)>) {
-        let (mut facts, mut choices) = (Vec::new(), Vec::new());
-        for (variable, at) in self.known.clone() {
-            let minus = Form::default().plus(&Form::variable(at), -1.0);
-            let mut parts = Vec::new();
-            match variable {
-                Variable::Monomial(monomial) => {
-                    if monomial == RADIUS {
-                        let across = [Coord::X, Coord::Y].map(monomial_of).map(Variable::Monomial);
-                        let known = across.iter().filter_map(|v| self.known.get(v).copied());
-                        parts.extend(known.map(Form::variable));
-                    } else if monomial[1..].iter().any(|exponent| exponent % 2 == 1) {
-                        continue;
-                    }
-                }
-                Variable::Root(root) => {
-                    let (squares, all) = squares(self.graph, root);
-                    let count = squares.len();
-                    // Of more variables than there are nothing is known.
-                    let variables = self.known.len();
-                    parts.extend(squares.into_iter().filter_map(|part| self.form(part)));
-                    parts.retain(|form| form.factors.keys().all(|v| *v < variables));
-                    self.known.retain(|_, at| *at < variables);
-                    if all && parts.len() == count {
-                        let side = |signs: usize| {
-                            parts.iter().enumerate().fold(Form::variable(at), |sum, (k, part)| {
-                                sum.plus(part, if signs >> k & 1 == 0 { 1.0 } else { -1.0 })
-                            })
-                        };
-                        choices.push((at, (0..1 << count).map(side).collect()));
-                    }
-                }
-            }
-            for part in parts {
-                facts.extend([1.0, -1.0].map(|sign| minus.clone().plus(&part, sign)));
-            }
-            facts.push(minus);
-        }
-        (facts, choices)
-    }
-}
-
-/// What is squared in a root of a sum of squares, of which an absolute value is one, and whether that
-/// is all of the sum.
-fn squares(graph: &Graph, root: Id) -> (Vec<Id>, bool) {
-    let sum = match *graph.node(root) {
-        Node::Sqrt(sum) => sum,
-        Node::Abs(part) => return (vec![part], true),
-        _ => return (Vec::new(), false),
-    };
-    let (mut open, mut parts, mut all) = (vec![sum], Vec::new(), true);
-    while let Some(id) = open.pop() {
-        match *graph.node(id) {
-            Node::Add(a, b) => open.extend([a, b]),
-            Node::Mul(a, b) if a == b => parts.push(a),
-            Node::Coord(Coord::Q) => all = false,
-            Node::Const(ref value) if !value.is_negative() => all = false,
-            _ => return (Vec::new(), false),
-        }
-    }
-    (parts, all)
 }
 
 /// The conditions that remain when some variables may be anything, those first that leave fewest;

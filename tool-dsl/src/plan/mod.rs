@@ -9,6 +9,7 @@
 
 mod corners;
 mod empty;
+mod forms;
 pub(crate) mod linear;
 mod samples;
 mod section;

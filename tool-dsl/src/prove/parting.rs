@@ -58,7 +58,7 @@ pub(super) struct Parting<'m> {
     /// The sign that a conic has on a whole side of a line, and whether that is below it.
     apart: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
     /// The signs of a curve that linear curves leave.
-    by_linear: HashMap<(Ways, CurveIndex), Signs>,
+    by_linear: HashMap<(Option<usize>, Ways, CurveIndex), Signs>,
     linear: Linear,
     /// Whether of two depths each is the lesser where its own claim is, or both are 0.
     lower: HashMap<(Pair, [Ways; 2]), bool>,
@@ -80,7 +80,7 @@ impl<'m> Parting<'m> {
             agree: BTreeMap::new(),
             apart: BTreeMap::new(),
             by_linear: HashMap::new(),
-            linear: Linear::with_depths(model),
+            linear: Linear::with_depths(model, cell),
             lower: HashMap::new(),
             touches: HashMap::new(),
             cell,
@@ -318,15 +318,15 @@ impl<'m> Parting<'m> {
 
     /// The signs that a curve can have by all linear curves on a claim's way together.
     fn by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let key = (ways(claim), curve);
+        let key = (claim.owner, ways(claim), curve);
         if let Some(known) = self.by_linear.get(&key) {
             return *known;
         }
-        let mut signs = self.signs(&key.0);
+        let mut signs = self.signs(&key.1);
         let mut possible = ANY;
         for side in [NEGATIVE, POSITIVE] {
             signs[curve] = side;
-            if self.linear.contradictory(&signs) {
+            if self.linear.contradictory_in(claim.owner, &signs) {
                 possible &= !side;
             }
         }

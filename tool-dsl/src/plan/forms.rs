@@ -1,0 +1,283 @@
+//! Expressions as linear forms in the coordinates, and in monomials and roots of them, each taken for a
+//! variable of its own; and what is known of such variables.
+
+use super::linear::ROUNDING;
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, Encloser};
+use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
+use crate::expr::{Coord, Graph, Id, Node};
+use crate::model::Model;
+use crate::number::Number;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The distance from the axis.
+const RADIUS: Monomial = [1, 0, 0, 0];
+
+/// What elimination takes for a variable of its own.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Variable {
+    /// A product of powers of coordinates.
+    Monomial(Monomial),
+    /// A root or an absolute value.
+    Root(Id),
+    /// The absolute value of a node.
+    Size(Id),
+}
+
+/// `Σ factor · variable + constant`
+#[derive(Clone, Debug, Default)]
+pub(super) struct Form {
+    pub(super) factors: BTreeMap<usize, f64>,
+    pub(super) constant: f64,
+}
+
+impl Form {
+    fn variable(variable: usize) -> Form {
+        Form { factors: BTreeMap::from([(variable, 1.0)]), constant: 0.0 }
+    }
+
+    fn plus(mut self, other: &Form, factor: f64) -> Form {
+        for (variable, more) in &other.factors {
+            *self.factors.entry(*variable).or_default() += factor * more;
+        }
+        self.constant += factor * other.constant;
+        self
+    }
+}
+
+/// The variables met so far.
+pub(super) struct Variables<'m> {
+    graph: &'m Graph,
+    /// In the half plane regions meet in points, for which roots of several squares need no choices.
+    of_space: bool,
+    known: BTreeMap<Variable, usize>,
+}
+
+impl<'m> Variables<'m> {
+    pub(super) fn new(model: &'m Model) -> Variables<'m> {
+        let of_space = model.domain == Domain::Space;
+        Variables { graph: &model.graph, of_space, known: BTreeMap::new() }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.known.len()
+    }
+
+    pub(super) fn of(&mut self, variable: Variable) -> usize {
+        let next = self.known.len();
+        *self.known.entry(variable).or_insert(next)
+    }
+
+    /// An expression as a linear form, if it is one.
+    pub(super) fn form(&mut self, root: Id) -> Option<Form> {
+        let mut polynomials = Polynomials::default();
+        polynomials.of(self.graph, root);
+        let polynomial = |id: &Id| polynomials.known(*id);
+        // What the form is summed up from; each once, however often it is shared.
+        let (mut open, mut parts) = (vec![root], BTreeSet::new());
+        while let Some(id) = open.pop() {
+            if parts.insert(id) && polynomial(&id).is_none() {
+                match *self.graph.node(id) {
+                    Node::Neg(a) => open.push(a),
+                    Node::Add(a, b) | Node::Sub(a, b) => open.extend([a, b]),
+                    Node::Mul(factor, b) if self.graph.constant(factor).is_some() => open.push(b),
+                    Node::Sqrt(_) | Node::Abs(_) => {}
+                    _ => return None,
+                }
+            }
+        }
+        let mut forms: BTreeMap<Id, Form> = BTreeMap::new();
+        for id in parts {
+            let form = match (polynomial(&id), self.graph.node(id)) {
+                (Some(polynomial), _) => self.of_polynomial(polynomial),
+                (None, Node::Neg(a)) => Form::default().plus(&forms[a], -1.0),
+                (None, Node::Add(a, b)) => forms[a].clone().plus(&forms[b], 1.0),
+                (None, Node::Sub(a, b)) => forms[a].clone().plus(&forms[b], -1.0),
+                (None, Node::Mul(factor, b)) => {
+                    let factor = self.graph.constant(*factor).map_or(0.0, Number::to_f64);
+                    Form::default().plus(&forms[b], factor)
+                }
+                _ => Form::variable(self.of(Variable::Root(id))),
+            };
+            forms.insert(id, form);
+        }
+        forms.remove(&root)
+    }
+
+    /// A comparison of squares as one of sizes, whose signs may be known in a box.
+    pub(super) fn compared(&mut self, value: Id, cell: Cell) -> Option<Form> {
+        let [a, b] = squares_compared(self.graph, value)?;
+        let a = self.unsquared(&a, cell)?;
+        Some(a.plus(&self.unsquared(&b, cell)?, -1.0))
+    }
+
+    fn unsquared(&mut self, squared: &Squared, cell: Cell) -> Option<Form> {
+        match *squared {
+            Squared::Of(a) => {
+                let mut encloser = Encloser::new(self.graph, [a]);
+                encloser.set(cell);
+                let value = encloser.get(a);
+                match (value.low >= 0.0, value.high <= 0.0) {
+                    (true, _) => self.form(a),
+                    (_, true) => Some(Form::default().plus(&self.form(a)?, -1.0)),
+                    _ => Some(Form::variable(self.of(Variable::Size(a)))),
+                }
+            }
+            Squared::Root(root) => Some(Form::variable(self.of(Variable::Root(root)))),
+        }
+    }
+
+    /// A root of a sum of squares of coordinates less constants, a distance from a point, is no less
+    /// than any linear form with a slope of 1 that is 0 there.
+    pub(super) fn projections<'f>(&mut self, forms: impl Iterator<Item = &'f Form>) -> Vec<Form> {
+        let forms: Vec<&Form> = forms.collect();
+        let mut facts = Vec::new();
+        for (root, at) in self.roots() {
+            let Some(point) = self.centre(root) else { continue };
+            let size = point.values().fold(1.0, |size: f64, at| size.max(at.abs()));
+            let minus = Form::default().plus(&Form::variable(at), -1.0);
+            for form in &forms {
+                let slope: f64 = form.factors.values().map(|factor| factor * factor).sum();
+                let value = form.factors.iter().try_fold(form.constant, |sum, (at, factor)| {
+                    Some(sum + factor * point.get(at)?)
+                });
+                let zero = value.is_some_and(|value| value.abs() < ROUNDING * size);
+                if zero && (slope - 1.0).abs() < ROUNDING {
+                    facts.extend([1.0, -1.0].map(|sign| minus.clone().plus(form, sign)));
+                }
+            }
+        }
+        facts
+    }
+
+    fn roots(&self) -> Vec<(Id, usize)> {
+        let root = |(variable, at): (&Variable, &usize)| match variable {
+            Variable::Root(root) => Some((*root, *at)),
+            _ => None,
+        };
+        self.known.iter().filter_map(root).collect()
+    }
+
+    /// The point from which a root is the distance, by coordinate.
+    fn centre(&mut self, root: Id) -> Option<BTreeMap<usize, f64>> {
+        let (parts, all) = squares(self.graph, root);
+        let mut point = BTreeMap::new();
+        for part in parts {
+            let form = self.form(part)?;
+            let mut factors = form.factors.iter();
+            let (variable, factor) = factors.next()?;
+            let alone = factors.next().is_none() && factor.abs() == 1.0;
+            point.insert(*variable, alone.then_some(-form.constant / factor)?);
+        }
+        all.then_some(point)
+    }
+
+    fn of_polynomial(&mut self, polynomial: &Polynomial) -> Form {
+        let mut form = Form::default();
+        for (monomial, factor) in polynomial.terms() {
+            if monomial == [0; 4] {
+                form.constant = factor.to_f64();
+            } else {
+                form.factors.insert(self.of(Variable::Monomial(monomial)), factor.to_f64());
+            }
+        }
+        form
+    }
+
+    /// What is nowhere above 0: minus a square, a distance or a root; and whatever is squared
+    /// under a root, less the root. Beside them, of each root those of which one is nowhere above 0:
+    /// the root, less what is squared under it, each with the one sign or the other.
+    pub(super) fn facts(&mut self) -> (Vec<Form>, Vec<(usize, Vec<Form>)>) {
+        let (mut facts, mut choices) = (Vec::new(), Vec::new());
+        for (variable, at) in self.known.clone() {
+            let minus = Form::default().plus(&Form::variable(at), -1.0);
+            let mut parts = Vec::new();
+            match variable {
+                Variable::Monomial(monomial) => {
+                    if monomial == RADIUS {
+                        let across = [Coord::X, Coord::Y].map(monomial_of).map(Variable::Monomial);
+                        let known = across.iter().filter_map(|v| self.known.get(v).copied());
+                        parts.extend(known.map(Form::variable));
+                    } else if monomial[1..].iter().any(|exponent| exponent % 2 == 1) {
+                        continue;
+                    }
+                }
+                Variable::Root(_) | Variable::Size(_) => {
+                    let (squares, all) = match variable {
+                        Variable::Root(root) => squares(self.graph, root),
+                        Variable::Size(a) => (vec![a], true),
+                        Variable::Monomial(_) => (Vec::new(), false),
+                    };
+                    let count = squares.len();
+                    // Of more variables than there are nothing is known.
+                    let variables = self.known.len();
+                    parts.extend(squares.into_iter().filter_map(|part| self.form(part)));
+                    parts.retain(|form| form.factors.keys().all(|v| *v < variables));
+                    self.known.retain(|_, at| *at < variables);
+                    if all && parts.len() == count && (count == 1 || self.of_space) {
+                        let side = |signs: usize| {
+                            parts.iter().enumerate().fold(Form::variable(at), |sum, (k, part)| {
+                                sum.plus(part, if signs >> k & 1 == 0 { 1.0 } else { -1.0 })
+                            })
+                        };
+                        choices.push((at, (0..1 << count).map(side).collect()));
+                    }
+                }
+            }
+            for part in parts {
+                facts.extend([1.0, -1.0].map(|sign| minus.clone().plus(&part, sign)));
+            }
+            facts.push(minus);
+        }
+        (facts, choices)
+    }
+}
+
+/// One side of a comparison of squares.
+enum Squared {
+    /// The square of a node.
+    Of(Id),
+    /// A sum of squares, whose root is a node.
+    Root(Id),
+}
+
+/// The two sides of a comparison of squares.
+fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
+    let Node::Sub(a, b) = *graph.node(value) else { return None };
+    let side = |id: Id| match *graph.node(id) {
+        Node::Mul(a, b) if a == b => Some(Squared::Of(a)),
+        _ => Some(Squared::Root(graph.find(&Node::Sqrt(id))?)),
+    };
+    Some([side(a)?, side(b)?])
+}
+
+/// Whether a curve compares the squares of what has roots itself.
+pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
+    let root = |id: &Id| matches!(graph.node(*id), Node::Sqrt(_));
+    let of_root = |side: &Squared| match side {
+        Squared::Of(a) => graph.needed([*a]).iter().any(root),
+        Squared::Root(_) => false,
+    };
+    squares_compared(graph, value).is_some_and(|sides| sides.iter().any(of_root))
+}
+
+/// What is squared in a root of a sum of squares, of which an absolute value is one, and whether that
+/// is all of the sum.
+fn squares(graph: &Graph, root: Id) -> (Vec<Id>, bool) {
+    let sum = match *graph.node(root) {
+        Node::Sqrt(sum) => sum,
+        Node::Abs(part) => return (vec![part], true),
+        _ => return (Vec::new(), false),
+    };
+    let (mut open, mut parts, mut all) = (vec![sum], Vec::new(), true);
+    while let Some(id) = open.pop() {
+        match *graph.node(id) {
+            Node::Add(a, b) => open.extend([a, b]),
+            Node::Mul(a, b) if a == b => parts.push(a),
+            Node::Coord(Coord::Q) => all = false,
+            Node::Const(ref value) if !value.is_negative() => all = false,
+            _ => return (Vec::new(), false),
+        }
+    }
+    (parts, all)
+}
