@@ -245,6 +245,19 @@ impl Polynomial {
         Some(sum)
     }
 
+    /// The derivative by one of a monomial's four coordinates.
+    pub(crate) fn derivative(&self, by: usize) -> Polynomial {
+        let mut sum = Polynomial::zero();
+        for (monomial, value) in &self.0 {
+            if monomial[by] > 0 {
+                let mut lower = *monomial;
+                lower[by] -= 1;
+                sum.0.insert(lower, value * &Number::int(i64::from(monomial[by])));
+            }
+        }
+        sum
+    }
+
     /// Whether this is the square of the distance from a point: in d and z, or in x, y and z.
     pub(crate) fn is_squared_distance(&self) -> bool {
         let (one, four) = (Number::int(1), Number::int(4));

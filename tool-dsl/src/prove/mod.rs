@@ -6,13 +6,16 @@
 //! conics that touch imply of each other, `parting` what parts two regions; `survey` goes from box
 //! to box.
 
+mod aim;
 mod cover;
+mod kink;
 mod parting;
 mod root;
 mod rounding;
 mod slope;
 mod survey;
 mod touch;
+mod witness;
 
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
@@ -60,6 +63,13 @@ pub struct RegionFacts {
     pub niceness: Interval,
     /// Whether niceness nowhere grows with depth.
     pub falls: bool,
+    /// The angle between the direction and the steepest way down, in radians, where there is one.
+    pub aside: Interval,
+    /// Boxes where the direction vanishes; there it is along z.
+    pub singular: Vec<Cell>,
+    /// Whether the direction is across an axis that the region touches, and so turns there by up to a
+    /// half turn.
+    pub on_axis: bool,
     /// How far rounding can take the computed depth from its expression's true value, in the file's
     /// unit: of `f64`, and of `f32`, each of a point that is given in that format.
     pub rounding: [f64; 2],
@@ -74,6 +84,9 @@ impl RegionFacts {
         magnitude: ZERO,
         niceness: ZERO,
         falls: true,
+        aside: ZERO,
+        singular: Vec::new(),
+        on_axis: false,
         rounding: [0.0; 2],
     };
 }
@@ -87,12 +100,16 @@ pub struct Border {
     pub curve: CurveIndex,
     /// How far their depths differ on it, 0 if they agree exactly; outside the depth is 0.
     pub jump: Interval,
+    /// How far their magnitudes differ on it at most.
+    pub step: Interval,
     /// The angle between their directions, in radians.
     pub turn: Interval,
     /// The same where they meet on the surface, if they do.
     pub turn_on_surface: Option<Interval>,
     /// The depths at which they meet.
     pub depth: Interval,
+    /// A point of the tool's frame beside which depth jumps, if one was found.
+    pub seen: Option<[f64; 3]>,
 }
 
 /// A box where a proof did not come to an end, and what was to be proved.

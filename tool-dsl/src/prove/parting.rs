@@ -7,7 +7,7 @@ use super::touch::Touch;
 use crate::expr::Node;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
-use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::linear::Linear;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -62,6 +62,8 @@ pub(super) struct Parting<'m> {
     linear: Linear,
     /// Whether of two depths each is the lesser where its own claim is, or both are 0.
     lower: HashMap<(Pair, [Ways; 2]), bool>,
+    /// Whether a claim has no point of a region.
+    excluded: HashMap<(usize, Ways), bool>,
     touches: HashMap<(CurveIndex, CurveIndex), Tried>,
     /// The present box.
     cell: Cell,
@@ -82,6 +84,7 @@ impl<'m> Parting<'m> {
             by_linear: HashMap::new(),
             linear: Linear::with_depths(model, cell),
             lower: HashMap::new(),
+            excluded: HashMap::new(),
             touches: HashMap::new(),
             cell,
         }
@@ -95,6 +98,59 @@ impl<'m> Parting<'m> {
     /// Whether a region's depth is a root without more.
     pub(super) fn is_length(&self, region: usize) -> bool {
         self.depths[region].as_ref().is_some_and(Rooted::is_length)
+    }
+
+    /// The form of a region's depth.
+    pub(super) fn depth(&self, region: usize) -> Option<&Rooted> {
+        self.depths[region].as_ref()
+    }
+
+    /// Whether a claim's owner is the one that the list of regions gives its points, but for borders, and
+    /// none other has them too.
+    pub(super) fn is_right(&mut self, claim: &Claim, place: (&mut Cover<'_>, Cell)) -> bool {
+        let (cover, cell) = place;
+        self.cell = cell;
+        // A line or a point.
+        if claim.signs.iter().any(|(_, signs)| *signs == ZERO) {
+            return true;
+        }
+        let model = self.model;
+        let mut sign = |curve: CurveIndex| self.sign_on(claim, curve, cover);
+        let own = |owner: usize| model.regions[owner].inside.decided_by(&mut sign) == Some(true);
+        if !claim.owner.is_none_or(own) {
+            return false;
+        }
+        (0..model.regions.len()).all(|other| {
+            let mut open = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
+            Some(other) == claim.owner
+                || model.regions[other].inside.decided_by(&mut open) == Some(false)
+                || self.excluded(claim, other)
+        })
+    }
+
+    /// Whether, by what is linear, no point of a claim is a region's, but for borders.
+    fn excluded(&mut self, claim: &Claim, region: usize) -> bool {
+        let key = (region, ways(claim));
+        if let Some(known) = self.excluded.get(&key) {
+            return *known;
+        }
+        let way = self.signs(&key.1);
+        let linear = &self.linear;
+        // Borders left out, of one of its choices.
+        let empty = |demands: &[&Formula]| {
+            let mut demanded = vec![ANY; way.len()];
+            demands.iter().for_each(|formula| formula.demand(&mut demanded));
+            let mut signs = way.clone();
+            for (sign, demanded) in signs.iter_mut().zip(demanded) {
+                *sign &= if demanded == ANY { ANY } else { demanded & !ZERO };
+            }
+            signs.contains(&0) || linear.contradictory(&signs)
+        };
+        let inside = &self.model.regions[region].inside;
+        let none = |choices: &&[Formula]| choices.iter().all(|choice| empty(&[inside, choice]));
+        let excluded = empty(&[inside]) || inside.choices().iter().any(none);
+        self.excluded.insert(key, excluded);
+        excluded
     }
 
     /// A curve on whose sides two claims to a box are, and how their depths agree where they meet; none

@@ -167,6 +167,16 @@ impl Rooted {
         (smooth || difference.vanishes_on(curve)).then_some(Agreement { smooth, branch })
     }
 
+    /// Polynomials in the direction in which the form grows or in the opposite, by each of a monomial's
+    /// four coordinates.
+    pub(super) fn course(&self) -> Option<[Polynomial; 4]> {
+        let under = match &self.root {
+            None => &self.plain,
+            Some((_, p)) => self.plain.constant().map(|_| p)?,
+        };
+        Some([0, 1, 2, 3].map(|by| under.derivative(by)))
+    }
+
     /// The polynomial, if it is no more than that.
     pub(super) fn plain(&self) -> Option<&Polynomial> {
         self.root.is_none().then_some(&self.plain)

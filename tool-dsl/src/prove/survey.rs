@@ -1,17 +1,19 @@
 //! Box after box: what is felt in each region, and what changes from one to the next.
 
+use super::aim::{self, Aim};
 use super::cover::{Boxes, Claim, Cover, reach};
+use super::kink::{ROUNDING, across, angle};
 use super::parting::{Joint, Pair, Parted, Parting};
 use super::rounding::Errors;
 use super::slope::{Slope, Slopes};
+use super::witness::Witness;
 use super::{Border, Certificate, RegionFacts, TOLERANCE, Undecided};
 use crate::Checked;
 use crate::domain::Domain;
+use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
-use crate::expr::value::{At, Evaluator};
 use crate::formula::CurveIndex;
-use crate::plan::spread;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
 const FINE: f64 = 1.0 / 56.0;
@@ -22,18 +24,12 @@ const SMALL: f64 = 1.0 / 1024.0;
 const FINEST: f64 = TOLERANCE / 10.0;
 /// More claims to a box are not compared two by two.
 const CROWD: usize = 48;
-/// Points at which shares are counted.
-const SPREAD: usize = 10_000;
 /// Inside a region a box is divided until its slope is known so well.
 const SLACK: f64 = 0.02;
 /// A border where depth may fall less steeply is looked at in smaller boxes.
 const SLOPING: f64 = 0.9;
 /// And in still smaller ones, as long as slopes are known no better than that.
 const VAGUE: f64 = 0.1;
-/// How far it is looked about points, as parts of the tool's size.
-const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
-/// What of a slope is rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// Proves what can be proved in so many boxes.
 pub(super) fn survey(tool: &Checked, boxes: usize) -> Certificate {
@@ -64,24 +60,25 @@ impl Grain {
 struct Met {
     pair: Pair,
     by: Parted,
-    /// Whether points of both were seen side by side.
-    seen: bool,
+    /// Where points of both were seen side by side, with a jump between.
+    seen: Option<[f64; 3]>,
 }
 
 struct Survey<'t> {
     tool: &'t Checked,
     cover: Cover<'t>,
     slopes: Slopes<'t>,
-    values: Evaluator<'t>,
+    witness: Witness<'t>,
     errors: Errors<'t>,
     parting: Parting<'t>,
     size: f64,
     /// Boxes on a border are divided to this part of the tool's size.
     fine: f64,
     regions: Vec<Option<RegionFacts>>,
+    aims: Vec<Aim>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
-    /// Where two owners were seen side by side, with a jump between.
-    jumping: BTreeSet<(Pair, CurveIndex)>,
+    /// A point where two owners are side by side, with a jump between.
+    jumping: BTreeMap<(Pair, CurveIndex), [f64; 3]>,
     /// The least slope toward the surface.
     least: f64,
     /// The same from boxes that are as good as points.
@@ -94,12 +91,14 @@ impl<'t> Survey<'t> {
     fn new(tool: &'t Checked) -> Survey<'t> {
         let model = &tool.model;
         let felt = model.regions.iter().flat_map(|region| {
-            [region.depth, region.magnitude, region.niceness].into_iter().chain(region.direction)
+            let felt = [region.depth, region.magnitude, region.niceness];
+            felt.into_iter().chain(region.direction).chain(region.course.0)
         });
         let roots = felt.chain(model.curves.iter().map(|curve| curve.value));
-        let depths = model.regions.iter().map(|region| region.depth);
-        let asked = depths.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
+        let parting = Parting::new(model, reach(&whole), whole);
+        let aim = |(index, region)| Aim::new(aim::straight(model, region, parting.depth(index)));
+        let aims = model.regions.iter().enumerate().map(aim).collect();
         Survey {
             tool,
             cover: Cover::new(model, &tool.plan.owner),
@@ -109,16 +108,17 @@ impl<'t> Survey<'t> {
                 model.domain,
                 model.regions.iter().map(|region| region.depth),
             ),
-            values: Evaluator::new(&model.graph, asked),
-            parting: Parting::new(model, reach(&whole), whole),
+            witness: Witness::new(tool, reach(&whole)),
+            parting,
             size: reach(&whole),
             fine: match model.domain {
                 Domain::HalfPlane => FINE,
                 Domain::Space => FINE_OF_SPACE,
             },
             regions: vec![None; model.regions.len()],
+            aims,
             borders: BTreeMap::new(),
-            jumping: BTreeSet::new(),
+            jumping: BTreeMap::new(),
             least: f64::INFINITY,
             least_from_points: f64::INFINITY,
             undecided: Vec::new(),
@@ -140,17 +140,40 @@ impl<'t> Survey<'t> {
                 _ => Grain::Coarse,
             };
             let done = match owners.as_slice() {
-                [None] => true,
-                [Some(owner)] => self.within(*owner, cell, grain),
+                [None] => self.owned(cell, &claims, grain),
+                [Some(owner)] => {
+                    self.owned(cell, &claims, grain) && self.within(*owner, cell, grain)
+                }
                 _ if grain == Grain::Coarse => false,
                 _ if claims.len() > CROWD && grain == Grain::Fine => false,
-                _ => self.between(cell, &claims, &owners, grain),
+                _ => {
+                    self.owned(cell, &claims, grain) && self.between(cell, &claims, &owners, grain)
+                }
             };
             if !done {
                 boxes.divide(cell);
             }
         }
         self.boxes = boxes.count;
+    }
+
+    /// Whether the owners of a box are those that the list of regions says, as far as that is looked at.
+    ///
+    /// Of a profile's regions it follows from what is proved of depth: where that is the distance, its
+    /// owner is the nearest.
+    fn owned(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
+        if self.tool.model.is_exact() || grain == Grain::Point {
+            return true;
+        }
+        let wrong =
+            claims.iter().find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell)));
+        if let (Some(claim), Grain::Last) = (wrong, grain) {
+            let name = |owner: usize| format!("`{}`", self.tool.model.regions[owner].name);
+            let owner = claim.owner.map_or_else(|| "the outside".to_owned(), name);
+            self.undecided.push(Undecided { cell, what: format!("that {owner} alone has it") });
+            return true;
+        }
+        wrong.is_none()
     }
 
     /// Whether enough is known of a box that one region has.
@@ -160,6 +183,12 @@ impl<'t> Survey<'t> {
         let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
         let positive = depth.value.low >= -TOLERANCE * self.size;
         let falls = self.fall(owner) > 0.0;
+        // Where a direction vanishes is told well in the half plane, where that is a point.
+        let plane = self.tool.model.domain == Domain::HalfPlane;
+        let large = grain == Grain::Coarse || plane && reach(&cell) > SMALL * self.size;
+        if !grain.is_last() && large && aim::vanishes(self.course(owner)) {
+            return false;
+        }
         if !grain.is_last() && !(positive && falls && (known || grain == Grain::Fine)) {
             return false;
         }
@@ -207,43 +236,20 @@ impl<'t> Survey<'t> {
     /// Notes how steeply depth falls from any point of a box.
     fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
         if grain == Grain::Point {
-            let least = self.fall_from(owners, cell);
+            let middle = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+            self.slopes.set(Cell { sides: middle.map(|at| Interval::new(at, at)) });
+            let slope = |owner: &usize| {
+                let slope = self.slopes.get(self.tool.model.regions[*owner].depth);
+                slope.parts.map(|part| part.low / 2.0 + part.high / 2.0)
+            };
+            let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
+            let least = self.witness.fall_from(middle, slopes);
             self.least_from_points = self.least_from_points.min(least);
         } else {
             for owner in owners.iter().flatten() {
                 self.least = self.least.min(self.fall(*owner));
             }
         }
-    }
-
-    /// How much less deep it is some way from a box that is as good as a point, by that way.
-    fn fall_from(&mut self, owners: &[Option<usize>], cell: Cell) -> f64 {
-        let middle = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
-        let deep = self.depth(middle);
-        if deep <= TOLERANCE * self.size {
-            return f64::INFINITY;
-        }
-        self.slopes.set(Cell { sides: middle.map(|at| Interval::new(at, at)) });
-        let mut steepest = 0.0f64;
-        for owner in owners.iter().flatten() {
-            let slope = self.slopes.get(self.tool.model.regions[*owner].depth);
-            let up = slope.parts.map(|part| part.low / 2.0 + part.high / 2.0);
-            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
-            for part in STEPS {
-                let way = (part * self.size).min(deep);
-                let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
-                if to.iter().all(|part| part.is_finite()) {
-                    steepest = steepest.max((deep - self.depth(to)) / way);
-                }
-            }
-        }
-        steepest
-    }
-
-    /// The depth at a point, 0 outside.
-    fn depth(&mut self, point: [f64; 3]) -> f64 {
-        let owner = self.owner(point);
-        owner.map_or(0.0, |owner| self.values.get(self.tool.model.regions[owner].depth))
     }
 
     /// Notes what is felt in a box, of a region that has all of it or a part.
@@ -266,6 +272,8 @@ impl<'t> Survey<'t> {
             ..RegionFacts::NONE
         };
         self.at_axis(depth, cell);
+        let course = self.course(owner);
+        self.aims[owner].note(course, depth, cell, self.tool.model.domain);
         let facts = &mut self.regions[owner];
         *facts = Some(match facts.take() {
             None => here,
@@ -281,6 +289,10 @@ impl<'t> Survey<'t> {
         });
     }
 
+    fn course(&mut self, owner: usize) -> [Interval; 3] {
+        self.tool.model.regions[owner].course.0.map(|part| self.slopes.get(part).value)
+    }
+
     /// A depth that grows away from the axis has a kink there, at which only its slope along the
     /// axis leads down.
     fn at_axis(&mut self, depth: Slope, cell: Cell) {
@@ -288,18 +300,6 @@ impl<'t> Survey<'t> {
         if tool && cell.sides[0].low <= 0.0 && depth.parts[0].high > ROUNDING {
             self.least = self.least.min(depth.parts[2].abs().low);
         }
-    }
-
-    /// How much of the solid each region has, of evenly spread points.
-    fn shares(&mut self) -> Vec<f64> {
-        let mut counts = vec![0.0; self.regions.len()];
-        for point in spread(self.tool.model.domain, &self.tool.extent, SPREAD, 0.0) {
-            if let Some(owner) = self.owner(point) {
-                counts[owner] += 1.0;
-            }
-        }
-        let all: f64 = counts.iter().sum();
-        counts.iter().map(|count| count / all.max(1.0)).collect()
     }
 
     /// Whether what happens between the owners of a box is known well enough.
@@ -320,7 +320,7 @@ impl<'t> Survey<'t> {
                 let apart = self.jump(pair).low > 0.0;
                 let place = (&mut self.cover, cell);
                 if let Some(by) = self.parting.of(pair, [a, b], place, apart) {
-                    all.push(Met { pair, by, seen: false });
+                    all.push(Met { pair, by, seen: None });
                 }
             }
         }
@@ -329,13 +329,12 @@ impl<'t> Survey<'t> {
         for met in &mut all {
             let apart = met.by.joint == Joint::None && self.jump(met.pair).low > 0.0;
             let place = (met.pair, met.by.curve);
-            met.seen = apart
-                && (small || grain.is_last())
-                && (self.jumping.contains(&place) || self.beside(met.pair, cell));
-            if met.seen {
-                self.jumping.insert(place);
+            if apart && (small || grain.is_last()) && !self.jumping.contains_key(&place) {
+                let seen = self.witness.beside(met.pair, cell);
+                self.jumping.extend(seen.map(|seen| (place, seen)));
             }
-            if met.by.joint == Joint::None && !met.seen && !grain.is_last() {
+            met.seen = if apart { self.jumping.get(&place).copied() } else { None };
+            if met.by.joint == Joint::None && met.seen.is_none() && !grain.is_last() {
                 return false;
             }
             // At points others come between.
@@ -365,61 +364,6 @@ impl<'t> Survey<'t> {
         across(own, other, curve, met.by.below)
     }
 
-    /// Whether two owners have points side by side in a box, of a few.
-    fn beside(&mut self, (own, other): Pair, cell: Cell) -> bool {
-        let steps = 6;
-        let at = |axis: usize, k: u32| {
-            let side = cell.sides[axis];
-            side.low + (side.high - side.low) * f64::from(k) / f64::from(steps)
-        };
-        let axes: &[usize] = match self.tool.model.domain {
-            Domain::HalfPlane => &[0, 2],
-            Domain::Space => &[0, 1, 2],
-        };
-        // Along diagonals and across, from each of a row of points to the next.
-        let mut before = None;
-        for first in 0..=steps {
-            for second in 0..=steps {
-                let mut p = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
-                for (k, axis) in axes.iter().enumerate() {
-                    p[*axis] = at(*axis, if k == 0 { first } else { second });
-                }
-                let here = self.owner(p);
-                if let Some((last, owner)) = before
-                    && [[owner, here], [here, owner]].contains(&[Some(own), other])
-                    && self.jumps([last, p], [owner, here])
-                {
-                    return true;
-                }
-                before = (second < steps).then_some((p, here));
-            }
-        }
-        false
-    }
-
-    /// Whether two points of different owners have their border between them, and depth jumps there.
-    fn jumps(&mut self, [mut a, mut b]: [[f64; 3]; 2], owners: [Option<usize>; 2]) -> bool {
-        for _ in 0..60 {
-            let middle = [0, 1, 2].map(|k| a[k] / 2.0 + b[k] / 2.0);
-            match self.owner(middle) {
-                owner if owner == owners[0] => a = middle,
-                owner if owner == owners[1] => b = middle,
-                _ => return false,
-            }
-        }
-        let regions = &self.tool.model.regions;
-        self.owner(a);
-        let [first, second] =
-            owners.map(|owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth)));
-        (first - second).abs() > TOLERANCE * self.size
-    }
-
-    fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
-        self.values.set(At::point(x, y, z));
-        let curves = &self.tool.model.curves;
-        *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
-    }
-
     /// How far apart two depths are in the present box.
     fn jump(&mut self, (own, other): Pair) -> Interval {
         let regions = &self.tool.model.regions;
@@ -442,7 +386,7 @@ impl<'t> Survey<'t> {
             }
         };
         // Where no more is divided, a jump that may be none is one of a corner.
-        if met.by.joint == Joint::None && !met.seen && jump.high > TOLERANCE * self.size {
+        if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
             let to = other.map_or_else(
                 || "the outside".to_owned(),
                 |other| format!("`{}`", regions[other].name),
@@ -450,18 +394,33 @@ impl<'t> Survey<'t> {
             let what = format!("that depth goes on from `{}` to {to}", regions[own].name);
             self.undecided.push(Undecided { cell, what });
         }
+        let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
+        let [of_own, of_other] = [Some(own), other].map(|owner| owner.map(magnitude));
+        let same = |of: Option<(Id, Id)>| of.is_none_or(|(magnitude, depth)| magnitude == depth);
+        let felt = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
+            of.map_or(NOTHING, |(magnitude, _)| survey.slopes.get(magnitude).value)
+        };
+        let step = if same(of_own) && same(of_other) {
+            jump
+        } else {
+            felt(self, of_own).plus(felt(self, of_other).negated()).abs()
+        };
         let here = Border {
             between: met.pair,
             curve: met.by.curve,
             jump,
+            step,
             turn,
             turn_on_surface: (depth.value.low <= 0.0).then_some(turn),
+            seen: met.seen,
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };
         self.borders
             .entry((met.pair, met.by.curve))
             .and_modify(|known| {
                 known.jump = known.jump.hull(here.jump);
+                known.seen = known.seen.or(here.seen);
+                known.step = known.step.hull(here.step);
                 known.turn = known.turn.hull(here.turn);
                 known.turn_on_surface = match (known.turn_on_surface, here.turn_on_surface) {
                     (Some(a), Some(b)) => Some(a.hull(b)),
@@ -473,12 +432,15 @@ impl<'t> Survey<'t> {
     }
 
     fn certificate(mut self) -> Certificate {
-        let shares = self.shares();
-        let facts = self.regions.into_iter().zip(shares).enumerate();
+        let shares = self.witness.shares();
+        let facts = self.regions.into_iter().zip(shares).zip(self.aims).enumerate();
         let regions: Vec<RegionFacts> = facts
-            .map(|(index, (facts, share))| RegionFacts {
+            .map(|(index, ((facts, share), aim))| RegionFacts {
                 share,
                 distance: self.parting.is_distance(index),
+                aside: aim.off.unwrap_or(NOTHING),
+                singular: aim.singular,
+                on_axis: aim.on_axis,
                 ..facts.unwrap_or(RegionFacts::NONE)
             })
             .collect();
@@ -493,38 +455,4 @@ impl<'t> Survey<'t> {
             boxes: self.boxes,
         }
     }
-}
-
-/// The angle between two unit vectors, in radians.
-fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
-    let product = (0..3).fold(NOTHING, |sum, k| sum.plus(a[k].times(b[k])));
-    let [low, high] = [product.high, product.low].map(|cos| cos.clamp(-1.0, 1.0).acos());
-    // acos is known to a few units of the last place.
-    Interval { low: (low - 1e-15).max(0.0), high: high + 1e-15 }
-}
-
-/// How steeply depth falls at least toward one of the sides of a border on which two depths agree, and
-/// how well that is known.
-///
-/// Where each is the smaller on its own side, both ways lead down. Else depth falls along every
-/// combination of the two slopes, and so by the shortest of them at least (Clarke 1983).
-fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f64, f64) {
-    let middle = |part: Interval| part.low / 2.0 + part.high / 2.0;
-    let rises =
-        [0, 1, 2].map(|k| own.parts[k].plus(other.parts[k].negated()).times(curve.parts[k]));
-    let rise = rises.into_iter().fold(NOTHING, Interval::plus);
-    let combined = [0, 1, 2].map(|k| [middle(own.parts[k]), middle(other.parts[k])]);
-    let widths = own.parts.iter().chain(&other.parts).map(|part| part.high - part.low);
-    let slack = widths.fold(0.0, f64::max);
-    let falls = if below { rise.low } else { -rise.high };
-    if falls >= -ROUNDING * curve.length.high {
-        return (f64::INFINITY, 0.0);
-    }
-    let way = combined.map(|[a, b]| b - a);
-    let [start, long] =
-        [combined.map(|[a, _]| a), way].map(|v| v.iter().zip(way).map(|(a, b)| a * b).sum::<f64>());
-    let part = if long > 0.0 { (-start / long).clamp(0.0, 1.0) } else { 0.0 };
-    let nearest = combined.map(|[a, b]| a + part * (b - a));
-    // Each end is known to half its width.
-    (nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack, slack)
 }

@@ -1,0 +1,123 @@
+//! Where directions lead: whether that is straight down the depth, and where they vanish.
+
+use super::kink::angle;
+use super::root::Rooted;
+use super::slope::Slope;
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
+use crate::expr::{Graph, Id, Node};
+use crate::model::{Model, Region};
+use crate::number::Number;
+use std::f64::consts::PI;
+
+/// What is known of a region's direction.
+#[derive(Clone)]
+pub(super) struct Aim {
+    /// Whether it is along the depth's slope, one way or the other.
+    pub(super) straight: bool,
+    /// The angle between it and the steepest way down.
+    pub(super) off: Option<Interval>,
+    /// Boxes where it may vanish.
+    pub(super) singular: Vec<Cell>,
+    /// Whether it has a part across an axis that the region touches, where that may point anywhere.
+    pub(super) on_axis: bool,
+}
+
+impl Aim {
+    pub(super) fn new(straight: bool) -> Aim {
+        Aim { straight, off: None, singular: Vec::new(), on_axis: false }
+    }
+
+    /// Notes what is known over a box.
+    pub(super) fn note(&mut self, course: [Interval; 3], depth: Slope, cell: Cell, domain: Domain) {
+        match off(course, depth, self.straight) {
+            Some(off) => self.off = Some(self.off.map_or(off, |known| known.hull(off))),
+            None if vanishes(course) => {
+                let near = self.singular.iter().position(|known| known.meets(&cell));
+                let known = near.map(|at| self.singular.swap_remove(at));
+                self.singular.push(known.map_or(cell, |known| known.hull(&cell)));
+            }
+            None => {}
+        }
+        let axis = domain == Domain::HalfPlane && cell.sides[0].low <= 0.0;
+        self.on_axis |= axis && course[0] != ZERO;
+    }
+}
+
+/// Whether a region's direction is along its depth's slope, one way or the other: by an identity.
+pub(super) fn straight(model: &Model, region: &Region, depth: Option<&Rooted>) -> bool {
+    let Some(slope) = depth.and_then(Rooted::course) else { return false };
+    let mut polynomials = Polynomials::default();
+    let undivided: Vec<(Id, i64, Option<Id>)> =
+        region.course.0.iter().map(|part| undivided(&model.graph, *part)).collect();
+    let is_zero = |id: Id| model.graph.constant(id).is_some_and(Number::is_zero);
+    let mut divisors = undivided.iter().filter(|(part, ..)| !is_zero(*part)).map(|(.., by)| by);
+    let first = divisors.next();
+    if !divisors.all(|by| Some(by) == first) {
+        return false;
+    }
+    let parts: Option<Vec<(Polynomial, &Polynomial)>> = model
+        .domain
+        .coordinates()
+        .iter()
+        .map(|(coord, axis, _)| {
+            let (part, sign, _) = undivided[*axis];
+            let part = polynomials.of(&model.graph, part)?.scaled(&Number::int(sign));
+            let by = monomial_of(*coord).iter().position(|exponent| *exponent > 0)?;
+            Some((part, &slope[by]))
+        })
+        .collect();
+    let Some(parts) = parts else { return false };
+    let parallel = |(a, u): &(Polynomial, &Polynomial), (b, v): &(Polynomial, &Polynomial)| {
+        let cross = a.times(v)?.plus(&b.times(u)?.scaled(&Number::int(-1)));
+        Some(cross.is_nothing())
+    };
+    let mut pairs = parts
+        .iter()
+        .enumerate()
+        .flat_map(|(k, a)| parts[k + 1..].iter().map(move |b| parallel(a, b).unwrap_or(false)));
+    pairs.all(|parallel| parallel)
+}
+
+/// A part of a vector without its sign and without the root that it is divided by.
+fn undivided(graph: &Graph, part: Id) -> (Id, i64, Option<Id>) {
+    match *graph.node(part) {
+        Node::Neg(a) => {
+            let (a, sign, by) = undivided(graph, a);
+            (a, -sign, by)
+        }
+        Node::Div(a, by) | Node::Quotient(a, by) if matches!(graph.node(by), Node::Sqrt(_)) => {
+            (a, 1, Some(by))
+        }
+        _ => (part, 1, None),
+    }
+}
+
+/// The angle between a course and the steepest way down over a box, if the course does not vanish
+/// there; of one that is `straight` exactly.
+fn off(course: [Interval; 3], depth: Slope, straight: bool) -> Option<Interval> {
+    let down = depth.parts.map(Interval::negated);
+    let along = (0..3).fold(ZERO, |sum, k| sum.plus(course[k].times(down[k])));
+    match along {
+        _ if vanishes(course) => None,
+        Interval { low, .. } if straight && low > 0.0 => Some(ZERO),
+        Interval { high, .. } if straight && high < 0.0 => Some(Interval { low: PI, high: PI }),
+        _ if straight => None,
+        _ => {
+            let unit = |vector: [Interval; 3], length: Interval| {
+                let per = length.reciprocal();
+                let one = Interval { low: -1.0, high: 1.0 };
+                vector.map(|part| part.times(per).common(one))
+            };
+            let squares = course.map(Interval::square);
+            let length = squares[0].plus(squares[1]).plus(squares[2]).sqrt();
+            Some(angle(unit(course, length), unit(down, depth.length)))
+        }
+    }
+}
+
+/// Whether a vector may be 0.
+pub(super) fn vanishes(vector: [Interval; 3]) -> bool {
+    vector.iter().all(|part| part.low <= 0.0 && part.high >= 0.0)
+}

@@ -1,0 +1,133 @@
+//! What single points show: jumps, and ways along which depth falls.
+
+use super::TOLERANCE;
+use super::parting::Pair;
+use crate::Checked;
+use crate::domain::Domain;
+use crate::expr::interval::Cell;
+use crate::expr::value::{At, Evaluator};
+use crate::formula::CurveIndex;
+use crate::plan::spread;
+
+/// Points at which shares are counted.
+const SPREAD: usize = 10_000;
+/// How far it is looked about points, as parts of the tool's size.
+const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
+
+/// Asks of points what is felt there.
+pub(super) struct Witness<'t> {
+    tool: &'t Checked,
+    values: Evaluator<'t>,
+    size: f64,
+}
+
+impl<'t> Witness<'t> {
+    pub(super) fn new(tool: &'t Checked, size: f64) -> Witness<'t> {
+        let model = &tool.model;
+        let depths = model.regions.iter().map(|region| region.depth);
+        let asked = depths.chain(model.curves.iter().map(|curve| curve.value));
+        Witness { tool, values: Evaluator::new(&model.graph, asked), size }
+    }
+
+    /// How much of the solid each region has, of evenly spread points.
+    pub(super) fn shares(&mut self) -> Vec<f64> {
+        let mut counts = vec![0.0; self.tool.model.regions.len()];
+        for point in spread(self.tool.model.domain, &self.tool.extent, SPREAD, 0.0) {
+            if let Some(owner) = self.owner(point) {
+                counts[owner] += 1.0;
+            }
+        }
+        let all: f64 = counts.iter().sum();
+        counts.iter().map(|count| count / all.max(1.0)).collect()
+    }
+
+    /// How much less deep it is some way from a point, by that way; of ways straight down the slopes that
+    /// are given, the steepest.
+    pub(super) fn fall_from(
+        &mut self,
+        from: [f64; 3],
+        slopes: impl IntoIterator<Item = [f64; 3]>,
+    ) -> f64 {
+        let deep = self.depth(from);
+        if deep <= TOLERANCE * self.size {
+            return f64::INFINITY;
+        }
+        let mut steepest = 0.0f64;
+        for up in slopes {
+            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
+            for part in STEPS {
+                let way = (part * self.size).min(deep);
+                let to = [0, 1, 2].map(|k| from[k] - way * up[k] / long);
+                if to.iter().all(|part| part.is_finite()) {
+                    steepest = steepest.max((deep - self.depth(to)) / way);
+                }
+            }
+        }
+        steepest
+    }
+
+    /// Where two owners have points side by side in a box and depth jumps between them, of a few.
+    pub(super) fn beside(&mut self, (own, other): Pair, cell: Cell) -> Option<[f64; 3]> {
+        let steps = 6;
+        let at = |axis: usize, k: u32| {
+            let side = cell.sides[axis];
+            side.low + (side.high - side.low) * f64::from(k) / f64::from(steps)
+        };
+        let axes: &[usize] = match self.tool.model.domain {
+            Domain::HalfPlane => &[0, 2],
+            Domain::Space => &[0, 1, 2],
+        };
+        // Along diagonals and across, from each of a row of points to the next.
+        let mut before = None;
+        for first in 0..=steps {
+            for second in 0..=steps {
+                let mut p = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+                for (k, axis) in axes.iter().enumerate() {
+                    p[*axis] = at(*axis, if k == 0 { first } else { second });
+                }
+                let here = self.owner(p);
+                if let Some((last, owner)) = before
+                    && [[owner, here], [here, owner]].contains(&[Some(own), other])
+                    && let Some(place) = self.jumps([last, p], [owner, here])
+                {
+                    return Some(place);
+                }
+                before = (second < steps).then_some((p, here));
+            }
+        }
+        None
+    }
+
+    /// Where two points of different owners have their border between them, if depth jumps there.
+    fn jumps(
+        &mut self,
+        [mut a, mut b]: [[f64; 3]; 2],
+        owners: [Option<usize>; 2],
+    ) -> Option<[f64; 3]> {
+        for _ in 0..60 {
+            let middle = [0, 1, 2].map(|k| a[k] / 2.0 + b[k] / 2.0);
+            match self.owner(middle) {
+                owner if owner == owners[0] => a = middle,
+                owner if owner == owners[1] => b = middle,
+                _ => return None,
+            }
+        }
+        let regions = &self.tool.model.regions;
+        self.owner(a);
+        let [first, second] =
+            owners.map(|owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth)));
+        ((first - second).abs() > TOLERANCE * self.size).then_some(a)
+    }
+
+    pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
+        self.values.set(At::point(x, y, z));
+        let curves = &self.tool.model.curves;
+        *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
+    }
+
+    /// The depth at a point, 0 outside.
+    fn depth(&mut self, point: [f64; 3]) -> f64 {
+        let owner = self.owner(point);
+        owner.map_or(0.0, |owner| self.values.get(self.tool.model.regions[owner].depth))
+    }
+}
