@@ -102,13 +102,7 @@ fn the_exact_tool_is_exact() {
 }
 
 /// Tools whose proof does not come to its end, and what is missing.
-const OPEN: [(&str, &str); 5] = [
-    ("Barrel", "continuity beside the flat flank"),
-    ("Block", "continuity along edges of space"),
-    ("BoringBar", "a lower bound"),
-    ("DrillBt40", "continuity beside the flat fillet"),
-    ("LBracket", "continuity along edges of space"),
-];
+const OPEN: [(&str, &str); 1] = [("DrillBt40", "continuity beside the concave fillet")];
 
 #[test]
 fn every_tool_of_the_library_is_proved_but_for_these() {
@@ -179,13 +173,17 @@ fn a_steeper_depth_has_a_larger_bound() {
 }
 
 /// A ball of radius 3 with a core of radius 1 where something else is felt.
-fn cored(depth: &str) -> Certificate {
-    Certificate::of(&text(&format!(
+fn core(depth: &str) -> String {
+    format!(
         "tool Core {{ units mm; curve r = hypot(d, z - 3);
            region core where r <= 1 {{ depth: {depth}; direction: away from (0, 3); }}
            region shell where 1 <= r <= 3 {{ depth: 3 - r; direction: away from (0, 3); }}
          }}"
-    )))
+    )
+}
+
+fn cored(depth: &str) -> Certificate {
+    Certificate::of(&text(&core(depth)))
 }
 
 /// Points of a region that show how much it rounds.
@@ -249,18 +247,78 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
 
 #[test]
 fn jumps_are_found() {
-    let largest = |proved: &Certificate| {
-        assert!(!proved.is_continuous() && proved.lipschitz().is_none());
-        proved.borders.iter().map(|border| border.jump.high).fold(0.0, f64::max)
+    let said = |depth: &str| {
+        let source = Source::new("core.tool", &core(depth));
+        let compiled = compile(&source);
+        assert!(compiled.tool.is_none());
+        compiled.reports.into_iter().map(|report| report.message).collect::<Vec<_>>()
     };
     // 4 instead of 2 at the core.
-    let jump = largest(&cored("2*(3 - r)"));
-    assert!((2.0..2.1).contains(&jump), "{jump}");
+    let wrong = said("2*(3 - r)");
+    assert!(wrong.len() == 1 && wrong[0].contains("depth jumps from 4 to 2"), "{wrong:?}");
     // The difference is (1 + r)/2, whose square's other root is 0 at the core.
-    let jump = largest(&cored("3.5 - r/2"));
-    assert!((1.0..1.1).contains(&jump), "{jump}");
+    let wrong = said("3.5 - r/2");
+    assert!(wrong.len() == 1 && wrong[0].contains("depth jumps from 3 to 2"), "{wrong:?}");
     assert!(cored("3 - r").is_exact());
     // No jump, but a kink: how steep it is there is known as well as its boxes are small.
     let (least, most) = bounds(&cored("2 + 2*(1 - r)"));
     assert!((0.85..=1.0).contains(&least) && (most - 2.0).abs() < 1e-12, "{least} {most}");
+}
+
+/// A depth that is least in the middle leads nowhere from there, however steep it is beside.
+#[test]
+fn a_pit_in_the_middle_bounds_nothing() {
+    let ring = |depth: &str| {
+        text(&format!(
+            "tool Ring {{ units mm; let m = 6; curve r = hypot(d - m, z - 3);
+               region core where r <= 1 {{ depth: {depth}; direction: away from (6, 3); }}
+               region shell where 1 <= r, r <= 3 {{ depth: 3 - r; direction: away from (6, 3); }}
+             }}"
+        ))
+    };
+    assert!(Certificate::of(&ring("3 - r")).is_exact());
+    // 1 deep in the middle, which is 3 from the surface.
+    let proved = Certificate::of(&ring("1 + r"));
+    assert!(proved.lipschitz().is_some() && proved.least().is_none(), "{:?}", proved.least());
+    let proved = Certificate::of(&ring("1 + max(r, 0.5)"));
+    assert!(proved.least().is_none(), "{:?}", proved.least());
+    // Four slopes that rise from a point.
+    let proved = Certificate::of(&text(
+        "tool Frame { units mm; tip z = 2; curve u = d - 5; curve v = z - 5;
+           region low where abs(u) <= -v, -v <= 1 { depth: 1 - v; direction: (0, 1); }
+           region high where abs(u) <= v, v <= 1 { depth: 1 + v; direction: (0, 1); }
+           region near where abs(v) <= -u, -u <= 1 { depth: 1 - u; direction: (1, 0); }
+           region far where abs(v) <= u, u <= 1 { depth: 1 + u; direction: (1, 0); }
+           region below where -3 <= v, v <= -1, abs(u) <= -v { depth: 3 + v; direction: (0, 1); }
+           region above where 1 <= v, v <= 3, abs(u) <= v { depth: 3 - v; direction: (0, 1); }
+           region inner where -3 <= u, u <= -1, abs(v) <= -u { depth: 3 + u; direction: (1, 0); }
+           region outer where 1 <= u, u <= 3, abs(v) <= u { depth: 3 - u; direction: (1, 0); }
+         }",
+    ));
+    assert!(proved.is_continuous() && proved.lipschitz().is_some(), "{:?}", proved.undecided);
+    assert!(proved.least().is_none_or(|least| least <= 1.0 / 3.0), "{:?}", proved.least());
+}
+
+/// Where a direction leads is told exactly, and where it vanishes.
+#[test]
+fn directions_are_told() {
+    let of = |direction: &str| {
+        Certificate::of(&text(&format!(
+            "tool Ball {{ units mm; region ball where hypot(d, z - 1) <= 1 {{
+               depth: 1 - hypot(d, z - 1); direction: {direction}; }} }}"
+        )))
+        .regions
+        .remove(0)
+    };
+    let straight = of("away from (0, 1)");
+    assert_eq!((straight.aside.low, straight.aside.high), (0.0, 0.0));
+    assert!(straight.on_axis && straight.singular.len() == 1, "{:?}", straight.singular);
+    let [d, _, z] = straight.singular[0].sides;
+    assert!(d.low <= 0.0 && z.low <= 1.0 && 1.0 <= z.high && z.high - z.low < 0.01);
+    let reversed = of("toward (0, 1)");
+    assert!(reversed.aside.low > 3.14, "{:?}", reversed.aside);
+    let aside = of("(1, 0)");
+    let [least, most] = [aside.aside.low, aside.aside.high].map(f64::to_degrees);
+    assert!(least < 1.0 && (90.0..95.0).contains(&most), "{least} {most}");
+    assert!(aside.singular.is_empty() && aside.on_axis);
 }

@@ -31,6 +31,7 @@ pub mod syntax;
 use bound::{Extent, Slab};
 use model::Model;
 use plan::{Plan, Tree};
+use prove::Bounds;
 use report::{Report, any_error};
 use source::{Source, Sources};
 
@@ -45,6 +46,8 @@ pub struct Checked {
     pub envelope: Vec<Slab>,
     /// The order of splits.
     pub plan: Plan,
+    /// What is proved of its depth.
+    pub bounds: Bounds,
 }
 
 /// What came of compiling a text.
@@ -134,7 +137,11 @@ fn check(mut model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report>
     }
     let envelope = bound::envelope(&model, &extent);
     let plan = plan::plan(&mut model, &extent)?;
-    Ok(Checked { model, extent, envelope, plan })
+    let mut tool = Checked { model, extent, envelope, plan, bounds: Bounds::NONE };
+    let (bounds, found) = Bounds::of(&tool);
+    tool.bounds = bounds;
+    reports.extend(found);
+    Ok(tool)
 }
 
 impl Checked {
@@ -143,7 +150,7 @@ impl Checked {
         let outside = Tree::Leaf(model.graph.int(0));
         let plan = Plan { owner: Tree::Leaf(None), inside: Tree::Leaf(false), outside };
         let extent = Extent::of(model.domain.whole(0.0), 0.0);
-        Checked { model, extent, envelope: Vec::new(), plan }
+        Checked { model, extent, envelope: Vec::new(), plan, bounds: Bounds::NONE }
     }
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Walk};
-use tool_dsl::prove::Certificate;
+use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile_with, model, report};
 
@@ -105,8 +105,8 @@ fn card(tool: &Checked) -> Card {
         },
         exact: model.is_exact(),
         depth: {
-            let [least, lipschitz] = Certificate::bounds(tool);
-            Depth { least, lipschitz }
+            let Bounds { least, lipschitz, rounding } = tool.bounds;
+            Depth { least, lipschitz, rounding }
         },
     }
 }

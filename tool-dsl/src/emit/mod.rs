@@ -15,7 +15,6 @@ use crate::draw::{self, Lettering};
 use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
-use crate::prove::Certificate;
 use crate::report::figure;
 use code::{Form, Writer};
 use masks::{logic, selects, tested};
@@ -158,7 +157,8 @@ fn card(tool: &Checked) -> TokenStream {
         let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
         quote! { Slab::new(#low, #high, #radius) }
     });
-    let [least, lipschitz] = Certificate::bounds(tool).map(|bound| match bound {
+    let rounding = literal(tool.bounds.rounding);
+    let [least, lipschitz] = [tool.bounds.least, tool.bounds.lipschitz].map(|bound| match bound {
         Some(bound) => {
             let bound = literal(bound);
             quote! { Some(#bound) }
@@ -185,7 +185,7 @@ fn card(tool: &Checked) -> TokenStream {
                 ::touchoff::Unit::#unit,
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
-                (#exact, Depth { least: #least, lipschitz: #lipschitz }),
+                (#exact, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
             );
             &CARD
         }

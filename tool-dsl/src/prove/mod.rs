@@ -20,6 +20,7 @@ mod witness;
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
+use crate::report::{Report, figure};
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
 /// size.
@@ -91,6 +92,9 @@ impl RegionFacts {
     };
 }
 
+/// A point of the tool's frame, and the depths on the two sides of a border there.
+pub type Seen = ([f64; 3], [f64; 2]);
+
 /// What is proved about two neighbours, or about a region and the outside.
 #[derive(Clone, Debug)]
 pub struct Border {
@@ -108,8 +112,8 @@ pub struct Border {
     pub turn_on_surface: Option<Interval>,
     /// The depths at which they meet.
     pub depth: Interval,
-    /// A point of the tool's frame beside which depth jumps, if one was found.
-    pub seen: Option<[f64; 3]>,
+    /// A point of the tool's frame where depth jumps, if one was found, and both depths there.
+    pub seen: Option<Seen>,
 }
 
 /// A box where a proof did not come to an end, and what was to be proved.
@@ -129,21 +133,99 @@ impl Border {
     }
 }
 
+/// What is proved of a tool's depth while it is compiled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// See [`Certificate::least`].
+    pub least: Option<f64>,
+    /// See [`Certificate::lipschitz`].
+    pub lipschitz: Option<f64>,
+    /// How far rounding can take a computed depth of `f64` from the true value, in the file's unit.
+    pub rounding: f64,
+}
+
+impl Bounds {
+    pub(crate) const NONE: Bounds =
+        Bounds { least: None, lipschitz: None, rounding: f64::INFINITY };
+
+    /// What is proved of a tool in little time, and what is wrong with it by that.
+    ///
+    /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves once
+    /// more; regions by hand are looked at in a few thousand boxes.
+    pub(crate) fn of(tool: &Checked) -> (Bounds, Vec<Report>) {
+        let rounding = rounding::over(tool);
+        if tool.model.is_exact() {
+            return (Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding }, Vec::new());
+        }
+        let proved = survey::survey(tool, FEW);
+        let [least, lipschitz] = [proved.least(), proved.lipschitz()];
+        (Bounds { least, lipschitz, rounding }, proved.reports(tool))
+    }
+}
+
 impl Certificate {
+    /// What is wrong with a tool or undecided: errors with a counterexample, warnings with a box.
+    pub fn reports(&self, tool: &Checked) -> Vec<Report> {
+        let model = &tool.model;
+        let mut reports: Vec<Report> = Vec::new();
+        for border in &self.borders {
+            let (Some((point, [own, other])), (region, beside)) = (border.seen, border.between)
+            else {
+                continue;
+            };
+            let region = &model.regions[region];
+            let place = model.shown(point);
+            let figure = |depth: f64| figure(depth.abs());
+            let report = match beside.map(|beside| &model.regions[beside]) {
+                None => Report::error(
+                    region.depth_span,
+                    format!("`depth` of {} is {} at {place}, on the surface", region.name, figure(own)),
+                )
+                .help("is a region missing beside it? on the surface depth is 0"),
+                Some(beside) => Report::error(
+                    region.depth_span,
+                    format!(
+                        "depth jumps from {} to {} at {place}, between {} and {}",
+                        figure(own),
+                        figure(other),
+                        region.name,
+                        beside.name
+                    ),
+                )
+                .and(beside.depth_span, "here")
+                .help(
+                    "two regions have the same depth where they meet; what is felt may jump: write it \
+                     as `magnitude:` beside a `depth:` that does not",
+                ),
+            };
+            // Of one pair once, and of one region once beside the outside.
+            if !reports
+                .iter()
+                .any(|other| other.span == report.span && other.second == report.second)
+            {
+                reports.push(report);
+            }
+        }
+        if let Some(first) = self.undecided.first() {
+            let middle = first.cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+            let more = match self.undecided.len() - 1 {
+                0 => String::new(),
+                more => format!(", and {more} more like it"),
+            };
+            reports.push(
+                Report::warning(
+                    model.name_span,
+                    format!("not decided: {} near {}{more}", first.what, model.shown(middle)),
+                )
+                .help("bounds of depth by the distance are then not available"),
+            );
+        }
+        reports
+    }
+
     /// Proves what can be proved about a tool.
     pub fn of(tool: &Checked) -> Certificate {
         survey::survey(tool, MANY)
-    }
-
-    /// `c` and `L` (see [`Certificate::least`] and [`Certificate::lipschitz`]), as far as they are found
-    /// while a tool is compiled. The depth of a profile is the distance by construction, which
-    /// [`Certificate::of`] proves once more; regions by hand are looked at in a few thousand boxes.
-    pub fn bounds(tool: &Checked) -> [Option<f64>; 2] {
-        if tool.model.is_exact() {
-            return [Some(1.0); 2];
-        }
-        let certificate = survey::survey(tool, FEW);
-        [certificate.least(), certificate.lipschitz()]
     }
 
     /// Whether depth is continuous and 0 on the surface, but for [`Certificate::tolerance`].

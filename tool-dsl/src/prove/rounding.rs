@@ -2,6 +2,7 @@
 //! error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, chapter 3) over
 //! boxes, to first order.
 
+use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, EVERYTHING, Interval, ZERO};
 use crate::expr::{Coord, Graph, Id, Node};
@@ -17,6 +18,16 @@ const SECOND_ORDER: f64 = 1e-4;
 struct Rounded {
     value: Interval,
     error: [f64; 2],
+}
+
+/// How far rounding can take any region's computed depth of `f64` from its true value, over the whole of
+/// a tool's box.
+pub(super) fn over(tool: &Checked) -> f64 {
+    let model = &tool.model;
+    let depths = || model.regions.iter().map(|region| region.depth);
+    let mut errors = Errors::new(&model.graph, model.domain, depths());
+    let cell = tool.extent.cell();
+    depths().map(|depth| errors.over(depth, &cell)[0]).fold(0.0, f64::max)
 }
 
 /// Errors of chosen nodes of a graph over one box after another. The coordinates x, y and z of a

@@ -7,7 +7,7 @@ use super::parting::{Joint, Pair, Parted, Parting};
 use super::rounding::Errors;
 use super::slope::{Slope, Slopes};
 use super::witness::Witness;
-use super::{Border, Certificate, RegionFacts, TOLERANCE, Undecided};
+use super::{Border, Certificate, RegionFacts, Seen, TOLERANCE, Undecided};
 use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::Id;
@@ -61,7 +61,7 @@ struct Met {
     pair: Pair,
     by: Parted,
     /// Where points of both were seen side by side, with a jump between.
-    seen: Option<[f64; 3]>,
+    seen: Option<Seen>,
 }
 
 struct Survey<'t> {
@@ -78,7 +78,7 @@ struct Survey<'t> {
     aims: Vec<Aim>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// A point where two owners are side by side, with a jump between.
-    jumping: BTreeMap<(Pair, CurveIndex), [f64; 3]>,
+    jumping: BTreeMap<(Pair, CurveIndex), Seen>,
     /// The least slope toward the surface.
     least: f64,
     /// The same from boxes that are as good as points.

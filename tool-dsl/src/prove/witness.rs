@@ -1,7 +1,7 @@
 //! What single points show: jumps, and ways along which depth falls.
 
-use super::TOLERANCE;
 use super::parting::Pair;
+use super::{Seen, TOLERANCE};
 use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::Cell;
@@ -67,7 +67,7 @@ impl<'t> Witness<'t> {
     }
 
     /// Where two owners have points side by side in a box and depth jumps between them, of a few.
-    pub(super) fn beside(&mut self, (own, other): Pair, cell: Cell) -> Option<[f64; 3]> {
+    pub(super) fn beside(&mut self, (own, other): Pair, cell: Cell) -> Option<Seen> {
         let steps = 6;
         let at = |axis: usize, k: u32| {
             let side = cell.sides[axis];
@@ -88,9 +88,12 @@ impl<'t> Witness<'t> {
                 let here = self.owner(p);
                 if let Some((last, owner)) = before
                     && [[owner, here], [here, owner]].contains(&[Some(own), other])
-                    && let Some(place) = self.jumps([last, p], [owner, here])
                 {
-                    return Some(place);
+                    let [from, to] = if owner == Some(own) { [last, p] } else { [p, last] };
+                    let seen = self.jumps([from, to], [Some(own), other]);
+                    if seen.is_some() {
+                        return seen;
+                    }
                 }
                 before = (second < steps).then_some((p, here));
             }
@@ -99,11 +102,7 @@ impl<'t> Witness<'t> {
     }
 
     /// Where two points of different owners have their border between them, if depth jumps there.
-    fn jumps(
-        &mut self,
-        [mut a, mut b]: [[f64; 3]; 2],
-        owners: [Option<usize>; 2],
-    ) -> Option<[f64; 3]> {
+    fn jumps(&mut self, [mut a, mut b]: [[f64; 3]; 2], owners: [Option<usize>; 2]) -> Option<Seen> {
         for _ in 0..60 {
             let middle = [0, 1, 2].map(|k| a[k] / 2.0 + b[k] / 2.0);
             match self.owner(middle) {
@@ -116,7 +115,7 @@ impl<'t> Witness<'t> {
         self.owner(a);
         let [first, second] =
             owners.map(|owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth)));
-        ((first - second).abs() > TOLERANCE * self.size).then_some(a)
+        ((first - second).abs() > TOLERANCE * self.size).then_some((a, [first, second]))
     }
 
     pub(super) fn owner(&mut self, [x, y, z]: [f64; 3]) -> Option<usize> {
