@@ -6,7 +6,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snip
 use std::ops::Range;
 
 /// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing; code is emitted all the same.
     Warning,
@@ -15,7 +15,7 @@ pub enum Severity {
 }
 
 /// One thing to say.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Report {
     /// Error or warning.
     pub severity: Severity,
@@ -139,6 +139,14 @@ pub fn figure(value: f64) -> String {
     } else {
         text
     }
+}
+
+/// The most mistakes that are told at once.
+pub const MOST: usize = 50;
+
+/// Whether so much is wrong that looking for more helps nobody.
+pub(crate) fn enough(reports: &[Report]) -> bool {
+    reports.iter().filter(|report| !report.message.is_empty()).count() >= MOST
 }
 
 /// Whether any of them is an error.

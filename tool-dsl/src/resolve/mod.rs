@@ -25,7 +25,7 @@ use condition::Curves;
 use derived::FromProfile;
 use given::Given;
 use law::Laws;
-use lower::Lowering;
+use lower::{Lowering, in_range};
 use mount::Along;
 use over::Divider;
 use std::collections::BTreeMap;
@@ -311,14 +311,7 @@ fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports:
             false => Ok(value),
         });
         let defined = value.and_then(|(value, dimension)| {
-            let size = value.to_f64().abs();
-            if size != 0.0 && !(2f64.powi(-300)..=2f64.powi(300)).contains(&size) {
-                return Err(Report::error(
-                    definition.value.span,
-                    format!("{size:e} is out of range"),
-                )
-                .help("constants lie between 2^-300 and 2^300"));
-            }
+            in_range(&value, definition.value.span)?;
             let id = lowering.graph.number(value);
             lowering.define(&definition.name, (id, dimension))
         });

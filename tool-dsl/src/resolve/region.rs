@@ -35,7 +35,10 @@ pub(super) fn regions(
         );
     }
     if let Some(beyond) = written.get(MOST) {
-        reports.push(Report::error(beyond.name.span, format!("more than {MOST} regions")));
+        reports.push(
+            Report::error(beyond.name.span, format!("more than {MOST} regions"))
+                .help("write the outline as a `profile`: its regions are derived"),
+        );
         return Default::default();
     }
     let mut surfaces = Vec::new();
@@ -225,7 +228,11 @@ impl Felt<'_> {
                     let name = &written.name;
                     return Err(Report::error(
                         name.span,
-                        format!("region {} says neither `magnitude` nor `depth`", name.word),
+                        format!(
+                            "region {} says neither `magnitude` nor `depth`, and there is no profile \
+                             to take it from",
+                            name.word
+                        ),
                     )
                     .help("write `depth: …;` in it: 0 on the surface, positive inside"));
                 }
@@ -244,10 +251,12 @@ impl Felt<'_> {
             return Err(Report::error(
                 value.span,
                 format!("a depth is a length, this is {dimension}"),
-            ));
+            )
+            .help("write how far it is to the surface; any power is a `magnitude:`"));
         }
         if dimension == Dimension::Angle {
-            return Err(Report::error(value.span, "a magnitude is no angle"));
+            return Err(Report::error(value.span, "a magnitude is no angle")
+                .help("give a number or a power of length"));
         }
         let graph = &mut self.lowering.graph;
         if graph.constant(id).is_some() {

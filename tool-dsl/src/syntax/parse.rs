@@ -1,15 +1,18 @@
 //! Pairs of pest to the syntax tree.
 
 use super::tree::*;
-use super::{Grammar, Rule, refuse};
+use super::refuse::{self, in_name};
+use super::{Grammar, Rule};
 use crate::domain::Domain;
 use crate::report::Report;
-use crate::source::{Source, Span};
+use crate::source::{LONGEST, Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 
-/// The longest text that is read.
-const LONGEST: usize = 1 << 20;
+/// The longest name.
+const LONGEST_NAME: usize = 100;
+/// The most items of a file.
+const MOST: usize = 4096;
 /// The deepest nesting of brackets.
 const DEEPEST: usize = 64;
 /// Names that generated code, or Rust itself, has already given away.
@@ -46,6 +49,9 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
             return (None, vec![report.behind(source.base)]);
         }
     };
+    if let Some(report) = too_much(pairs.clone()) {
+        return (None, vec![report.behind(source.base)]);
+    }
     let mut broken = Vec::new();
     let tool = pairs.flatten().find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid));
     let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
@@ -53,11 +59,33 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
     (tool.map(|tool| Tool { broken, ..tool }), reports)
 }
 
+/// A name, or a list of items, that is longer than any that people write.
+fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
+    let place = |pair: &Pair<'_, Rule>, length: usize| {
+        let start = pair.as_span().start();
+        Span { start, end: start + length }
+    };
+    let name = |pair: &Pair<'_, Rule>| pair.as_rule() == Rule::name;
+    let long = pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > LONGEST_NAME);
+    if let Some(pair) = long {
+        let message = format!("this name is {} letters long", pair.as_str().len());
+        return Some(
+            Report::error(place(&pair, LONGEST_NAME), message)
+                .help(format!("a name has at most {LONGEST_NAME}")),
+        );
+    }
+    let beyond = pairs.flatten().next()?.into_inner().nth(MOST)?;
+    Some(
+        Report::error(place(&beyond, 1), format!("more than {MOST} items"))
+            .help("a file describes one tool"),
+    )
+}
+
 pub(super) fn within_limits(text: &str) -> Result<(), Report> {
     if text.len() > LONGEST {
         let end = Span { start: 0, end: 1 };
         return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
-            .help(format!("a tool has at most {LONGEST} bytes")));
+            .help(format!("a tool's text has at most {LONGEST} bytes")));
     }
     let (mut comments, mut at) = (0usize, 0);
     while let Some(pair) = text.as_bytes().get(at..at + 2) {
@@ -157,7 +185,7 @@ impl Reader<'_> {
             Err(error) => {
                 self.reports.push(refuse::syntax(text, offset, &error));
                 // What it would have defined, and what it swallowed for want of a `;`.
-                let words: Vec<&str> = text.split_whitespace().collect();
+                let words: Vec<&str> = text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
                 self.broken.extend(words.first().map(|word| (*word).to_owned()));
                 let defines = |word: &str| ["let", "param", "curve", "region"].contains(&word);
                 let defined = words.windows(2).filter(|pair| defines(pair[0]));
@@ -178,7 +206,10 @@ impl Reader<'_> {
             Rule::curve => Item::Curve(self.definition(inner)?),
             Rule::tip => Item::Tip(self.expr(inner.next()?)),
             Rule::spindle => Item::Spindle { down: inner.next()?.as_str() == "-", span },
-            Rule::profile => Item::Profile(self.profile(inner, span)?),
+            Rule::profile => {
+                let word = Span { end: span.start + "profile".len(), ..span };
+                Item::Profile(self.profile(inner, word)?)
+            }
             Rule::mount => Item::Mount(self.mount(inner, span)?),
             Rule::regions => {
                 let smooth = inner.find(|pair| pair.as_rule() == Rule::smooth);
