@@ -18,7 +18,7 @@ mod scope;
 use crate::domain::Domain;
 use crate::model::{Model, Surface, Unit};
 use crate::regionalise::outline::Segment;
-use crate::report::{Report, any_error, nearest};
+use crate::report::{Report, any_error, enough, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
@@ -56,18 +56,15 @@ fn settle(
     let given = given::from_outside(given, (tool.domain, unit), &mut reports);
     given::untaken(tool, &given, &mut reports);
     constants(tool, &given, &mut lowering, &mut reports);
-    if any_error(&reports) {
-        return (None, reports);
-    }
     if tool.domain == Domain::Space {
         without_axis(tool, &mut reports);
     }
     frame(tool, &mut lowering, &mut reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
         reports.extend(lowering.curve(definition).err());
-    }
-    if any_error(&reports) {
-        return (None, reports);
+        if enough(&reports) {
+            return (None, reports);
+        }
     }
     let mut curves = Curves::default();
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
@@ -110,15 +107,16 @@ fn settle(
         }
     };
     let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
+    if any_error(&reports) {
+        return (None, reports);
+    }
     for (word, value) in &lowering.values {
         if !value.used {
             reports.push(
-                Report::warning(value.span, format!("`{word}` is never used")).help("drop it"),
+                Report::warning(value.span, format!("`{word}` is never used"))
+                    .help("drop it, or is another name misspelt?"),
             );
         }
-    }
-    if any_error(&reports) {
-        return (None, reports);
     }
     let model = Model {
         domain: tool.domain,
@@ -224,17 +222,19 @@ fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
         .iter()
         .filter_map(|item| if let Item::Mount(mount) = item { Some(mount) } else { None })
         .collect();
+    if let (Some(profile), Some(mount)) = (first, mounts.first()) {
+        reports.push(
+            Report::error(mount.span, "a tool has a profile or mounts")
+                .and(profile.span, "the profile")
+                .help("drop one, or mount the profile as a file of its own"),
+        );
+    }
     for item in &tool.items {
         match item {
             Item::Regions { span, .. } if first.is_none() && mounts.is_empty() => reports.push(
                 Report::error(*span, "there is no profile to derive regions of")
                     .help("write `profile { … }`"),
             ),
-            Item::Mount(mount) if first.is_some() => reports.extend(first.map(|profile| {
-                Report::error(mount.span, "a tool has a profile or mounts")
-                    .and(profile.span, "the profile")
-                    .help("drop one, or mount the profile as a file of its own")
-            })),
             Item::Tip(Expr { span, .. }) | Item::Spindle { span, .. } if !mounts.is_empty() => {
                 reports.push(
                     Report::error(*span, "mounts bring their own tip and spindle")
@@ -316,6 +316,9 @@ fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports:
             lowering.define(&definition.name, (id, dimension))
         });
         reports.extend(defined.err());
+        if enough(reports) {
+            break;
+        }
     }
 }
 
@@ -326,7 +329,10 @@ fn frame(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
         let (seen, span, word) = match item {
             Item::Tip(expr) => {
                 match lowering.length(expr, "`tip`") {
-                    Ok(value) => lowering.frame.tip = value,
+                    Ok(value) => {
+                        lowering.frame.tip = value;
+                        lowering.frame.tip_span = expr.span;
+                    }
                     Err(report) => reports.push(report),
                 }
                 (&mut tip, expr.span, "tip")
@@ -382,6 +388,9 @@ fn curve_of(
     curves: &mut Curves,
 ) -> Result<Option<usize>, Report> {
     let Some(value) = lowering.values.get_mut(&name.word) else {
+        if lowering.declared.contains_key(&name.word) {
+            return Err(Report::follow_up(name.span));
+        }
         let report = Report::error(name.span, format!("unknown curve `{}`", name.word));
         return Err(match nearest(&name.word, lowering.values.keys().map(String::as_str)) {
             Some(meant) => report.help(format!("did you mean `{meant}`?")),

@@ -4,7 +4,7 @@ use super::tree::*;
 use super::refuse::{self, in_name};
 use super::{Grammar, Rule};
 use crate::domain::Domain;
-use crate::report::Report;
+use crate::report::{Report, enough};
 use crate::source::{LONGEST, Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
@@ -165,6 +165,7 @@ impl Reader<'_> {
                     }
                 }
                 Rule::text => title = Some(pair.as_str().trim_matches('"').to_owned()),
+                Rule::stray if enough(self.reports) => {}
                 Rule::stray => items.extend(self.stray(&pair)),
                 Rule::k_tool | Rule::k_solid => {}
                 _ => items.extend(self.item(pair)),

@@ -33,12 +33,17 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Report> {
     let report = |message: String, help: String| Some(Report::error(here, message).help(help));
     let digits = |s: &str| s.chars().take_while(char::is_ascii_digit).collect::<String>();
     let number = number_before(before);
-    if let Some(whole) = number.strip_suffix('.') {
-        let place = stop.span(before.len() - 1, before.len());
+    if let Some(digits) = number.strip_suffix('.') {
+        let place = stop.span(before.len() - number.len(), before.len());
         let report = Report::error(place, "a number ends in a point");
-        return Some(report.help(format!("write `{whole}` or `{whole}.0`")));
+        return Some(report.help(format!("write `{digits}` or `{digits}.0`")));
     }
     let glued = before.len() == stop.at;
+    // The place of something with this character behind it.
+    let whole = |begun: &str| {
+        let end = stop.at + next.len_utf8();
+        stop.span(if glued { stop.at - begun.len() } else { stop.at }, end)
+    };
     match next {
         '.' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => {
             let fraction = digits(&rest[1..]);
@@ -48,12 +53,14 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Report> {
             )
         }
         '°' if !number.is_empty() => {
-            report(format!("`{number}°` is no angle"), format!("write `{number}deg`"))
+            let report = Report::error(whole(number), format!("`{number}°` is no angle"));
+            Some(report.help(format!("write `{number}deg`")))
         }
         '²' | '³' => {
             let power = if next == '²' { 2 } else { 3 };
             let base = stop.last_word();
-            report(format!("`{base}{next}` is not a name"), format!("write `{base}^{power}`"))
+            let report = Report::error(whole(base), format!("`{base}{next}` is not a name"));
+            Some(report.help(format!("write `{base}^{power}`")))
         }
         '⌀' | 'ø' | 'Ø' => report(
             format!("`{next}` is not part of the language"),
