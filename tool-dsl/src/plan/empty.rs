@@ -45,7 +45,7 @@ impl<'m> Void<'m> {
 
     /// Whether provably no point has these signs.
     pub(super) fn proved(&mut self, signs: &[Signs]) -> bool {
-        self.linear.contradictory(signs) || self.uncovered(signs)
+        self.linear.judged(signs).unwrap_or_else(|| self.uncovered(signs))
     }
 
     /// Whether no box of a cover of the domain can have the signs.
@@ -173,9 +173,25 @@ impl Linear {
     }
 
     pub(crate) fn contradictory(&self, signs: &[Signs]) -> bool {
-        let conditions = without(self.conditions(signs), (0..self.variables).collect());
+        self.judged(signs) == Some(true)
+    }
+
+    /// Whether the linear curves alone contradict one another, if that settles it.
+    fn judged(&self, signs: &[Signs]) -> Option<bool> {
+        let conditions = without(self.conditions(signs), (0..self.variables).collect())?;
         let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
-        conditions.is_some_and(|conditions| conditions.iter().any(absurd))
+        if conditions.iter().any(absurd) {
+            return Some(true);
+        }
+        // Of straight lines elimination overlooks nothing.
+        let straight = |form: &Option<(Vec<f64>, f64)>| {
+            form.as_ref().is_some_and(|(factors, _)| {
+                let bent = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
+                !(0..self.variables).any(bent)
+            })
+        };
+        let mut asked = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY);
+        asked.all(|(form, _)| straight(form)).then_some(false)
     }
 }
 
@@ -324,6 +340,17 @@ fn squares(graph: &Graph, root: Id) -> Vec<Id> {
 /// `None` if there are too many.
 fn without(mut conditions: Vec<Condition>, mut variables: Vec<usize>) -> Option<Vec<Condition>> {
     while !variables.is_empty() {
+        // What is bounded from one side only takes its conditions along.
+        let loose = |variable: &usize| {
+            let any = |sign: f64| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
+            !any(1.0) || !any(-1.0)
+        };
+        let (free, bounded): (Vec<usize>, Vec<usize>) = variables.into_iter().partition(loose);
+        variables = bounded;
+        if !free.is_empty() {
+            conditions.retain(|c| free.iter().all(|variable| c.factors[*variable] == 0.0));
+            continue;
+        }
         let growth = |variable: usize| {
             let with = |sign: f64| {
                 let bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
