@@ -23,8 +23,6 @@ pub struct Report {
     pub message: String,
     /// The place.
     pub span: Span,
-    /// A word at the place itself.
-    pub label: Option<String>,
     /// A second culprit with its own word.
     pub second: Option<(Span, String)>,
     /// The remedy.
@@ -38,7 +36,6 @@ impl Report {
             severity: Severity::Error,
             message: message.into(),
             span,
-            label: None,
             second: None,
             help: None,
         }
@@ -52,13 +49,6 @@ impl Report {
     /// An error that only follows from another, which is reported; this one is not.
     pub fn follow_up(span: Span) -> Report {
         Report::error(span, "")
-    }
-
-    /// With a word at the place itself.
-    #[must_use]
-    pub fn label(mut self, label: impl Into<String>) -> Report {
-        self.label = Some(label.into());
-        self
     }
 
     /// With a second place.
@@ -90,10 +80,7 @@ impl Report {
             Severity::Warning => Level::WARNING,
         };
         let (source, span) = sources.locate(self.span);
-        let mut primary = AnnotationKind::Primary.span(visible(source, span));
-        if let Some(label) = &self.label {
-            primary = primary.label(label.as_str());
-        }
+        let primary = AnnotationKind::Primary.span(visible(source, span));
         let mut snippet = excerpt(source).annotation(primary);
         let mut elsewhere = None;
         if let Some((span, label)) = &self.second {

@@ -150,11 +150,13 @@ impl Source {
         }
     }
 
-    /// The span of the Rust token at a place, for a source made of tokens.
-    pub fn token_at(&self, span: Span) -> Option<proc_macro2::Span> {
+    /// The first and the last Rust token of a place, for a source made of tokens.
+    pub fn tokens_at(&self, span: Span) -> Option<[proc_macro2::Span; 2]> {
         let tokens = self.tokens.as_ref()?;
-        let after = tokens.partition_point(|(place, _)| place.end <= span.start);
-        tokens.get(after).or(tokens.last()).map(|(_, token)| *token)
+        let end = tokens.len().checked_sub(1)?;
+        let first = tokens.partition_point(|(place, _)| place.end <= span.start).min(end);
+        let behind = tokens.partition_point(|(place, _)| place.start < span.end);
+        Some([first, behind.saturating_sub(1).max(first)].map(|at| tokens[at].1))
     }
 
     /// The file that holds the text, if any does.
@@ -220,12 +222,12 @@ impl Sources {
         source.text.get(span.start..span.end).unwrap_or_default()
     }
 
-    /// The Rust token of a place; of a place in a mounted file, that of the mount which asked for
-    /// it. `None` if that stands in a file.
-    pub fn token_at(&self, mut span: Span) -> Option<proc_macro2::Span> {
+    /// The Rust tokens of a place; of a place in a mounted file, those of the mount which asked
+    /// for it. `None` if that stands in a file.
+    pub fn tokens_at(&self, mut span: Span) -> Option<[proc_macro2::Span; 2]> {
         loop {
             let (source, inside) = self.locate(span);
-            match (source.token_at(inside), source.by) {
+            match (source.tokens_at(inside), source.by) {
                 (None, Some(by)) => span = by,
                 (token, _) => return token,
             }

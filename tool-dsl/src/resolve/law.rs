@@ -60,8 +60,7 @@ impl<'t> Laws<'t> {
                         if word.is_empty() { "everything".to_owned() } else { format!("`{word}`") };
                     reports.push(
                         Report::error(span, format!("two laws give the {what} of {of}"))
-                            .label("this one")
-                            .and(*first, "and that one")
+                            .and(*first, "the first")
                             .help("drop one"),
                     );
                 }

@@ -90,8 +90,7 @@ impl Lowering {
         let value = Value { id, dimension, span: name.span, used: false };
         if let Some(earlier) = self.values.get(word) {
             return Err(Report::error(name.span, format!("`{word}` is defined twice"))
-                .label("here")
-                .and(earlier.span, "and above")
+                .and(earlier.span, "first here")
                 .help("drop one, or give it another name"));
         }
         self.values.insert(word.to_owned(), value);
