@@ -167,9 +167,7 @@ fn finite(model: &Model) -> Result<(), Report> {
         |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());
     if needed.iter().any(beyond) {
         return Err(Report::error(model.name_span, "a constant of this tool outgrows all numbers")
-            .help(
-                "powers upon powers of large constants do so: write lengths in a nearer unit",
-            ));
+            .help("powers upon powers of large constants do so: write lengths in a nearer unit"));
     }
     Ok(())
 }

@@ -3,8 +3,8 @@
 
 use crate::bound::Extent;
 use crate::domain::Domain;
-use crate::expr::{Id, Node};
 use crate::expr::value::{At, Evaluator};
+use crate::expr::{Id, Node};
 use crate::formula::{CurveIndex, Formula};
 use crate::model::{Curve, Frame, Model, Region};
 use crate::plan::spread;
@@ -428,12 +428,7 @@ impl Fault {
 }
 
 /// A region of which nothing is left by one listed before it, or several.
-pub(crate) fn never_wins(
-    name: &str,
-    span: Span,
-    (first, at): (&str, Span),
-    more: usize,
-) -> Report {
+pub(crate) fn never_wins(name: &str, span: Span, (first, at): (&str, Span), more: usize) -> Report {
     let by = match more {
         0 => format!("{first}, listed before it, covers it"),
         _ => format!("{first} and {more} more, listed before it, cover it"),

@@ -196,7 +196,8 @@ impl Lowering {
                 let report = Report::error(unit.span, format!("unknown unit `{word}`"));
                 match UNITS.iter().find(|unit| unit.eq_ignore_ascii_case(word)) {
                     Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                    None => report.help(format!("units are {}", UNITS.map(|u| format!("`{u}`")).join(", "))),
+                    None => report
+                        .help(format!("units are {}", UNITS.map(|u| format!("`{u}`")).join(", "))),
                 }
             }
         };
@@ -296,7 +297,8 @@ impl Lowering {
             Binary::Sub => self.graph.sub(a, b),
             Binary::Mul => self.graph.mul(a, b),
             _ => self.graph.div(a, b).ok_or_else(|| {
-                Report::error(right.span, "division by zero").help("this is 0; divide by what is not")
+                Report::error(right.span, "division by zero")
+                    .help("this is 0; divide by what is not")
             })?,
         };
         Ok((id, dimension))
@@ -310,8 +312,9 @@ impl Lowering {
                 Report::error(exponent.span, "an exponent is a multiple of one half from -16 to 16")
                     .help("only square roots run at every contact")
             })?;
-        let dimension =
-            dimension.power(halves).ok_or_else(|| Report::error(span, "an angle has no powers").help(NO_POWER))?;
+        let dimension = dimension
+            .power(halves)
+            .ok_or_else(|| Report::error(span, "an angle has no powers").help(NO_POWER))?;
         let id = self.graph.power(base_id, halves).ok_or_else(|| {
             Report::error(span, "this power of a constant does not exist")
                 .help("the base is negative under a root, or 0 under a negative exponent")
@@ -334,10 +337,8 @@ impl Lowering {
         };
         if !wanted.contains(&arguments.len()) {
             let much = if *wanted.start() == 2 { "two or more values" } else { "one value" };
-            let report = Report::error(
-                span,
-                format!("`{word}` takes {much}, this has {}", arguments.len()),
-            );
+            let report =
+                Report::error(span, format!("`{word}` takes {much}, this has {}", arguments.len()));
             return Err(match *wanted.start() {
                 2 => report.help(format!("write `{word}(a, b)`")),
                 _ => report.help(format!("write `{word}(a)`")),
@@ -350,9 +351,9 @@ impl Lowering {
         match word {
             "abs" => return Ok((self.graph.abs(id), dimension)),
             "sqrt" => {
-                let dimension = dimension
-                    .power(1)
-                    .ok_or_else(|| Report::error(span, "an angle has no square root").help(NO_POWER))?;
+                let dimension = dimension.power(1).ok_or_else(|| {
+                    Report::error(span, "an angle has no square root").help(NO_POWER)
+                })?;
                 let root = self.graph.sqrt(id).ok_or_else(|| {
                     Report::error(arguments[0].span, "square root of a negative number")
                         .help("take the root of what is 0 or more")

@@ -214,7 +214,7 @@ fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
         reports.push(
             Report::error(second.span, "a second profile")
                 .and(first.span, "the first")
-                .help("drop one"),
+                .help("a tool has one outline: drop one"),
         );
     }
     let mounts: Vec<&Mount> = tool

@@ -211,14 +211,19 @@ impl Mounting<'_> {
             let mut chain: Vec<&str> = self.chain[first..].iter().map(name).collect();
             chain.push(&source.name);
             let message = format!("`{written}` mounts itself: {}", chain.join(" mounts "));
-            self.reports.push(Report::error(by, message).help("break the ring"));
+            self.reports.push(
+                Report::error(by, message).help("mount a file that does not lead back to this one"),
+            );
             return None;
         }
         self.mounted += 1;
         if self.mounted > MOST {
             // Once is enough, however many follow.
-            let message =
-                if self.mounted == MOST + 1 { format!("more than {MOST} mounted files") } else { String::new() };
+            let message = if self.mounted == MOST + 1 {
+                format!("more than {MOST} mounted files")
+            } else {
+                String::new()
+            };
             self.reports.push(Report::error(by, message).help("write some of them as one file"));
             return None;
         }

@@ -158,7 +158,7 @@ fn fans<'t>(
             };
             Report::error(span, format!("{fans} on the edge of length {size}"))
                 .and(outline[piece].span, "this edge")
-                .help(format!("at most {most}"))
+                .help(format!("write at most {most}"))
         }
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
@@ -210,7 +210,9 @@ impl Conditions<'_> {
                     span,
                     format!("nothing covers {}, which the profile contains", shown(p)),
                 )
-                .help("the regions beside a profile divide all of it"),
+                .help(
+                    "the regions beside a profile divide all of it: widen one, or write one more",
+                ),
             );
         }
         if let Some((first, second, p)) = double

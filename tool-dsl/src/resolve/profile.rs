@@ -89,8 +89,7 @@ fn off_axis(profile: &Profile, segments: &[Segment], reports: &mut Vec<Report>) 
     let axis = |[_, z]: [f64; 2]| shown([0.0, z]);
     if begin[0] != 0.0 {
         let message = format!("the profile begins at {}, not on the axis", shown(begin));
-        let remedy =
-            format!("write `start {};` and then `line to {}`", axis(begin), shown(begin));
+        let remedy = format!("write `start {};` and then `line to {}`", axis(begin), shown(begin));
         reports.push(Report::error(profile.start.span, message).help(remedy));
     }
     if end[0] != 0.0 {
@@ -177,9 +176,7 @@ fn circle(
             .help("its centre lies in the material: drop `concave`")),
         (false, None) => Err(Report::error(
             span,
-            format!(
-                "this arc is concave: its centre {centre_shown} lies outside the material"
-            ),
+            format!("this arc is concave: its centre {centre_shown} lies outside the material"),
         )
         .help("say `concave` if it should be")),
         _ => Ok(Circle { centre, radius, convex }),
@@ -210,9 +207,12 @@ fn by_radius(
     let off = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(off), true) = (off, r > 0.0) else {
         let (short, chord) = (figure(r), figure(c));
-        let report = Report::error(span, format!("no arc of radius {short} spans a chord of {chord}"));
+        let report =
+            Report::error(span, format!("no arc of radius {short} spans a chord of {chord}"));
         let least = figure(c / 2.0);
-        return Err(report.help(format!("its radius is {least} or more; else bring its ends nearer")));
+        return Err(
+            report.help(format!("its radius is {least} or more; else bring its ends nearer"))
+        );
     };
     // The material is on the left: a bulge out of it has its centre there.
     let off = if concave { -&off } else { off };

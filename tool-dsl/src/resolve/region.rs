@@ -302,11 +302,7 @@ impl Felt<'_> {
 
     /// The niceness that a region or else the law for its surface writes, or else its mounted file;
     /// else 1, or 0 where nothing cuts.
-    pub(super) fn niceness(
-        &mut self,
-        own: Option<&Expr>,
-        depth: Id,
-    ) -> Result<(Id, Span), Report> {
+    pub(super) fn niceness(&mut self, own: Option<&Expr>, depth: Id) -> Result<(Id, Span), Report> {
         let nowhere = self.surface.span;
         if !self.surface.cutting {
             return match own {

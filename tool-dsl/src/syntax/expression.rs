@@ -92,9 +92,7 @@ impl Reader<'_> {
         let value = match sane.then(|| Number::decimal(&text[..digits])).flatten() {
             Some(value) if value.is_in_range() => value,
             _ => {
-                self.reports.push(
-                    Report::error(span, "this number is out of range").help(RANGE),
-                );
+                self.reports.push(Report::error(span, "this number is out of range").help(RANGE));
                 Number::int(1)
             }
         };

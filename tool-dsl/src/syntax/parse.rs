@@ -1,7 +1,7 @@
 //! Pairs of pest to the syntax tree.
 
-use super::tree::*;
 use super::refuse::{self, in_name};
+use super::tree::*;
 use super::{Grammar, Rule};
 use crate::domain::Domain;
 use crate::report::{Report, enough};
@@ -66,7 +66,8 @@ fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
         Span { start, end: start + length }
     };
     let name = |pair: &Pair<'_, Rule>| pair.as_rule() == Rule::name;
-    let long = pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > LONGEST_NAME);
+    let long =
+        pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > LONGEST_NAME);
     if let Some(pair) = long {
         let message = format!("this name is {} letters long", pair.as_str().len());
         return Some(
@@ -74,7 +75,8 @@ fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
                 .help(format!("a name has at most {LONGEST_NAME}")),
         );
     }
-    let beyond = pairs.flatten().next()?.into_inner().nth(MOST)?;
+    let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
+    let beyond = pairs.flatten().find(whole)?.into_inner().nth(MOST)?;
     Some(
         Report::error(place(&beyond, 1), format!("more than {MOST} items"))
             .help("a file describes one tool"),
@@ -186,7 +188,8 @@ impl Reader<'_> {
             Err(error) => {
                 self.reports.push(refuse::syntax(text, offset, &error));
                 // What it would have defined, and what it swallowed for want of a `;`.
-                let words: Vec<&str> = text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
+                let words: Vec<&str> =
+                    text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
                 self.broken.extend(words.first().map(|word| (*word).to_owned()));
                 let defines = |word: &str| ["let", "param", "curve", "region"].contains(&word);
                 let defined = words.windows(2).filter(|pair| defines(pair[0]));

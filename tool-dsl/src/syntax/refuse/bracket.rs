@@ -12,7 +12,8 @@ fn begins_an_item(word: &str) -> bool {
 pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Report> {
     let Brackets { open, extra } = Brackets::of(stop.text);
     if let Some((at, bracket)) = extra.filter(|(at, _)| *at == stop.at) {
-        let report = Report::error(stop.span(at, at + 1), format!("this `{bracket}` closes nothing"));
+        let report =
+            Report::error(stop.span(at, at + 1), format!("this `{bracket}` closes nothing"));
         return Some(report.help("drop it, or open one before"));
     }
     let (at, bracket) = open.filter(|(at, _)| *at < stop.at)?;
@@ -25,6 +26,13 @@ pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Report> {
             .and(stop.next(next.len()), "before this")
             .help(format!("write `{close}` where its contents end")),
     })
+}
+
+/// How far in a place's line begins, and whether it begins with that place.
+fn indent(text: &str, at: usize) -> Option<(usize, bool)> {
+    let start = text[..at].rfind('\n')? + 1;
+    let width = text[start..].find(|c: char| !c.is_ascii_whitespace())?;
+    Some((width, start + width == at))
 }
 
 /// The first brackets of a text that do not match.
@@ -54,8 +62,16 @@ impl Brackets {
                 '(' | '{' => open.push((at, c)),
                 ')' | '}' => {
                     let fits = |(_, other): &(usize, char)| (*other == '(') == (c == ')');
-                    match open.last().filter(|last| fits(last)) {
-                        Some(_) => _ = open.pop(),
+                    match open.last().copied().filter(fits) {
+                        Some((begun, _)) => {
+                            // A brace farther left than its block belongs to what is about that.
+                            let left = indent(text, at).zip(indent(text, begun));
+                            if c == '}' && left.is_some_and(|(own, other)| own.1 && own.0 < other.0)
+                            {
+                                swallows = swallows.or(Some((begun, '{')));
+                            }
+                            open.pop();
+                        }
                         None if open.is_empty() || c == ')' => {
                             found.extra = found.extra.or(Some((at, c)));
                         }
@@ -69,9 +85,10 @@ impl Brackets {
                 _ if begins && begins_an_item(&rest[..length]) && swallows.is_none() => {
                     let braces = open.iter().filter(|(_, bracket)| *bracket == '{');
                     let whole = super::FILES.contains(&super::word(text.trim_start()));
-                    swallows = braces.last().copied().filter(|(first, _)| {
-                        !whole || Some(*first) != text.find('{')
-                    });
+                    swallows = braces
+                        .last()
+                        .copied()
+                        .filter(|(first, _)| !whole || Some(*first) != text.find('{'));
                 }
                 _ => {}
             }

@@ -122,9 +122,7 @@ pub(super) fn given(text: &str, error: &Error<Rule>) -> Report {
 fn does_not_fit(stop: &Stop<'_>) -> Report {
     match first_token(stop.rest()) {
         "" => Report::error(stop.next(0), "the text ends here"),
-        token => {
-            Report::error(stop.next(token.len()), format!("`{token}` does not fit here"))
-        }
+        token => Report::error(stop.next(token.len()), format!("`{token}` does not fit here")),
     }
 }
 
@@ -175,7 +173,8 @@ fn item(stop: &Stop<'_>) -> Option<Report> {
     if first == "region" && !wrong.is_empty() && stop.before().contains('{') {
         let after = stop.rest()[wrong.len()..].trim_start_matches(BLANK);
         if after.starts_with(':') && !PROPERTIES.contains(&wrong) {
-            let report = Report::error(stop.next(wrong.len()), format!("a region has no `{wrong}`"));
+            let report =
+                Report::error(stop.next(wrong.len()), format!("a region has no `{wrong}`"));
             return Some(match nearest(wrong, PROPERTIES) {
                 Some(meant) => report.help(format!("did you mean `{meant}`?")),
                 None => report.help("a region says `depth`, `magnitude`, `direction`, `niceness`"),

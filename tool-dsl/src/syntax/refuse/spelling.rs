@@ -132,11 +132,9 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Report> {
     }
     if ["and", "or"].contains(&next) || rest.starts_with("&&") || rest.starts_with("||") {
         let length = next.len().max(2);
-        return Some(
-            Report::error(stop.next(length), "conditions are joined by commas").help(
-                "all hold that stand between commas: `a <= b, c <= d`; \"or\" is `min(a, b) <= 0`",
-            ),
-        );
+        return Some(Report::error(stop.next(length), "conditions are joined by commas").help(
+            "all hold that stand between commas: `a <= b, c <= d`; \"or\" is `min(a, b) <= 0`",
+        ));
     }
     if let Some(report) = name(stop).or_else(|| operator(stop)) {
         return Some(report);
@@ -201,23 +199,24 @@ fn name(stop: &Stop<'_>) -> Option<Report> {
     let of_tool = |naming: &str| FILES.contains(&naming);
     if rest.starts_with(|c: char| c.is_ascii_digit()) && NAMING.contains(&stop.last_word()) {
         let length = rest.find(|c| !in_name(c)).unwrap_or(rest.len());
-        return Some(
-            Report::error(stop.next(length), "a name begins with a letter").help(
-                if of_tool(stop.last_word()) {
-                    "put a letter first, as in `D6Ball`"
-                } else {
-                    "put a letter first"
-                },
-            ),
-        );
+        return Some(Report::error(stop.next(length), "a name begins with a letter").help(
+            if of_tool(stop.last_word()) {
+                "put a letter first, as in `D6Ball`"
+            } else {
+                "put a letter first"
+            },
+        ));
     }
     let begun = stop.last_word();
     let naming = before[..before.len() - begun.len()].trim_end_matches(BLANK);
     let naming = &naming[naming.trim_end_matches(in_name).len()..];
-    if rest.starts_with('-') && before.len() == stop.at && NAMING.contains(&naming) {
-        let length = rest.find(|c| !in_name(c) && c != '-').unwrap_or(rest.len());
-        let whole = format!("{begun}{}", &rest[..length]);
-        let place = stop.span(stop.at - begun.len(), stop.at + length);
+    if rest.starts_with('-') && NAMING.contains(&naming) {
+        // Inline each token stands apart.
+        let tail = rest[1..].trim_start_matches(BLANK);
+        let tail = &tail[..tail.find(|c| !in_name(c) && c != '-').unwrap_or(tail.len())];
+        let whole = format!("{begun}-{tail}");
+        let end = stop.at + rest.find(tail).unwrap_or(0) + tail.len();
+        let place = stop.span(before.len() - begun.len(), end);
         let meant = if of_tool(naming) { whole.replace('-', "") } else { whole.replace('-', "_") };
         return Some(
             Report::error(place, format!("`{whole}` is not a name: a name has no dash"))
