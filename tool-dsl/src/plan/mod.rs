@@ -8,6 +8,7 @@
 //! samples of the domain, cheap curves first, `bsp` before all.
 
 mod corners;
+mod eliminate;
 pub(crate) mod empty;
 mod samples;
 mod section;

@@ -1,5 +1,6 @@
 //! The syntax tree to the model: names, dimensions, the frame, each region's rules.
 
+mod call;
 mod condition;
 mod derived;
 mod dimension;

@@ -112,6 +112,9 @@ pub(super) struct Bare {
     pub(super) inside: Formula,
 }
 
+/// A value, and where it is said.
+pub(super) type Placed = (Id, Span);
+
 /// What a result is worth; what is wrong is noted.
 pub(super) fn noted<T>(result: Result<T, Report>, reports: &mut Vec<Report>) -> Option<T> {
     result.map_err(|report| reports.push(report)).ok()
@@ -212,7 +215,7 @@ impl Felt<'_> {
         written: &tree::Region,
         depth: Id,
         reports: &mut Vec<Report>,
-    ) -> (Option<Option<(Id, Span)>>, Option<(Id, Span)>) {
+    ) -> (Option<Option<Placed>>, Option<Placed>) {
         let magnitude = self.said(written, Quantity::Magnitude);
         let magnitude = magnitude.and_then(|own| self.magnitude(own, depth));
         let niceness = self.said(written, Quantity::Niceness);

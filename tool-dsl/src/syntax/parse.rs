@@ -1,20 +1,15 @@
 //! Pairs of pest to the syntax tree.
 
+use super::limits::{too_much, within_limits};
 use super::refuse::{self, in_name};
 use super::tree::*;
 use super::{Grammar, Rule};
 use crate::domain::Domain;
 use crate::report::{Report, enough};
-use crate::source::{LONGEST, Source, Span};
+use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 
-/// The longest name.
-const LONGEST_NAME: usize = 100;
-/// The most items of a file.
-const MOST: usize = 4096;
-/// The deepest nesting of brackets.
-const DEEPEST: usize = 64;
 /// Names that generated code, or Rust itself, has already given away.
 const TAKEN: [&str; 14] = [
     "Box",
@@ -57,74 +52,6 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
     let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
     let tool = tool.map(|pair| reader.tool(pair));
     (tool.map(|tool| Tool { broken, ..tool }), reports)
-}
-
-/// A name, or a list of items, that is longer than any that people write.
-fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
-    let place = |pair: &Pair<'_, Rule>, length: usize| {
-        let start = pair.as_span().start();
-        Span { start, end: start + length }
-    };
-    let name = |pair: &Pair<'_, Rule>| pair.as_rule() == Rule::name;
-    let long =
-        pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > LONGEST_NAME);
-    if let Some(pair) = long {
-        let message = format!("this name is {} letters long", pair.as_str().len());
-        return Some(
-            Report::error(place(&pair, LONGEST_NAME), message)
-                .help(format!("a name has at most {LONGEST_NAME}")),
-        );
-    }
-    let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
-    let beyond = pairs.flatten().find(whole)?.into_inner().nth(MOST)?;
-    Some(
-        Report::error(place(&beyond, 1), format!("more than {MOST} items"))
-            .help("a file describes one tool"),
-    )
-}
-
-pub(super) fn within_limits(text: &str) -> Result<(), Report> {
-    if text.len() > LONGEST {
-        let end = Span { start: 0, end: 1 };
-        return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
-            .help(format!("a tool's text has at most {LONGEST} bytes")));
-    }
-    let (mut comments, mut at) = (0usize, 0);
-    while let Some(pair) = text.as_bytes().get(at..at + 2) {
-        match pair {
-            b"/*" => comments += 1,
-            b"*/" => comments = comments.saturating_sub(1),
-            _ => {
-                at += 1;
-                continue;
-            }
-        }
-        if comments > DEEPEST {
-            let span = Span { start: at, end: at + 2 };
-            return Err(Report::error(
-                span,
-                format!("comments are nested more than {DEEPEST} deep"),
-            )
-            .help("close them with `*/`"));
-        }
-        at += 2;
-    }
-    let mut depth = 0usize;
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
-            b'(' | b'{' | b'[' => depth += 1,
-            b')' | b'}' | b']' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth > DEEPEST {
-            return Err(Report::error(
-                Span { start: at, end: at + 1 },
-                format!("brackets are nested more than {DEEPEST} deep"),
-            )
-            .help("name a part of the expression with `let` or `curve`"));
-        }
-    }
-    Ok(())
 }
 
 pub(super) struct Reader<'a> {

@@ -83,12 +83,10 @@ impl Brackets {
                     }
                 }
                 _ if begins && begins_an_item(&rest[..length]) && swallows.is_none() => {
-                    let braces = open.iter().filter(|(_, bracket)| *bracket == '{');
+                    let innermost = open.iter().rev().find(|(_, bracket)| *bracket == '{');
                     let whole = super::FILES.contains(&super::word(text.trim_start()));
-                    swallows = braces
-                        .last()
-                        .copied()
-                        .filter(|(first, _)| !whole || Some(*first) != text.find('{'));
+                    let of_file = |first: usize| whole && Some(first) == text.find('{');
+                    swallows = innermost.copied().filter(|(first, _)| !of_file(*first));
                 }
                 _ => {}
             }

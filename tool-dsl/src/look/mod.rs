@@ -1,15 +1,18 @@
 //! Looks for what is wrong with a tool at many points of its domain: regions that overlap, are
 //! never reached or say nonsense. What is found comes with the point where it was found.
 
+mod fault;
+
 use crate::bound::Extent;
 use crate::domain::Domain;
+use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
-use crate::expr::{Id, Node};
 use crate::formula::{CurveIndex, Formula};
 use crate::model::{Curve, Frame, Model, Region};
 use crate::plan::spread;
 use crate::report::{Report, any_error, figure};
 use crate::source::Span;
+use fault::Fault;
 
 /// Points that are looked at.
 const POINTS: usize = 12_000;
@@ -254,7 +257,8 @@ impl<'m> Look<'m> {
             let value = get(id);
             let place = &place;
             let report = if !value.is_finite() {
-                self.fault(id).report(span, &format!("at {place}, in `{what}` of {name}"))
+                Fault::of(&self.model.graph, &self.evaluator, id)
+                    .report(span, &format!("at {place}, in `{what}` of {name}"))
             } else if value < -slack {
                 Report::error(span, format!("`{what}` of {name} is {} at {place}", figure(value)))
                     .help("it is never negative inside: turn a sign, or bound the region")
@@ -297,8 +301,8 @@ impl<'m> Look<'m> {
                 None => "a condition".to_owned(),
             };
             let place = self.place(point);
-            let report =
-                self.fault(*value).report(self.reader_of(curve), &format!("at {place}, in {what}"));
+            let report = Fault::of(&self.model.graph, &self.evaluator, *value)
+                .report(self.reader_of(curve), &format!("at {place}, in {what}"));
             self.report(report);
         }
     }
@@ -307,31 +311,6 @@ impl<'m> Look<'m> {
     fn reader_of(&self, curve: CurveIndex) -> Span {
         let reads = |region: &&Region| mentions(&region.inside, curve);
         self.model.regions.iter().find(reads).map_or(self.model.name_span, |region| region.span)
-    }
-
-    /// Where a value stops to be a number.
-    fn fault(&self, mut id: Id) -> Fault {
-        let finite = |id: &Id| self.evaluator.get(*id).is_finite();
-        loop {
-            let node = self.model.graph.node(id);
-            let operands: Vec<Id> = match *node {
-                Node::Select { low, high, then, other } => {
-                    let [low, high] = [low, high].map(|id| self.evaluator.get(id));
-                    vec![if low <= high { then } else { other }]
-                }
-                _ => node.operands().collect(),
-            };
-            match operands.iter().find(|id| !finite(id)) {
-                Some(operand) => id = *operand,
-                None => {
-                    return match *node {
-                        Node::Sqrt(_) => Fault::Root,
-                        Node::Div(_, by) if self.evaluator.get(by) == 0.0 => Fault::Quotient,
-                        _ => Fault::Size,
-                    };
-                }
-            }
-        }
     }
 
     fn idle_regions(&mut self) {
@@ -400,30 +379,6 @@ impl<'m> Look<'m> {
             .help("is a region missing beside it? A depth is 0 on the surface");
             self.report(report);
         }
-    }
-}
-
-/// Why a value is no number.
-enum Fault {
-    Root,
-    Quotient,
-    Size,
-}
-
-impl Fault {
-    fn report(&self, span: Span, place: &str) -> Report {
-        let (what, help) = match self {
-            Fault::Root => (
-                "square root of a negative number",
-                "bound the region by what is under the root, or take `max(0, …)` of that",
-            ),
-            Fault::Quotient => ("division by zero", "bound the region away from there"),
-            Fault::Size => (
-                "a number beyond all bounds",
-                "powers of large numbers grow so: divide by a length of the tool first",
-            ),
-        };
-        Report::error(span, format!("{what} {place}")).help(help)
     }
 }
 
