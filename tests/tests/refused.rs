@@ -101,3 +101,25 @@ fn a_pose_beyond_all_parts_is_refused() {
     let tip = nalgebra::Point3::new(0.0, 0.0, -1.7e308);
     assert_eq!(Pose::from_axis(tip, nalgebra::Vector3::z()), Err(PoseError::NotFinite));
 }
+
+/// Warnings stand beside a tool that is taken.
+#[test]
+fn what_is_only_worth_knowing() {
+    let said = |items: &str| {
+        let compiled = compiled(items);
+        assert!(compiled.tool.is_some(), "{items}");
+        compiled.reports.iter().map(|report| report.message.clone()).collect::<Vec<_>>().join("; ")
+    };
+    let ball =
+        |depth: &str| format!("region ball where hypot(d, z - 3) <= 3 {{ depth: {depth}; }}");
+    let exact = ball("3 - hypot(d, z - 3)");
+    assert_eq!(said(&exact), "");
+    assert_eq!(said(&format!("let neck = 3; {exact}")), "`neck` is never used");
+    let root = said(&ball("sqrt(9 - d^2 - (z - 3)^2)"));
+    assert!(root.starts_with("`depth` of ball has no finite slope at ("), "{root}");
+    let steep = said(&ball("1000*(3 - hypot(d, z - 3))"));
+    assert_eq!(steep, "");
+    let idle =
+        said(&format!("{exact} region far where hypot(d, z - 3) <= 3, z >= 30 {{ depth: z; }}"));
+    assert!(idle.starts_with("region far has none of the"), "{idle}");
+}
