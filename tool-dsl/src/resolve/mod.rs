@@ -57,9 +57,7 @@ fn settle(
     let given = given::from_outside(given, (tool.domain, unit), &mut reports);
     given::untaken(tool, &given, &mut reports);
     constants(tool, &given, &mut lowering, &mut reports);
-    if tool.domain == Domain::Space {
-        without_axis(tool, &mut reports);
-    }
+    let misplaced = tool.domain == Domain::Space && without_axis(tool, &mut reports);
     frame(tool, &mut lowering, &mut reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
         reports.extend(lowering.curve(definition).err());
@@ -78,7 +76,8 @@ fn settle(
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let outlined = shape(tool, &mut reports).map(|shape| match shape {
+    let shape = if misplaced { None } else { shape(tool, &mut reports) };
+    let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
             let outline = profile::outline(profile, &mut lowering, &mut reports);
             outline.map(|(outline, surfaces)| Outlined {
@@ -100,6 +99,7 @@ fn settle(
             derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, &mut reports)
         }
         Some(None) => FromProfile::default(),
+        None if misplaced => FromProfile::default(),
         None => {
             let laws = Laws::new(&laws, BTreeMap::new());
             let (surfaces, regions) =
@@ -136,8 +136,9 @@ fn settle(
     (Some(model), reports)
 }
 
-/// What only a tool has, in a solid.
-fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
+/// What only a tool has, in a solid; whether there is any.
+fn without_axis(tool: &Tool, reports: &mut Vec<Report>) -> bool {
+    let before = reports.len();
     for item in &tool.items {
         let (span, word, why) = match item {
             Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
@@ -152,6 +153,7 @@ fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
                 .help(format!("a `solid` has no axis: {why}")),
         );
     }
+    reports.len() > before
 }
 
 /// What divides a profile's inside: `regions smooth`, or regions by hand.
