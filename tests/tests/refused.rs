@@ -35,7 +35,7 @@ fn a_curve_that_is_undefined_somewhere_is_refused() {
     let message = refused(
         "curve s = sqrt(9 - d^2); region core where s >= 1, 0 <= z <= 5 { depth: min(z, 5 - z); }",
     );
-    assert!(message.contains("undefined"), "{message}");
+    assert!(message.contains("square root of a negative number"), "{message}");
 }
 
 /// No part of the tool lies outside its slabs, even a last sliver.
@@ -100,4 +100,26 @@ fn what_only_follows_is_not_said() {
 fn a_pose_beyond_all_parts_is_refused() {
     let tip = nalgebra::Point3::new(0.0, 0.0, -1.7e308);
     assert_eq!(Pose::from_axis(tip, nalgebra::Vector3::z()), Err(PoseError::NotFinite));
+}
+
+/// Warnings stand beside a tool that is taken.
+#[test]
+fn what_is_only_worth_knowing() {
+    let said = |items: &str| {
+        let compiled = compiled(items);
+        assert!(compiled.tool.is_some(), "{items}");
+        compiled.reports.iter().map(|report| report.message.clone()).collect::<Vec<_>>().join("; ")
+    };
+    let ball =
+        |depth: &str| format!("region ball where hypot(d, z - 3) <= 3 {{ depth: {depth}; }}");
+    let exact = ball("3 - hypot(d, z - 3)");
+    assert_eq!(said(&exact), "");
+    assert_eq!(said(&format!("let neck = 3; {exact}")), "`neck` is never used");
+    let root = said(&ball("sqrt(9 - d^2 - (z - 3)^2)"));
+    assert!(root.starts_with("`depth` of ball has no finite slope at ("), "{root}");
+    let steep = said(&ball("1000*(3 - hypot(d, z - 3))"));
+    assert_eq!(steep, "");
+    let idle =
+        said(&format!("{exact} region far where hypot(d, z - 3) <= 3, z >= 30 {{ depth: z; }}"));
+    assert!(idle.starts_with("region far has none of the"), "{idle}");
 }

@@ -34,6 +34,7 @@ use plan::{Plan, Tree};
 use prove::Bounds;
 use report::{Report, any_error};
 use source::{Source, Sources};
+use std::collections::{BTreeSet, HashSet};
 
 /// A tool that was looked over and found good, with everything that is emitted about it.
 #[derive(Clone, Debug)]
@@ -96,8 +97,9 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     let Some(tree) = tree else { return Compiled { tool: None, name: None, reports, sources } };
     let name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
     let (model, found) = resolve::resolve(&tree, &settings, &mut sources);
-    let broken = any_error(&reports);
-    reports.extend(found.into_iter().filter(|report| !broken || !follows(report, &tree.broken)));
+    let broken: BTreeSet<&str> = tree.broken.iter().map(String::as_str).collect();
+    let said = any_error(&reports);
+    reports.extend(found.into_iter().filter(|report| !said || !follows(report, &broken)));
     let tool = match model {
         Some(model) if !any_error(&reports) => match check(model, &mut reports) {
             Ok(tool) => Some(Box::new(tool)),
@@ -109,15 +111,24 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
         _ => None,
     };
     let tool = tool.filter(|_| !any_error(&reports));
+    Compiled { tool, name, reports: told(reports), sources }
+}
+
+/// What is told of all that was found: in the order of the text, each mistake once, and no more
+/// than can be read.
+fn told(mut reports: Vec<Report>) -> Vec<Report> {
     reports.sort_by_key(|report| report.span.start);
     // A file that is mounted twice has its mistakes once.
-    let mut said: Vec<Report> = Vec::new();
-    for report in reports {
-        if !said.contains(&report) {
-            said.push(report);
-        }
+    let mut seen = HashSet::new();
+    reports.retain(|report| seen.insert(report.clone()));
+    if reports.len() > report::MOST {
+        let next = reports[report::MOST].span;
+        reports.truncate(report::MOST);
+        reports.push(
+            Report::error(next, "more is wrong from here on").help("mend what stands above first"),
+        );
     }
-    Compiled { tool, name, reports: said, sources }
+    reports
 }
 
 fn check(mut model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
@@ -163,16 +174,14 @@ fn finite(model: &Model) -> Result<(), Report> {
         |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());
     if needed.iter().any(beyond) {
         return Err(Report::error(model.name_span, "a constant of this tool outgrows all numbers")
-            .help(
-                "powers upon powers of large constants do so: lengths lie between 2^-300 and 2^300",
-            ));
+            .help("powers upon powers of large constants do so: write lengths in a nearer unit"));
     }
     Ok(())
 }
 
 /// Whether a report only says that what a broken item would have said is missing.
-fn follows(report: &Report, broken: &[String]) -> bool {
-    let has = |word: &str| broken.iter().any(|other| other == word);
+fn follows(report: &Report, broken: &BTreeSet<&str>) -> bool {
+    let has = |word: &str| broken.contains(word);
     let message = &report.message;
     let missing_name = message.starts_with("unknown") && message.split('`').nth(1).is_some_and(has);
     missing_name

@@ -134,6 +134,8 @@ pub struct Frame {
     pub tip: Number,
     /// Whether the spindle lies toward the file's -z.
     pub down: bool,
+    /// Where the tip is said, or else the tool's name.
+    pub tip_span: Span,
 }
 
 impl Frame {
@@ -152,6 +154,17 @@ impl Frame {
     pub fn to_tool(&self, z: &Number) -> Number {
         if self.down { &self.tip - z } else { z - &self.tip }
     }
+}
+
+/// Where a region's quantities are said: by itself, by a law, or else where it stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Said {
+    /// The depth.
+    pub depth: Span,
+    /// The magnitude.
+    pub magnitude: Span,
+    /// The niceness.
+    pub niceness: Span,
 }
 
 /// A splitting curve, the zeros of an expression.
@@ -187,8 +200,8 @@ pub struct Region {
     pub inside: Formula,
     /// How deep a point lies, as the file says it.
     pub depth: Id,
-    /// Where `depth` is said.
-    pub depth_span: Span,
+    /// Where its quantities are said.
+    pub said: Said,
     /// How hard it is pushed, as the file says it.
     pub magnitude: Id,
     /// The direction to the surface in the domain, a unit vector.

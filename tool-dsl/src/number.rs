@@ -12,6 +12,9 @@ use std::sync::OnceLock;
 /// Bits carried by every constant.
 const PRECISION: usize = 256;
 
+/// The sizes that numbers of a file have, in words.
+pub(crate) const RANGE: &str = "numbers are 0, or between 1e-90 and 1e90 in size";
+
 /// A real constant to 256 bits.
 #[derive(Clone)]
 pub struct Number {
@@ -59,6 +62,11 @@ impl Number {
     /// The nearest double; an infinity beyond the range.
     pub fn to_f64(&self) -> f64 {
         *self.near.get_or_init(|| self.exact.to_f64().value())
+    }
+
+    /// Whether this is a number that a file may write: sums of its powers outgrow no double.
+    pub(crate) fn is_in_range(&self) -> bool {
+        self.is_zero() || (1e-90..=1e90).contains(&self.to_f64().abs())
     }
 
     /// Whether this is exactly zero.

@@ -6,7 +6,7 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snip
 use std::ops::Range;
 
 /// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing; code is emitted all the same.
     Warning,
@@ -15,7 +15,7 @@ pub enum Severity {
 }
 
 /// One thing to say.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Report {
     /// Error or warning.
     pub severity: Severity,
@@ -23,8 +23,6 @@ pub struct Report {
     pub message: String,
     /// The place.
     pub span: Span,
-    /// A word at the place itself.
-    pub label: Option<String>,
     /// A second culprit with its own word.
     pub second: Option<(Span, String)>,
     /// The remedy.
@@ -38,7 +36,6 @@ impl Report {
             severity: Severity::Error,
             message: message.into(),
             span,
-            label: None,
             second: None,
             help: None,
         }
@@ -52,13 +49,6 @@ impl Report {
     /// An error that only follows from another, which is reported; this one is not.
     pub fn follow_up(span: Span) -> Report {
         Report::error(span, "")
-    }
-
-    /// With a word at the place itself.
-    #[must_use]
-    pub fn label(mut self, label: impl Into<String>) -> Report {
-        self.label = Some(label.into());
-        self
     }
 
     /// With a second place.
@@ -90,10 +80,7 @@ impl Report {
             Severity::Warning => Level::WARNING,
         };
         let (source, span) = sources.locate(self.span);
-        let mut primary = AnnotationKind::Primary.span(visible(source, span));
-        if let Some(label) = &self.label {
-            primary = primary.label(label.as_str());
-        }
+        let primary = AnnotationKind::Primary.span(visible(source, span));
         let mut snippet = excerpt(source).annotation(primary);
         let mut elsewhere = None;
         if let Some((span, label)) = &self.second {
@@ -139,6 +126,14 @@ pub fn figure(value: f64) -> String {
     } else {
         text
     }
+}
+
+/// The most mistakes that are told at once.
+pub const MOST: usize = 50;
+
+/// Whether so much is wrong that looking for more helps nobody.
+pub(crate) fn enough(reports: &[Report]) -> bool {
+    reports.iter().filter(|report| !report.message.is_empty()).count() >= MOST
 }
 
 /// Whether any of them is an error.

@@ -1,9 +1,28 @@
 //! The text that a tool is written in, and places in it.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
+
+/// The longest text that is read, in bytes.
+pub(crate) const LONGEST: usize = 1 << 20;
+
+/// The text of a file, or why it cannot be one of a tool.
+fn text(path: &Path) -> io::Result<String> {
+    let wrong = |why: String| io::Error::new(io::ErrorKind::InvalidData, why);
+    let mut bytes = Vec::new();
+    File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > LONGEST {
+        return Err(wrong(format!("it is longer than {LONGEST} bytes")));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
+        wrong(format!("line {line} is no UTF-8 text: save it as UTF-8"))
+    })
+}
 
 /// A stretch of text, in bytes: of a source's, or of all [`Sources`] one behind the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -51,8 +70,12 @@ impl Source {
 
     /// A source from a file, known by its path.
     pub fn read(path: impl AsRef<Path>) -> io::Result<Source> {
-        let text = std::fs::read_to_string(&path)?;
-        Ok(Source::new(path.as_ref().display().to_string(), text).held_by(path.as_ref()))
+        Source::read_as(path.as_ref().display().to_string(), path.as_ref())
+    }
+
+    /// A source from a file, known by a name.
+    pub fn read_as(name: impl Into<String>, path: &Path) -> io::Result<Source> {
+        Ok(Source::new(name, text(path)?).held_by(path))
     }
 
     /// With the file that holds the text: what it mounts is looked for beside that.
@@ -127,11 +150,13 @@ impl Source {
         }
     }
 
-    /// The span of the Rust token at a place, for a source made of tokens.
-    pub fn token_at(&self, span: Span) -> Option<proc_macro2::Span> {
+    /// The first and the last Rust token of a place, for a source made of tokens.
+    pub fn tokens_at(&self, span: Span) -> Option<[proc_macro2::Span; 2]> {
         let tokens = self.tokens.as_ref()?;
-        let after = tokens.partition_point(|(place, _)| place.end <= span.start);
-        tokens.get(after).or(tokens.last()).map(|(_, token)| *token)
+        let end = tokens.len().checked_sub(1)?;
+        let first = tokens.partition_point(|(place, _)| place.end <= span.start).min(end);
+        let behind = tokens.partition_point(|(place, _)| place.start < span.end);
+        Some([first, behind.saturating_sub(1).max(first)].map(|at| tokens[at].1))
     }
 
     /// The file that holds the text, if any does.
@@ -197,12 +222,12 @@ impl Sources {
         source.text.get(span.start..span.end).unwrap_or_default()
     }
 
-    /// The Rust token of a place; of a place in a mounted file, that of the mount which asked for
-    /// it. `None` if that stands in a file.
-    pub fn token_at(&self, mut span: Span) -> Option<proc_macro2::Span> {
+    /// The Rust tokens of a place; of a place in a mounted file, those of the mount which asked
+    /// for it. `None` if that stands in a file.
+    pub fn tokens_at(&self, mut span: Span) -> Option<[proc_macro2::Span; 2]> {
         loop {
             let (source, inside) = self.locate(span);
-            match (source.token_at(inside), source.by) {
+            match (source.tokens_at(inside), source.by) {
                 (None, Some(by)) => span = by,
                 (token, _) => return token,
             }
@@ -235,7 +260,7 @@ impl Sources {
         if let Some(known) = self.0.iter().position(same) {
             return Ok(&self.0[known]);
         }
-        let text = std::fs::read_to_string(&path)?;
-        Ok(self.add(Source { by: Some(by), ..Source::new(shown, text).held_by(path) }))
+        let source = Source::read_as(shown, &path)?;
+        Ok(self.add(Source { by: Some(by), ..source }))
     }
 }

@@ -141,10 +141,8 @@ fn at_root(path: &LitStr) -> syn::Result<PathBuf> {
 
 /// The text of a file, by a path that is shown.
 fn read(path: &Path, shown: &str, place: &LitStr) -> syn::Result<Source> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        syn::Error::new(place.span(), format!("cannot read `{shown}`: {error}"))
-    })?;
-    Ok(Source::new(shown, text).held_by(path))
+    Source::read_as(shown, path)
+        .map_err(|error| syn::Error::new(place.span(), format!("cannot read `{shown}`: {error}")))
 }
 
 /// Whether the compiler at work is rustdoc, the only one that shows drawings.

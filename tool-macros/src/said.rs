@@ -1,6 +1,6 @@
 //! What the compiler says of a tool, where rustc shows it.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
 use tool_dsl::Compiled;
 use tool_dsl::report::{Report, Severity};
@@ -14,20 +14,25 @@ pub(crate) fn errors(compiled: &Compiled, place: Span) -> TokenStream {
     let mut rest = Vec::new();
     for report in compiled.reports.iter().filter(|r| r.severity == Severity::Error) {
         let (source, inside) = sources.locate(report.span);
-        match (source.token_at(inside), sources.token_at(report.span)) {
-            (Some(span), _) => tokens.extend(error(&in_words(report, sources), span)),
+        match (source.tokens_at(inside), sources.tokens_at(report.span)) {
+            (Some(place), _) => tokens.extend(error(&in_words(report, sources), place)),
             (None, Some(mount)) => tokens.extend(error(&excerpt(report, sources), mount)),
             (None, None) => rest.push(excerpt(report, sources)),
         }
     }
     if !rest.is_empty() {
-        tokens.extend(error(&rest.join("\n\n"), place));
+        tokens.extend(error(&rest.join("\n\n"), [place, place]));
     }
     tokens
 }
 
-fn error(message: &str, span: Span) -> TokenStream {
-    quote_spanned! { span => ::core::compile_error! { #message } }
+/// An error that rustc shows from the first token to the last.
+fn error(message: &str, [first, last]: [Span; 2]) -> TokenStream {
+    let mut tokens = quote_spanned! { first => ::core::compile_error! };
+    let mut said = Group::new(Delimiter::Brace, quote_spanned! { last => #message });
+    said.set_span(last);
+    tokens.extend([TokenTree::Group(said)]);
+    tokens
 }
 
 /// A report with the line of its file.
@@ -43,10 +48,13 @@ fn in_words(report: &Report, sources: &Sources) -> String {
         let (source, inside) = sources.locate(*span);
         let place = sources.text(*span);
         text.push_str(&format!("\nnote: {label}: `{place}`"));
-        if source.token_at(inside).is_none() {
-            let line = 1 + source.text[..inside.start].matches('\n').count();
-            text.push_str(&format!(", line {line} of {}", source.name));
-        }
+        text.push_str(&match source.tokens_at(inside) {
+            Some([token, _]) => format!(", line {}", token.unwrap().line()),
+            None => {
+                let line = 1 + source.text[..inside.start].matches('\n').count();
+                format!(", line {line} of {}", source.name)
+            }
+        });
     }
     if let Some(help) = &report.help {
         text.push_str(&format!("\nhelp: {help}"));

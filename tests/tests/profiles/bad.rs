@@ -24,23 +24,23 @@ fn each_mistake_is_shown_at_its_segment() {
         (
             "(1, 0); line to (3, 0), (3, 20), (0, 20) as a;",
             "begins at (1, 0), not on the axis",
-            "(3, 0)",
+            "(1, 0)",
         ),
         ("(0, 20); line to (3, 20), (3, 0), (0, 0) as a;", "runs clockwise", "(3, 20)"),
         (
             "(0, 0); line to (4, 0), (1, 5), (4, 5), (1, 1), (0, 9) as a;",
-            "meets that one at",
+            "crosses that one at (2.33333, 2.77778)",
             "(1, 1)",
         ),
         (
             "(0, 0); line to (4, 0), (4, 5), (2, 5), (2, 0), (1, 0), (1, 9), (0, 9) as a;",
-            "meets that one at",
-            "(",
+            "touches that one at (2, 0)",
+            "(2, 0)",
         ),
         (
             "(0, 0); line to (4, 0), (4, 2), (3, 2), (4, 1), (5, 6), (0, 6) as a;",
-            "meets that one at (4, 1)",
-            "(",
+            "touches that one at (4, 1)",
+            "(4, 1)",
         ),
         (
             "(0, 0); line to (3, 0), (3, 5) as a; arc to (3, 9) radius 3 concave as b; line to (0, 9) as c; line to (0.5, 7) as d; line to (0, 9) as e;",
@@ -102,8 +102,8 @@ fn each_mistake_is_shown_at_its_segment() {
         ),
         (
             "(0, 0); line to (3, 0) as a; arc to (3, 5) radius -4 as b; line to (0, 5) as c;",
-            "radius",
-            "arc to",
+            "an arc's radius is more than 0",
+            "-4",
         ),
         (
             "(0, 0); line to (3, 0) as a; arc to (3, 5) center (5, 2.5) as b; line to (0, 5) as c;",

@@ -172,7 +172,7 @@ fn mistakes_of_regions_are_shown() {
     let two = "region low as ball where z <= 3 {} region high as shank where z >= 3 {}";
     assert!(tool(&text(false, two)).is_ok());
     let cases = [
-        (two.replace("z >= 3", "z >= 4"), "nothing covers", "profile {"),
+        (two.replace("z >= 3", "z >= 4"), "nothing covers", "profile"),
         (two.replace("z >= 3", "z >= 2"), "regions low and high overlap", "high"),
         (two.replace("3 {}", "3 { depth: 3 - d; }"), "`depth` is the profile's here", "3 - d"),
         (two.replace("as shank", "as shnak"), "unknown surface `shnak`", "shnak"),
@@ -187,7 +187,11 @@ fn mistakes_of_regions_are_shown() {
             "region never has no point",
             "never",
         ),
-        (two.to_owned() + " region late where z >= 15 {}", "late", "late"),
+        (
+            two.to_owned() + " region late where z >= 15 {}",
+            "region late never wins a point: high, listed before it, covers it",
+            "late",
+        ),
         (two.replace("region high", "region low"), "two regions are called `low`", "low"),
         (
             two.replace("3 {}", "3 { direction: (0, 0); }"),

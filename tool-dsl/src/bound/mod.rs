@@ -13,6 +13,8 @@ use crate::plan::linear::Linear;
 use crate::regionalise::outline;
 use crate::report::Report;
 
+/// The power of two of the farthest reach of a solid.
+const FARTHEST: i32 = 280;
 /// The largest coordinate, 2^300.
 const LIMIT: f64 = 2.037035976334486e90;
 /// Boxes that one question may take: enough for a few percent where the expression mentions a
@@ -264,13 +266,8 @@ pub fn extent(model: &Model) -> Result<Extent, Report> {
 
 /// A power of two beyond which the solid provably has no point.
 fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
-    let mut beyond = |size: f64| {
-        domain.ways().iter().all(|&(axis, high)| {
-            let far = if high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
-            prover.empty_within(domain.whole(LIMIT).with(axis, far), 20 * BUDGET, 0.0)
-        })
-    };
-    let mut power = 280;
+    let mut beyond = |size: f64| way_out(domain, prover, size).is_none();
+    let mut power = FARTHEST;
     if !beyond(2f64.powi(power)) {
         return None;
     }
@@ -282,15 +279,32 @@ fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
     Some(power)
 }
 
-fn endless(model: &Model) -> Report {
-    let report =
-        Report::error(model.name_span, "the regions reach to infinity, as far as can be proved");
-    report.help(match model.domain {
-        Domain::HalfPlane => {
-            "bound every region in d and in z, toward the axis's ends and away from it"
-        }
-        Domain::Space => "bound every region in x, in y and in z, to both sides",
+/// A way on which the solid may reach farther than a size.
+fn way_out(domain: Domain, prover: &mut Prover<'_>, size: f64) -> Option<(usize, bool)> {
+    domain.ways().iter().copied().find(|(axis, high)| {
+        let far = if *high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
+        !prover.empty_within(domain.whole(LIMIT).with(*axis, far), 20 * BUDGET, 0.0)
     })
+}
+
+/// The first region of which no end is found.
+fn endless(model: &Model) -> Report {
+    let domain = model.domain;
+    let mut alone = model.clone();
+    for region in &model.regions {
+        alone.regions = vec![region.clone()];
+        let out = way_out(domain, &mut Prover::of_regions(&alone), 2f64.powi(FARTHEST));
+        let Some((axis, high)) = out else { continue };
+        let name = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
+        let way = if high { "large" } else { "small" };
+        let end = if high { "<= 40" } else { ">= 0" };
+        let message =
+            format!("region {} has no end toward {way} {name} that can be proved", region.name);
+        return Report::error(region.span, message)
+            .help(format!("bound it there, as in `{name} {end}`"));
+    }
+    Report::error(model.name_span, "no end of the regions can be proved")
+        .help("bound each by lines, as in `d <= 3, 0 <= z <= 40`")
 }
 
 /// The innermost place from `outer` toward `inner` for which `empty` still holds, by halving.

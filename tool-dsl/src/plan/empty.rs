@@ -25,7 +25,7 @@ impl<'m> Void<'m> {
 
     /// Whether provably no point has these signs.
     pub(super) fn proved(&mut self, signs: &[Signs]) -> bool {
-        self.linear.contradictory(signs) || self.uncovered(signs)
+        self.linear.judged(signs).unwrap_or_else(|| self.uncovered(signs))
     }
 
     /// Whether no box of a cover of the domain can have the signs.

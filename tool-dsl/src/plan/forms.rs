@@ -1,7 +1,7 @@
 //! Expressions as linear forms in the coordinates, and in monomials and roots of them, each taken for a
 //! variable of its own; and what is known of such variables.
 
-use super::linear::ROUNDING;
+use super::eliminate::ROUNDING;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Encloser};
 use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};

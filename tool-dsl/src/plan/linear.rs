@@ -2,25 +2,16 @@
 //! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
 //! sees where borders meet in a corner, to a part in 10^12.
 
+use super::eliminate::{Condition, ROUNDING, scaled, without};
 use super::forms::{Form, Variable, Variables, compares_roots};
 use crate::expr::Id;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
 use crate::expr::polynomial::monomial_of;
-use crate::formula::{NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 
-/// A residue below this, relative to the curve's largest coefficient, is rounding.
-pub(super) const ROUNDING: f64 = 1e-12;
-/// The most conditions that elimination may grow to.
-const CONDITIONS: usize = 600;
-
-/// `Σ factor · variable + constant ≤ 0`, or `< 0`.
-#[derive(Clone, Debug)]
-struct Condition {
-    factors: Vec<f64>,
-    constant: f64,
-    strict: bool,
-}
+/// The most combinations of choices.
+const CHOICES: usize = 8;
 
 /// The curves that are linear in the coordinates or in monomials of them.
 pub(crate) struct Linear {
@@ -34,9 +25,6 @@ pub(crate) struct Linear {
     /// Conditions of which one holds everywhere, for each of several roots.
     choices: Vec<(usize, Vec<Condition>)>,
 }
-
-/// The most combinations of choices.
-const CHOICES: usize = 8;
 
 impl Linear {
     /// What is known at once.
@@ -159,7 +147,24 @@ impl Linear {
         self.absurd(self.conditions(signs))
     }
 
-    /// The same in a region, whose depth is not negative.
+    /// Whether these signs contradict one another, if what is linear in the curves settles it: of straight
+    /// lines elimination overlooks nothing.
+    pub(super) fn judged(&self, signs: &[Signs]) -> Option<bool> {
+        let rest = without(self.conditions(signs), (0..self.variables).collect())?;
+        if absurd(&rest) {
+            return Some(true);
+        }
+        let straight = |form: &Option<(Vec<f64>, f64)>| {
+            form.as_ref().is_some_and(|(factors, _)| {
+                let bent = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
+                !(0..self.variables).any(bent)
+            })
+        };
+        let mut asked = self.forms.iter().zip(signs).filter(|(_, sign)| **sign != ANY);
+        asked.all(|(form, _)| straight(form)).then_some(false)
+    }
+
+    /// The same as [`Linear::contradictory`] in a region, whose depth is not negative.
     pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
         let mut conditions = self.conditions(signs);
         let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
@@ -231,93 +236,12 @@ impl Linear {
     }
 
     fn none_keeps(&self, conditions: Vec<Condition>) -> bool {
-        let conditions = without(conditions, (0..self.variables).collect());
-        let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
-        conditions.is_some_and(|conditions| conditions.iter().any(absurd))
+        without(conditions, (0..self.variables).collect()).is_some_and(|rest| absurd(&rest))
     }
 }
 
-/// The conditions that remain when some variables may be anything, those first that leave fewest;
-/// `None` if there are too many.
-fn without(mut conditions: Vec<Condition>, mut variables: Vec<usize>) -> Option<Vec<Condition>> {
-    while !variables.is_empty() {
-        let growth = |variable: usize| {
-            let with = |sign: f64| {
-                let bound = |c: &&Condition| sign * c.factors[variable] > ROUNDING;
-                conditions.iter().filter(bound).count()
-            };
-            let (upper, lower) = (with(1.0), with(-1.0));
-            (upper * lower).saturating_sub(upper + lower)
-        };
-        let place = (0..variables.len()).min_by_key(|place| growth(variables[*place]))?;
-        conditions = eliminate(conditions, variables.swap_remove(place))?;
-    }
-    Some(conditions)
-}
-
-/// The conditions that remain when a variable may be anything; `None` if there are too many.
-fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Condition>> {
-    let (mut upper, mut lower, mut rest) = (Vec::new(), Vec::new(), Vec::new());
-    for condition in tightest(conditions) {
-        match condition.factors[variable] {
-            f if f > ROUNDING => upper.push(condition),
-            f if f < -ROUNDING => lower.push(condition),
-            _ => rest.push(condition),
-        }
-    }
-    if rest.len() + upper.len() * lower.len() > CONDITIONS {
-        return None;
-    }
-    for a in &upper {
-        for b in &lower {
-            let (x, y) = (-b.factors[variable], a.factors[variable]);
-            let mut factors: Vec<f64> =
-                a.factors.iter().zip(&b.factors).map(|(f, g)| f * x + g * y).collect();
-            factors[variable] = 0.0;
-            let constant = a.constant * x + b.constant * y;
-            rest.push(Condition { factors, constant, strict: a.strict || b.strict });
-        }
-    }
-    Some(rest)
-}
-
-/// Of conditions with the same factors, the one that says most.
-fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
-    let mut kept: Vec<Condition> = Vec::new();
-    for condition in conditions {
-        let condition = scaled(condition);
-        let same = |other: &&mut Condition| {
-            other.factors.iter().zip(&condition.factors).all(|(a, b)| (a - b).abs() <= ROUNDING)
-        };
-        match kept.iter_mut().find(same) {
-            Some(other) => {
-                let above = condition.constant - other.constant;
-                // What differs by rounding is the same, and one of both is strict if the other is.
-                let same = above.abs() <= ROUNDING * condition.constant.abs().max(1.0);
-                let strict = same && (condition.strict || other.strict);
-                if above > 0.0 {
-                    *other = condition;
-                }
-                other.strict |= strict;
-            }
-            None => kept.push(condition),
-        }
-    }
-    kept
-}
-
-/// A condition with its largest factor 1 and rounding's residues removed.
-fn scaled(mut condition: Condition) -> Condition {
-    let largest = condition.factors.iter().fold(0f64, |m, f| m.max(f.abs()));
-    if largest > ROUNDING {
-        let scale = 1.0 / largest;
-        condition.constant *= scale;
-        for factor in &mut condition.factors {
-            *factor *= scale;
-            if factor.abs() < ROUNDING {
-                *factor = 0.0;
-            }
-        }
-    }
-    condition
+/// Whether conditions on nothing are not kept.
+fn absurd(conditions: &[Condition]) -> bool {
+    let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
+    conditions.iter().any(absurd)
 }

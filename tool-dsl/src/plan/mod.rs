@@ -8,6 +8,7 @@
 //! samples of the domain, cheap curves first, `bsp` before all.
 
 mod corners;
+mod eliminate;
 mod empty;
 mod forms;
 pub(crate) mod linear;

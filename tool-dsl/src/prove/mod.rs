@@ -20,6 +20,7 @@ mod witness;
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
+use crate::look::deep_on_the_surface;
 use crate::report::{Report, figure};
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
@@ -175,15 +176,10 @@ impl Certificate {
             };
             let region = &model.regions[region];
             let place = model.shown(point);
-            let figure = |depth: f64| figure(depth.abs());
             let report = match beside.map(|beside| &model.regions[beside]) {
-                None => Report::error(
-                    region.depth_span,
-                    format!("`depth` of {} is {} at {place}, on the surface", region.name, figure(own)),
-                )
-                .help("is a region missing beside it? on the surface depth is 0"),
+                None => deep_on_the_surface(region, own, &place),
                 Some(beside) => Report::error(
-                    region.depth_span,
+                    region.said.depth,
                     format!(
                         "depth jumps from {} to {} at {place}, between {} and {}",
                         figure(own),
@@ -192,7 +188,7 @@ impl Certificate {
                         beside.name
                     ),
                 )
-                .and(beside.depth_span, "here")
+                .and(beside.said.depth, "here")
                 .help(
                     "two regions have the same depth where they meet; what is felt may jump: write it \
                      as `magnitude:` beside a `depth:` that does not",

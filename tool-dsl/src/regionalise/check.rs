@@ -1,31 +1,17 @@
 //! What is wrong with a profile, before anything is derived of it.
 
 use super::crossing::meeting;
-use super::outline::{Point, Segment, TANGENT, along, cross, dot, doubles, reach};
-use crate::report::Report;
+use super::outline::{Point, Segment, TANGENT, along, cross, dot, minus, norm, reach};
+use crate::report::{Report, enough};
 
-/// What is wrong with a profile as a whole: where it begins and ends, its sense, crossings.
+/// What is wrong with a profile that runs from the axis to the axis: its sense, crossings.
 pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Report> {
     let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
     let mut reports = Vec::new();
-    let ends = [(first, doubles(&first.from), "begins"), (last, doubles(&last.to), "ends")];
-    for (segment, [d, z], verb) in ends {
-        if d != 0.0 {
-            let place = show([d, z]);
-            let axis = show([0.0, z]);
-            reports.push(
-                Report::error(
-                    segment.span,
-                    format!("the profile {verb} at {place}, not on the axis"),
-                )
-                .help(format!("let it run from the axis to the axis: add `line to {axis}`")),
-            );
-        }
-    }
     let points: Vec<Point> = outline.iter().flat_map(along).collect();
     let [_, high] = reach(outline);
     for (index, segment) in outline.iter().enumerate() {
-        let [[from, _], [to, _]] = segment.ends();
+        let [_, [to, _]] = segment.ends();
         // An arc's own points, without its ends where they are the profile's.
         let within = segment.round().filter(|(centre, radius, _)| {
             segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
@@ -33,17 +19,21 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         let lowest = within.map_or(f64::INFINITY, |(centre, radius, _)| centre[0] - radius);
         let touches =
             lowest <= 1e-12 * high[0] || (to <= 1e-12 * high[0] && index + 1 < outline.len());
-        if segment.round().is_none() && from == 0.0 && to == 0.0 {
+        let lies = |segment: &Segment| {
+            let [[from, _], [to, _]] = segment.ends();
+            segment.round().is_none() && from == 0.0 && to == 0.0
+        };
+        if lies(segment) {
             reports.push(
                 Report::error(segment.span, "this segment lies on the axis")
                     .help("leave it out: the axis closes the profile by itself"),
             );
-        } else if lowest < -1e-12 * high[0] || from < 0.0 || to < 0.0 {
+        } else if lowest < -1e-12 * high[0] || to < 0.0 {
             reports.push(
                 Report::error(segment.span, "this segment crosses the axis")
                     .help("`d` is a radius and never negative"),
             );
-        } else if touches {
+        } else if touches && !outline.get(index + 1).is_some_and(lies) {
             reports.push(
                 Report::error(segment.span, "this segment touches the axis")
                     .help("a profile is on the axis at its two ends only"),
@@ -75,7 +65,9 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
             );
         }
     }
-    for pair in outline.windows(2) {
+    // Segments of which something was said: their neighbours would only repeat it.
+    let mut said: Vec<usize> = Vec::new();
+    for (index, pair) in outline.windows(2).enumerate() {
         let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
         if cross(before, after).abs() < TANGENT && dot(before, after) < 0.0 {
             let at = show(pair[0].ends()[1]);
@@ -84,16 +76,31 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                     .and(pair[0].span, "from this one")
                     .help("a needle without an angle is no solid: move a corner"),
             );
+            said.extend([index, index + 1]);
         }
     }
+    let known = |said: &[usize], index: usize| said.iter().any(|other| index.abs_diff(*other) <= 1);
     for (i, a) in outline.iter().enumerate() {
         for (j, b) in outline.iter().enumerate().skip(i + 1) {
+            if known(&said, i) || known(&said, j) {
+                continue;
+            }
             if let Some(at) = meeting(a, b, j == i + 1) {
+                let slack = 1e-9 * high.iter().fold(0.0, |size: f64, part| size.max(part.abs()));
+                let end = |segment: &Segment| {
+                    segment.ends().iter().any(|end| norm(minus(*end, at)) <= slack)
+                };
+                let verb = if end(a) || end(b) { "touches" } else { "crosses" };
+                let message = format!("this segment {verb} that one at {}", show(at));
                 reports.push(
-                    Report::error(b.span, format!("this segment meets that one at {}", show(at)))
+                    Report::error(b.span, message)
                         .and(a.span, "that one")
-                        .help("a profile never crosses or touches itself"),
+                        .help("a profile never crosses or touches itself: move a corner"),
                 );
+                said.extend([i, j]);
+            }
+            if enough(&reports) {
+                return reports;
             }
         }
     }

@@ -4,7 +4,7 @@ use super::condition::Curves;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::Divider;
-use super::region::{Felt, Said};
+use super::region::{Bare, Felt, noted};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
@@ -75,21 +75,14 @@ pub(super) fn derived(
             for part in &parts {
                 let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
                 let said = (part.name.clone(), part.span, part.owner, part.inside.clone());
-                match felt.of_part(part, said, (part.course, part.span)) {
-                    Ok(region) => regions.push(region),
-                    Err(report) => reports.push(report),
-                }
+                regions.extend(noted(felt.of_part(part, said, (part.course, part.span)), reports));
             }
         }
         Some(conditions) if reports.len() == before => {
             let pairs = conditions.pairs(whole, (curves, lowering), span, reports);
             for (part, index) in &pairs {
                 let pair = (&parts[*part], *index);
-                match conditions.region(pair, &surfaces, laws, lowering) {
-                    Ok(region) => regions.push(region),
-                    Err(report) if reports.iter().any(|r| r.span == report.span) => {}
-                    Err(report) => reports.push(report),
-                }
+                regions.extend(conditions.region(pair, &surfaces, laws, lowering, reports));
             }
             over = Some(Over { conditions: conditions.conditions, regions: pairs });
         }
@@ -190,7 +183,7 @@ impl Felt<'_> {
     ) -> Result<Region, Report> {
         let magnitude = self.magnitude(None, part.depth)?;
         let niceness = self.niceness(None, part.depth)?;
-        let said = Said { name, span, owner, inside, depth_span: span };
-        self.finish(said, (part.depth, magnitude, niceness), course)
+        let bare = Bare { name, span, owner, inside };
+        self.finish(bare, (part.depth, span), (magnitude, niceness), course)
     }
 }

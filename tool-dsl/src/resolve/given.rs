@@ -91,7 +91,8 @@ impl Given<'_> {
         let Definition { name: Name { word, .. }, value } = self.setting;
         let Some(dimension) = of_default.alike(self.dimension) else {
             let message = format!("`{word}` is {of_default}, what is given is {}", self.dimension);
-            return Err(Report::error(value.span, message).and(default.span, "its default"));
+            let report = Report::error(value.span, message).and(default.span, "its default");
+            return Err(report.help(format!("give {of_default}")));
         };
         let power = match dimension {
             // Where a length is wanted a bare number is in the unit of the file that it stands in.

@@ -2,7 +2,7 @@
 
 use super::mount::Along;
 use crate::model::Surface;
-use crate::report::{Report, nearest};
+use crate::report::{Report, enough, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{Law, Quantity};
 use std::collections::BTreeMap;
@@ -37,6 +37,9 @@ impl<'t> Laws<'t> {
     pub(super) fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
         let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
         for law in self.own {
+            if enough(reports) {
+                return;
+            }
             let what = law.quantity.word();
             if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
                 reports.push(
@@ -57,8 +60,7 @@ impl<'t> Laws<'t> {
                         if word.is_empty() { "everything".to_owned() } else { format!("`{word}`") };
                     reports.push(
                         Report::error(span, format!("two laws give the {what} of {of}"))
-                            .label("this one")
-                            .and(*first, "and that one")
+                            .and(*first, "the first")
                             .help("drop one"),
                     );
                 }
@@ -71,13 +73,16 @@ impl<'t> Laws<'t> {
                     None => {
                         let report = Report::error(span, format!("unknown surface `{word}`"));
                         let known = surfaces.iter().map(|s| s.name.as_str());
-                        reports.push(match nearest(word, known) {
+                        // Of a part's surface the part may have been forgotten.
+                        let of_part = format!(".{word}");
+                        let whole = known.clone().find(|name| name.ends_with(&of_part));
+                        reports.push(match whole.or(nearest(word, known)) {
                             Some(meant) => report.help(format!("did you mean `{meant}`?")),
                             None => report.help(named(word, surfaces)),
                         });
                     }
                     Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
-                        reports.push(idle_niceness(span, word));
+                        reports.push(idle_niceness(span, s));
                     }
                     Some(_) => {}
                 }
@@ -89,19 +94,19 @@ impl<'t> Laws<'t> {
 /// Which surfaces there are: those of a mounted part, if it is named.
 fn named(word: &str, surfaces: &[Surface]) -> String {
     let of = format!("{word}.");
-    let part: Vec<String> = surfaces
-        .iter()
-        .filter(|surface| surface.name.starts_with(&of))
-        .map(|surface| format!("`{}`", surface.name))
-        .collect();
+    let list = |names: Vec<&Surface>| {
+        names.iter().map(|s| format!("`{}`", s.name)).collect::<Vec<_>>().join(", ")
+    };
+    let part: Vec<&Surface> = surfaces.iter().filter(|s| s.name.starts_with(&of)).collect();
     match part.as_slice() {
-        [] => "name a surface of a region: `region … as NAME`".to_owned(),
-        part => format!("name a surface of the part: {}", part.join(", ")),
+        [] => format!("surfaces are {}", list(surfaces.iter().take(8).collect())),
+        _ => format!("name a surface of the part: {}", list(part)),
     }
 }
 
-pub(super) fn idle_niceness(span: Span, surface: &str) -> Report {
-    Report::error(span, format!("`{surface}` does not cut, its niceness is 0"))
+pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Report {
+    Report::error(span, format!("`{}` does not cut, its niceness is 0", surface.name))
+        .and(surface.span, "not `cutting` here")
         .help("make it `cutting` or drop the rule")
 }
 

@@ -1,10 +1,11 @@
 //! Expressions of the syntax tree to nodes of the graph, with their dimension.
 
+use super::call::{FUNCTIONS, NO_POWER};
 use super::dimension::{Dimension, LENGTH};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
-use crate::number::Number;
+use crate::number::{Number, RANGE};
 use crate::report::{Report, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
@@ -12,7 +13,7 @@ use std::collections::BTreeMap;
 
 /// Names that belong to the language, whatever the file's own coordinates.
 const COORDINATES: [&str; 4] = ["d", "z", "x", "y"];
-const FUNCTIONS: [&str; 8] = ["min", "max", "hypot", "sqrt", "abs", "sin", "cos", "tan"];
+const UNITS: [&str; 5] = ["mm", "inch", "m", "deg", "rad"];
 
 /// A value that has a name.
 #[derive(Clone, Debug)]
@@ -54,7 +55,7 @@ const LARGEST: f64 = 1.071508607186267e301;
 /// The most operations upon each other; whatever walks an expression goes as deep.
 const TALLEST: u32 = 300;
 
-type Lowered = Result<(Id, Dimension), Report>;
+pub(super) type Lowered = Result<(Id, Dimension), Report>;
 
 impl Lowering {
     /// Gives a value its name.
@@ -67,10 +68,10 @@ impl Lowering {
         if let Some(what) = self.domain.meaning(word) {
             let report =
                 Report::error(name.span, format!("`{word}` is {what} and cannot be defined"));
-            return Err(match self.domain {
-                Domain::HalfPlane => report.help("for a diameter use `D`"),
-                Domain::Space => report.help("take another name"),
-            });
+            return Err(report.help(match word {
+                "d" => "for a diameter use `D`",
+                _ => "take another name",
+            }));
         }
         if COORDINATES.contains(&word)
             || FUNCTIONS.contains(&word)
@@ -86,8 +87,7 @@ impl Lowering {
         let value = Value { id, dimension, span: name.span, used: false };
         if let Some(earlier) = self.values.get(word) {
             return Err(Report::error(name.span, format!("`{word}` is defined twice"))
-                .label("here")
-                .and(earlier.span, "and above")
+                .and(earlier.span, "first here")
                 .help("drop one, or give it another name"));
         }
         self.values.insert(word.to_owned(), value);
@@ -103,7 +103,7 @@ impl Lowering {
         let (id, dimension) = self.lower(expr, May::Constants(what))?;
         match self.graph.constant(id) {
             Some(value) => Ok((value.clone(), dimension)),
-            None => Err(Report::error(expr.span, format!("{what} takes constants only"))),
+            None => Err(not_constant(expr.span, "this", what)),
         }
     }
 
@@ -114,8 +114,10 @@ impl Lowering {
             return Err(Report::error(
                 expr.span,
                 format!("{what} takes a length, this is {dimension}"),
-            ));
+            )
+            .help("lengths are numbers with or without `mm`, `inch` or `m`"));
         }
+        in_range(&value, expr.span)?;
         Ok(value)
     }
 
@@ -125,8 +127,7 @@ impl Lowering {
         // Constants are checked as they grow, before anything overflows.
         let size = self.graph.constant(id).map_or(0.0, |value| value.to_f64().abs());
         if size > LARGEST {
-            return Err(Report::error(expr.span, "this constant is out of range")
-                .help("lengths lie between 2^-300 and 2^300, their squares accordingly"));
+            return Err(Report::error(expr.span, "this constant is out of range").help(RANGE));
         }
         if self.graph.height(id) > TALLEST {
             return Err(Report::error(
@@ -188,8 +189,14 @@ impl Lowering {
                 };
                 return Err(report.help(format!("write `{number}*{written}`{times}")));
             }
-            _ => Report::error(unit.span, format!("unknown unit `{word}`"))
-                .help("units are `mm`, `inch`, `m`, `deg` and `rad`, glued to the number"),
+            _ => {
+                let report = Report::error(unit.span, format!("unknown unit `{word}`"));
+                match UNITS.iter().find(|unit| unit.eq_ignore_ascii_case(word)) {
+                    Some(meant) => report.help(format!("did you mean `{meant}`?")),
+                    None => report
+                        .help(format!("units are {}", UNITS.map(|u| format!("`{u}`")).join(", "))),
+                }
+            }
         };
         Err(report)
     }
@@ -202,7 +209,7 @@ impl Lowering {
                     May::Depth(depth) => Ok((depth, LENGTH)),
                     May::Coordinates => Err(Report::error(span, "`depth` is not known here")
                         .help("only `magnitude` and `niceness` may mention `depth`")),
-                    May::Constants(what) => Err(not_constant(span, word, what)),
+                    May::Constants(what) => Err(not_constant(span, &format!("`{word}`"), what)),
                 };
             }
             _ => self.domain.coordinates().iter().find(|(.., name)| *name == word),
@@ -215,7 +222,7 @@ impl Lowering {
         }
         if let Some(coordinate) = coordinate {
             if let May::Constants(what) = may {
-                return Err(not_constant(span, word, what));
+                return Err(not_constant(span, &format!("`{word}`"), what));
             }
             return Ok((self.coordinate_here(coordinate), LENGTH));
         }
@@ -234,7 +241,7 @@ impl Lowering {
             let known = known.chain(["pi", "depth"]);
             return Err(match nearest(word, known) {
                 Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                None => report.help(format!("define it above: `let {word} = …;`")),
+                None => report.help(format!("define it above, as in `let {word} = 3;`")),
             });
         };
         value.used = true;
@@ -242,7 +249,7 @@ impl Lowering {
         if let May::Constants(what) = may
             && self.graph.constant(value.id).is_none()
         {
-            return Err(not_constant(span, word, what));
+            return Err(not_constant(span, &format!("`{word}`"), what));
         }
         Ok((value.id, value.dimension))
     }
@@ -274,15 +281,21 @@ impl Lowering {
                 Binary::Sub => (format!("subtracts {db} from {da}"), ""),
                 _ => (format!("{verb} {da} by {db}"), ""),
             };
-            return Err(Report::error(span, format!("this {what}{with}"))
-                .help("both sides want the same power of length; a bare number fits any"));
+            let report = Report::error(span, format!("this {what}{with}"));
+            return Err(report.help(match (da, db) {
+                (Dimension::Angle, _) | (_, Dimension::Angle) => {
+                    "an angle is for `sin`, `cos` and `tan`: angles go with angles"
+                }
+                _ => "both sides want the same power of length; a bare number fits any",
+            }));
         };
         let id = match operator {
             Binary::Add => self.graph.add(a, b),
             Binary::Sub => self.graph.sub(a, b),
             Binary::Mul => self.graph.mul(a, b),
             _ => self.graph.div(a, b).ok_or_else(|| {
-                Report::error(right.span, "division by zero").help("this is 0 everywhere")
+                Report::error(right.span, "division by zero")
+                    .help("this is 0; divide by what is not")
             })?,
         };
         Ok((id, dimension))
@@ -296,113 +309,33 @@ impl Lowering {
                 Report::error(exponent.span, "an exponent is a multiple of one half from -16 to 16")
                     .help("only square roots run at every contact")
             })?;
-        let dimension =
-            dimension.power(halves).ok_or_else(|| Report::error(span, "an angle has no powers"))?;
+        let dimension = dimension
+            .power(halves)
+            .ok_or_else(|| Report::error(span, "an angle has no powers").help(NO_POWER))?;
         let id = self.graph.power(base_id, halves).ok_or_else(|| {
             Report::error(span, "this power of a constant does not exist")
                 .help("the base is negative under a root, or 0 under a negative exponent")
         })?;
         Ok((id, dimension))
     }
+}
 
-    fn call(&mut self, name: &Name, arguments: &[Expr], span: Span, may: May) -> Lowered {
-        let word = name.word.as_str();
-        let wanted = match word {
-            "min" | "max" | "hypot" => 2..=usize::MAX,
-            "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
-            _ => {
-                let report = Report::error(name.span, format!("unknown function `{word}`"));
-                return Err(match nearest(word, FUNCTIONS) {
-                    Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                    None => report.help(format!("functions are {}", FUNCTIONS.join(", "))),
-                });
-            }
-        };
-        if !wanted.contains(&arguments.len()) {
-            let much = if *wanted.start() == 2 { "two or more values" } else { "one value" };
-            return Err(Report::error(
-                span,
-                format!("`{word}` takes {much}, this has {}", arguments.len()),
-            ));
-        }
-        if matches!(word, "sin" | "cos" | "tan") {
-            return self.trigonometric(word, &arguments[0], span, may);
-        }
-        let (mut id, mut dimension) = self.lower(&arguments[0], may)?;
-        match word {
-            "abs" => return Ok((self.graph.abs(id), dimension)),
-            "sqrt" => {
-                let dimension = dimension
-                    .power(1)
-                    .ok_or_else(|| Report::error(span, "an angle has no square root"))?;
-                let root = self.graph.sqrt(id).ok_or_else(|| {
-                    Report::error(arguments[0].span, "square root of a negative number")
-                })?;
-                return Ok((root, dimension));
-            }
-            "hypot" => id = self.graph.mul(id, id),
-            _ => {}
-        }
-        for argument in &arguments[1..] {
-            let (other, of_other) = self.lower(argument, may)?;
-            dimension = dimension.alike(of_other).ok_or_else(|| {
-                Report::error(
-                    argument.span,
-                    format!("`{word}` compares {dimension} with {of_other}"),
-                )
-                .help("all its values want the same power of length")
-            })?;
-            id = match word {
-                "min" => self.graph.min(id, other),
-                "max" => self.graph.max(id, other),
-                _ => {
-                    let square = self.graph.mul(other, other);
-                    self.graph.add(id, square)
-                }
-            };
-        }
-        if word == "hypot" {
-            id = self.graph.sqrt(id).unwrap_or(id);
-        }
-        Ok((id, dimension))
+/// Whether a constant has a size that the compiler can work with.
+pub(super) fn in_range(value: &Number, span: Span) -> Result<(), Report> {
+    if value.is_in_range() {
+        return Ok(());
     }
-
-    fn trigonometric(&mut self, word: &str, argument: &Expr, span: Span, may: May) -> Lowered {
-        let (id, dimension) = self.lower(argument, may)?;
-        let Some(angle) = self.graph.constant(id).cloned() else {
-            return Err(Report::error(span, format!("this `{word}` would run at every contact"))
-                .help(format!("`{word}` takes constants only")));
-        };
-        if dimension != Dimension::Angle {
-            let value = angle.to_f64();
-            return Err(Report::error(
-                argument.span,
-                format!("`{word}` takes an angle, this is {dimension}"),
-            )
-            .help(format!("write `{word}({value}deg)` or `{word}({value}rad)`")));
-        }
-        if angle.to_f64().abs() > 1e6 {
-            return Err(Report::error(argument.span, "this angle is more than a million radians")
-                .help("angles are written in `deg` or `rad`"));
-        }
-        let cos = angle.cos();
-        let value = match word {
-            "sin" => angle.sin(),
-            "cos" => cos,
-            _ if cos.to_f64().abs() < 2f64.powi(-200) => {
-                return Err(Report::error(span, "`tan` of a right angle does not exist")
-                    .help("write the angle that is meant, less than 90deg"));
-            }
-            _ => &angle.sin() / &cos,
-        };
-        Ok((self.graph.number(value), Dimension::Bare))
-    }
+    let size = format!("{:e} is out of range", value.to_f64());
+    Err(Report::error(span, size).help(RANGE))
 }
 
 fn not_constant(span: Span, word: &str, what: &str) -> Report {
-    Report::error(
+    let report = Report::error(
         span,
-        format!("`{word}` changes from point to point; {what} takes constants only"),
-    )
-    .help("name a function of the coordinates with `curve`")
+        format!("{word} changes from point to point; {what} takes constants only"),
+    );
+    report.help(match what {
+        "a `let`" | "a `param`" => "name a function of the coordinates with `curve`",
+        _ => "write a number, or a `let` or `param`",
+    })
 }

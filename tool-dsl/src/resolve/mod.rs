@@ -1,5 +1,6 @@
 //! The syntax tree to the model: names, dimensions, the frame, each region's rules.
 
+mod call;
 mod condition;
 mod derived;
 mod dimension;
@@ -18,14 +19,14 @@ mod scope;
 use crate::domain::Domain;
 use crate::model::{Model, Surface, Unit};
 use crate::regionalise::outline::Segment;
-use crate::report::{Report, any_error, nearest};
+use crate::report::{Report, any_error, enough, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
 use derived::FromProfile;
 use given::Given;
 use law::Laws;
-use lower::Lowering;
+use lower::{Lowering, in_range};
 use mount::Along;
 use over::Divider;
 use std::collections::BTreeMap;
@@ -56,18 +57,13 @@ fn settle(
     let given = given::from_outside(given, (tool.domain, unit), &mut reports);
     given::untaken(tool, &given, &mut reports);
     constants(tool, &given, &mut lowering, &mut reports);
-    if any_error(&reports) {
-        return (None, reports);
-    }
-    if tool.domain == Domain::Space {
-        without_axis(tool, &mut reports);
-    }
+    let misplaced = tool.domain == Domain::Space && without_axis(tool, &mut reports);
     frame(tool, &mut lowering, &mut reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
         reports.extend(lowering.curve(definition).err());
-    }
-    if any_error(&reports) {
-        return (None, reports);
+        if enough(&reports) {
+            return (None, reports);
+        }
     }
     let mut curves = Curves::default();
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
@@ -80,7 +76,8 @@ fn settle(
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let outlined = shape(tool, &mut reports).map(|shape| match shape {
+    let shape = if misplaced { None } else { shape(tool, &mut reports) };
+    let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
             let outline = profile::outline(profile, &mut lowering, &mut reports);
             outline.map(|(outline, surfaces)| Outlined {
@@ -102,6 +99,7 @@ fn settle(
             derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, &mut reports)
         }
         Some(None) => FromProfile::default(),
+        None if misplaced => FromProfile::default(),
         None => {
             let laws = Laws::new(&laws, BTreeMap::new());
             let (surfaces, regions) =
@@ -110,15 +108,16 @@ fn settle(
         }
     };
     let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
+    if any_error(&reports) {
+        return (None, reports);
+    }
     for (word, value) in &lowering.values {
         if !value.used {
             reports.push(
-                Report::warning(value.span, format!("`{word}` is never used")).help("drop it"),
+                Report::warning(value.span, format!("`{word}` is never used"))
+                    .help("drop it, or is another name misspelt?"),
             );
         }
-    }
-    if any_error(&reports) {
-        return (None, reports);
     }
     let model = Model {
         domain: tool.domain,
@@ -137,8 +136,9 @@ fn settle(
     (Some(model), reports)
 }
 
-/// What only a tool has, in a solid.
-fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
+/// What only a tool has, in a solid; whether there is any.
+fn without_axis(tool: &Tool, reports: &mut Vec<Report>) -> bool {
+    let before = reports.len();
     for item in &tool.items {
         let (span, word, why) = match item {
             Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
@@ -153,6 +153,7 @@ fn without_axis(tool: &Tool, reports: &mut Vec<Report>) {
                 .help(format!("a `solid` has no axis: {why}")),
         );
     }
+    reports.len() > before
 }
 
 /// What divides a profile's inside: `regions smooth`, or regions by hand.
@@ -216,7 +217,7 @@ fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
         reports.push(
             Report::error(second.span, "a second profile")
                 .and(first.span, "the first")
-                .help("drop one"),
+                .help("a tool has one outline: drop one"),
         );
     }
     let mounts: Vec<&Mount> = tool
@@ -224,17 +225,19 @@ fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
         .iter()
         .filter_map(|item| if let Item::Mount(mount) = item { Some(mount) } else { None })
         .collect();
+    if let (Some(profile), Some(mount)) = (first, mounts.first()) {
+        reports.push(
+            Report::error(mount.span, "a tool has a profile or mounts")
+                .and(profile.span, "the profile")
+                .help("drop one, or mount the profile as a file of its own"),
+        );
+    }
     for item in &tool.items {
         match item {
             Item::Regions { span, .. } if first.is_none() && mounts.is_empty() => reports.push(
                 Report::error(*span, "there is no profile to derive regions of")
                     .help("write `profile { … }`"),
             ),
-            Item::Mount(mount) if first.is_some() => reports.extend(first.map(|profile| {
-                Report::error(mount.span, "a tool has a profile or mounts")
-                    .and(profile.span, "the profile")
-                    .help("drop one, or mount the profile as a file of its own")
-            })),
             Item::Tip(Expr { span, .. }) | Item::Spindle { span, .. } if !mounts.is_empty() => {
                 reports.push(
                     Report::error(*span, "mounts bring their own tip and spindle")
@@ -311,18 +314,14 @@ fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports:
             false => Ok(value),
         });
         let defined = value.and_then(|(value, dimension)| {
-            let size = value.to_f64().abs();
-            if size != 0.0 && !(2f64.powi(-300)..=2f64.powi(300)).contains(&size) {
-                return Err(Report::error(
-                    definition.value.span,
-                    format!("{size:e} is out of range"),
-                )
-                .help("constants lie between 2^-300 and 2^300"));
-            }
+            in_range(&value, definition.value.span)?;
             let id = lowering.graph.number(value);
             lowering.define(&definition.name, (id, dimension))
         });
         reports.extend(defined.err());
+        if enough(reports) {
+            break;
+        }
     }
 }
 
@@ -333,7 +332,10 @@ fn frame(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
         let (seen, span, word) = match item {
             Item::Tip(expr) => {
                 match lowering.length(expr, "`tip`") {
-                    Ok(value) => lowering.frame.tip = value,
+                    Ok(value) => {
+                        lowering.frame.tip = value;
+                        lowering.frame.tip_span = expr.span;
+                    }
                     Err(report) => reports.push(report),
                 }
                 (&mut tip, expr.span, "tip")
@@ -389,6 +391,9 @@ fn curve_of(
     curves: &mut Curves,
 ) -> Result<Option<usize>, Report> {
     let Some(value) = lowering.values.get_mut(&name.word) else {
+        if lowering.declared.contains_key(&name.word) {
+            return Err(Report::follow_up(name.span));
+        }
         let report = Report::error(name.span, format!("unknown curve `{}`", name.word));
         return Err(match nearest(&name.word, lowering.values.keys().map(String::as_str)) {
             Some(meant) => report.help(format!("did you mean `{meant}`?")),

@@ -45,10 +45,10 @@ pub(super) struct Along {
 
 impl Along {
     /// The law at a point of the whole tool, of which this is the depth.
-    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Id, Report> {
+    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<(Id, Span), Report> {
         self.lowering.clone().on(graph, |lowering| {
             let depth = lowering.length_here(depth);
-            quantity(lowering, &self.value, May::Depth(depth))
+            Ok((quantity(lowering, &self.value, May::Depth(depth))?, self.value.span))
         })
     }
 }
@@ -211,12 +211,20 @@ impl Mounting<'_> {
             let mut chain: Vec<&str> = self.chain[first..].iter().map(name).collect();
             chain.push(&source.name);
             let message = format!("`{written}` mounts itself: {}", chain.join(" mounts "));
-            self.reports.push(Report::error(by, message).help("break the ring"));
+            self.reports.push(
+                Report::error(by, message).help("mount a file that does not lead back to this one"),
+            );
             return None;
         }
         self.mounted += 1;
         if self.mounted > MOST {
-            self.reports.push(Report::error(by, format!("more than {MOST} mounted files")));
+            // Once is enough, however many follow.
+            let message = if self.mounted == MOST + 1 {
+                format!("more than {MOST} mounted files")
+            } else {
+                String::new()
+            };
+            self.reports.push(Report::error(by, message).help("write some of them as one file"));
             return None;
         }
         let (tree, reports) = syntax::parse(&source);
@@ -253,7 +261,7 @@ impl Mounting<'_> {
         let mut part = match shape(tree, self.reports) {
             Some(Shape::Profile(profile)) => {
                 let (outline, surfaces) = profile::outline(profile, lowering, self.reports)?;
-                self.reports.extend(off_tip(&outline, &lowering.frame, tree));
+                self.reports.extend(off_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
                 Part { outline, surfaces, niceness, scopes: Vec::new() }
             }
@@ -296,12 +304,10 @@ fn curves(tree: &Tool) -> Vec<Definition> {
 }
 
 /// A solid that does not end at its tip.
-fn off_tip(outline: &[Segment], frame: &Frame, tree: &Tool) -> Option<Report> {
+fn off_tip(outline: &[Segment], frame: &Frame) -> Option<Report> {
     let [[_, end], [radius, high]] = reach(outline);
-    if end.abs() <= OFF_TIP * radius.max(high - end) {
-        return None;
-    }
-    Some(look::off_tip(frame, end, tree.name.span))
+    let off = end.abs() > OFF_TIP * radius.max(high - end);
+    off.then(|| look::off_tip(frame, [end, high]))
 }
 
 impl Part {
@@ -351,7 +357,9 @@ impl Part {
                 } else {
                     format!("`{below}` ends at z = {top} and does not reach z = {z}")
                 };
-                Report::error(span, message).and(last.name.span, "this one")
+                Report::error(span, message)
+                    .and(last.name.span, "this one")
+                    .help(format!("put it at z = {top} or below, or make `{below}` longer"))
             }
             Unjoined::Point => {
                 Report::error(span, format!("`{below}` comes to a point at z = {z}"))

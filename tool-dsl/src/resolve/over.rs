@@ -2,19 +2,20 @@
 
 use super::condition::Curves;
 use super::derived::{Part, formula};
-use super::law::{Laws, idle_niceness};
+use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{Felt, Said, mention};
+use super::region::{Bare, Felt, inside, mention, noted};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;
+use crate::look;
 use crate::model::{Region, Surface};
 use crate::regionalise::outline::Segment;
 use crate::regionalise::overlay::{self, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Undivided};
-use crate::report::{Report, any_error, nearest};
+use crate::report::{Report, any_error, enough, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Expr, Quantity};
 
@@ -55,12 +56,14 @@ impl Divider<'_> {
             Divider::Hand(regions) => {
                 let mut all = Conditions { conditions: Vec::new(), kinds: Vec::new() };
                 for region in regions {
-                    match written(region, &regions[..], surfaces, lowering, curves) {
-                        Ok((condition, surface)) => {
-                            all.conditions.push(condition);
-                            all.kinds.push(Kind::Hand(region, surface));
-                        }
-                        Err(report) => reports.push(report),
+                    let surface = noted(written(region, &regions[..], surfaces), reports);
+                    let condition = inside(region, lowering, curves, reports);
+                    if let (Some(surface), Some(condition)) = (surface, condition) {
+                        all.conditions.push(condition);
+                        all.kinds.push(Kind::Hand(region, surface));
+                    }
+                    if enough(reports) {
+                        break;
                     }
                 }
                 Some(all)
@@ -76,14 +79,12 @@ impl Divider<'_> {
     }
 }
 
-/// The conditions and the surface of a written region.
+/// The surface of a written region.
 fn written(
     region: &tree::Region,
     all: &[&tree::Region],
     surfaces: &[Surface],
-    lowering: &mut Lowering,
-    curves: &mut Curves,
-) -> Result<(Formula, Option<usize>), Report> {
+) -> Result<Option<usize>, Report> {
     let name = &region.name;
     if let Some(first) = all.iter().find(|r| r.name.word == name.word)
         && first.name.span != name.span
@@ -95,25 +96,24 @@ fn written(
         return Err(Report::error(depth.value.span, "`depth` is the profile's here")
             .help("write `magnitude:` for what is felt"));
     }
-    let surface = match &region.surface {
-        None => None,
+    match &region.surface {
+        None => Ok(None),
         Some(wanted) => {
             if let Some(cutting) = region.cutting {
                 return Err(Report::error(cutting, "the profile says which surfaces cut")
                     .help("drop `cutting` here"));
             }
             let found = surfaces.iter().position(|surface| surface.name == wanted.word);
-            Some(found.ok_or_else(|| {
+            found.map(Some).ok_or_else(|| {
                 let report =
                     Report::error(wanted.span, format!("unknown surface `{}`", wanted.word));
                 match nearest(&wanted.word, surfaces.iter().map(|s| s.name.as_str())) {
                     Some(meant) => report.help(format!("did you mean `{meant}`?")),
                     None => report.help("name a surface of the profile"),
                 }
-            })?)
+            })
         }
-    };
-    Ok((super::region::inside(region, lowering, curves)?, surface))
+    }
 }
 
 /// The cells of the outline with rounded corners, of which directions are taken.
@@ -127,7 +127,8 @@ fn fans<'t>(
     let span = length.span;
     let width = lowering.length(length, "`smooth`")?;
     if width.to_f64() <= 0.0 {
-        return Err(Report::error(span, "a tangent length is more than 0"));
+        return Err(Report::error(span, "a tangent length is more than 0")
+            .help("write how far before and behind a corner the direction turns"));
     }
     let shown = |behind: Option<usize>, lowering: &Lowering| {
         let [d, z] = match behind {
@@ -157,7 +158,7 @@ fn fans<'t>(
             };
             Report::error(span, format!("{fans} on the edge of length {size}"))
                 .and(outline[piece].span, "this edge")
-                .help(format!("at most {most}"))
+                .help(format!("write at most {most}"))
         }
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
@@ -209,20 +210,24 @@ impl Conditions<'_> {
                     span,
                     format!("nothing covers {}, which the profile contains", shown(p)),
                 )
-                .help("the regions beside a profile divide all of it"),
+                .help(
+                    "the regions beside a profile divide all of it: widen one, or write one more",
+                ),
             );
         }
         if let Some((first, second, p)) = double
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
         {
             let (a, b) = (&a.name, &b.name);
+            let left = pairs.iter().any(|(_, condition)| *condition == second);
             let message =
                 format!("regions {} and {} overlap, for instance at {}", a.word, b.word, shown(p));
-            reports.push(
-                Report::error(b.span, message)
+            reports.push(match left {
+                true => Report::error(b.span, message)
                     .and(a.span, "the other one")
                     .help("bound one of them by the curve that divides them"),
-            );
+                false => look::never_wins(&b.word, b.span, (&a.word, a.span), 0),
+            });
         }
         for (k, kind) in self.kinds.iter().enumerate() {
             if let Kind::Hand(region, _) = kind
@@ -247,7 +252,8 @@ impl Conditions<'_> {
         surfaces: &[Surface],
         laws: &Laws<'_>,
         lowering: &mut Lowering,
-    ) -> Result<Region, Report> {
+        reports: &mut Vec<Report>,
+    ) -> Option<Region> {
         let inside = Formula::All(vec![self.conditions[index].clone(), part.inside.clone()]);
         let depth = part.depth;
         match &self.kinds[index] {
@@ -261,36 +267,29 @@ impl Conditions<'_> {
                     }
                 };
                 let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
-                felt.of_part(part, (name, part.span, part.owner, inside), (*course, part.span))
+                let said = (name, part.span, part.owner, inside);
+                noted(felt.of_part(part, said, (*course, part.span)), reports)
             }
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
                 let mut felt = Felt { laws, lowering, surface: &surfaces[owner] };
-                let own = felt.said(region, Quantity::Magnitude)?;
-                let magnitude = felt.magnitude(own, depth)?;
-                let niceness = felt.said(region, Quantity::Niceness)?;
-                if let (Some(value), false) = (niceness, surfaces[owner].cutting) {
-                    return Err(idle_niceness(value.span, &surfaces[owner].name));
-                }
-                let niceness = felt.niceness(niceness, depth)?;
+                let (magnitude, niceness) = felt.rules(region, depth, reports);
+                let written = noted(felt.course(region), reports)?;
+                let (magnitude, niceness) = (magnitude?, niceness?);
+                let own = noted(felt.said(region, Quantity::Magnitude), reports)?;
                 let free = own.filter(|value| mention(value, Quantity::Depth.word()).is_none());
-                let course = match (region.direction.as_slice(), free, magnitude) {
-                    ([(direction, span)], ..) => (felt.direction(direction)?, *span),
-                    ([], Some(value), Some(magnitude)) => {
+                let course = match (written, free, magnitude) {
+                    (Some(course), ..) => course,
+                    (None, Some(value), Some((magnitude, _))) => {
                         let graph = &mut felt.lowering.graph;
                         let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
                         (slope.map(|slope| graph.neg(slope)), value.span)
                     }
-                    ([], ..) => (part.course, part.span),
-                    ([(_, first), (_, second), ..], ..) => {
-                        return Err(Report::error(*second, "the direction is said twice")
-                            .and(*first, "first here"));
-                    }
+                    (None, ..) => (part.course, part.span),
                 };
                 let (name, span) = (region.name.word.clone(), region.name.span);
-                let depth_span = own.map_or(span, |value| value.span);
-                let said = Said { name, span, owner, inside, depth_span };
-                felt.finish(said, (depth, magnitude, niceness), course)
+                let bare = Bare { name, span, owner, inside };
+                noted(felt.finish(bare, (depth, span), (magnitude, niceness), course), reports)
             }
         }
     }

@@ -5,12 +5,14 @@ use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
 use crate::regionalise::outline::{Circle, Place, Segment, doubles, minus, norm};
-use crate::report::Report;
+use crate::report::{Report, enough, figure};
 use crate::source::Span;
 use crate::syntax::tree::{Arc, Expr, Piece, Profile, Round, Tuple};
 
-/// The most segments of a profile.
-const MOST: usize = 4096;
+/// The most segments of a profile: more take minutes to divide.
+const MOST: usize = 256;
+/// The flattest arc, in chords.
+const FLATTEST: f64 = 1e6;
 /// How far an arc's ends may be off its circle, in radii.
 const OFF_CIRCLE: f64 = 1e-9;
 
@@ -22,7 +24,10 @@ pub(super) fn outline(
 ) -> Option<(Vec<Segment>, Vec<Surface>)> {
     let before = reports.len();
     if let Some(beyond) = profile.pieces.get(MOST) {
-        reports.push(Report::error(beyond.span, format!("more than {MOST} segments")));
+        reports.push(
+            Report::error(beyond.span, format!("more than {MOST} segments"))
+                .help("arcs say in one segment what many short lines say"),
+        );
         return None;
     }
     let mut surfaces = Vec::new();
@@ -38,15 +43,18 @@ pub(super) fn outline(
             }
         }
         from = to;
+        if enough(reports) {
+            break;
+        }
     }
     if reports.len() > before {
         return None;
     }
+    off_axis(profile, &segments, reports);
+    if reports.len() > before {
+        return None;
+    }
     let frame = lowering.frame.clone();
-    let shown = |p: [f64; 2]| {
-        let tidy = |v: f64| (v * 1e6).round() / 1e6 + 0.0;
-        format!("({}, {})", tidy(p[0]), tidy(p[1]))
-    };
     reports.extend(check(&segments, shown));
     if reports.len() > before {
         return None;
@@ -67,6 +75,28 @@ pub(super) fn outline(
         outline.reverse();
     }
     Some((outline, surfaces))
+}
+
+fn shown([d, z]: [f64; 2]) -> String {
+    let tidy = |v: f64| if v.abs() < 1e-12 { "0".to_owned() } else { figure(v) };
+    format!("({}, {})", tidy(d), tidy(z))
+}
+
+/// A profile that does not begin or not end on the axis.
+fn off_axis(profile: &Profile, segments: &[Segment], reports: &mut Vec<Report>) {
+    let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return };
+    let [begin, end] = [first.ends()[0], last.ends()[1]];
+    let axis = |[_, z]: [f64; 2]| shown([0.0, z]);
+    if begin[0] != 0.0 {
+        let message = format!("the profile begins at {}, not on the axis", shown(begin));
+        let remedy = format!("write `start {};` and then `line to {}`", axis(begin), shown(begin));
+        reports.push(Report::error(profile.start.span, message).help(remedy));
+    }
+    if end[0] != 0.0 {
+        let message = format!("the profile ends at {}, not on the axis", shown(end));
+        let remedy = format!("let it run from the axis to the axis: add `line to {}`", axis(end));
+        reports.push(Report::error(last.span, message).help(remedy));
+    }
 }
 
 fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<Place, Report> {
@@ -110,36 +140,43 @@ fn circle(
             let [a, b] = ends.map(|end| distance(end, &centre));
             let (a_size, b_size) = (a.to_f64(), b.to_f64());
             if (a_size - b_size).abs() > OFF_CIRCLE * a_size.max(b_size) {
+                let (mut near, mut far) = (figure(a_size), figure(b_size));
+                if near == far {
+                    (near, far) = (a_size.to_string(), b_size.to_string());
+                }
                 return Err(Report::error(
                     span,
-                    format!("the arc's ends are {a_size} and {b_size} from its centre"),
+                    format!("the arc's ends are {near} and {far} from its centre"),
                 )
-                .help("both ends lie on one circle"));
+                .help("both ends lie on one circle; by `radius` its centre is found for you"));
             }
             (centre, a)
         }
         Round::Radius(expr) => {
             let radius = lowering.length(expr, "`radius`")?;
+            if radius.to_f64() <= 0.0 {
+                return Err(Report::error(expr.span, "an arc's radius is more than 0")
+                    .help("into the material it bulges by `concave`"));
+            }
             (by_radius(ends, &radius, arc.concave.is_some(), span)?, radius)
         }
     };
-    if radius.to_f64() <= 0.0 {
-        return Err(Report::error(span, "an arc's radius is more than 0"));
+    let (r, chord) = (radius.to_f64(), norm(minus(doubles(ends[1]), doubles(ends[0]))));
+    if r > FLATTEST * chord {
+        let message = format!("this arc of radius {} is a line to all ends", figure(r));
+        return Err(Report::error(span, message).help("write `line to`"));
     }
     let [a, b] = ends.map(|end| [0, 1].map(|k| &end[k] - &centre[k]));
     let turn = (&(&a[0] * &b[1]) - &(&a[1] * &b[0])).to_f64();
     let half = turn.abs() <= 1e-12 * radius.to_f64().powi(2);
     let convex = if half { arc.concave.is_none() } else { turn > 0.0 };
-    let shown = centre.clone().map(|part| part.to_f64());
+    let centre_shown = shown(doubles(&centre));
     match (convex, arc.concave) {
         (true, Some(said)) => Err(Report::error(said, "this arc is not concave")
             .help("its centre lies in the material: drop `concave`")),
         (false, None) => Err(Report::error(
             span,
-            format!(
-                "this arc is concave: its centre ({}, {}) lies outside the material",
-                shown[0], shown[1]
-            ),
+            format!("this arc is concave: its centre {centre_shown} lies outside the material"),
         )
         .help("say `concave` if it should be")),
         _ => Ok(Circle { centre, radius, convex }),
@@ -169,8 +206,13 @@ fn by_radius(
     let near = short.to_f64().abs() <= rounding * c * c;
     let off = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(off), true) = (off, r > 0.0) else {
-        return Err(Report::error(span, format!("no arc of radius {r} spans a chord of {c}"))
-            .help("take a larger radius, or nearer ends"));
+        let (short, chord) = (figure(r), figure(c));
+        let report =
+            Report::error(span, format!("no arc of radius {short} spans a chord of {chord}"));
+        let least = figure(c / 2.0);
+        return Err(
+            report.help(format!("its radius is {least} or more; else bring its ends nearer"))
+        );
     };
     // The material is on the left: a bulge out of it has its centre there.
     let off = if concave { -&off } else { off };

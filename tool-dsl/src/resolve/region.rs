@@ -7,8 +7,8 @@ use super::lower::{Lowering, May};
 use super::outputs;
 use crate::expr::Id;
 use crate::formula::Formula;
-use crate::model::{Region, Surface};
-use crate::report::Report;
+use crate::model::{Region, Said, Surface};
+use crate::report::{Report, enough};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Tool};
 
@@ -31,11 +31,14 @@ pub(super) fn regions(
     if written.is_empty() {
         reports.push(
             Report::error(tool.name.span, format!("`{}` has no region", tool.name.word))
-                .help("write `region NAME where … { magnitude: …; }`"),
+                .help("write its outline, `profile { … }`, or `region NAME where … { depth: …; }`"),
         );
     }
     if let Some(beyond) = written.get(MOST) {
-        reports.push(Report::error(beyond.name.span, format!("more than {MOST} regions")));
+        reports.push(
+            Report::error(beyond.name.span, format!("more than {MOST} regions"))
+                .help("write the outline as a `profile`: its regions are derived"),
+        );
         return Default::default();
     }
     let mut surfaces = Vec::new();
@@ -54,9 +57,10 @@ pub(super) fn regions(
                 .help("give it another name"),
             );
         }
-        match (Felt { laws, lowering, surface: &surfaces[owner] }).region(written, owner, curves) {
-            Ok(region) => regions.push(region),
-            Err(report) => reports.push(report),
+        let felt = Felt { laws, lowering, surface: &surfaces[owner] };
+        regions.extend(felt.region(written, owner, curves, reports));
+        if enough(reports) {
+            break;
         }
     }
     (surfaces, regions)
@@ -101,12 +105,19 @@ pub(super) fn named_surface(
 }
 
 /// What a region is, but for what is felt in it.
-pub(super) struct Said {
+pub(super) struct Bare {
     pub(super) name: String,
     pub(super) span: Span,
     pub(super) owner: usize,
     pub(super) inside: Formula,
-    pub(super) depth_span: Span,
+}
+
+/// A value, and where it is said.
+pub(super) type Placed = (Id, Span);
+
+/// What a result is worth; what is wrong is noted.
+pub(super) fn noted<T>(result: Result<T, Report>, reports: &mut Vec<Report>) -> Option<T> {
+    result.map_err(|report| reports.push(report)).ok()
 }
 
 /// A magnitude or a niceness.
@@ -134,37 +145,41 @@ impl Felt<'_> {
         &mut self,
         own: Option<&Expr>,
         depth: Id,
-    ) -> Result<Option<Id>, Report> {
+    ) -> Result<Option<(Id, Span)>, Report> {
         let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
         let Some(value) = own.or(law) else { return Ok(None) };
         let id = quantity(self.lowering, value, May::Depth(depth))?;
         let is_depth = id == depth && mention(value, Quantity::Depth.word()).is_some();
-        Ok((!is_depth).then_some(id))
+        Ok((!is_depth).then_some((id, value.span)))
     }
 
     /// Makes the evaluators' expressions.
     pub(super) fn finish(
         self,
-        said: Said,
-        (depth, magnitude, niceness): (Id, Option<Id>, Id),
+        bare: Bare,
+        (depth, depth_span): (Id, Span),
+        (magnitude, niceness): (Option<(Id, Span)>, (Id, Span)),
         (course, course_span): ([Id; 3], Span),
     ) -> Result<Region, Report> {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
         let direction = outputs::unit(graph, course, 2).ok_or_else(|| {
-            Report::error(course_span, format!("the direction of {} vanishes", said.name))
+            Report::error(course_span, format!("the direction of {} vanishes", bare.name))
                 .help("give a vector that is not 0, or `toward` a point")
         })?;
         let is_depth = magnitude.is_none();
-        let magnitude = (magnitude.unwrap_or(depth), is_depth);
-        let outputs = outputs::outputs(graph, domain, depth, magnitude, direction, niceness);
+        let (magnitude, magnitude_span) = magnitude.unwrap_or((depth, depth_span));
+        let (niceness, niceness_span) = niceness;
+        let magnitudes = (magnitude, is_depth);
+        let outputs = outputs::outputs(graph, domain, depth, magnitudes, direction, niceness);
+        let said = Said { depth: depth_span, magnitude: magnitude_span, niceness: niceness_span };
         Ok(Region {
-            name: said.name,
-            span: said.span,
-            surface: said.owner,
-            inside: said.inside,
+            name: bare.name,
+            span: bare.span,
+            surface: bare.owner,
+            inside: bare.inside,
             depth,
-            depth_span: said.depth_span,
-            magnitude: magnitude.0,
+            said,
+            magnitude,
             direction,
             course: (course, course_span),
             niceness,
@@ -172,31 +187,56 @@ impl Felt<'_> {
         })
     }
 
+    /// A region that says its own depth. Whatever is wrong with it is noted.
     fn region(
         mut self,
         written: &tree::Region,
         owner: usize,
         curves: &mut Curves,
-    ) -> Result<Region, Report> {
-        let inside = inside(written, self.lowering, curves)?;
-        let (depth, depth_span) = self.depth(written)?;
-        let magnitude = self.magnitude(self.said(written, Quantity::Magnitude)?, depth)?;
-        let niceness = self.niceness(self.said(written, Quantity::Niceness)?, depth)?;
-        let course = match written.direction.as_slice() {
-            [] => (self.downhill(depth), depth_span),
-            [(direction, span)] => (self.direction(direction)?, *span),
-            [(_, first), (_, second), ..] => {
-                return Err(
-                    Report::error(*second, "the direction is said twice").and(*first, "first here")
-                );
-            }
-        };
+        reports: &mut Vec<Report>,
+    ) -> Option<Region> {
+        let inside = inside(written, self.lowering, curves, reports);
+        let known = noted(self.depth(written), reports);
+        // What is said of a depth that is not known is looked at all the same.
+        let any = self.lowering.domain.coordinates()[0].0;
+        let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
+        let (magnitude, niceness) = self.rules(written, depth.0, reports);
+        let course = noted(self.course(written), reports);
         let (name, span) = (written.name.word.clone(), written.name.span);
-        self.finish(
-            Said { name, span, owner, inside, depth_span },
-            (depth, magnitude, niceness),
-            course,
-        )
+        let bare = Bare { name, span, owner, inside: inside? };
+        let course = course?.unwrap_or_else(|| (self.downhill(depth.0), depth.1));
+        known?;
+        noted(self.finish(bare, depth, (magnitude?, niceness?), course), reports)
+    }
+
+    /// The magnitude and the niceness of a written region.
+    pub(super) fn rules(
+        &mut self,
+        written: &tree::Region,
+        depth: Id,
+        reports: &mut Vec<Report>,
+    ) -> (Option<Option<Placed>>, Option<Placed>) {
+        let magnitude = self.said(written, Quantity::Magnitude);
+        let magnitude = magnitude.and_then(|own| self.magnitude(own, depth));
+        let niceness = self.said(written, Quantity::Niceness);
+        let niceness = niceness.and_then(|own| self.niceness(own, depth));
+        (noted(magnitude, reports), noted(niceness, reports))
+    }
+
+    /// The direction that a region writes.
+    pub(super) fn course(
+        &mut self,
+        written: &tree::Region,
+    ) -> Result<Option<([Id; 3], Span)>, Report> {
+        match written.direction.as_slice() {
+            [] => Ok(None),
+            [(direction, span)] => Ok(Some((self.direction(direction)?, *span))),
+            [(_, first), (_, second), ..] => {
+                Err(Report::error(*second, "the direction is said twice")
+                    .and(*first, "first here")
+                    .help("drop one"))
+            }
+        }
     }
 
     /// The region's own word on a quantity.
@@ -225,7 +265,11 @@ impl Felt<'_> {
                     let name = &written.name;
                     return Err(Report::error(
                         name.span,
-                        format!("region {} says neither `magnitude` nor `depth`", name.word),
+                        format!(
+                            "region {} says neither `magnitude` nor `depth`, and there is no profile \
+                             to take it from",
+                            name.word
+                        ),
                     )
                     .help("write `depth: …;` in it: 0 on the surface, positive inside"));
                 }
@@ -244,10 +288,12 @@ impl Felt<'_> {
             return Err(Report::error(
                 value.span,
                 format!("a depth is a length, this is {dimension}"),
-            ));
+            )
+            .help("write how far it is to the surface; any power is a `magnitude:`"));
         }
         if dimension == Dimension::Angle {
-            return Err(Report::error(value.span, "a magnitude is no angle"));
+            return Err(Report::error(value.span, "a magnitude is no angle")
+                .help("give a number or a power of length"));
         }
         let graph = &mut self.lowering.graph;
         if graph.constant(id).is_some() {
@@ -259,18 +305,21 @@ impl Felt<'_> {
 
     /// The niceness that a region or else the law for its surface writes, or else its mounted file;
     /// else 1, or 0 where nothing cuts.
-    pub(super) fn niceness(&mut self, own: Option<&Expr>, depth: Id) -> Result<Id, Report> {
+    pub(super) fn niceness(&mut self, own: Option<&Expr>, depth: Id) -> Result<(Id, Span), Report> {
+        let nowhere = self.surface.span;
         if !self.surface.cutting {
             return match own {
-                Some(value) => Err(idle_niceness(value.span, &self.surface.name)),
-                None => Ok(self.lowering.graph.int(0)),
+                Some(value) => Err(idle_niceness(value.span, self.surface)),
+                None => Ok((self.lowering.graph.int(0), nowhere)),
             };
         }
         let law = self.laws.find(Quantity::Niceness, self.surface).map(|law| &law.value);
         match (own.or(law), self.laws.along.get(&self.surface.name)) {
-            (Some(value), _) => quantity(self.lowering, value, May::Depth(depth)),
+            (Some(value), _) => {
+                Ok((quantity(self.lowering, value, May::Depth(depth))?, value.span))
+            }
             (None, Some(along)) => along.lower(&mut self.lowering.graph, depth),
-            (None, None) => Ok(self.lowering.graph.int(1)),
+            (None, None) => Ok((self.lowering.graph.int(1), nowhere)),
         }
     }
 
@@ -281,31 +330,50 @@ impl Felt<'_> {
     }
 }
 
-/// The points that a region's conditions name.
+/// The points that a region's conditions name. Each wrong condition is noted.
 pub(super) fn inside(
     written: &tree::Region,
     lowering: &mut Lowering,
     curves: &mut Curves,
-) -> Result<Formula, Report> {
-    let mut all = Vec::new();
-    for condition in &written.conditions {
-        let mut left = lowering.lower(&condition.first, May::Coordinates)?;
-        for (compare, right) in &condition.rest {
-            let right = lowering.lower(right, May::Coordinates)?;
-            if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
-                let message = format!("this compares {} with {}", left.1, right.1);
-                return Err(Report::error(condition.span, message)
-                    .help("both sides want the same power of length; a bare number fits any"));
-            }
-            let graph = &mut lowering.graph;
-            all.push(match compare {
-                Compare::AtMost => curves.at_most(graph, left.0, right.0),
-                Compare::AtLeast => curves.at_most(graph, right.0, left.0),
-            });
-            left = right;
-        }
+    reports: &mut Vec<Report>,
+) -> Option<Formula> {
+    if let Some(beyond) = written.conditions.get(MOST) {
+        reports.push(
+            Report::error(beyond.span, format!("more than {MOST} conditions"))
+                .help("several of one kind are one, by `min` or `max`"),
+        );
+        return None;
     }
-    Ok(Formula::All(all))
+    let sides = written.conditions.iter();
+    let sides: Vec<Option<Vec<Formula>>> =
+        sides.map(|one| noted(condition(one, lowering, curves), reports)).collect();
+    let sides: Option<Vec<Vec<Formula>>> = sides.into_iter().collect();
+    Some(Formula::All(sides?.into_iter().flatten().collect()))
+}
+
+/// The sides of one condition: one, or two of a chain.
+fn condition(
+    condition: &tree::Condition,
+    lowering: &mut Lowering,
+    curves: &mut Curves,
+) -> Result<Vec<Formula>, Report> {
+    let mut sides = Vec::new();
+    let mut left = lowering.lower(&condition.first, May::Coordinates)?;
+    for (compare, right) in &condition.rest {
+        let right = lowering.lower(right, May::Coordinates)?;
+        if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
+            let message = format!("this compares {} with {}", left.1, right.1);
+            return Err(Report::error(condition.span, message)
+                .help("both sides want the same power of length; a bare number fits any"));
+        }
+        let graph = &mut lowering.graph;
+        sides.push(match compare {
+            Compare::AtMost => curves.at_most(graph, left.0, right.0),
+            Compare::AtLeast => curves.at_most(graph, right.0, left.0),
+        });
+        left = right;
+    }
+    Ok(sides)
 }
 
 /// Where an expression mentions a name.

@@ -8,6 +8,7 @@ use crate::expr::{Coord, Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
 use crate::report::Report;
+use crate::source::Span;
 use crate::syntax::tree::{Definition, Tool};
 use std::collections::BTreeMap;
 
@@ -18,7 +19,7 @@ impl Lowering {
             domain,
             graph: Graph::default(),
             unit,
-            frame: Frame { tip: Number::int(0), down: false },
+            frame: Frame { tip: Number::int(0), down: false, tip_span: Span { start: 0, end: 0 } },
             scale: Number::int(1),
             values: BTreeMap::new(),
             declared: BTreeMap::new(),
@@ -30,7 +31,9 @@ impl Lowering {
         let declared = definitions(tool, |_| true)
             .map(|definition| (definition.name.word.clone(), definition.name.span))
             .collect();
-        Lowering { declared, ..Lowering::new(tool.domain, unit) }
+        let mut lowering = Lowering { declared, ..Lowering::new(tool.domain, unit) };
+        lowering.frame.tip_span = tool.name.span;
+        lowering
     }
 
     /// Works on a graph that is shared with other files.

@@ -3,7 +3,7 @@
 use super::Rule;
 use super::parse::Reader;
 use super::tree::{Binary, Expr, ExprKind, Name};
-use crate::number::Number;
+use crate::number::{Number, RANGE};
 use crate::report::Report;
 use crate::source::Span;
 use pest::iterators::{Pair, Pairs};
@@ -90,12 +90,9 @@ impl Reader<'_> {
         let exponent = text[..digits].rsplit_once(['e', 'E']).map_or("0", |(_, exponent)| exponent);
         let sane = digits <= 400 && exponent.parse::<i32>().is_ok_and(|e| e.abs() <= 400);
         let value = match sane.then(|| Number::decimal(&text[..digits])).flatten() {
-            Some(value) if value.to_f64().is_finite() => value,
+            Some(value) if value.is_in_range() => value,
             _ => {
-                self.reports.push(
-                    Report::error(span, "this number is out of range")
-                        .help("constants lie between 2^-300 and 2^300"),
-                );
+                self.reports.push(Report::error(span, "this number is out of range").help(RANGE));
                 Number::int(1)
             }
         };

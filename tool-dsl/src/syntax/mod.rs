@@ -5,6 +5,7 @@
 //! not hide the next.
 
 mod expression;
+mod limits;
 mod mount;
 mod parse;
 mod refuse;

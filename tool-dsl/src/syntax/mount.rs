@@ -1,6 +1,7 @@
 //! Mounts, and what a tool's params are given.
 
-use super::parse::{Reader, is_word, within_limits};
+use super::limits::within_limits;
+use super::parse::{Reader, is_word};
 use super::tree::{Definition, Mount, Name};
 use super::{Grammar, Rule, refuse};
 use crate::report::Report;

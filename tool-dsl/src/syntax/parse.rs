@@ -1,17 +1,15 @@
 //! Pairs of pest to the syntax tree.
 
+use super::limits::{too_much, within_limits};
+use super::refuse::{self, in_name};
 use super::tree::*;
-use super::{Grammar, Rule, refuse};
+use super::{Grammar, Rule};
 use crate::domain::Domain;
-use crate::report::Report;
+use crate::report::{Report, enough};
 use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 
-/// The longest text that is read.
-const LONGEST: usize = 1 << 20;
-/// The deepest nesting of brackets.
-const DEEPEST: usize = 64;
 /// Names that generated code, or Rust itself, has already given away.
 const TAKEN: [&str; 14] = [
     "Box",
@@ -46,55 +44,14 @@ pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
             return (None, vec![report.behind(source.base)]);
         }
     };
+    if let Some(report) = too_much(pairs.clone()) {
+        return (None, vec![report.behind(source.base)]);
+    }
     let mut broken = Vec::new();
     let tool = pairs.flatten().find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid));
     let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
     let tool = tool.map(|pair| reader.tool(pair));
     (tool.map(|tool| Tool { broken, ..tool }), reports)
-}
-
-pub(super) fn within_limits(text: &str) -> Result<(), Report> {
-    if text.len() > LONGEST {
-        let end = Span { start: 0, end: 1 };
-        return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
-            .help(format!("a tool has at most {LONGEST} bytes")));
-    }
-    let (mut comments, mut at) = (0usize, 0);
-    while let Some(pair) = text.as_bytes().get(at..at + 2) {
-        match pair {
-            b"/*" => comments += 1,
-            b"*/" => comments = comments.saturating_sub(1),
-            _ => {
-                at += 1;
-                continue;
-            }
-        }
-        if comments > DEEPEST {
-            let span = Span { start: at, end: at + 2 };
-            return Err(Report::error(
-                span,
-                format!("comments are nested more than {DEEPEST} deep"),
-            )
-            .help("close them with `*/`"));
-        }
-        at += 2;
-    }
-    let mut depth = 0usize;
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
-            b'(' | b'{' | b'[' => depth += 1,
-            b')' | b'}' | b']' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        if depth > DEEPEST {
-            return Err(Report::error(
-                Span { start: at, end: at + 1 },
-                format!("brackets are nested more than {DEEPEST} deep"),
-            )
-            .help("name a part of the expression with `let` or `curve`"));
-        }
-    }
-    Ok(())
 }
 
 pub(super) struct Reader<'a> {
@@ -137,6 +94,7 @@ impl Reader<'_> {
                     }
                 }
                 Rule::text => title = Some(pair.as_str().trim_matches('"').to_owned()),
+                Rule::stray if enough(self.reports) => {}
                 Rule::stray => items.extend(self.stray(&pair)),
                 Rule::k_tool | Rule::k_solid => {}
                 _ => items.extend(self.item(pair)),
@@ -157,7 +115,8 @@ impl Reader<'_> {
             Err(error) => {
                 self.reports.push(refuse::syntax(text, offset, &error));
                 // What it would have defined, and what it swallowed for want of a `;`.
-                let words: Vec<&str> = text.split_whitespace().collect();
+                let words: Vec<&str> =
+                    text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
                 self.broken.extend(words.first().map(|word| (*word).to_owned()));
                 let defines = |word: &str| ["let", "param", "curve", "region"].contains(&word);
                 let defined = words.windows(2).filter(|pair| defines(pair[0]));
@@ -178,7 +137,10 @@ impl Reader<'_> {
             Rule::curve => Item::Curve(self.definition(inner)?),
             Rule::tip => Item::Tip(self.expr(inner.next()?)),
             Rule::spindle => Item::Spindle { down: inner.next()?.as_str() == "-", span },
-            Rule::profile => Item::Profile(self.profile(inner, span)?),
+            Rule::profile => {
+                let word = Span { end: span.start + "profile".len(), ..span };
+                Item::Profile(self.profile(inner, word)?)
+            }
             Rule::mount => Item::Mount(self.mount(inner, span)?),
             Rule::regions => {
                 let smooth = inner.find(|pair| pair.as_rule() == Rule::smooth);

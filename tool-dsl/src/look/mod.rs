@@ -1,15 +1,18 @@
 //! Looks for what is wrong with a tool at many points of its domain: regions that overlap, are
 //! never reached or say nonsense. What is found comes with the point where it was found.
 
+mod fault;
+
 use crate::bound::Extent;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{CurveIndex, Formula};
-use crate::model::{Frame, Model, Region};
+use crate::model::{Curve, Frame, Model, Region};
 use crate::plan::spread;
 use crate::report::{Report, any_error, figure};
 use crate::source::Span;
+use fault::Fault;
 
 /// Points that are looked at.
 const POINTS: usize = 12_000;
@@ -42,13 +45,21 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
     reports
 }
 
-/// A tool that ends at a z which is not its tip.
-pub(crate) fn off_tip(frame: &Frame, end: f64, span: Span) -> Report {
-    let (end, tip) = (figure(frame.to_file(end)), figure(frame.tip.to_f64()));
-    Report::error(span, format!("the tool ends at z = {end} and its tip is said to be at {tip}"))
-        .help(format!(
-            "write `tip z = {end};`, and `spindle -z;` if the spindle lies toward smaller z"
-        ))
+/// A tool that ends at a z which is not its tip; its other end may be.
+pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Report {
+    let size = other - end;
+    let said = frame.tip.to_f64();
+    let message = format!(
+        "the tool ends at z = {} and its tip is said to be at {}",
+        figure(frame.to_file(end)),
+        figure(said)
+    );
+    let report = Report::error(frame.tip_span, message);
+    if other.abs() <= 1e-6 * size {
+        let way = if frame.down { '+' } else { '-' };
+        return report.help(format!("its other end is there: write `spindle {way}z;`"));
+    }
+    report.help(format!("write `tip z = {};`", figure(frame.to_file(end))))
 }
 
 /// Everything that is found, each kind once a region.
@@ -56,7 +67,7 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
     let mut look = Look::new(model, extent);
     if let Some(section) = &model.section {
         // The regions are known; only what is felt in them was written.
-        look.tip(extent.low);
+        look.tip(extent.low, extent);
         for cell in section.inner.cells(1) {
             for (p, _) in &cell.samples {
                 let point = [p[0], 0.0, p[1]];
@@ -68,10 +79,6 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
         return look.found;
     }
     look.scale(extent);
-    if model.domain == Domain::HalfPlane {
-        let end = look.end(extent);
-        look.tip(end);
-    }
     let mut inside = Vec::new();
     let mut outside = Vec::new();
     for point in spread(model.domain, extent, POINTS, 0.02) {
@@ -80,10 +87,12 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
             None => outside.push(point),
         }
     }
-    // A region that overlaps another may well win nothing: once is enough.
-    if !any_error(&look.found) {
-        look.idle_regions();
+    // Where conditions have no value, nobody knows where the tool ends.
+    if model.domain == Domain::HalfPlane && !look.undefined {
+        let end = look.end(extent);
+        look.tip(end, extent);
     }
+    look.idle_regions();
     if !any_error(&look.found) {
         let pairs = inside.iter().cycle().step_by(7).zip(outside.iter().cycle().step_by(5));
         for (a, b) in pairs.take(if outside.is_empty() { 0 } else { CROSSINGS }) {
@@ -100,8 +109,10 @@ struct Look<'m> {
     found: Vec<Report>,
     wins: Vec<usize>,
     holds: Vec<usize>,
-    /// Who owns a point that this region would have had.
-    beaten: Vec<Option<usize>>,
+    /// Who own points that this region would have had.
+    beaten: Vec<Vec<usize>>,
+    /// Whether a curve has no value somewhere.
+    undefined: bool,
     /// The largest value of each curve.
     scales: Vec<f64>,
 }
@@ -122,7 +133,8 @@ impl<'m> Look<'m> {
             found: Vec::new(),
             wins: vec![0; model.regions.len()],
             holds: vec![0; model.regions.len()],
-            beaten: vec![None; model.regions.len()],
+            beaten: vec![Vec::new(); model.regions.len()],
+            undefined: false,
             scales: vec![0.0; model.curves.len()],
         }
     }
@@ -200,9 +212,9 @@ impl<'m> Look<'m> {
     }
 
     /// The tool's end is its tip, which is at 0.
-    fn tip(&mut self, end: f64) {
+    fn tip(&mut self, end: f64, extent: &Extent) {
         if end.is_finite() && end.abs() > 1e-6 * self.size {
-            self.found.push(off_tip(&self.model.frame, end, self.model.name_span));
+            self.found.push(off_tip(&self.model.frame, [end, extent.high]));
         }
     }
 
@@ -221,9 +233,8 @@ impl<'m> Look<'m> {
         };
         for claim in &claims {
             self.holds[*claim] += 1;
-            if Some(*claim) != owner {
-                self.beaten[*claim] = owner;
-            }
+            let by = owner.filter(|owner| owner != claim && !self.beaten[*claim].contains(owner));
+            self.beaten[*claim].extend(by);
         }
         if let Some((first, second)) = overlap {
             let (a, b) = (&self.model.regions[first], &self.model.regions[second]);
@@ -250,26 +261,21 @@ impl<'m> Look<'m> {
     fn felt(&mut self, region: &Region, point: [f64; 3]) {
         let (name, place) = (&region.name, self.place(point));
         let get = |id: Id| self.evaluator.get(id);
+        let said = region.said;
         let sayings = [
-            ("depth", region.depth, self.size * ROUNDING),
-            ("magnitude", region.magnitude, ROUNDING),
-            ("niceness", region.niceness, f64::INFINITY),
+            ("depth", region.depth, said.depth, self.size * ROUNDING),
+            ("magnitude", region.magnitude, said.magnitude, ROUNDING),
+            ("niceness", region.niceness, said.niceness, f64::INFINITY),
         ];
-        for (what, id, slack) in sayings {
+        for (what, id, span, slack) in sayings {
             let value = get(id);
             let place = &place;
             let report = if !value.is_finite() {
-                Report::error(
-                    region.depth_span,
-                    format!("`{what}` of {name} is undefined at {place}"),
-                )
-                .help("a square root of a negative number, or a division by zero")
+                Fault::of(&self.model.graph, &self.evaluator, id)
+                    .report(span, &format!("at {place}, in `{what}` of {name}"))
             } else if value < -slack {
-                Report::error(
-                    region.depth_span,
-                    format!("`{what}` of {name} is {} at {place}", figure(value)),
-                )
-                .help("it is never negative inside: turn a sign, or bound the region")
+                Report::error(span, format!("`{what}` of {name} is {} at {place}", figure(value)))
+                    .help("it is never negative inside: turn a sign, or bound the region")
             } else {
                 continue;
             };
@@ -302,12 +308,15 @@ impl<'m> Look<'m> {
             if self.value(curve).is_finite() {
                 continue;
             }
-            let name = self.model.curves[curve].name.clone();
-            let what =
-                name.map_or_else(|| "a condition".to_owned(), |name| format!("curve `{name}`"));
-            let span = self.reader_of(curve);
-            let report = Report::error(span, format!("{what} is undefined at {}", self.place(point)))
-                .help("a square root of a negative number, or a division by zero: write the condition without it");
+            self.undefined = true;
+            let Curve { name, value } = &self.model.curves[curve];
+            let what = match name {
+                Some(name) => format!("curve `{name}`"),
+                None => "a condition".to_owned(),
+            };
+            let place = self.place(point);
+            let report = Fault::of(&self.model.graph, &self.evaluator, *value)
+                .report(self.reader_of(curve), &format!("at {place}, in {what}"));
             self.report(report);
         }
     }
@@ -323,16 +332,14 @@ impl<'m> Look<'m> {
             if self.wins[index] > 0 {
                 continue;
             }
-            let report = match self.beaten[index].map(|other| &self.model.regions[other]) {
-                Some(other) if self.holds[index] > 2 => Report::error(
-                    region.span,
-                    format!(
-                        "region {} never wins a point: {}, listed before it, covers it",
-                        region.name, other.name
-                    ),
-                )
-                .and(other.span, "this one")
-                .help("drop it, or list it earlier"),
+            let by: Vec<&Region> =
+                self.beaten[index].iter().map(|other| &self.model.regions[*other]).collect();
+            let report = match by.as_slice() {
+                [first, more @ ..] if self.holds[index] > 2 => {
+                    // That it overlaps them was said of it.
+                    self.found.retain(|report| report.span != region.span);
+                    never_wins(&region.name, region.span, (&first.name, first.span), more.len())
+                }
                 _ => Report::warning(
                     region.span,
                     format!("region {} has none of the {POINTS} points looked at", region.name),
@@ -355,20 +362,48 @@ impl<'m> Look<'m> {
         let Some(owner) = self.owner(point) else { return };
         let region = &self.model.regions[owner];
         let depth = self.evaluator.get(region.depth);
+        let away = [0, 1, 2].map(|k| outside[k] - inside[k]);
+        let way = away[0].hypot(away[1]).hypot(away[2]) / self.size;
+        let mut slope = |step: f64| {
+            let behind = at((good - step / way).max(0.0));
+            let same = self.owner(behind) == Some(owner);
+            same.then(|| self.evaluator.get(region.depth) / (step * self.size))
+        };
+        // A root's slope grows a hundredfold here, a finite one stays.
+        if let (Some(near), Some(far)) = (slope(1e-10), slope(1e-6))
+            && near > 10.0 * far.max(100.0)
+        {
+            let (name, place) = (&region.name, self.place(point));
+            let message = format!("`depth` of {name} has no finite slope at {place}");
+            self.report(Report::warning(region.said.depth, message).help(
+                "certified queries are not available for this tool: they want a depth that grows \
+                 in step with the distance to the surface",
+            ));
+        }
         if depth.abs() > 1e-6 * self.size {
-            let value = figure(depth);
-            let report = Report::error(
-                region.depth_span,
-                format!(
-                    "`depth` of {} is {value} at {}, on the surface",
-                    region.name,
-                    self.place(point)
-                ),
-            )
-            .help("is a region missing beside it? A depth is 0 on the surface");
+            let report = deep_on_the_surface(region, depth, &self.place(point));
             self.report(report);
         }
     }
+}
+
+/// A depth where the solid ends.
+pub(crate) fn deep_on_the_surface(region: &Region, depth: f64, place: &str) -> Report {
+    let message =
+        format!("`depth` of {} is {} at {place}, on the surface", region.name, figure(depth));
+    Report::error(region.said.depth, message)
+        .help("is a region missing beside it? A depth is 0 on the surface")
+}
+
+/// A region of which nothing is left by one listed before it, or several.
+pub(crate) fn never_wins(name: &str, span: Span, (first, at): (&str, Span), more: usize) -> Report {
+    let by = match more {
+        0 => format!("{first}, listed before it, covers it"),
+        _ => format!("{first} and {more} more, listed before it, cover it"),
+    };
+    Report::error(span, format!("region {name} never wins a point: {by}"))
+        .and(at, "this one")
+        .help("drop it, or bound that one by the curve that divides them")
 }
 
 /// Whether a formula holds with room to spare, measured by each curve's largest values.

@@ -1,0 +1,197 @@
+//! Texts that nobody meant: absurd sizes, deep nesting, thousands of everything, bytes that are no
+//! text. Each is refused with a clear word, at once: an input that took long would be seen here.
+
+use std::path::PathBuf;
+use tool_dsl::report::Severity;
+use tool_dsl::source::Source;
+use tool_dsl::{Compiled, compile};
+
+const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
+
+/// A tool of which only some items matter.
+fn tool(items: &str) -> String {
+    format!("tool T {{\n    units mm;\n    {items}\n    {BALL}\n}}\n")
+}
+
+/// A tool of one profile.
+fn profile(rest: &str) -> String {
+    format!("tool T {{ units mm; profile {{ start (0, 0); line to {rest} }} }}")
+}
+
+fn numbered(count: usize, item: impl Fn(usize) -> String) -> String {
+    (0..count).map(item).collect()
+}
+
+fn errors(compiled: &Compiled) -> Vec<&str> {
+    let errors = compiled.reports.iter().filter(|report| report.severity == Severity::Error);
+    errors.map(|report| report.message.as_str()).collect()
+}
+
+/// A text's errors: few enough to read, each with a remedy and a place that can be shown.
+fn refused(text: &str) -> Vec<String> {
+    let compiled = compile(&Source::new("t.tool", text));
+    let start: String = text.chars().take(200).collect();
+    assert!(compiled.tool.is_none() && !errors(&compiled).is_empty(), "{start} was taken");
+    assert!(compiled.reports.len() <= 51, "{} reports of {start}", compiled.reports.len());
+    for report in &compiled.reports {
+        assert!(report.help.is_some(), "no remedy: {}", report.message);
+        assert!(report.render(&compiled.sources, false).contains(&report.message));
+    }
+    errors(&compiled).into_iter().map(str::to_owned).collect()
+}
+
+#[test]
+fn sizes_beyond_all_tools() {
+    for text in [
+        profile("(1e300, 0), (1e300, 1e300), (0, 1e300) as pin;"),
+        profile("(1e-300, 0), (1e-300, 1e-300), (0, 1e-300) as pin;"),
+        tool("let a = 1e999999999;"),
+        tool("let a = 1e-999999999;"),
+        tool(&format!("let a = {};", "9".repeat(100_000))),
+        tool("let a = ((((2^16)^16)^16)^16)^16;"),
+        tool("let a = ((((0.5^16)^16)^16)^16)^16;"),
+        profile("(1e80*1e80, 0), (1, 1), (0, 1) as pin;"),
+    ] {
+        let said = refused(&text);
+        assert!(said.iter().all(|said| said.contains("out of range")), "{said:?}");
+    }
+    assert!(refused(&tool("curve a = d^1000000000;"))[0].contains("an exponent is a multiple"));
+    let tower = format!("let a = {}2{};", "2^(".repeat(30), ")".repeat(30));
+    assert!(refused(&tool(&tower))[0].contains("an exponent is a multiple"));
+    let arc = "profile { start (0, 0); arc to (3, 3) radius 1e80 as ball; line to (0, 9) as top; }";
+    assert!(refused(&format!("tool T {{ units mm; {arc} }}"))[0].contains("is a line to all ends"));
+    let huge = "region far where ((d^16)^16)^16 <= 1, 0 <= z <= 1 { depth: 1 - z; }";
+    let said = refused(&format!("tool T {{ units m; {huge} }}"));
+    assert!(!said[0].contains("square root"), "{said:?}");
+}
+
+#[test]
+fn nesting_without_end() {
+    let paren = format!("let a = {}1{};", "(".repeat(100_000), ")".repeat(100_000));
+    let brace = format!("{}{}", "{".repeat(100_000), "}".repeat(100_000));
+    for text in [tool(&paren), tool(&brace), "/*".repeat(100_000)] {
+        assert!(refused(&text)[0].contains("nested more than 64 deep"));
+    }
+    assert!(refused(&tool(&format!("let a = {}1;", "-".repeat(100_000))))[0].contains("`-`"));
+}
+
+#[test]
+fn thousands_of_everything() {
+    let region = |k: usize| format!("region r{k} where hypot(d, z) <= {k} {{ depth: {k} - d; }}\n");
+    let zigzag = numbered(10_000, |k| format!("({}, {}), ", 1 + k % 2, k + 1));
+    let laws = "niceness ball: 1;".repeat(20_000);
+    let args = numbered(20_000, |k| format!("d + {k}, ")) + "d";
+    let name = "a".repeat(500_000);
+    for (text, word) in [
+        (tool(&numbered(10_000, region)), "more than 4096 items"),
+        (tool(&numbered(1_000, region)), "more than 256 regions"),
+        (profile(&format!("{zigzag}(0, 10001) as a;")), "more than 256 segments"),
+        (tool(&"a;".repeat(100_000)), "more than 4096 items"),
+        (tool(&"{}".repeat(100_000)), "more than 4096 items"),
+        (tool(&"let a = 1;".repeat(60_000)), "more than 4096 items"),
+        (tool(&"let a = 1;".repeat(4_000)), "`a` is defined twice"),
+        (tool(&"x y;".repeat(4_000)), "no item begins with `x`"),
+        (tool(&numbered(4_000, |k| format!("let a{k} = b{k};"))), "unknown name `b0`"),
+        (tool(&laws), "more than 4096 items"),
+        (tool(&laws[..60_000]), "two laws give the niceness of `ball`"),
+        (tool(&format!("niceness {}ball: 1;", "ball, ".repeat(20_000))), "two laws give"),
+        (tool(&format!("curve a = min({args});")), "too many steps"),
+        (
+            tool(&format!("region b where {}d <= 1 {{ depth: d; }}", "z <= 1, ".repeat(20_000))),
+            "more than 256 conditions",
+        ),
+        (tool(&format!("let {name} = 1; let b = {name}c;")), "this name is 500000 letters long"),
+        (tool(&" ".repeat(10_000_000)), "bytes long"),
+        (format!("tool T {{ {} }}", "a ".repeat(100_000)), "`;` is missing after this"),
+    ] {
+        let said = refused(&text);
+        assert!(said.iter().any(|said| said.contains(word)), "{word}: {said:?}");
+    }
+}
+
+#[test]
+fn what_is_no_text_of_a_tool() {
+    for (text, word) in [
+        ("".to_owned(), "there is no tool in this text"),
+        (" \n\n".to_owned(), "there is no tool in this text"),
+        ("// nothing\n".to_owned(), "there is no tool in this text"),
+        (format!("\u{feff}{}", tool("")), "byte order mark"),
+        (tool("let a = 3;\0"), "the character U+0000"),
+        (tool("let\u{a0}a = 3;"), "the character U+00A0"),
+        (tool("let \u{202e}a = 3;"), "the character U+202E"),
+        (tool("let a\u{200b} = 3;"), "the character U+200B"),
+        (tool("let 🙂 = 3;"), "`🙂` is not part of the language"),
+        (tool("let a = nan;"), "unknown name `nan`"),
+        (tool("let a = inf;"), "unknown name `inf`"),
+        (tool(&format!("let a = {};", "\"".repeat(100_001))), "this text does not end"),
+        (tool("let a = 3\r\n").replace('\n', "\r\n"), "`;` is missing after this"),
+    ] {
+        assert!(refused(&text)[0].contains(word), "{word}: {:?}", refused(&text));
+    }
+    let windows = compile(&Source::new("t.tool", tool("").replace('\n', "\r\n")));
+    assert!(windows.tool.is_some(), "{:?}", windows.reports);
+}
+
+/// A folder of this test's files.
+fn folder() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("bad_input");
+    std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
+    folder
+}
+
+fn write(name: &str, bytes: impl AsRef<[u8]>) {
+    std::fs::write(folder().join(name), bytes).expect("a writable folder");
+}
+
+/// The errors of a tool that mounts a file.
+fn mounted(mounts: &str) -> String {
+    let text = format!("tool T {{ units mm; {mounts} }}");
+    let compiled = compile(&Source::new("t.tool", text).held_by(folder().join("t.tool")));
+    assert!(compiled.tool.is_none());
+    errors(&compiled).join("; ")
+}
+
+#[test]
+fn mounts_without_end() {
+    let part = "profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as a; }";
+    write("part.tool", format!("tool Part {{ units mm; {part} }}"));
+    for k in 0..80 {
+        let next = k + 1;
+        write(
+            &format!("deep{k}.tool"),
+            format!("tool Deep {{ units mm; mount \"deep{next}.tool\" as a; }}"),
+        );
+        let twins =
+            format!("mount \"twin{next}.tool\" as a; mount \"twin{next}.tool\" as b at z = 4;");
+        write(&format!("twin{k}.tool"), format!("tool Twin {{ units mm; {twins} }}"));
+    }
+    assert_eq!(mounted("mount \"deep0.tool\" as a;"), "more than 64 mounted files");
+    assert_eq!(mounted("mount \"twin0.tool\" as a;"), "more than 64 mounted files");
+    let many = numbered(70, |k| format!("mount \"part.tool\" as a{k} at z = {k};"));
+    assert!(mounted(&many).contains("more than 64 mounted files"));
+    write("ring.tool", "tool Ring { units mm; mount \"ring.tool\" as a; }");
+    assert!(mounted("mount \"ring.tool\" as a;").contains("mounts itself"));
+}
+
+#[test]
+fn files_that_are_no_text() {
+    write("latin.tool", b"tool T {\n    units mm; // fr\xe4ser\n}");
+    assert!(mounted("mount \"latin.tool\" as a;").contains("line 2 is no UTF-8 text"));
+    write("long.tool", vec![b' '; 10_000_000]);
+    assert!(mounted("mount \"long.tool\" as a;").contains("longer than 1048576 bytes"));
+    assert!(mounted("mount \".\" as a;").contains("cannot read"));
+    #[cfg(unix)]
+    assert!(mounted("mount \"/dev/zero\" as a;").contains("longer than 1048576 bytes"));
+}
+
+/// Many regions by hand are planned in seconds.
+#[test]
+fn a_hundred_balls_on_a_string() {
+    let ball = |k: usize| {
+        let z = 3 * k + 1;
+        format!("region r{k} where hypot(d, z - {z}) <= 1 {{ depth: 1 - hypot(d, z - {z}); }}\n")
+    };
+    let text = format!("tool T {{ units mm; {} }}", numbered(100, ball));
+    let compiled = compile(&Source::new("t.tool", text));
+    assert!(compiled.tool.is_some(), "{:?}", compiled.reports);
+}

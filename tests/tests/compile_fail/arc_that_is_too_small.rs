@@ -1,0 +1,14 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        profile {
+            start (0, 0);
+            arc to (3, 4) radius 2 as ball cutting;
+            line to (3, 20), (0, 20) as shank;
+        }
+    }
+}
+
+fn main() {
+    let _: &dyn touchoff::Tool = &Ball;
+}

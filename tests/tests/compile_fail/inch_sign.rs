@@ -1,0 +1,5 @@
+touchoff::include_tool!("mistakes/inch_sign.tool");
+
+fn main() {
+    let _: &dyn touchoff::Tool = &Ball;
+}

@@ -1,0 +1,11 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        curve nose = hypot(d, z - 3) - 3;
+        region ball where nose <= 0 { depth: -nose; magnitude: d - 2; }
+    }
+}
+
+fn main() {
+    let _: &dyn touchoff::Tool = &Ball;
+}

@@ -1,0 +1,12 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        let r = 1e300;
+        curve nose = hypot(d, z - r) - r;
+        region ball where nose <= 0 { depth: -nose; }
+    }
+}
+
+fn main() {
+    let _: &dyn touchoff::Tool = &Ball;
+}

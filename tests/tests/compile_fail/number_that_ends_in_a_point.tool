@@ -1,0 +1,6 @@
+tool Ball {
+    units mm;
+    let r = 3.;
+    curve nose = hypot(d, z - r) - r;
+    region ball where nose <= 0 { depth: -nose; }
+}

@@ -1,0 +1,12 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        curve nose = hypot(d, z - 3) - 3;
+        region ball where nose <= 0, z <= 3 { depth: -nose; }
+        region ball where nose <= 0, z >= 3 { depth: -nose; }
+    }
+}
+
+fn main() {
+    let _: &dyn touchoff::Tool = &Ball;
+}

@@ -1,0 +1,10 @@
+touchoff::tool! {
+    tool Ball {
+        units mm;
+        region ball where hypot(d, z - 3) <= 3 { depth: 3; }
+    }
+}
+
+fn main() {
+    let _: &dyn touchoff::Tool = &Ball;
+}
