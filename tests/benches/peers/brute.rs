@@ -1,7 +1,7 @@
 //! Every point, one after the other: in `f64` with branches, and in `f32` sixteen at a time.
 //!
-//! The first is what one writes in an afternoon: the cheap tests first, the square root only
-//! inside. The second asks the formula of minima and maxima of all points, as wide as the machine
+//! The first passes over points outside the tool's outline by one comparison, since a branch a
+//! region, mispredicted for points in no order, would take longer than all else. The second asks the formula of minima and maxima of all points, as wide as the machine
 //! goes; it takes its own sign for the answer, so points within some 1e-6 of the surface may fall
 //! on the wrong side.
 
@@ -35,6 +35,9 @@ impl Contender for Scalar {
         for (at, point) in self.at.iter().zip(&self.points) {
             let arm = view.arm(*at);
             let p = view.turn(arm);
+            if formula::beside(p) {
+                continue;
+            }
             if let Some(felt) = formula::sense(p) {
                 sums.add([arm, p], (point.weight, point.normal), felt);
             }

@@ -73,9 +73,9 @@ impl View {
     }
 
     /// From the tool's frame to the world's.
-    pub(crate) fn back(&self, v: [f64; 3]) -> Vector3<f64> {
+    pub(crate) fn back(&self, v: Vector3<f64>) -> Vector3<f64> {
         let [x, y, z] = self.rows.map(Vector3::from);
-        Matrix3::from_columns(&[x, y, z]) * Vector3::from(v)
+        Matrix3::from_columns(&[x, y, z]) * v
     }
 }
 
@@ -85,8 +85,9 @@ impl View {
 pub(crate) struct Sums {
     colliding: usize,
     depth: f64,
-    tool: [[f64; 3]; 2],
-    part: [[f64; 3]; 2],
+    /// Force and torque in the tool's frame, and in the world's.
+    tool: [Vector3<f64>; 2],
+    part: [Vector3<f64>; 2],
 }
 
 impl Sums {
@@ -102,20 +103,15 @@ impl Sums {
         self.colliding += 1;
         self.depth = self.depth.max(magnitude);
         let push = weight * magnitude;
-        for (sums, at, way, push) in
-            [(&mut self.tool, p, direction, -push), (&mut self.part, arm, normal, push)]
-        {
-            let force = way.map(|c| push * c);
-            let torque = cross(at, force);
-            for axis in 0..3 {
-                sums[0][axis] += force[axis];
-                sums[1][axis] += torque[axis];
-            }
-        }
+        let (pushed, pulled) = (push * Vector3::from(normal), push * Vector3::from(direction));
+        self.part[0] += pushed;
+        self.part[1] += Vector3::from(arm).cross(&pushed);
+        self.tool[0] -= pulled;
+        self.tool[1] -= Vector3::from(p).cross(&pulled);
     }
 
     pub(crate) fn answer(&self, view: &View) -> Answer {
-        let sum = |at: usize| view.back(self.tool[at]) + Vector3::from(self.part[at]);
+        let sum = |at: usize| view.back(self.tool[at]) + self.part[at];
         Answer { colliding: self.colliding, depth: self.depth, wrench: Some([sum(0), sum(1)]) }
     }
 }
@@ -123,9 +119,4 @@ impl Sums {
 #[inline]
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline]
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -2,7 +2,7 @@
 //!
 //! Of the cloud: the oracle's loop over all points in `f64` with compensated sums, which shares no
 //! code with the methods. Of the part itself: the deepest point of all triangles, by branch and
-//! bound, since the magnitude is √5-Lipschitz.
+//! bound.
 
 use crate::contender::{Answer, View, Workpiece};
 use crate::formula;
@@ -11,8 +11,7 @@ use touchoff::Pose;
 use touchoff_tests::oracle::{Fig73, brute};
 
 /// How exactly the deepest point of the triangles is found, mm.
-const TOLERANCE: f64 = 1e-7;
-const STEEPEST: f64 = 2.236_067_977_5;
+const TOLERANCE: f64 = 1e-6;
 
 /// The oracle's cloud.
 pub(crate) struct Exact {
@@ -46,29 +45,26 @@ impl Exact {
         let place = brute::Pose { tip: pose.tip().coords.into(), axes };
         let lists = (&self.points, &self.normals, &self.weights);
         let felt = brute::Query::new(&self.tool, place, lists.0, lists.1, lists.2).answer();
+        let depth = felt.deepest.map_or(0.0, |(depth, _)| depth);
         Truth {
             colliding: felt.count,
-            depth: felt.deepest.map_or(0.0, |(depth, _)| depth),
+            depth,
             wrench: [felt.force.into(), felt.torque.into()],
-            part_depth: deepest(piece, pose),
+            part_depth: deepest(piece, pose, depth),
         }
     }
 }
 
-/// The largest magnitude on the part's triangles; 0 where none is inside.
-fn deepest(piece: &Workpiece, pose: &Pose) -> f64 {
+/// The largest magnitude on the part's triangles, given one that is reached.
+fn deepest(piece: &Workpiece, pose: &Pose, mut best: f64) -> f64 {
     let view = View::of(pose);
-    let turn = |p: Point3<f64>| Point3::from(view.turn(view.arm(p.coords.into())));
+    let turn = |p: Point3<f64>| Vector3::from(view.turn(view.arm(p.coords.into())));
     let all = 0..piece.mesh.triangles().len() as u32;
     let mut left: Vec<_> = all.map(|id| piece.mesh.triangle(id).map(turn)).collect();
-    let mut best = 0.0;
     while let Some([a, b, c]) = left.pop() {
-        let centre = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-        let here = formula::magnitude(centre.coords.into());
-        let reach =
-            [a, b, c].map(|corner| (corner - centre).norm()).into_iter().fold(0.0, f64::max);
-        best = f64::max(best, here);
-        if here + STEEPEST * reach <= best + TOLERANCE {
+        let (here, most) = bound([a, b, c]);
+        best = best.max(here);
+        if most <= best + TOLERANCE {
             continue;
         }
         // Across the longest edge.
@@ -80,10 +76,26 @@ fn deepest(piece: &Workpiece, pose: &Pose) -> f64 {
         } else {
             (c, a, b)
         };
-        let middle = nalgebra::center(&p, &q);
+        let middle = 0.5 * (p + q);
         left.extend([[p, middle, r], [middle, q, r]]);
     }
     best
+}
+
+/// The magnitude at a triangle's centre, and no less than it has anywhere on the triangle: it is the
+/// largest of concave functions, none of which exceeds its tangent at the centre.
+fn bound(corners: [Vector3<f64>; 3]) -> (f64, f64) {
+    let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let d = centre.x.hypot(centre.y);
+    let radial = if d > 0.0 { [centre.x / d, centre.y / d] } else { [0.0; 2] };
+    let pieces = formula::pieces(d, formula::TIP - centre.z);
+    let most = |(value, [by_d, by_z]): (f64, [f64; 2])| {
+        let slope = Vector3::new(by_d * radial[0], by_d * radial[1], -by_z);
+        let rise = corners.map(|corner| slope.dot(&(corner - centre)));
+        value + rise.into_iter().fold(0.0, f64::max)
+    };
+    let largest = |values: [f64; 5]| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    (largest(pieces.map(|(value, _)| value)), largest(pieces.map(most)))
 }
 
 /// What a method errs, gathered over poses. Relative errors are of all poses in contact together:

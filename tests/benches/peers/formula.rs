@@ -91,6 +91,13 @@ pub(crate) fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f6
     (magnitude, [out * radial[0], out * radial[1], -down])
 }
 
+/// Whether a point lies outside by its distance from the axis alone, without branches.
+#[inline]
+pub(crate) fn beside(p: [f64; 3]) -> bool {
+    let radius = if p[2] < 9.0 { (p[2] - 4.0).clamp(1.0, 3.0) } else { RADIUS };
+    (p[0] * p[0] + p[1] * p[1] > radius * radius) | (p[2] < 0.0) | (p[2] > TIP)
+}
+
 /// Magnitude as one formula of minima and maxima, negative outside: what the regions come to, since
 /// they join without jumps. √5-Lipschitz everywhere.
 pub(crate) fn magnitude(p: [f64; 3]) -> f64 {
@@ -100,6 +107,24 @@ pub(crate) fn magnitude(p: [f64; 3]) -> f64 {
     let spindle = (3.0 - d).min(16.0 - d - z + (1.0 - d).max(0.0));
     let cutter = 1.0 - d.hypot((z - 19.0).max(0.0));
     z.min(5.0 - d).min(housing.max(spindle).max(cutter))
+}
+
+/// Five concave functions of `d` and `z` whose largest is [`magnitude`], each with its slopes.
+pub(crate) fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
+    let linear = |by_d: f64, by_z: f64, rest: f64| (rest + by_d * d + by_z * z, [by_d, by_z]);
+    let least = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };
+    let side = linear(-1.0, 0.0, 3.0);
+    let above = (z - 19.0).max(0.0);
+    let far = d.hypot(above);
+    let cutter = (1.0 - far, if far > 0.0 { [-d / far, -above / far] } else { [0.0; 2] });
+    [
+        linear(-1.0, -1.0, 14.0),
+        linear(0.0, -1.0, 11.0),
+        least(side, linear(-1.0, -1.0, 16.0)),
+        least(side, linear(-2.0, -1.0, 17.0)),
+        cutter,
+    ]
+    .map(|piece| least(piece, least(linear(0.0, 1.0, 0.0), linear(-1.0, 0.0, 5.0))))
 }
 
 /// [`magnitude`] of sixteen points, given by `x² + y²` and the thesis's `z`.

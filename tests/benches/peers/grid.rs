@@ -1,42 +1,32 @@
-//! A signed-distance grid of the tool, asked at the part's points: the voxmap and point shell of
-//! McNeely et al. (1999) the other way about, so that the part keeps its points.
+//! The tool's field in space, at the corners of cubes.
 //!
-//! The grid holds the tool's field at the corners of cubes of [`CELL`] mm over the tool's box and
-//! [`AROUND`] mm about it, 3.2 million `f32`, 13 MB: the magnitude inside and by the surface, minus
-//! the true distance elsewhere. A point's magnitude is interpolated between eight corners and its
-//! direction is the interpolation's slope. Points hang in a tree of spheres, each ruled out by one
-//! look at the corner nearest to its centre. Neither needs to know the tool's shape: what the method
-//! is for. The price is the memory and an error of the order of the cell's square, and of the cell
-//! where the tool has edges.
+//! Cubes of [`CELL`] mm over the tool's box and [`AROUND`] mm about it: 3.2 million `f32`, 13 MB. At
+//! the corners stands the magnitude inside and by the surface, and minus the true distance elsewhere;
+//! between eight corners it is interpolated. That errs by the order of the cell's square, and by that
+//! of the cell where the tool has edges.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece, dot};
+use crate::contender::dot;
 use crate::formula;
-use crate::points::{Bounds, Point, Tree};
-use touchoff::Pose;
+use crate::shell::{Field, STEEPEST};
 use touchoff_tests::oracle::{Oracle, fig_7_3_exact};
 
 /// The side of a cell, mm.
 const CELL: f64 = 0.1;
 /// How far the grid goes beyond the tool, mm.
 const AROUND: f64 = 1.0;
-/// The tool's box, by its lowest and highest corner.
+/// The tool's box, from where to where along the axes.
 const BOX: [[f64; 2]; 3] = [[-5.0, 5.0], [-5.0, 5.0], [0.0, formula::TIP]];
-/// Points of a leaf: the fastest of 8, 16, 32 and 64.
-const LEAF: usize = 16;
-
 /// So near to the surface the field is the magnitude, which goes on outside, not the distance.
 const BAND: f64 = 2.0 * CELL;
-/// How much steeper than the distance the magnitude may be.
-const STEEPEST: f64 = 2.236_067_977_5;
 
-struct Grid {
+pub(crate) struct Grid {
     count: [usize; 3],
     /// x fastest.
     field: Vec<f32>,
 }
 
 impl Grid {
-    fn new() -> Grid {
+    pub(crate) fn new() -> Grid {
         let exact = fig_7_3_exact();
         let count =
             BOX.map(|[low, high]| ((high - low + 2.0 * AROUND) / CELL).round() as usize + 1);
@@ -60,7 +50,12 @@ impl Grid {
         [0, 1, 2].map(|axis| (p[axis] - BOX[axis][0] + AROUND) / CELL)
     }
 
-    /// No more than the distance from a point to the tool; at most 0 inside.
+    fn index(&self, [i, j, k]: [usize; 3]) -> usize {
+        (k * self.count[1] + j) * self.count[0] + i
+    }
+}
+
+impl Field for Grid {
     fn clearance(&self, p: [f64; 3]) -> f64 {
         let mut beyond = 0.0;
         let mut corner = [0; 3];
@@ -78,11 +73,6 @@ impl Grid {
         (distance * distance + beyond * CELL * CELL).sqrt()
     }
 
-    fn index(&self, [i, j, k]: [usize; 3]) -> usize {
-        (k * self.count[1] + j) * self.count[0] + i
-    }
-
-    /// Magnitude and direction by interpolation; `None` outside.
     fn sense(&self, p: [f64; 3]) -> Option<(f64, [f64; 3])> {
         let cells = Self::cells(p);
         let mut corner = [0; 3];
@@ -118,55 +108,5 @@ impl Grid {
         let length = dot(away, away).sqrt();
         let way = if length > 0.0 { away.map(|c| c / length) } else { [1.0, 0.0, 0.0] };
         Some((value, way))
-    }
-}
-
-/// A sphere about a node's points.
-struct Sphere {
-    centre: [f64; 3],
-    radius: f64,
-}
-
-impl Sphere {
-    fn about(bounds: &Bounds, points: &[Point]) -> Sphere {
-        let from = |point: &Point| [0, 1, 2].map(|axis| point.at[axis] - bounds.centre[axis]);
-        let square = |v: [f64; 3]| dot(v, v);
-        let farthest = points.iter().map(|point| square(from(point))).fold(0.0, f64::max);
-        Sphere { centre: bounds.centre, radius: farthest.sqrt() * (1.0 + 1e-9) }
-    }
-}
-
-pub(crate) struct VoxelGrid {
-    grid: Grid,
-    tree: Tree<Sphere>,
-}
-
-impl VoxelGrid {
-    pub(crate) fn new(piece: &Workpiece) -> VoxelGrid {
-        let tree = Tree::new(&piece.cloud, LEAF, |bounds, points| Sphere::about(&bounds, points));
-        VoxelGrid { grid: Grid::new(), tree }
-    }
-}
-
-impl Contender for VoxelGrid {
-    fn name(&self) -> &'static str {
-        "grid"
-    }
-
-    fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
-        let grid = &self.grid;
-        let mut sums = Sums::default();
-        let (points, leaves) = self
-            .tree
-            .leaves(|sphere| grid.clearance(view.turn(view.arm(sphere.centre))) <= sphere.radius);
-        for point in leaves.flat_map(|leaf| &points[leaf]) {
-            let arm = view.arm(point.at);
-            let p = view.turn(arm);
-            if let Some(felt) = grid.sense(p) {
-                sums.add([arm, p], (point.weight, point.normal), felt);
-            }
-        }
-        sums.answer(&view)
     }
 }

@@ -17,9 +17,11 @@ mod exact;
 mod fidget;
 mod formula;
 mod grid;
+mod grid_dz;
 mod parry_bvh;
 mod parry_contact;
 mod points;
+mod shell;
 mod table;
 mod thesis;
 mod this;
@@ -99,6 +101,7 @@ enum Method {
     ParryContact,
     Fidget,
     Grid,
+    GridDz,
 }
 
 impl Method {
@@ -111,7 +114,8 @@ impl Method {
             Method::ParryBvh => Box::new(parry_bvh::ParryBvh::new(piece)),
             Method::ParryContact => Box::new(parry_contact::ParryContact::new(piece)),
             Method::Fidget => Box::new(fidget::Fidget::new(piece)),
-            Method::Grid => Box::new(grid::VoxelGrid::new(piece)),
+            Method::Grid => Box::new(shell::Shell::in_space(piece)),
+            Method::GridDz => Box::new(shell::Shell::in_the_half_plane(piece)),
         }
     }
 }

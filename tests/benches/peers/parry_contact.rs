@@ -2,7 +2,8 @@
 //! part's triangles.
 //!
 //! The union of the shapes is the tool exactly: housing, spindle and cutter are cylinders, the taper
-//! is a cone whose point lies inside the cutter, the ball is a ball. The answer is the pair of a
+//! is a cone whose point lies inside the cutter, the ball is a ball. The spindle goes on through the
+//! housing, so that its end there is no surface that a triangle could leave it by. The answer is the pair of a
 //! shape and a triangle that overlap deepest: one depth, no sum over the contact, so no force and
 //! torque. It feels all of the surface, not points of it.
 
@@ -25,7 +26,7 @@ impl ParryContact {
         let at = |z: f32| Place::from_parts(Vector::new(0.0, 0.0, z), turn);
         let tool = Compound::new(vec![
             (at(14.5), SharedShape::cylinder(5.5, 5.0)),
-            (at(8.0), SharedShape::cylinder(1.0, 3.0)),
+            (at(13.5), SharedShape::cylinder(6.5, 3.0)),
             (at(5.5), SharedShape::cone(1.5, 3.0)),
             (at(3.5), SharedShape::cylinder(2.5, 1.0)),
             (at(1.0), SharedShape::ball(1.0)),

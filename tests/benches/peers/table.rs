@@ -96,7 +96,8 @@ cloud can only approach.
 | `parry-bvh` | `parry3d`'s `Bvh` over blocks of 64 points, the tool's outline, formula and SIMD by hand, survivors in f64 |
 | `parry-contact` | `parry3d`'s `contact` of a compound and the triangle mesh: a depth, no force |
 | `fidget` | the formula as a JIT: intervals on nodes, a slice of points, gradients of hits |
-| `grid` | signed distances on a grid of 0.1 mm (13 MB), interpolated, under a tree of spheres |
+| `grid` | signed distances on a grid of 0.1 mm in space (13 MB), interpolated, under a tree of spheres |
+| `grid-dz` | the same in the half plane, at 0.02 mm (1.3 MB): only for tools with an axis |
 "
     );
 }
