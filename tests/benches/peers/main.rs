@@ -183,7 +183,7 @@ fn measure(
 
 /// At how many poses the truth is worked out, which takes long of many points.
 fn checks(points: usize) -> usize {
-    (20_000_000 / points.max(1)).clamp(40, 400)
+    (20_000_000 / points.max(1)).clamp(40, 200)
 }
 
 /// Keeps the thread on the last core; whether that worked.
