@@ -8,7 +8,7 @@
 //! Needs valgrind, whose processor has AVX2 and no AVX-512: its counts are those of a machine
 //! without. A call is 4,096 points or 200 poses.
 
-#![expect(missing_docs, reason = "gungraun's macros make undocumented functions")]
+#![expect(missing_docs, reason = "gungraun's macros make undocumented items")]
 
 use gungraun::{library_benchmark, library_benchmark_group, main};
 use std::hint::black_box;

@@ -6,8 +6,6 @@
 //!
 //! Points are 65,536 and poses 10,000, in order, so that no branch is learnt.
 
-#![expect(missing_docs, reason = "criterion's macros make undocumented functions")]
-
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use tools_library::Fig73;

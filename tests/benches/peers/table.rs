@@ -81,11 +81,14 @@ cargo bench -p touchoff-tests --features peers --bench peers > docs/measured/pee
 
 (`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, all in one process, the thread {pinned}, no compiler
 flags. Every pose is asked of one method after the other, in turns of 25 poses; no pose is asked twice, and slow methods sit
-out turns (**poses** says how many they had). **avg** and **CPU** are of whole turns, in µs a query; the percentiles of
-others, timed query by query. **×** is how many times `brute-f64` takes longer, on average. **Miscounted**: at so many of the checked poses
-the number of colliding points is not the oracle's. Errors are relative to the oracle's loop in f64 over the same cloud, the
-root mean square of poses in contact; **part** is the error of depth against the deepest point of the triangles, which a
-cloud can only approach.
+out turns (**poses** says how many they had, evenly along the path). **avg** and **CPU** are wall and CPU time of whole turns,
+in µs a query; the percentiles are of others, timed query by query. Where avg is far above CPU, other programs had the core: a
+p99.9 or max of some 4 ms is a slice of theirs. **×** is how many times the CPU time of `brute-f64` is as long.
+
+**Miscounted**: at so many of the checked poses the number of colliding points is not the oracle's. Errors are relative to the
+oracle's loop in f64 over the same cloud, the root mean square over poses in contact; **part** is the error of depth against
+the deepest point of the triangles, which a cloud can only approach. `touchoff` also finds niceness, energy and where the
+deepest point is; the others find only what is compared.
 
 | method | what it is |
 |---|---|
@@ -94,7 +97,7 @@ cloud can only approach.
 | `brute-f32` | every point, all in f32, 16 at a time |
 | `thesis` | binary tree of 18-DOPs behind pointers, the tool in three volumes, scalar trees of splits |
 | `parry-bvh` | `parry3d`'s `Bvh` over blocks of 64 points, the tool's outline, formula and SIMD by hand, survivors in f64 |
-| `parry-contact` | `parry3d`'s `contact` of a compound and the triangle mesh: a depth, no force |
+| `parry-contact` | `parry3d`'s `contact` of a compound and the triangle mesh: a depth, no force. Its depth is the way out of one convex shape, which in `hold` is not the thesis's magnitude |
 | `fidget` | the formula as a JIT: intervals on nodes, a slice of points, gradients of hits |
 | `grid` | signed distances on a grid of 0.1 mm in space (13 MB), interpolated, under a tree of spheres |
 | `grid-dz` | the same in the half plane, at 0.02 mm (1.3 MB): only for tools with an axis |
@@ -142,7 +145,7 @@ fn line(row: &Row, brute: Option<&Row>) {
         time(row.ns_p999),
         time(row.ns_max),
         us(row.cpu_avg),
-        brute.map_or("-".into(), |brute| format!("{:.1}", brute.ns_avg / row.ns_avg)),
+        brute.map_or("-".into(), |brute| format!("{:.1}", brute.cpu_avg / row.cpu_avg)),
         row.colliding_avg,
         row.miscounted,
         row.checked,
