@@ -30,6 +30,7 @@ use crate::contender::{Contender, Workpiece};
 use crate::exact::{Errors, Exact};
 use crate::table::Row;
 use clap::{Parser, ValueEnum};
+use std::num::NonZeroUsize;
 use touchoff::scenes::{POSES, Path, apart, tube};
 use touchoff::{Cloud, Part, Pose};
 
@@ -41,13 +42,13 @@ struct Options {
     scene: Vec<Scene>,
     /// Points of the cloud.
     #[arg(long, value_delimiter = ',', default_value = "1000,5000,20000,100000,1000000")]
-    points: Vec<usize>,
+    points: Vec<NonZeroUsize>,
     /// Only these methods.
     #[arg(long, value_delimiter = ',')]
     method: Vec<Method>,
     /// Poses that a path is cut into.
-    #[arg(long, default_value_t = POSES)]
-    poses: usize,
+    #[arg(long, default_value_t = NonZeroUsize::new(POSES).expect("some poses"))]
+    poses: NonZeroUsize,
     /// How long a method may take for a row; slower ones sit out poses.
     #[arg(long, default_value_t = 2.0)]
     seconds: f64,
@@ -138,7 +139,7 @@ fn main() {
     let mut rows = Vec::new();
     for &points in &options.points {
         let mesh = tube();
-        let cloud = Cloud::random(&mesh, points, SEED).expect("the tube has a surface");
+        let cloud = Cloud::random(&mesh, points.get(), SEED).expect("the tube has a surface");
         let piece = Workpiece { part: Part::from_cloud(&cloud), mesh, cloud };
         let mut methods: Vec<_> = methods.iter().map(|method| method.build(&piece)).collect();
         let exact = Exact::new(&piece);
@@ -163,7 +164,8 @@ fn measure(
     exact: &Exact,
     methods: &mut [Box<dyn Contender + '_>],
 ) -> Vec<Row> {
-    let poses: Vec<Pose> = (0..options.poses).map(|k| scene.pose(k, options.poses)).collect();
+    let count = options.poses.get();
+    let poses: Vec<Pose> = (0..count).map(|k| scene.pose(k, count)).collect();
     let times = clock::race(methods, &poses, options.seconds);
     let mut errors: Vec<Errors> = methods.iter().map(|_| Errors::default()).collect();
     for pose in poses.iter().step_by((poses.len() / checks(piece.cloud.len())).max(1)) {
