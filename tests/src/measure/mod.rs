@@ -2,4 +2,5 @@
 
 pub mod accuracy;
 pub mod compile;
+pub mod kernels;
 pub mod points;
