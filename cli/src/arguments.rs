@@ -48,14 +48,20 @@ pub(crate) enum Command {
         #[arg(required = true, value_name = "FILE.tool")]
         files: Vec<PathBuf>,
     },
-    /// Print the Rust that a `.tool` file becomes.
+    /// Print the Rust that a `.tool` file becomes, or keep every stage of its way there.
     Expand {
-        /// The file.
-        #[arg(value_name = "FILE.tool")]
-        file: PathBuf,
+        /// The file; with `--stages` or `--check` as many as there are.
+        #[arg(required = true, value_name = "FILE.tool")]
+        files: Vec<PathBuf>,
         /// Print the tree of splits in DOT, for Graphviz, instead of Rust.
         #[arg(long)]
         plan: bool,
+        /// Write every stage of each file, from its tree to its certificate, into this folder.
+        #[arg(long, value_name = "DIR", conflicts_with = "plan")]
+        stages: Option<PathBuf>,
+        /// Write nothing: name what this folder holds that is not so any more, and fail if there is any.
+        #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "stages"])]
+        check: Option<PathBuf>,
         #[command(flatten)]
         given: Given,
     },

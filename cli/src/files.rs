@@ -130,11 +130,13 @@ pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<Checked>, Failur
     compiled.tool.ok_or(Failure::Files { wrong: 1, all: 1 })
 }
 
-/// Prints a file's Rust, or its plan as a graph.
-pub(crate) fn expand(file: &Path, plan: bool, given: &Given) -> Result<(), Failure> {
-    let tool = checked(file, given)?;
+/// Prints files' Rust, or their plans as graphs.
+pub(crate) fn expand(files: &[PathBuf], plan: bool, given: &Given) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    write!(out, "{}", if plan { emit::dot(&tool) } else { emit::rust(&tool) })?;
+    for file in files {
+        let tool = checked(file, given)?;
+        write!(out, "{}", if plan { emit::dot(&tool) } else { emit::rust(&tool) })?;
+    }
     out.flush()?;
     Ok(())
 }

@@ -16,6 +16,7 @@ mod failure;
 mod files;
 mod fmt;
 mod run;
+mod stages;
 mod timing;
 
 use arguments::{Arguments, Command};
@@ -28,13 +29,25 @@ fn main() -> ExitCode {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
-        Some(Command::Check { files, given }) => check::check(&files, &given, arguments.json),
-        Some(Command::Expand { file, plan, given }) => files::expand(&file, plan, &given),
+        Some(Command::Check { files, given }) => {
+            return ended(check::check(&files, &given, arguments.json));
+        }
+        Some(Command::Expand { files, stages: Some(folder), given, .. }) => {
+            stages::write(&folder, &files, &given)
+        }
+        Some(Command::Expand { files, check: Some(folder), given, .. }) => {
+            stages::check(&folder, &files, &given)
+        }
+        Some(Command::Expand { files, plan, given, .. }) => files::expand(&files, plan, &given),
         Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
         Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),
     };
+    ended(done.map(|()| ExitCode::SUCCESS))
+}
+
+fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         // Whoever read the output has enough of it.
         Err(failure) if failure.is_enough() => ExitCode::SUCCESS,
         Err(failure) => {

@@ -108,7 +108,7 @@ pub(crate) struct Over {
 
 impl Model {
     /// A point of the tool's frame as the file has it.
-    pub(crate) fn shown(&self, [x, y, z]: [f64; 3]) -> String {
+    pub fn shown(&self, [x, y, z]: [f64; 3]) -> String {
         self.domain.shown([x, y, self.frame.to_file(z)])
     }
 

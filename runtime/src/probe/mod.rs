@@ -90,6 +90,25 @@ impl<'a> Probe<'a> {
         self
     }
 
+    /// How far a depth that is felt can be from that of the point that was given, in the part's unit:
+    /// by storing points in `f32` beside their leaf's centre, by carrying them to the tool's frame, and
+    /// by what rounding does to the depth itself. `None` where no bound of how steep depth is was proved
+    /// of the tool ([`crate::tool::Depth::lipschitz`]). What lies between points is not in it.
+    pub fn error(&self) -> Option<f64> {
+        const HALF: f64 = f64::EPSILON / 2.0;
+        let (card, tree) = (self.tool.card(), self.part.tree());
+        let tool = card.envelope.iter().map(|s| s.low.abs().max(s.high.abs()).max(s.radius));
+        let tool = self.length * tool.fold(0.0, f64::max);
+        let [leaf, part] = [tree.leaf_size, tree.size].map(|half| tree.scale * f64::from(half));
+        // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
+        let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
+        // A point inside is no farther from the tip than the tool is large, so neither is the origin
+        // but for the part's size: two sums, then three products and a change of unit.
+        let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
+        let own = self.length * card.depth.rounding + HALF * tool;
+        card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
+    }
+
     /// Whether any point of the part is inside the tool or on its surface. Stops at the first.
     pub fn detect(&mut self, pose: &Pose) -> bool {
         let tree = self.part.tree();

@@ -3,4 +3,5 @@
 pub mod accuracy;
 pub mod compile;
 pub mod kernels;
+pub mod mutants;
 pub mod points;

@@ -73,6 +73,14 @@ impl<'g> Writer<'g> {
         code.done().to_string()
     }
 
+    /// An expression as a person reads it.
+    pub(super) fn written(graph: &Graph, curves: &[Curve], id: Id) -> String {
+        let writer = Writer { graph, curves, form: Form::Scalar, uses: BTreeMap::new() };
+        let mut code = Tokens::default();
+        writer.leaf(&mut code, id);
+        code.done().to_string()
+    }
+
     fn uses(&self, coord: Coord) -> bool {
         self.uses.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord))
     }

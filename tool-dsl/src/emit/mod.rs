@@ -3,10 +3,12 @@
 
 mod code;
 mod dot;
+mod listing;
 mod masks;
 mod tokens;
 
 pub use dot::dot;
+pub use listing::{model, regions, tree};
 
 use crate::Checked;
 use crate::bound::across;

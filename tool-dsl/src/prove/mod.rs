@@ -21,7 +21,7 @@ use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
 use crate::look::deep_on_the_surface;
-use crate::report::{Report, figure};
+use crate::report::{Report, Severity, figure};
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
 /// size.
@@ -127,6 +127,19 @@ pub struct Undecided {
 }
 
 impl Border {
+    /// Takes up what is known of another border of the same two.
+    pub fn join(&mut self, other: &Border) {
+        self.jump = self.jump.hull(other.jump);
+        self.step = self.step.hull(other.step);
+        self.turn = self.turn.hull(other.turn);
+        self.turn_on_surface = match (self.turn_on_surface, other.turn_on_surface) {
+            (Some(a), Some(b)) => Some(a.hull(b)),
+            (one, other) => one.or(other),
+        };
+        self.depth = self.depth.hull(other.depth);
+        self.seen = self.seen.or(other.seen);
+    }
+
     /// Whether this is a whole border, on which depths agree exactly, and not a point where others
     /// come between.
     pub fn is_joined(&self) -> bool {
@@ -152,15 +165,19 @@ impl Bounds {
     /// What is proved of a tool in little time, and what is wrong with it by that.
     ///
     /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves once
-    /// more; regions by hand are looked at in a few thousand boxes.
+    /// more; regions by hand are looked at in a few thousand boxes, but not for their owners, which the
+    /// plan proves as it is made.
     pub(crate) fn of(tool: &Checked) -> (Bounds, Vec<Report>) {
         let rounding = rounding::over(tool);
         if tool.model.is_exact() {
             return (Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding }, Vec::new());
         }
-        let proved = survey::survey(tool, FEW);
+        let proved = survey::survey(tool, FEW, false);
         let [least, lipschitz] = [proved.least(), proved.lipschitz()];
-        (Bounds { least, lipschitz, rounding }, proved.reports(tool))
+        // What is undecided here may not be in more boxes.
+        let mut reports = proved.reports(tool);
+        reports.retain(|report| report.severity == Severity::Error);
+        (Bounds { least, lipschitz, rounding }, reports)
     }
 }
 
@@ -221,7 +238,7 @@ impl Certificate {
 
     /// Proves what can be proved about a tool.
     pub fn of(tool: &Checked) -> Certificate {
-        survey::survey(tool, MANY)
+        survey::survey(tool, MANY, true)
     }
 
     /// Whether depth is continuous and 0 on the surface, but for [`Certificate::tolerance`].

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 /// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
 const FINE: f64 = 1.0 / 56.0;
-const FINE_OF_SPACE: f64 = 1.0 / 14.0;
+const FINE_OF_SPACE: f64 = 1.0 / 7.0;
 /// Where depths differ, it is looked whether their owners are neighbours in boxes of this part.
 const SMALL: f64 = 1.0 / 1024.0;
 /// Boxes where nothing explains a border are divided to this part of the tool's size.
@@ -31,9 +31,12 @@ const SLOPING: f64 = 0.9;
 /// And in still smaller ones, as long as slopes are known no better than that.
 const VAGUE: f64 = 0.1;
 
-/// Proves what can be proved in so many boxes.
-pub(super) fn survey(tool: &Checked, boxes: usize) -> Certificate {
+/// Proves what can be proved in so many boxes: of depth, and of `owners` if they are asked for.
+pub(super) fn survey(tool: &Checked, boxes: usize, owners: bool) -> Certificate {
     let mut survey = Survey::new(tool);
+    // Of a profile's regions it follows from what is proved of depth: where that is the distance, its
+    // owner is the nearest.
+    survey.owners = owners && !tool.model.is_exact();
     survey.run(boxes);
     survey.certificate()
 }
@@ -84,6 +87,8 @@ struct Survey<'t> {
     /// The same from boxes that are as good as points.
     least_from_points: f64,
     undecided: Vec<Undecided>,
+    /// Whether it is looked whether regions overlap or leave something out.
+    owners: bool,
     boxes: usize,
 }
 
@@ -122,6 +127,7 @@ impl<'t> Survey<'t> {
             least: f64::INFINITY,
             least_from_points: f64::INFINITY,
             undecided: Vec::new(),
+            owners: false,
             boxes: 0,
         }
     }
@@ -158,11 +164,8 @@ impl<'t> Survey<'t> {
     }
 
     /// Whether the owners of a box are those that the list of regions says, as far as that is looked at.
-    ///
-    /// Of a profile's regions it follows from what is proved of depth: where that is the distance, its
-    /// owner is the nearest.
     fn owned(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
-        if self.tool.model.is_exact() || grain == Grain::Point {
+        if !self.owners || grain == Grain::Point {
             return true;
         }
         let wrong =
@@ -417,17 +420,7 @@ impl<'t> Survey<'t> {
         };
         self.borders
             .entry((met.pair, met.by.curve))
-            .and_modify(|known| {
-                known.jump = known.jump.hull(here.jump);
-                known.seen = known.seen.or(here.seen);
-                known.step = known.step.hull(here.step);
-                known.turn = known.turn.hull(here.turn);
-                known.turn_on_surface = match (known.turn_on_surface, here.turn_on_surface) {
-                    (Some(a), Some(b)) => Some(a.hull(b)),
-                    (one, other) => one.or(other),
-                };
-                known.depth = known.depth.hull(here.depth);
-            })
+            .and_modify(|known| known.join(&here))
             .or_insert(here);
     }
 

@@ -1,0 +1,114 @@
+//! The certificate for programs.
+
+use super::niceness;
+use serde::Serialize;
+use tool_dsl::Checked;
+use tool_dsl::expr::interval::{Cell, Interval};
+use tool_dsl::prove::{Border, Certificate, RegionFacts};
+
+/// The certificate for programs.
+#[derive(Serialize)]
+pub(super) struct Proved<'t> {
+    tool: &'t str,
+    unit: &'static str,
+    /// `depth ≤ L · distance`
+    lipschitz: Option<f64>,
+    /// `depth ≥ c · distance`
+    least: Option<f64>,
+    exact: bool,
+    continuous: bool,
+    tolerance: f64,
+    boxes: usize,
+    regions: Vec<ProvedRegion<'t>>,
+    borders: Vec<ProvedBorder<'t>>,
+    undecided: Vec<ProvedNot<'t>>,
+}
+
+#[derive(Serialize)]
+struct ProvedRegion<'t> {
+    name: &'t str,
+    share: f64,
+    depth: [f64; 2],
+    steepness: [f64; 2],
+    distance: bool,
+    niceness: [f64; 2],
+    falls: bool,
+    /// Of depth in f64 and in f32
+    rounding: [f64; 2],
+    /// Between the direction and the steepest way down
+    aside_degrees: [f64; 2],
+    /// Where the direction vanishes, in the tool's frame: boxes' middles
+    singular: Vec<[f64; 3]>,
+    /// Whether the direction turns on the axis
+    on_axis: bool,
+}
+
+#[derive(Serialize)]
+struct ProvedBorder<'t> {
+    between: [&'t str; 2],
+    jump: [f64; 2],
+    /// Of magnitude
+    step: [f64; 2],
+    /// A point where depth jumps, in the tool's frame
+    seen: Option<[f64; 3]>,
+    turn_degrees: [f64; 2],
+    turn_on_surface_degrees: Option<[f64; 2]>,
+    depth: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct ProvedNot<'t> {
+    what: &'t str,
+    near: [f64; 3],
+}
+
+impl<'t> Proved<'t> {
+    pub(super) fn of(tool: &'t Checked, certificate: &'t Certificate) -> Proved<'t> {
+        let model = &tool.model;
+        let middle = |cell: &Cell| cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+        let ends = |value: Interval| [value.low, value.high];
+        let turned = |value: Interval| ends(value).map(f64::to_degrees);
+        let region = |(region, facts): (&'t tool_dsl::model::Region, &RegionFacts)| ProvedRegion {
+            name: &region.name,
+            share: facts.share,
+            depth: ends(facts.depth),
+            steepness: ends(facts.steepness),
+            distance: facts.distance,
+            niceness: ends(niceness(facts)),
+            falls: facts.falls,
+            rounding: facts.rounding,
+            aside_degrees: turned(facts.aside),
+            singular: facts.singular.iter().map(middle).collect(),
+            on_axis: facts.on_axis,
+        };
+        let name = |owner: Option<usize>| {
+            owner.map_or("outside", |owner| model.regions[owner].name.as_str())
+        };
+        let border = |border: &Border| ProvedBorder {
+            between: [name(Some(border.between.0)), name(border.between.1)],
+            jump: ends(border.jump),
+            step: ends(border.step),
+            seen: border.seen.map(|(point, _)| point),
+            turn_degrees: turned(border.turn),
+            turn_on_surface_degrees: border.turn_on_surface.map(turned),
+            depth: ends(border.depth),
+        };
+        Proved {
+            tool: &model.name,
+            unit: model.unit.word(),
+            lipschitz: certificate.lipschitz(),
+            least: certificate.least(),
+            exact: certificate.is_exact(),
+            continuous: certificate.is_continuous(),
+            tolerance: certificate.tolerance,
+            boxes: certificate.boxes,
+            regions: model.regions.iter().zip(&certificate.regions).map(region).collect(),
+            borders: certificate.borders.iter().map(border).collect(),
+            undecided: certificate
+                .undecided
+                .iter()
+                .map(|not| ProvedNot { what: &not.what, near: middle(&not.cell) })
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What is wrong with files, and what is proved about those that are right.
+
+mod json;
+pub(crate) mod table;
+
+use crate::arguments::Given;
+use crate::failure::Failure;
+use json::Proved;
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use tool_dsl::domain::Domain;
+use tool_dsl::expr::interval::Interval;
+use tool_dsl::prove::{Certificate, RegionFacts};
+use tool_dsl::report::{self, Severity};
+use tool_dsl::{Checked, compile_with};
+use touchoff::tool::Interpreted;
+
+/// The exit status where nothing is wrong but something is warned of; wrong files give 1, wrong options 2.
+const WARNED: u8 = 3;
+
+/// Shows what is wrong with files, and of those that are right what is proved.
+pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<ExitCode, Failure> {
+    let mut out = std::io::stdout().lock();
+    let styled = std::io::stderr().is_terminal();
+    let (mut wrong, mut warned) = (0, false);
+    for file in files {
+        let source = match Interpreted::source(file) {
+            Ok(source) => source,
+            Err(error) => {
+                say!("error: {error}");
+                wrong += 1;
+                continue;
+            }
+        };
+        let mut compiled = compile_with(&source, &given.sources());
+        let certificate = compiled.tool.as_deref().map(Certificate::of);
+        if let (Some(tool), Some(certificate)) = (&compiled.tool, &certificate) {
+            // What was found while it was compiled is found again.
+            for report in certificate.reports(tool) {
+                if !compiled.reports.iter().any(|known| known.span == report.span) {
+                    compiled.reports.push(report);
+                }
+            }
+        }
+        for report in &compiled.reports {
+            say!("{}\n", report.render(&compiled.sources, styled));
+        }
+        let count = |severity: Severity| {
+            compiled.reports.iter().filter(|report| report.severity == severity).count()
+        };
+        let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+        wrong += usize::from(errors > 0);
+        warned |= warnings > 0;
+        let (Some(tool), Some(certificate)) = (&compiled.tool, &certificate) else { continue };
+        if json {
+            serde_json::to_writer(&mut out, &Proved::of(tool, certificate))?;
+            writeln!(out)?;
+        } else {
+            writeln!(out, "{}: {}", file.display(), described(tool, warnings))?;
+            table::write(&mut out, tool, certificate)?;
+        }
+    }
+    out.flush()?;
+    match (wrong, warned) {
+        (0, false) => Ok(ExitCode::SUCCESS),
+        (0, true) => Ok(ExitCode::from(WARNED)),
+        _ => Err(Failure::Files { wrong, all: files.len() }),
+    }
+}
+
+fn described(tool: &Checked, warnings: usize) -> String {
+    let model = &tool.model;
+    let unit = model.unit.word();
+    let cutting: Vec<&str> =
+        model.surfaces.iter().filter(|s| s.cutting).map(|s| s.name.as_str()).collect();
+    let extent = &tool.extent;
+    let size = match model.domain {
+        Domain::HalfPlane => format!(
+            "{} {unit} long and {} {unit} in radius",
+            report::figure(extent.high - extent.low),
+            report::figure(extent.radius),
+        ),
+        Domain::Space => {
+            let sides = extent.cell().sides;
+            let [x, y, z] = sides.map(|side| report::figure(side.high - side.low));
+            format!("a solid of {x} by {y} by {z} {unit}")
+        }
+    };
+    format!(
+        "{} is {size}; {} regions, {} curves, cutting: {}; {warnings} {}",
+        model.name,
+        model.regions.len(),
+        model.curves.len(),
+        if cutting.is_empty() { "nothing".to_owned() } else { cutting.join(", ") },
+        if warnings == 1 { "warning" } else { "warnings" },
+    )
+}
+
+/// What counts of a region's niceness.
+fn niceness(facts: &RegionFacts) -> Interval {
+    let [low, high] = [facts.niceness.low, facts.niceness.high].map(|end| end.max(0.0));
+    Interval::new(low, high)
+}

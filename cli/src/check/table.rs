@@ -1,0 +1,154 @@
+//! The certificate for people.
+
+use super::niceness;
+use std::io::Write;
+use tool_dsl::Checked;
+use tool_dsl::expr::interval::Interval;
+use tool_dsl::prove::{Border, Certificate, RegionFacts};
+use tool_dsl::report::figure;
+
+/// Writes it.
+pub(crate) fn write(
+    out: &mut impl Write,
+    tool: &Checked,
+    certificate: &Certificate,
+) -> std::io::Result<()> {
+    let model = &tool.model;
+    writeln!(out, "\n  {}\n", verdict(certificate))?;
+    let wide = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(8);
+    let names = wide(&mut model.regions.iter().map(|region| region.name.len()));
+    writeln!(
+        out,
+        "  {:<names$}  {:>7}  {:>13}  {:>15}  {:>13}  {:>8}  {:<11}  direction",
+        "region", "share", "depth", "steepness", "niceness", "rounding", "depth is"
+    )?;
+    for (region, facts) in model.regions.iter().zip(&certificate.regions) {
+        writeln!(
+            out,
+            "  {:<names$}  {:>5.1} %  {:>13}  {:>15}  {:>13}  {:>8.0e}  {:<11}  {}",
+            region.name,
+            100.0 * facts.share,
+            range(facts.depth),
+            range(facts.steepness),
+            range(niceness(facts)),
+            facts.rounding[0],
+            kind(facts),
+            direction(tool, facts),
+        )?;
+    }
+    let borders = borders(tool, certificate);
+    if borders.is_empty() {
+        return writeln!(out);
+    }
+    let names = wide(&mut borders.iter().map(|(_, name)| name.len()));
+    writeln!(
+        out,
+        "\n  {:<names$}  {:>13}  {:>13}  {:>13}  {:>15}  {:>15}",
+        "border", "depth", "jump", "felt", "turn", "on the surface"
+    )?;
+    for (border, name) in borders {
+        let on_surface = border.turn_on_surface.map_or("-".to_owned(), degrees);
+        writeln!(
+            out,
+            "  {name:<names$}  {:>13}  {:>13}  {:>13}  {:>15}  {on_surface:>15}",
+            range(border.depth),
+            none_or(border.jump),
+            none_or(border.step),
+            degrees(border.turn),
+        )?;
+    }
+    writeln!(out)
+}
+
+/// Borders between regions, each pair once, and jumps beside the outside.
+fn borders(tool: &Checked, certificate: &Certificate) -> Vec<(Border, String)> {
+    let mut borders: Vec<(Border, String)> = Vec::new();
+    let shown = certificate
+        .borders
+        .iter()
+        .filter(|border| border.jump.high > certificate.tolerance || border.is_joined())
+        .filter(|border| border.between.1.is_some() || !border.is_joined());
+    for border in shown {
+        match borders.iter_mut().find(|(known, _)| known.between == border.between) {
+            Some((known, _)) => known.join(border),
+            None => borders.push((border.clone(), pair(tool, border))),
+        }
+    }
+    borders
+}
+
+fn none_or(jump: Interval) -> String {
+    if jump.high == 0.0 { "none".to_owned() } else { range(jump) }
+}
+
+/// Where a region's direction leads.
+fn direction(tool: &Checked, facts: &RegionFacts) -> String {
+    let mut said = match facts.aside {
+        Interval { low: 0.0, high: 0.0 } => "straight down the depth".to_owned(),
+        aside => format!("{} from straight down", degrees(aside)),
+    };
+    if let [first, more @ ..] = facts.singular.as_slice() {
+        let middle = first.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+        said += &format!("; vanishes near {}", tool.model.shown(middle));
+        if !more.is_empty() {
+            said += &format!(" and at {} places more", more.len());
+        }
+    }
+    said
+}
+
+/// What a tool's depth is to the distance to its surface.
+fn verdict(certificate: &Certificate) -> String {
+    let proved = |bound: Option<f64>| bound.map(figure);
+    let boxes = certificate.boxes;
+    match (proved(certificate.least()), proved(certificate.lipschitz())) {
+        _ if certificate.is_exact() => {
+            format!("proved in {boxes} boxes: depth is the distance to the surface")
+        }
+        (Some(least), Some(most)) => format!(
+            "proved in {boxes} boxes: depth is {least} to {most} times the distance to the surface"
+        ),
+        (None, Some(most)) => format!(
+            "proved in {boxes} boxes: depth is at most {most} times the distance to the surface and \
+             changes by at most {most} times the way; how much less it may be is not proved"
+        ),
+        _ => format!(
+            "not proved in {boxes} boxes: that depth goes on without jumps; depth bounds no distance"
+        ),
+    }
+}
+
+fn kind(facts: &RegionFacts) -> &'static str {
+    if facts.distance { "a distance" } else { "no distance" }
+}
+
+fn pair(tool: &Checked, border: &Border) -> String {
+    let regions = &tool.model.regions;
+    let (own, other) = border.between;
+    let other = other.map_or("outside", |other| regions[other].name.as_str());
+    format!("{} | {other}", regions[own].name)
+}
+
+fn range(value: Interval) -> String {
+    let [low, high] = [value.low, value.high].map(short);
+    if low == high { low } else { format!("{low} to {high}") }
+}
+
+fn degrees(turn: Interval) -> String {
+    let [low, high] = [turn.low, turn.high].map(|end| short(end.to_degrees()));
+    if low == high { format!("{low}°") } else { format!("{low}° to {high}°") }
+}
+
+/// Four digits are enough to read.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    let text = format!("{value:.digits$}");
+    if !text.contains('.') {
+        return text;
+    }
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}

@@ -1,0 +1,100 @@
+//! A tool between its text and its Rust, as text: what a reviewer compares after a change of the compiler.
+
+use super::code::Writer;
+use crate::Checked;
+use crate::expr::Id;
+use crate::formula::Formula;
+use crate::report::figure;
+use crate::source::Source;
+use crate::syntax;
+use std::fmt::Write;
+
+/// The syntax tree of a text, an item a line, without places.
+pub fn tree(source: &Source) -> String {
+    let (tree, _) = syntax::parse(source);
+    let Some(tree) = tree else { return String::new() };
+    let head = format!("{:?} {} {:?}\n", tree.domain, tree.name.word, tree.title);
+    tree.items.iter().fold(head, |text, item| text + &unplaced(&format!("{item:?}")) + "\n")
+}
+
+/// A debug text without its spans.
+fn unplaced(text: &str) -> String {
+    let mut parts = text.split("Span { start: ");
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (_, rest) = part.split_once('}').unwrap_or_default();
+        plain += "_";
+        plain += rest;
+    }
+    let plain = plain.replace(", span: _", "").replace("span: _, ", "");
+    plain.replace("Number(", "").replace(" (prec: 256))", "")
+}
+
+/// What a file says, resolved: frame, curves, surfaces; and how far the solid reaches.
+pub fn model(tool: &Checked) -> String {
+    let model = &tool.model;
+    let mut text = String::new();
+    // Writing to a String does not fail.
+    let _ = writeln!(text, "{:?} {} {:?}", model.domain, model.name, model.title);
+    let _ = writeln!(text, "unit {}", model.unit.word());
+    let down = if model.frame.down { ", spindle -z" } else { "" };
+    let _ = writeln!(text, "tip {}{down}", figure(model.frame.tip.to_f64()));
+    for side in tool.extent.cell().sides {
+        let _ = writeln!(text, "reach {:?} to {:?}", side.low, side.high);
+    }
+    for slab in &tool.envelope {
+        let _ = writeln!(text, "slab {:?} to {:?} within {:?}", slab.low, slab.high, slab.radius);
+    }
+    for surface in &model.surfaces {
+        let cutting = if surface.cutting { " cutting" } else { "" };
+        let _ = writeln!(text, "surface {}{cutting}", surface.name);
+    }
+    for (index, curve) in model.curves.iter().enumerate() {
+        let name = curve.name.as_deref().unwrap_or("");
+        let _ = writeln!(text, "curve {index} {name}: {}", expression(tool, curve.value));
+    }
+    text
+}
+
+/// The regions: where they are, and what is felt there.
+pub fn regions(tool: &Checked) -> String {
+    let model = &tool.model;
+    let mut text = String::new();
+    for region in &model.regions {
+        // Writing to a String does not fail.
+        let surface = &model.surfaces[region.surface].name;
+        let _ = writeln!(text, "region {} as {surface}", region.name);
+        let _ = writeln!(text, "  where {}", condition(&region.inside));
+        let felt = [
+            ("depth", region.depth),
+            ("magnitude", region.magnitude),
+            ("niceness", region.niceness),
+        ];
+        for (name, id) in felt {
+            let _ = writeln!(text, "  {name} {}", expression(tool, id));
+        }
+        let course = region.course.0.map(|part| expression(tool, part));
+        let _ = writeln!(text, "  direction ({})", course.join(", "));
+    }
+    text
+}
+
+fn condition(formula: &Formula) -> String {
+    let all = |parts: &[Formula], word: &str| {
+        let parts: Vec<String> = parts.iter().map(condition).collect();
+        format!("({})", parts.join(word))
+    };
+    match formula {
+        Formula::Const(value) => value.to_string(),
+        Formula::Atom { curve, below, strict } => {
+            let sign = if *below { "<" } else { ">" };
+            format!("c{curve} {sign}{} 0", if *strict { "" } else { "=" })
+        }
+        Formula::All(parts) => all(parts, " and "),
+        Formula::Any(parts) => all(parts, " or "),
+    }
+}
+
+fn expression(tool: &Checked, id: Id) -> String {
+    Writer::written(&tool.model.graph, &tool.model.curves, id)
+}
