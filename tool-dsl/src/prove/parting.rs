@@ -49,6 +49,8 @@ pub(super) struct Parting<'m> {
     model: &'m Model,
     size: f64,
     depths: Vec<Option<Rooted>>,
+    /// Whether it is looked whether owners are those that the list of regions says.
+    listed: bool,
     /// Each curve as a polynomial, and what must be positive for that to have its sign.
     curves: Vec<Option<(Polynomial, Option<Polynomial>)>>,
     nothing: Rooted,
@@ -75,6 +77,7 @@ impl<'m> Parting<'m> {
         Parting {
             model,
             size,
+            listed: !model.is_exact(),
             depths: model.regions.iter().map(|region| forms.of(region.depth)).collect(),
             curves: model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect(),
             nothing: Rooted::zero(),
@@ -105,9 +108,14 @@ impl<'m> Parting<'m> {
         self.depths[region].as_ref()
     }
 
-    /// Whether a claim's owner is the one that the list of regions gives its points, but for borders, and
-    /// none other has them too.
-    pub(super) fn is_right(&mut self, claim: &Claim, place: (&mut Cover<'_>, Cell)) -> bool {
+    /// Whether a claim's owner is one that the list of regions gives its points, but for borders, and if
+    /// that is asked for, whether none other has them too.
+    pub(super) fn is_right(
+        &mut self,
+        claim: &Claim,
+        place: (&mut Cover<'_>, Cell),
+        alone: bool,
+    ) -> bool {
         let (cover, cell) = place;
         self.cell = cell;
         // A line or a point.
@@ -120,12 +128,13 @@ impl<'m> Parting<'m> {
         if !claim.owner.is_none_or(own) {
             return false;
         }
-        (0..model.regions.len()).all(|other| {
-            let mut open = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
-            Some(other) == claim.owner
-                || model.regions[other].inside.decided_by(&mut open) == Some(false)
-                || self.excluded(claim, other)
-        })
+        !alone
+            || (0..model.regions.len()).all(|other| {
+                let mut open = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
+                Some(other) == claim.owner
+                    || model.regions[other].inside.decided_by(&mut open) == Some(false)
+                    || self.excluded(claim, other)
+            })
     }
 
     /// Whether, by what is linear, no point of a claim is a region's, but for borders.
@@ -312,9 +321,12 @@ impl<'m> Parting<'m> {
             return *known;
         }
         let [mut at_a, mut at_b] = [&key.1[0], &key.1[1]].map(|ways| self.signs(ways));
-        self.model.regions[pair.0].inside.demand(&mut at_a);
-        if let Some(other) = pair.1 {
-            self.model.regions[other].inside.demand(&mut at_b);
+        // Where owners are those that the list says, its conditions hold too.
+        if self.listed {
+            self.model.regions[pair.0].inside.demand(&mut at_a);
+            if let Some(other) = pair.1 {
+                self.model.regions[other].inside.demand(&mut at_b);
+            }
         }
         let lower = self.zero_where_they_meet(pair, [&at_a, &at_b])
             || pair.1.is_some_and(|other| {

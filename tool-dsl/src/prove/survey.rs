@@ -31,12 +31,11 @@ const SLOPING: f64 = 0.9;
 /// And in still smaller ones, as long as slopes are known no better than that.
 const VAGUE: f64 = 0.1;
 
-/// Proves what can be proved in so many boxes: of depth, and of `owners` if they are asked for.
-pub(super) fn survey(tool: &Checked, boxes: usize, owners: bool) -> Certificate {
+/// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if
+/// that is asked for.
+pub(super) fn survey(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
     let mut survey = Survey::new(tool);
-    // Of a profile's regions it follows from what is proved of depth: where that is the distance, its
-    // owner is the nearest.
-    survey.owners = owners && !tool.model.is_exact();
+    survey.alone = alone;
     survey.run(boxes);
     survey.certificate()
 }
@@ -87,8 +86,8 @@ struct Survey<'t> {
     /// The same from boxes that are as good as points.
     least_from_points: f64,
     undecided: Vec<Undecided>,
-    /// Whether it is looked whether regions overlap or leave something out.
-    owners: bool,
+    /// Whether it is looked whether regions overlap.
+    alone: bool,
     boxes: usize,
 }
 
@@ -127,7 +126,7 @@ impl<'t> Survey<'t> {
             least: f64::INFINITY,
             least_from_points: f64::INFINITY,
             undecided: Vec::new(),
-            owners: false,
+            alone: false,
             boxes: 0,
         }
     }
@@ -165,11 +164,14 @@ impl<'t> Survey<'t> {
 
     /// Whether the owners of a box are those that the list of regions says, as far as that is looked at.
     fn owned(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
-        if !self.owners || grain == Grain::Point {
+        // Of a profile's regions it follows from what is proved of depth: where that is the distance, its
+        // owner is the nearest.
+        if self.tool.model.is_exact() || grain == Grain::Point {
             return true;
         }
-        let wrong =
-            claims.iter().find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell)));
+        let wrong = claims
+            .iter()
+            .find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell), self.alone));
         if let (Some(claim), Grain::Last) = (wrong, grain) {
             let name = |owner: usize| format!("`{}`", self.tool.model.regions[owner].name);
             let owner = claim.owner.map_or_else(|| "the outside".to_owned(), name);
