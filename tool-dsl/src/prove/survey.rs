@@ -428,6 +428,10 @@ impl<'t> Survey<'t> {
 
     fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
+        self.undecided.extend(self.witness.off_profile().into_iter().map(|at| Undecided {
+            cell: Cell { sides: at.map(|at| Interval::new(at, at)) },
+            what: "that the solid ends on the profile".to_owned(),
+        }));
         let facts = self.regions.into_iter().zip(shares).zip(self.aims).enumerate();
         let regions: Vec<RegionFacts> = facts
             .map(|(index, ((facts, share), aim))| RegionFacts {

@@ -8,9 +8,13 @@ use crate::expr::interval::Cell;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::CurveIndex;
 use crate::plan::spread;
+use crate::regionalise::outline::stations;
 
 /// Points at which shares are counted.
 const SPREAD: usize = 10_000;
+/// Points on each piece of a profile, and how far beside them it is looked, as a part of the tool's size.
+const STATIONS: usize = 8;
+const BESIDE: f64 = 1e-4;
 /// How far it is looked about points, as parts of the tool's size.
 const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
@@ -122,6 +126,28 @@ impl<'t> Witness<'t> {
         self.values.set(At::point(x, y, z));
         let curves = &self.tool.model.curves;
         *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
+    }
+
+    /// Points of a profile beside which the solid does not end, of some on each piece.
+    pub(super) fn off_profile(&mut self) -> Vec<[f64; 3]> {
+        let Some(section) = &self.tool.model.section else { return Vec::new() };
+        let near = BESIDE * self.size;
+        let mut off = Vec::new();
+        for (index, segment) in section.outline.iter().enumerate() {
+            for [at, inward] in stations(segment, STATIONS) {
+                let others = || section.outline.iter().enumerate().filter(|(k, _)| *k != index);
+                // Where another piece is as near, either side may be its.
+                if at[0] < 3.0 * near || others().any(|(_, other)| other.away(at) < 3.0 * near) {
+                    continue;
+                }
+                let beside = |way: f64| [at[0] + way * inward[0], 0.0, at[1] + way * inward[1]];
+                let [inside, outside] = [near, -near].map(|way| self.owner(beside(way)));
+                if inside.is_none() || outside.is_some() {
+                    off.push(beside(0.0));
+                }
+            }
+        }
+        off
     }
 
     /// The depth at a point, 0 outside.

@@ -144,6 +144,13 @@ impl Segment {
         }
     }
 
+    /// How far a point is from the piece.
+    pub(crate) fn away(&self, p: Point) -> f64 {
+        let [before, after] = self.sector(p);
+        let [from, to] = self.ends().map(|end| norm(minus(p, end)));
+        if before < 0.0 || after < 0.0 { from.min(to) } else { self.signed(p).abs() }
+    }
+
     /// How far a point lies behind the normal at the start and before that at the end; both at
     /// least 0 where the nearest point of the piece is not one of its ends.
     pub(crate) fn sector(&self, p: Point) -> [f64; 2] {
@@ -272,6 +279,29 @@ pub(crate) fn along(segment: &Segment) -> Vec<Point> {
         .collect()
 }
 
+/// Points on a segment, and the way from each into the material.
+pub(crate) fn stations(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
+    let [from, to] = segment.ends();
+    let [start, turn] = segment.angles();
+    (0..count)
+        .map(|k| {
+            let part = (k as f64 + 0.5) / count as f64;
+            match segment.flat.circle {
+                None => {
+                    let along = segment.flat.along;
+                    let at = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+                    [at, [-along[1], along[0]]]
+                }
+                Some((centre, radius, convex)) => {
+                    let (sin, cos) = (start + part * turn).sin_cos();
+                    let at = [centre[0] + radius * cos, centre[1] + radius * sin];
+                    [at, if convex { [-cos, -sin] } else { [cos, sin] }]
+                }
+            }
+        })
+        .collect()
+}
+
 /// The box about an outline: its ends, and where an arc stands out farthest.
 pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
@@ -297,12 +327,7 @@ pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
 
 /// The place of the piece that is nearest to a point.
 pub(crate) fn nearest_span(outline: &[Segment], p: Point) -> Option<Span> {
-    let distance = |segment: &Segment| {
-        let [before, after] = segment.sector(p);
-        let [from, to] = segment.ends().map(|end| norm(minus(p, end)));
-        if before < 0.0 || after < 0.0 { from.min(to) } else { segment.signed(p).abs() }
-    };
-    let nearest = outline.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let nearest = outline.iter().min_by(|a, b| a.away(p).total_cmp(&b.away(p)));
     nearest.map(|segment| segment.span)
 }
 
