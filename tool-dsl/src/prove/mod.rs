@@ -28,7 +28,7 @@ use crate::report::{Report, Severity, figure};
 const TOLERANCE: f64 = 1e-6;
 
 /// Boxes that a proof may take, and one while a tool is compiled.
-const MANY: usize = 40_000;
+const MANY: usize = 35_000;
 const FEW: usize = 4_000;
 
 /// What is proved about a tool.
