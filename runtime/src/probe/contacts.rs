@@ -43,7 +43,7 @@ pub(super) fn list(probe: &Probe<'_>, pose: &Pose, contacts: &mut Vec<Contact>) 
         let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
         let region = felt.region[at] as usize;
         contacts.push(Contact {
-            point: pose.tip() + vector(probe.candidates.relative()),
+            point: pose.tip() + probe.view.relative(tree, index),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,

@@ -53,8 +53,6 @@ struct Sums<S: Simd> {
     pushes: [f64x8<S>; 2],
     /// In the tool's frame: force and torque about the tip.
     tool: [f64x8<S>; 6],
-    /// In the part's frame: force and torque about the tip.
-    part: [f64x8<S>; 6],
     niceness: f64x8<S>,
     depth: f64x8<S>,
     deepest: f64x8<S>,
@@ -64,7 +62,6 @@ struct Sums<S: Simd> {
 struct Totals {
     pushes: [f64; 2],
     tool: [f64; 6],
-    part: [f64; 6],
     niceness: f64,
     /// Each lane's deepest, and which candidate it is.
     depth: [f64; LANES],
@@ -79,8 +76,8 @@ pub(super) fn sum(probe: &Probe<'_>, pose: &Pose) -> Wrench {
     let half =
         |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
     // In the tool's frame lengths are the tool's.
-    let force = rotation * half(&totals.tool, 0) + half(&totals.part, 0);
-    let about_tip = rotation * (half(&totals.tool, 3) * probe.length) + half(&totals.part, 3);
+    let force = rotation * half(&totals.tool, 0);
+    let about_tip = rotation * (half(&totals.tool, 3) * probe.length);
     let arm = rotation * probe.centre.coords;
     Wrench {
         law: probe.law,
@@ -99,10 +96,9 @@ fn deepest(probe: &Probe<'_>, pose: &Pose, totals: &Totals) -> Option<Deepest> {
     let found = totals.depth.iter().zip(&totals.deepest).filter(|(depth, _)| **depth >= 0.0);
     let (depth, index) = found.min_by(|(a, i), (b, j)| b.total_cmp(a).then(i.total_cmp(j)))?;
     let candidate = *index as usize;
-    let from_tip = probe.candidates.relative();
-    let point = pose.tip() + Vector3::from(from_tip.each_ref().map(|list| list[candidate]));
     let place = probe.candidates.indices()[candidate] as usize;
     let tree = probe.part.tree();
+    let point = pose.tip() + probe.view.relative(tree, place);
     Some(Deepest { depth: depth * probe.length, point, triangle: tree.triangle(place) })
 }
 
@@ -117,7 +113,6 @@ fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
     let mut sums = Sums {
         pushes: [zero; 2],
         tool: [zero; 6],
-        part: [zero; 6],
         niceness: f64x8::splat(simd, f64::INFINITY),
         depth: f64x8::splat(simd, -1.0),
         deepest: zero,
@@ -130,7 +125,6 @@ fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
     Totals {
         pushes: [sums.pushes[0].reduce_sum(), sums.pushes[1].reduce_sum()],
         tool: six(&sums.tool),
-        part: six(&sums.part),
         niceness: sums.niceness.reduce_min(),
         depth: sums.depth.to_array(),
         deepest: sums.deepest.to_array(),
@@ -206,19 +200,20 @@ fn add<S: Simd>(
         f64x8::from_slice(simd, &normals[1]),
         f64x8::from_slice(simd, &normals[2]),
     ];
-    let mut force = push;
-    if probe.law == Law::Facing {
-        let mut along = zero;
-        for (axis, part) in direction.iter().enumerate() {
-            let column = pose.rotation().column(axis);
-            let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
-            along += turned * *part;
-        }
-        force = along.simd_le(zero).select(push, zero);
+    // The normal in the tool's frame, where the direction is.
+    let mut way = direction;
+    let mut along = zero;
+    for (axis, part) in way.iter_mut().enumerate() {
+        let column = pose.rotation().column(axis);
+        let turned = normal[0] * column[0] + normal[1] * column[1] + normal[2] * column[2];
+        along += turned * *part;
+        *part = turned - *part;
     }
-    accumulate(&mut sums.tool, -force, p, direction);
-    let from_tip = load_vector(simd, candidates.relative(), block, in_solid);
-    accumulate(&mut sums.part, force, from_tip, normal);
+    let force = match probe.law {
+        Law::Facing => along.simd_le(zero).select(push, zero),
+        _ => push,
+    };
+    accumulate(&mut sums.tool, force, p, way);
 }
 
 /// Weights and normals of a block's points inside; of the others, 0.

@@ -78,7 +78,10 @@ impl Points {
     /// One more point.
     pub fn push(&mut self, point: [f64; 3]) {
         self.room(1);
-        self.put(point);
+        for (list, part) in self.next(1).into_iter().zip(point) {
+            list[0] = part;
+        }
+        self.took(1);
     }
 
     /// Makes room for some points more.
@@ -89,13 +92,18 @@ impl Points {
         }
     }
 
-    /// One more point, for which there is room.
+    /// Where the next points go, for which there is room, coordinate by coordinate.
     #[inline(always)]
-    pub(crate) fn put(&mut self, point: [f64; 3]) {
-        self.lists[0][self.count] = point[0];
-        self.lists[1][self.count] = point[1];
-        self.lists[2][self.count] = point[2];
-        self.count += 1;
+    pub(crate) fn next(&mut self, count: usize) -> [&mut [f64]; 3] {
+        let place = self.count..self.count + count;
+        let [x, y, z] = &mut self.lists;
+        [&mut x[place.clone()], &mut y[place.clone()], &mut z[place]]
+    }
+
+    /// That so many of those were written.
+    #[inline(always)]
+    pub(crate) fn took(&mut self, count: usize) {
+        self.count += count;
     }
 
     /// How many points there are.

@@ -3,13 +3,10 @@
 use super::{View, WIDTH};
 use crate::tool::{LANES, Points};
 
-/// Candidates by their place in the tree, relative to the tip in the part's frame, and in the
-/// tool's frame in the tool's unit.
+/// Candidates by their place in the tree, and in the tool's frame in the tool's unit.
 #[derive(Default)]
 pub(crate) struct Candidates {
     indices: Vec<u32>,
-    /// As long as the lists of `points`.
-    from_tip: [Vec<f64>; 3],
     pub(crate) points: Points,
 }
 
@@ -21,11 +18,6 @@ impl Candidates {
     /// Where the candidates are in the tree.
     pub(crate) fn indices(&self) -> &[u32] {
         &self.indices[..self.points.len()]
-    }
-
-    /// The candidates from the tip, in the part's frame; behind the last, what fills the block.
-    pub(crate) fn relative(&self) -> &[Vec<f64>; 3] {
-        &self.from_tip
     }
 
     /// Takes the points of a leaf whose bits are set: `Rᵀ (p − t)`, the difference first, in `f64`.
@@ -43,30 +35,35 @@ impl Candidates {
         let room = (self.points.len() + WIDTH).next_multiple_of(LANES);
         if self.indices.len() < room {
             self.indices.resize(room, 0);
-            self.from_tip.iter_mut().for_each(|list| list.resize(room, 0.0));
         }
-        let (scale, tip, rows) = (view.scale, view.from_tip, view.carry);
-        let base =
-            [tip[0] + scale * centre[0], tip[1] + scale * centre[1], tip[2] + scale * centre[2]];
-        let mut left = hits;
+        let (scale, base, rows) = (view.scale, view.leaf_from_tip(centre), view.carry);
+        // All lanes together, in the order of operations that one alone would take.
+        let mut p = [[0.0; WIDTH]; 3];
+        for (axis, list) in p.iter_mut().enumerate() {
+            for (value, offset) in list.iter_mut().zip(&offset[axis]) {
+                *value = base[axis] + scale * f64::from(*offset);
+            }
+        }
+        let mut carried = [[0.0; WIDTH]; 3];
+        for (row, list) in rows.iter().zip(&mut carried) {
+            for (lane, value) in list.iter_mut().enumerate() {
+                *value = row[0] * p[0][lane] + row[1] * p[1][lane] + row[2] * p[2][lane];
+            }
+        }
+        let at = self.points.len();
+        let indices = &mut self.indices[at..at + WIDTH];
+        let points = self.points.next(WIDTH);
+        let (mut left, mut count) = (hits, 0);
         while left != 0 {
             let lane = left.trailing_zeros() as usize % WIDTH;
             left &= left - 1;
-            let p = [
-                base[0] + scale * f64::from(offset[0][lane]),
-                base[1] + scale * f64::from(offset[1][lane]),
-                base[2] + scale * f64::from(offset[2][lane]),
-            ];
-            let at = self.points.len();
-            self.indices[at] = first + lane as u32;
-            self.from_tip[0][at] = p[0];
-            self.from_tip[1][at] = p[1];
-            self.from_tip[2][at] = p[2];
-            self.points.put([
-                rows[0][0] * p[0] + rows[0][1] * p[1] + rows[0][2] * p[2],
-                rows[1][0] * p[0] + rows[1][1] * p[1] + rows[1][2] * p[2],
-                rows[2][0] * p[0] + rows[2][1] * p[1] + rows[2][2] * p[2],
-            ]);
+            let to = count % WIDTH;
+            indices[to] = first + lane as u32;
+            for axis in 0..3 {
+                points[axis][to] = carried[axis][lane];
+            }
+            count += 1;
         }
+        self.points.took(count);
     }
 }

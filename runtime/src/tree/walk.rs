@@ -3,7 +3,8 @@
 use super::{Candidates, Tree, WIDTH};
 use crate::pose::Pose;
 use crate::tool::{Card, Shape};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16, u32x16};
+use nalgebra::Vector3;
 
 /// A part seen from a tool at a pose: the map to the tool's frame, and the tool's reach, in `f32`
 /// and in the tree's unit, with room for what `f32` rounds away.
@@ -19,7 +20,7 @@ pub(crate) struct View {
     exact_rows: [[f64; 3]; 3],
     exact_origin: [f64; 3],
     /// The cloud's origin from the tip in the part's frame, and the tree's unit, in the part's.
-    pub(super) from_tip: [f64; 3],
+    origin_from_tip: [f64; 3],
     pub(super) scale: f64,
     /// From the part's frame and unit to the tool's.
     pub(super) carry: [[f64; 3]; 3],
@@ -27,27 +28,51 @@ pub(crate) struct View {
     fits: bool,
 }
 
+/// The most slabs; the compiler makes no more than 12.
+const SLABS: usize = 16;
+
 /// What a tool reaches, widened.
 #[derive(Default)]
 struct Reach {
     /// Low end, high end and squared radius of each slab.
-    slabs: Vec<[f32; 3]>,
+    slabs: [[f32; 3]; SLABS],
+    /// A bit for each slab that there is.
+    all: u32,
+    /// For what it was widened: the tool's unit, and the margin.
+    made: [f64; 2],
     /// Low and high end along x and y, if it has no axis.
     across: Option<[[f32; 2]; 2]>,
 }
 
 impl Reach {
-    /// The reach of a tool in the tree's unit, which `unit` of the tool's go to, and a margin more.
+    /// The reach of a tool, always the same, in the tree's unit, which `unit` of the tool's go to, and a margin more.
     fn set(&mut self, card: &Card, unit: f64, margin: f64) {
+        // Rounded up to two binary digits, so that many poses have the same.
+        let margin = match margin.is_normal() {
+            true => f64::from_bits(((margin.to_bits() >> 51) + 1) << 51),
+            false => margin,
+        };
+        if self.made == [unit, margin] {
+            return;
+        }
+        self.made = [unit, margin];
         let low = |v: f64| ((v * unit - margin) as f32).next_down();
         let high = |v: f64| ((v * unit + margin) as f32).next_up();
-        self.slabs.clear();
-        self.slabs.extend(card.envelope.iter().map(|slab| {
+        self.all = 0;
+        for (index, slab) in card.envelope.iter().enumerate() {
             let radius = slab.radius * unit + margin;
             // Two roundings more, to f32 and of the comparison's own square.
-            let squared = radius * radius * (1.0 + 8.0 * ROUNDOFF);
-            [low(slab.low), high(slab.high), (squared as f32).next_up()]
-        }));
+            let squared = ((radius * radius * (1.0 + 8.0 * ROUNDOFF)) as f32).next_up();
+            let here = [low(slab.low), high(slab.high), squared];
+            // Of more slabs than there is room for the last takes up the rest.
+            let place = &mut self.slabs[index.min(SLABS - 1)];
+            *place = if index < SLABS {
+                here
+            } else {
+                [place[0].min(here[0]), place[1].max(here[1]), place[2].max(here[2])]
+            };
+            self.all |= 1 << index.min(SLABS - 1);
+        }
         self.across = match card.shape {
             Shape::Revolved => None,
             Shape::Solid { across } => Some(across.map(|[from, to]| [low(from), high(to)])),
@@ -56,7 +81,8 @@ impl Reach {
 
     fn is_finite(&self) -> bool {
         let across = self.across.iter().flatten().flatten();
-        self.slabs.iter().flatten().chain(across).all(|v| v.is_finite())
+        let slabs = self.slabs.iter().enumerate().filter(|(slab, _)| self.all >> slab & 1 == 1);
+        slabs.flat_map(|(_, slab)| slab).chain(across).all(|v| v.is_finite())
     }
 }
 
@@ -73,7 +99,7 @@ impl View {
             points: Reach::default(),
             exact_rows: [[0.0; 3]; 3],
             exact_origin: [0.0; 3],
-            from_tip: [0.0; 3],
+            origin_from_tip: [0.0; 3],
             scale: 1.0,
             carry: [[0.0; 3]; 3],
             fits: false,
@@ -88,7 +114,7 @@ impl View {
     pub(crate) fn set(&mut self, tree: &Tree, card: &Card, pose: &Pose, length: f64) {
         let rotation = pose.rotation();
         let from_tip = tree.origin - pose.tip();
-        self.from_tip = from_tip.into();
+        self.origin_from_tip = from_tip.into();
         self.scale = tree.scale;
         for axis in 0..3 {
             let column = rotation.column(axis);
@@ -112,6 +138,23 @@ impl View {
         self.fits = self.origin.iter().all(|v| v.is_finite()) && self.nodes.is_finite();
     }
 
+    /// The centre of a leaf, given in the tree's unit, from the tip in the part's frame.
+    #[inline(always)]
+    pub(super) fn leaf_from_tip(&self, centre: [f64; 3]) -> [f64; 3] {
+        let (scale, tip) = (self.scale, self.origin_from_tip);
+        [tip[0] + scale * centre[0], tip[1] + scale * centre[1], tip[2] + scale * centre[2]]
+    }
+
+    /// A point from the tip in the part's frame, by its place in the tree.
+    pub(crate) fn relative(&self, tree: &Tree, index: usize) -> Vector3<f64> {
+        let (leaf, lane) = (index / WIDTH, index % WIDTH);
+        let (centre, offset) = (tree.centre(leaf), &tree.leaves[leaf].offset);
+        Vector3::from_fn(|axis, _| {
+            let base = self.origin_from_tip[axis] + centre[axis];
+            base + self.scale * f64::from(offset[axis][lane])
+        })
+    }
+
     /// A coordinate of a place of the cloud, seen from the tool: in `f64`, then rounded.
     #[inline(always)]
     fn place(&self, from_origin: [f64; 3], axis: usize) -> f32 {
@@ -123,8 +166,23 @@ impl View {
 
 /// The descent, with its memory kept between queries.
 pub(crate) struct Walker {
-    nodes: Vec<u32>,
-    below: Vec<u32>,
+    nodes: Vec<Near>,
+    below: Vec<Near>,
+}
+
+/// A node or a leaf that the tool may reach.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Near {
+    index: u32,
+    /// A bit for each slab that may reach it; no other reaches what lies in it.
+    slabs: u32,
+}
+
+impl Near {
+    /// What all slabs may reach.
+    fn all(index: u32) -> Near {
+        Near { index, slabs: u32::MAX }
+    }
 }
 
 impl Walker {
@@ -133,15 +191,15 @@ impl Walker {
     }
 
     /// The leaves that may have a point inside the tool, in order.
-    pub(crate) fn leaves(&mut self, level: Level, tree: &Tree, view: &View) -> &[u32] {
+    pub(crate) fn leaves(&mut self, level: Level, tree: &Tree, view: &View) -> &[Near] {
         self.nodes.clear();
         if !view.fits {
-            self.nodes.extend(0..tree.leaves.len() as u32);
+            self.nodes.extend((0..tree.leaves.len() as u32).map(Near::all));
             return &self.nodes;
         }
-        self.nodes.push(0);
+        self.nodes.push(Near::all(0));
         for boxes in &tree.levels {
-            self.below.resize((self.nodes.len() + 1) * WIDTH, 0);
+            self.below.resize((self.nodes.len() + 1) * WIDTH, Near::default());
             let (nodes, below) = (&self.nodes, &mut self.below);
             let kept = dispatch!(level, simd => descend(simd, boxes, view, nodes, below));
             self.below.truncate(kept);
@@ -178,17 +236,31 @@ fn reach<S: Simd>(half: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
     dot(half, [row[0].abs(), row[1].abs(), row[2].abs()])
 }
 
-/// Which lanes a tool may reach: boxes about a centre, with half extents along the tool's axes.
+/// Which lanes a tool may reach, of boxes about a centre, with half extents along the tool's axes; and
+/// for each lane by which of the `slabs`.
 #[inline(always)]
-fn within<S: Simd>(simd: S, reach: &Reach, centre: Triple<S>, half: Triple<S>) -> u32 {
+fn within<S: Simd>(
+    simd: S,
+    reach: &Reach,
+    slabs: u32,
+    centre: Triple<S>,
+    half: Triple<S>,
+) -> (u32, u32x16<S>) {
     let zero = f32x16::splat(simd, 0.0);
     let [x, y, z] = centre;
     let (low, high) = (z - half[2], z + half[2]);
     let (dx, dy) = ((x.abs() - half[0]).max(zero), (y.abs() - half[1]).max(zero));
     let squared = dx * dx + dy * dy;
     let mut hit = mask32x16::splat(simd, false);
-    for [slab_low, slab_high, radius] in &reach.slabs {
-        hit |= low.simd_le(*slab_high) & high.simd_ge(*slab_low) & squared.simd_le(*radius);
+    let mut by = u32x16::splat(simd, 0);
+    let mut left = slabs & reach.all;
+    while left != 0 {
+        let slab = left.trailing_zeros();
+        left &= left - 1;
+        let [slab_low, slab_high, radius] = reach.slabs[slab as usize % SLABS];
+        let here = low.simd_le(slab_high) & high.simd_ge(slab_low) & squared.simd_le(radius);
+        hit |= here;
+        by = here.select(by | (1 << slab), by);
     }
     if let Some(across) = &reach.across {
         for (axis, [from, to]) in across.iter().enumerate() {
@@ -196,7 +268,7 @@ fn within<S: Simd>(simd: S, reach: &Reach, centre: Triple<S>, half: Triple<S>) -
             hit &= (centre[axis] + half[axis]).simd_ge(*from);
         }
     }
-    hit.to_bitmask() as u32
+    (hit.to_bitmask() as u32, by)
 }
 
 /// Tests the children of `nodes` and appends those that the tool may reach.
@@ -205,12 +277,12 @@ fn descend<S: Simd>(
     simd: S,
     boxes: &[super::Boxes],
     view: &View,
-    nodes: &[u32],
-    below: &mut [u32],
+    nodes: &[Near],
+    below: &mut [Near],
 ) -> usize {
     let mut kept = 0;
     for node in nodes {
-        let children = &boxes[*node as usize];
+        let children = &boxes[node.index as usize];
         let (centre, half) = (load(simd, &children.centre), load(simd, &children.half));
         let seen = [
             dot(&centre, view.rows[0]) + view.origin[0],
@@ -219,13 +291,14 @@ fn descend<S: Simd>(
         ];
         let wide =
             [reach(&half, view.rows[0]), reach(&half, view.rows[1]), reach(&half, view.rows[2])];
-        let hits = within(simd, &view.nodes, seen, wide);
-        let first = node * WIDTH as u32;
+        let (hits, by) = within(simd, &view.nodes, node.slabs, seen, wide);
+        let by: [u32; WIDTH] = by.to_array();
+        let first = node.index * WIDTH as u32;
         // Write every child, keep those that hit: no branch to mispredict.
         let place = &mut below[kept..kept + WIDTH];
         let mut count = 0;
-        for lane in 0..WIDTH as u32 {
-            place[count & (WIDTH - 1)] = first + lane;
+        for (lane, slabs) in by.into_iter().enumerate() {
+            place[count & (WIDTH - 1)] = Near { index: first + lane as u32, slabs };
             count += (hits >> lane & 1) as usize;
         }
         kept += count;
@@ -238,17 +311,17 @@ pub(crate) fn filter(
     level: Level,
     tree: &Tree,
     view: &View,
-    leaves: &[u32],
+    leaves: &[Near],
     candidates: &mut Candidates,
 ) {
     dispatch!(level, simd => sift(simd, tree, view, leaves, candidates));
 }
 
 #[inline(always)]
-fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], candidates: &mut Candidates) {
+fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[Near], candidates: &mut Candidates) {
     let boxes = &tree.levels[tree.levels.len() - 1];
     for leaf in leaves {
-        let index = *leaf as usize;
+        let index = leaf.index as usize;
         let (last, lane) = (&boxes[index / WIDTH].centre, index % WIDTH);
         let centre = [f64::from(last[0][lane]), f64::from(last[1][lane]), f64::from(last[2][lane])];
         let points = &tree.leaves[index].offset;
@@ -259,12 +332,12 @@ fn sift<S: Simd>(simd: S, tree: &Tree, view: &View, leaves: &[u32], candidates: 
                 dot(&offset, view.rows[1]) + view.place(centre, 1),
                 dot(&offset, view.rows[2]) + view.place(centre, 2),
             ];
-            within(simd, &view.points, seen, [f32x16::splat(simd, 0.0); 3])
+            within(simd, &view.points, leaf.slabs, seen, [f32x16::splat(simd, 0.0); 3]).0
         } else {
             offset[0].simd_le(f32::INFINITY).to_bitmask() as u32
         };
         if hits != 0 {
-            candidates.take(view, leaf * WIDTH as u32, centre, points, hits);
+            candidates.take(view, leaf.index * WIDTH as u32, centre, points, hits);
         }
     }
 }
