@@ -28,8 +28,8 @@ pub(crate) struct View {
     fits: bool,
 }
 
-/// The most slabs; the compiler makes no more than 12.
-const SLABS: usize = 16;
+/// The most slabs; the compiler makes no more than 24.
+const SLABS: usize = 32;
 
 /// What a tool reaches, widened.
 #[derive(Default)]

@@ -7,7 +7,9 @@ use crate::model::Model;
 use crate::regionalise::outline;
 
 /// The most slabs of an envelope.
-const SLABS: usize = 12;
+const SLABS: usize = 24;
+/// How many more there are before neighbours are merged.
+const SPARE: usize = 8;
 
 /// A stretch of the axis with the largest radius that the solid has there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +61,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
         ends.windows(2).map(|pair| slab(pair[0], pair[1], extent.radius)).collect();
     // Halve where the halves are slimmer, as long as it saves most.
     let mut halves: Vec<Option<[Slab; 2]>> = vec![None; slabs.len()];
-    while slabs.len() < 2 * SLABS {
+    while slabs.len() < SLABS + SPARE {
         for (own, half) in slabs.iter().zip(&mut halves) {
             half.get_or_insert_with(|| {
                 let middle = own.low / 2.0 + own.high / 2.0;
