@@ -1,16 +1,17 @@
 //! Box after box: what is felt in each region, and what changes from one to the next.
 
+mod meet;
+
 use super::aim::{self, Aim};
 use super::cover::{Boxes, Claim, Cover, reach};
-use super::kink::{ROUNDING, across, angle};
-use super::parting::{Joint, Pair, Parted, Parting};
+use super::kink::ROUNDING;
+use super::parting::{Pair, Parting};
 use super::rounding::Errors;
 use super::slope::{Slope, Slopes};
 use super::witness::Witness;
 use super::{Border, Certificate, RegionFacts, Seen, TOLERANCE, Undecided};
 use crate::Checked;
 use crate::domain::Domain;
-use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
 use std::collections::BTreeMap;
@@ -56,14 +57,6 @@ impl Grain {
     fn is_last(self) -> bool {
         matches!(self, Grain::Point | Grain::Last)
     }
-}
-
-/// Two claims to a box that a curve parts.
-struct Met {
-    pair: Pair,
-    by: Parted,
-    /// Where points of both were seen side by side, with a jump between.
-    seen: Option<Seen>,
 }
 
 struct Survey<'t> {
@@ -305,125 +298,6 @@ impl<'t> Survey<'t> {
         if tool && cell.sides[0].low <= 0.0 && depth.parts[0].high > ROUNDING {
             self.least = self.least.min(depth.parts[2].abs().low);
         }
-    }
-
-    /// Whether what happens between the owners of a box is known well enough.
-    fn meet(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
-        self.slopes.set(cell);
-        let mut all = Vec::new();
-        for (k, a) in claims.iter().enumerate() {
-            for b in &claims[k + 1..] {
-                // The region first, of two the one listed earlier.
-                let (a, b) = match (a.owner, b.owner) {
-                    (x, y) if x == y => continue,
-                    (None, _) => (b, a),
-                    (Some(x), Some(y)) if y < x => (b, a),
-                    _ => (a, b),
-                };
-                let Some(own) = a.owner else { continue };
-                let pair = (own, b.owner);
-                let apart = self.jump(pair).low > 0.0;
-                let place = (&mut self.cover, cell);
-                if let Some(by) = self.parting.of(pair, [a, b], place, apart) {
-                    all.push(Met { pair, by, seen: None });
-                }
-            }
-        }
-        let small = reach(&cell) <= SMALL * self.size;
-        let (mut least, mut vague) = (f64::INFINITY, false);
-        for met in &mut all {
-            let apart = met.by.joint == Joint::None && self.jump(met.pair).low > 0.0;
-            let place = (met.pair, met.by.curve);
-            if apart && (small || grain.is_last()) && !self.jumping.contains_key(&place) {
-                let seen = self.witness.beside(met.pair, cell);
-                self.jumping.extend(seen.map(|seen| (place, seen)));
-            }
-            met.seen = if apart { self.jumping.get(&place).copied() } else { None };
-            if met.by.joint == Joint::None && met.seen.is_none() && !grain.is_last() {
-                return false;
-            }
-            // At points others come between.
-            if grain != Grain::Point {
-                let (fall, slack) = self.across(met);
-                vague |= fall < SLOPING && slack > VAGUE;
-                least = least.min(fall);
-            }
-        }
-        // So flat may be only what a large box tells.
-        if (vague || least < SLOPING && !small) && !grain.is_last() {
-            return false;
-        }
-        self.least = self.least.min(least);
-        all.iter().for_each(|met| self.note(met, cell));
-        true
-    }
-
-    /// How steeply depth falls toward one of the sides of a border at least, and how well that is known.
-    fn across(&mut self, met: &Met) -> (f64, f64) {
-        let regions = &self.tool.model.regions;
-        let (Joint::Kinked, (own, Some(other))) = (met.by.joint, met.pair) else {
-            return (f64::INFINITY, 0.0);
-        };
-        let [own, other] = [own, other].map(|owner| self.slopes.get(regions[owner].depth));
-        let curve = self.slopes.get(self.tool.model.curves[met.by.curve].value);
-        across(own, other, curve, met.by.below)
-    }
-
-    /// How far apart two depths are in the present box.
-    fn jump(&mut self, (own, other): Pair) -> Interval {
-        let regions = &self.tool.model.regions;
-        let own = self.slopes.get(regions[own].depth).value;
-        let other = other.map_or(NOTHING, |other| self.slopes.get(regions[other].depth).value);
-        own.plus(other.negated()).abs()
-    }
-
-    fn note(&mut self, met: &Met, cell: Cell) {
-        let regions = &self.tool.model.regions;
-        let (own, other) = met.pair;
-        let jump = if met.by.joint != Joint::None { NOTHING } else { self.jump(met.pair) };
-        let depth = self.slopes.get(regions[own].depth);
-        let turn = match other {
-            None => NOTHING,
-            Some(other) => {
-                let [a, b] = [own, other]
-                    .map(|owner| regions[owner].direction.map(|id| self.slopes.get(id).value));
-                angle(a, b)
-            }
-        };
-        // Where no more is divided, a jump that may be none is one of a corner.
-        if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
-            let to = other.map_or_else(
-                || "the outside".to_owned(),
-                |other| format!("`{}`", regions[other].name),
-            );
-            let what = format!("that depth goes on from `{}` to {to}", regions[own].name);
-            self.undecided.push(Undecided { cell, what });
-        }
-        let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
-        let [of_own, of_other] = [Some(own), other].map(|owner| owner.map(magnitude));
-        let same = |of: Option<(Id, Id)>| of.is_none_or(|(magnitude, depth)| magnitude == depth);
-        let felt = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
-            of.map_or(NOTHING, |(magnitude, _)| survey.slopes.get(magnitude).value)
-        };
-        let step = if same(of_own) && same(of_other) {
-            jump
-        } else {
-            felt(self, of_own).plus(felt(self, of_other).negated()).abs()
-        };
-        let here = Border {
-            between: met.pair,
-            curve: met.by.curve,
-            jump,
-            step,
-            turn,
-            turn_on_surface: (depth.value.low <= 0.0).then_some(turn),
-            seen: met.seen,
-            depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
-        };
-        self.borders
-            .entry((met.pair, met.by.curve))
-            .and_modify(|known| known.join(&here))
-            .or_insert(here);
     }
 
     fn certificate(mut self) -> Certificate {

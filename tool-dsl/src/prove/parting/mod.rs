@@ -1,6 +1,8 @@
 //! What parts two owners of a box: a curve on whose two sides they are, and whether depth goes on
 //! across it without a jump.
 
+mod signs;
+
 use super::cover::{Claim, Cover};
 use super::root::{Agreement, Forms, Rooted};
 use super::touch::Touch;
@@ -252,67 +254,6 @@ impl<'m> Parting<'m> {
         (0..model.curves.len()).filter(is).collect()
     }
 
-    /// The signs that a curve can have at a claim's points of the present box: by the box, by the way
-    /// down the tree, and by what straight curves on that way imply.
-    fn sign_on(&mut self, claim: &Claim, curve: CurveIndex, cover: &mut Cover<'_>) -> Signs {
-        let own = claim.signs.iter().filter(|(other, _)| *other == curve);
-        let mut signs = own.fold(cover.sign(curve), |all, (_, signs)| all & signs);
-        for (other, side) in &claim.signs {
-            if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
-                signs &= self.implied((*other, *side & NEGATIVE != 0), curve);
-            }
-        }
-        if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
-            signs &= self.by_linear(claim, curve);
-        }
-        if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
-            signs &= self.by_touch(claim, curve);
-        }
-        signs
-    }
-
-    /// A curve as a polynomial that has its sign all over the present box.
-    fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
-        let (polynomial, positive) = self.curves[curve].as_ref()?;
-        let same = positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
-        same.then_some(polynomial)
-    }
-
-    /// The signs that a curve can have beside a conic on a claim's way that it touches near here.
-    fn by_touch(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let here = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
-        let mut signs = ANY;
-        for (other, known) in &claim.signs {
-            let from = match known & !ZERO {
-                NEGATIVE => -1.0,
-                POSITIVE => 1.0,
-                _ => continue,
-            };
-            let (Some(conic), Some(own)) = (self.signed(*other), self.signed(curve)) else {
-                continue;
-            };
-            if conic.is_linear() || own.is_linear() {
-                continue;
-            }
-            let place = (*other, curve);
-            let (tried, known) = self.touches.get(&place).unwrap_or(&(0, None));
-            let touch = match known {
-                None if *tried < TRIES => Touch::near(conic, own, here, self.size),
-                _ => known.clone(),
-            };
-            let tried = tried + 1;
-            self.touches.insert(place, (tried, touch.clone()));
-            if let Some(touch) = &touch {
-                for (to, without) in [(1.0, NEGATIVE), (-1.0, POSITIVE)] {
-                    if touch.implies(from, to) {
-                        signs &= !without;
-                    }
-                }
-            }
-        }
-        signs
-    }
-
     /// Whether, by all that is linear on the ways to two claims, each's depth is the lesser where it is,
     /// or both are 0 where they meet.
     fn lower(&mut self, pair: Pair, [a, b]: [&Claim; 2], parting: &[CurveIndex]) -> bool {
@@ -374,57 +315,6 @@ impl<'m> Parting<'m> {
                 && parting.iter().any(smooth)
                 && lesser(&self.linear, at, own, third)
         })
-    }
-
-    fn signs(&self, ways: &Ways) -> Vec<Signs> {
-        let mut signs = vec![ANY; self.curves.len()];
-        for (curve, known) in ways {
-            signs[*curve] &= known;
-        }
-        signs
-    }
-
-    /// The signs that a curve can have by all linear curves on a claim's way together.
-    fn by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
-        let key = (claim.owner, ways(claim), curve);
-        if let Some(known) = self.by_linear.get(&key) {
-            return *known;
-        }
-        let mut signs = self.signs(&key.1);
-        let mut possible = ANY;
-        for side in [NEGATIVE, POSITIVE] {
-            signs[curve] = side;
-            if self.linear.contradictory_in(claim.owner, &signs) {
-                possible &= !side;
-            }
-        }
-        self.by_linear.insert(key, possible);
-        possible
-    }
-
-    /// The signs that a curve can have on one side of another, if one of them is straight and the two
-    /// do not cross.
-    fn implied(&mut self, (known, below): (CurveIndex, bool), curve: CurveIndex) -> Signs {
-        let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
-        match (self.apart(known, curve), self.apart(curve, known)) {
-            (Some((positive, clear)), _) if clear == below => side(positive),
-            // Inside the conic, which is on the other side of the line.
-            (_, Some((positive, clear))) if positive == below => side(clear),
-            _ => ANY,
-        }
-    }
-
-    /// The sign that a conic has on a whole side of a line, and whether that is below it.
-    fn apart(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
-        if let Some(known) = self.apart.get(&(line, curve)) {
-            return *known;
-        }
-        let known = match (&self.curves[line], &self.curves[curve]) {
-            (Some((line, None)), Some((conic, None))) if !conic.is_linear() => conic.clear_of(line),
-            _ => None,
-        };
-        self.apart.insert((line, curve), known);
-        known
     }
 }
 
