@@ -31,7 +31,9 @@ pub(crate) enum Command {
         #[command(flatten)]
         given: Given,
     },
-    /// Look `.tool` files over.
+    /// Look `.tool` files over, and say what is proved of them.
+    ///
+    /// Ends with status 1 if any is wrong, with 3 if something is only warned of.
     Check {
         /// The files.
         #[arg(required = true, value_name = "FILE.tool")]
