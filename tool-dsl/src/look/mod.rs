@@ -362,6 +362,11 @@ impl<'m> Look<'m> {
         let Some(owner) = self.owner(point) else { return };
         let region = &self.model.regions[owner];
         let depth = self.evaluator.get(region.depth);
+        if depth.abs() > 1e-6 * self.size {
+            let report = deep_on_the_surface(region, depth, &self.place(point));
+            self.report(report);
+            return;
+        }
         let away = [0, 1, 2].map(|k| outside[k] - inside[k]);
         let way = away[0].hypot(away[1]).hypot(away[2]) / self.size;
         let mut slope = |step: f64| {
@@ -379,10 +384,6 @@ impl<'m> Look<'m> {
                 "certified queries are not available for this tool: they want a depth that grows \
                  in step with the distance to the surface",
             ));
-        }
-        if depth.abs() > 1e-6 * self.size {
-            let report = deep_on_the_surface(region, depth, &self.place(point));
-            self.report(report);
         }
     }
 }
