@@ -65,7 +65,6 @@ struct ProvedNot<'t> {
 impl<'t> Proved<'t> {
     pub(super) fn of(tool: &'t Checked, certificate: &'t Certificate) -> Proved<'t> {
         let model = &tool.model;
-        let middle = |cell: &Cell| cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
         let ends = |value: Interval| [value.low, value.high];
         let turned = |value: Interval| ends(value).map(f64::to_degrees);
         let region = |(region, facts): (&'t tool_dsl::model::Region, &RegionFacts)| ProvedRegion {
@@ -78,7 +77,7 @@ impl<'t> Proved<'t> {
             falls: facts.falls,
             rounding: facts.rounding,
             aside_degrees: turned(facts.aside),
-            singular: facts.singular.iter().map(middle).collect(),
+            singular: facts.singular.iter().map(Cell::middle).collect(),
             on_axis: facts.on_axis,
         };
         let name = |owner: Option<usize>| {
@@ -107,7 +106,7 @@ impl<'t> Proved<'t> {
             undecided: certificate
                 .undecided
                 .iter()
-                .map(|not| ProvedNot { what: &not.what, near: middle(&not.cell) })
+                .map(|not| ProvedNot { what: &not.what, near: not.cell.middle() })
                 .collect(),
         }
     }

@@ -88,8 +88,7 @@ fn direction(tool: &Checked, facts: &RegionFacts) -> String {
         aside => format!("{} from straight down", degrees(aside)),
     };
     if let [first, more @ ..] = facts.singular.as_slice() {
-        let middle = first.sides.map(|side| side.low / 2.0 + side.high / 2.0);
-        said += &format!("; vanishes near {}", tool.model.shown(middle));
+        said += &format!("; vanishes near {}", tool.model.shown(first.middle()));
         if !more.is_empty() {
             said += &format!(" and at {} places more", more.len());
         }

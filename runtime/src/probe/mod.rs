@@ -97,8 +97,7 @@ impl<'a> Probe<'a> {
     pub fn error(&self) -> Option<f64> {
         const HALF: f64 = f64::EPSILON / 2.0;
         let (card, tree) = (self.tool.card(), self.part.tree());
-        let tool = card.envelope.iter().map(|s| s.low.abs().max(s.high.abs()).max(s.radius));
-        let tool = self.length * tool.fold(0.0, f64::max);
+        let tool = self.length * card.size();
         let [leaf, part] = [tree.leaf_size, tree.size].map(|half| tree.scale * f64::from(half));
         // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
         let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;

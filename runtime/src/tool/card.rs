@@ -90,6 +90,12 @@ impl Card {
     pub fn radius(&self) -> f64 {
         self.envelope.iter().fold(0.0, |radius, slab| radius.max(slab.radius))
     }
+
+    /// How far the tool reaches from its tip along the axis or from the axis, whichever is more.
+    pub(crate) fn size(&self) -> f64 {
+        let reach = self.envelope.iter().map(|s| s.low.abs().max(s.high.abs()).max(s.radius));
+        reach.fold(0.0, f64::max)
+    }
 }
 
 /// A surface of a tool.

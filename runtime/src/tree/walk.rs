@@ -126,8 +126,7 @@ impl View {
         self.rows = self.exact_rows.map(|row| row.map(|v| v as f32));
         self.origin = self.exact_origin.map(|v| v as f32);
         let unit = length / tree.scale;
-        let reach = card.envelope.iter().map(|s| s.low.abs().max(s.high.abs()).max(s.radius));
-        let tool = reach.fold(0.0, f64::max) * unit;
+        let tool = card.size() * unit;
         let far = self.exact_origin.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
         let node_margin = 16.0 * ROUNDOFF * (far + 3.0 * f64::from(tree.size));
         // A leaf that the descent kept is no farther from the tool than the tool's size and its own.

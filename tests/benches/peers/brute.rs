@@ -85,16 +85,8 @@ fn inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Sums) {
     let zero = f32x16::splat(simd, 0.0);
     for block in 0..lanes.at[0].len() / WIDTH {
         let place = block * WIDTH..(block + 1) * WIDTH;
-        let x = f32x16::from_slice(simd, &lanes.at[0][place.clone()]) - tip[0];
-        let y = f32x16::from_slice(simd, &lanes.at[1][place.clone()]) - tip[1];
-        let z = f32x16::from_slice(simd, &lanes.at[2][place]) - tip[2];
-        let across = x * rows[0][0] + y * rows[0][1] + z * rows[0][2];
-        let beside = x * rows[1][0] + y * rows[1][1] + z * rows[1][2];
-        let along = x * rows[2][0] + y * rows[2][1] + z * rows[2][2];
-        let depth = formula::magnitude_lanes(
-            across * across + beside * beside,
-            f32x16::splat(simd, formula::TIP as f32) - along,
-        );
+        let lists = [&lanes.at[0][place.clone()], &lanes.at[1][place.clone()], &lanes.at[2][place]];
+        let depth = formula::magnitude_from(simd, lists, (rows, tip));
         let mut hits = depth.simd_ge(zero).to_bitmask();
         while hits != 0 {
             lanes.feel(view, block * WIDTH + hits.trailing_zeros() as usize, sums);

@@ -129,7 +129,7 @@ pub(crate) fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
 
 /// [`magnitude`] of sixteen points, given by `x² + y²` and the thesis's `z`.
 #[inline(always)]
-pub(crate) fn magnitude_lanes<S: Simd>(squared: f32x16<S>, z: f32x16<S>) -> f32x16<S> {
+fn magnitude_lanes<S: Simd>(squared: f32x16<S>, z: f32x16<S>) -> f32x16<S> {
     let simd = z.simd;
     let zero = f32x16::splat(simd, 0.0);
     let splat = |value: f32| f32x16::splat(simd, value);
@@ -139,6 +139,22 @@ pub(crate) fn magnitude_lanes<S: Simd>(squared: f32x16<S>, z: f32x16<S>) -> f32x
     let spindle = (splat(3.0) - d).min(splat(16.0) - d - z + (splat(1.0) - d).max(zero));
     let cutter = splat(1.0) - (squared + above * above).sqrt();
     z.min(splat(5.0) - d).min(housing.max(spindle).max(cutter))
+}
+
+/// [`magnitude`] of sixteen of some points, seen from the tip by the rows of a rotation.
+#[inline(always)]
+pub(crate) fn magnitude_from<S: Simd>(
+    simd: S,
+    [xs, ys, zs]: [&[f32]; 3],
+    (rows, tip): ([[f32; 3]; 3], [f32; 3]),
+) -> f32x16<S> {
+    let x = f32x16::from_slice(simd, xs) - tip[0];
+    let y = f32x16::from_slice(simd, ys) - tip[1];
+    let z = f32x16::from_slice(simd, zs) - tip[2];
+    let across = x * rows[0][0] + y * rows[0][1] + z * rows[0][2];
+    let beside = x * rows[1][0] + y * rows[1][1] + z * rows[1][2];
+    let along = x * rows[2][0] + y * rows[2][1] + z * rows[2][2];
+    magnitude_lanes(across * across + beside * beside, f32x16::splat(simd, TIP as f32) - along)
 }
 
 /// Whether a box of the tool's frame, by its centre and half extents, may touch the tool: not

@@ -71,16 +71,8 @@ fn inside<S: Simd>(simd: S, this: &ParryBvh, view: &View, sums: &mut Sums) {
         let Block([xs, ys, zs]) = &this.blocks[*found as usize];
         for part in 0..BLOCK / WIDTH {
             let place = part * WIDTH..(part + 1) * WIDTH;
-            let x = f32x16::from_slice(simd, &xs[place.clone()]) - tip[0];
-            let y = f32x16::from_slice(simd, &ys[place.clone()]) - tip[1];
-            let z = f32x16::from_slice(simd, &zs[place]) - tip[2];
-            let across = x * rows[0][0] + y * rows[0][1] + z * rows[0][2];
-            let beside = x * rows[1][0] + y * rows[1][1] + z * rows[1][2];
-            let along = x * rows[2][0] + y * rows[2][1] + z * rows[2][2];
-            let depth = formula::magnitude_lanes(
-                across * across + beside * beside,
-                f32x16::splat(simd, formula::TIP as f32) - along,
-            );
+            let lists = [&xs[place.clone()], &ys[place.clone()], &zs[place]];
+            let depth = formula::magnitude_from(simd, lists, (rows, tip));
             let mut hits = depth.simd_ge(margin).to_bitmask();
             while hits != 0 {
                 let at = *found as usize * BLOCK + part * WIDTH + hits.trailing_zeros() as usize;

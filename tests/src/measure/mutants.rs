@@ -93,9 +93,9 @@ fn mutant(whole: &Checked, kind: usize, draw: &mut Draw) -> Option<Mutant> {
             tool.plan.owner = leaves(&tool.plan.owner, &felt);
         }
         7 => {
-            let split = pick(tool.plan.owner.tests());
+            let mut split = pick(tool.plan.owner.tests());
             place = format!("split {split}");
-            tool.plan.owner = turned(&tool.plan.owner, &mut split.clone());
+            tool.plan.owner = turned(&tool.plan.owner, &mut split);
         }
         _ => {
             let curve = pick(tool.model.curves.len());

@@ -49,6 +49,11 @@ impl Interval {
         Interval { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
+    /// The number halfway between the ends.
+    pub fn middle(self) -> f64 {
+        self.low / 2.0 + self.high / 2.0
+    }
+
     /// Rounds outward; a NaN end means that nothing is known.
     pub(crate) fn out(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
@@ -168,6 +173,11 @@ impl Cell {
         self
     }
 
+    /// The point in the middle.
+    pub fn middle(&self) -> [f64; 3] {
+        self.sides.map(Interval::middle)
+    }
+
     /// The smallest box around two.
     pub(crate) fn hull(&self, other: &Cell) -> Cell {
         let [a, b, c] = self.sides;
@@ -177,11 +187,7 @@ impl Cell {
 
     /// What two boxes have in common; one whose sides end before they begin if nothing.
     pub(crate) fn common(&self, other: &Cell) -> Cell {
-        let both = |axis: usize| {
-            let (a, b) = (self.sides[axis], other.sides[axis]);
-            Interval { low: a.low.max(b.low), high: a.high.min(b.high) }
-        };
-        Cell { sides: [0, 1, 2].map(both) }
+        Cell { sides: [0, 1, 2].map(|axis| self.sides[axis].common(other.sides[axis])) }
     }
 
     /// Whether the two have a point in common.

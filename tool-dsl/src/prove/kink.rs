@@ -20,11 +20,10 @@ pub(super) fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
 /// Where each is the smaller on its own side, both ways lead down. Else depth falls along every
 /// combination of the two slopes, and so by the shortest of them at least (Clarke 1983).
 pub(super) fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f64, f64) {
-    let middle = |part: Interval| part.low / 2.0 + part.high / 2.0;
     let rises =
         [0, 1, 2].map(|k| own.parts[k].plus(other.parts[k].negated()).times(curve.parts[k]));
     let rise = rises.into_iter().fold(ZERO, Interval::plus);
-    let combined = [0, 1, 2].map(|k| [middle(own.parts[k]), middle(other.parts[k])]);
+    let combined = [0, 1, 2].map(|k| [own.parts[k].middle(), other.parts[k].middle()]);
     let widths = own.parts.iter().chain(&other.parts).map(|part| part.high - part.low);
     let slack = widths.fold(0.0, f64::max);
     let falls = if below { rise.low } else { -rise.high };

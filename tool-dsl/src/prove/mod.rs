@@ -220,7 +220,6 @@ impl Certificate {
             }
         }
         if let Some(first) = self.undecided.first() {
-            let middle = first.cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
             let more = match self.undecided.len() - 1 {
                 0 => String::new(),
                 more => format!(", and {more} more like it"),
@@ -228,7 +227,11 @@ impl Certificate {
             reports.push(
                 Report::warning(
                     model.name_span,
-                    format!("not decided: {} near {}{more}", first.what, model.shown(middle)),
+                    format!(
+                        "not decided: {} near {}{more}",
+                        first.what,
+                        model.shown(first.cell.middle())
+                    ),
                 )
                 .help("bounds of depth by the distance are then not available"),
             );

@@ -85,7 +85,7 @@ impl<'t> Witness<'t> {
         let mut before = None;
         for first in 0..=steps {
             for second in 0..=steps {
-                let mut p = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+                let mut p = cell.middle();
                 for (k, axis) in axes.iter().enumerate() {
                     p[*axis] = at(*axis, if k == 0 { first } else { second });
                 }

@@ -17,9 +17,8 @@ struct Met {
 }
 
 impl Survey<'_> {
-    /// Whether what happens between the owners of a box is known well enough.
+    /// Whether what happens between the owners of the present box is known well enough.
     pub(super) fn meet(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
-        self.slopes.set(cell);
         let mut all = Vec::new();
         for (k, a) in claims.iter().enumerate() {
             for b in &claims[k + 1..] {
@@ -102,11 +101,8 @@ impl Survey<'_> {
         };
         // Where no more is divided, a jump that may be none is one of a corner.
         if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
-            let to = other.map_or_else(
-                || "the outside".to_owned(),
-                |other| format!("`{}`", regions[other].name),
-            );
-            let what = format!("that depth goes on from `{}` to {to}", regions[own].name);
+            let [from, to] = [Some(own), other].map(|owner| self.named(owner));
+            let what = format!("that depth goes on from {from} to {to}");
             self.undecided.push(Undecided { cell, what });
         }
         let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);

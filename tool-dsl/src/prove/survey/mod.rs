@@ -166,9 +166,8 @@ impl<'t> Survey<'t> {
             .iter()
             .find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell), self.alone));
         if let (Some(claim), Grain::Last) = (wrong, grain) {
-            let name = |owner: usize| format!("`{}`", self.tool.model.regions[owner].name);
-            let owner = claim.owner.map_or_else(|| "the outside".to_owned(), name);
-            self.undecided.push(Undecided { cell, what: format!("that {owner} alone has it") });
+            let what = format!("that {} alone has it", self.named(claim.owner));
+            self.undecided.push(Undecided { cell, what });
             return true;
         }
         wrong.is_none()
@@ -191,8 +190,7 @@ impl<'t> Survey<'t> {
             return false;
         }
         if !positive {
-            let name = &self.tool.model.regions[owner].name;
-            let what = format!("that depth is not negative in `{name}`");
+            let what = format!("that depth is not negative in {}", self.named(Some(owner)));
             self.undecided.push(Undecided { cell, what });
         }
         self.felt(owner, cell);
@@ -224,6 +222,14 @@ impl<'t> Survey<'t> {
         true
     }
 
+    /// A region or the outside, in words.
+    fn named(&self, owner: Option<usize>) -> String {
+        match owner {
+            Some(owner) => format!("`{}`", self.tool.model.regions[owner].name),
+            None => "the outside".to_owned(),
+        }
+    }
+
     /// How steeply a region's depth falls at least in the present box.
     fn fall(&mut self, owner: usize) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
@@ -234,11 +240,11 @@ impl<'t> Survey<'t> {
     /// Notes how steeply depth falls from any point of a box.
     fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
         if grain == Grain::Point {
-            let middle = cell.sides.map(|side| side.low / 2.0 + side.high / 2.0);
+            let middle = cell.middle();
             self.slopes.set(Cell { sides: middle.map(|at| Interval::new(at, at)) });
             let slope = |owner: &usize| {
                 let slope = self.slopes.get(self.tool.model.regions[*owner].depth);
-                slope.parts.map(|part| part.low / 2.0 + part.high / 2.0)
+                slope.parts.map(Interval::middle)
             };
             let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
             let least = self.witness.fall_from(middle, slopes);
@@ -250,10 +256,9 @@ impl<'t> Survey<'t> {
         }
     }
 
-    /// Notes what is felt in a box, of a region that has all of it or a part.
+    /// Notes what is felt in the present box, of a region that has all of it or a part.
     fn felt(&mut self, owner: usize, cell: Cell) {
         let region = &self.tool.model.regions[owner];
-        self.slopes.set(cell);
         let depth = self.slopes.get(region.depth);
         let niceness = self.slopes.get(region.niceness);
         let along =
