@@ -1,0 +1,160 @@
+//! What was measured, as objects or as tables.
+
+use crate::config::{BASE, Config};
+use crate::measure::{Measured, Scene};
+use crate::study::{Cross, Study};
+use serde::Serialize;
+
+/// One tree on one scene and cloud.
+#[derive(Serialize)]
+struct Row<'a> {
+    study: &'a str,
+    volume: &'static str,
+    leaf: usize,
+    branching: usize,
+    axis: &'static str,
+    point: &'static str,
+    points: usize,
+    bytes_per_point: f64,
+    build_ms: f64,
+    scene: &'static str,
+    /// CPU time of a query.
+    ns: f64,
+    /// By that of the base in the same race.
+    ratio: Option<f64>,
+    volumes_tested: f64,
+    leaves_reached: f64,
+    points_tested: f64,
+}
+
+/// A race as one object a line for every scene.
+pub(crate) fn json(study: &str, points: usize, scenes: &[Scene], all: &[Measured]) {
+    let base = all.iter().find(|one| one.config == BASE);
+    for one in all {
+        for (at, (scene, found)) in scenes.iter().zip(&one.scenes).enumerate() {
+            let row = Row {
+                study,
+                volume: one.config.kind.name(),
+                leaf: one.config.rule.leaf,
+                branching: one.config.branching,
+                axis: one.config.axis(),
+                point: one.config.point(),
+                points,
+                bytes_per_point: one.bytes,
+                build_ms: one.build,
+                scene: scene.path.name(),
+                ns: found.time,
+                ratio: base.map(|base| found.time / base.scenes[at].time),
+                volumes_tested: found.tested,
+                leaves_reached: found.leaves,
+                points_tested: found.points,
+            };
+            println!("{}", serde_json::to_string(&row).expect("a row of numbers"));
+        }
+    }
+}
+
+/// What the tables are about.
+pub(crate) fn head(pinned: bool, level: &str) {
+    let pinned = if pinned { "pinned to one core" } else { "not pinned (the system refuses)" };
+    let Config { kind, branching, rule } = BASE;
+    println!(
+        "# What makes a tree over the points fast
+
+```sh
+cargo bench -p touchoff-tests --features peers --bench volumes > docs/measured/volumes.md
+```
+
+(`-- --json` for one object a row.) Ho (1999), section 7.5.1, leaves open which bounding volume, how many points of a leaf, how
+many children of a node and which way of dividing make a query fast. Here one tree has them as parameters. The tool is that of
+fig. 7.3, the part the tube; volumes are in `f32`, children of a node side by side in one loop that the compiler makes vectors
+of ({level}); points are carried in `f64`, eight in a loop, and those within the outline asked through the tool's splits.
+
+Every volume is put to the same test in the tool's frame: from where to where it reaches along the axis, and a distance that it
+keeps from the axis, against the largest radius of the tool over that stretch. A sphere says both by its centre; a box by how
+far it reaches along three axes of the tool; a k-DOP likewise, by the better of two upper bounds of that. A 6-DOP is the AABB.
+What is varied is one thing, all else as in the base: {volume}, at most {leaf} points a leaf, {branching} children, {axis}, {point}.
+All volumes bound the same sets of points, which are divided without regard to the volume.
+
+Every row of a table is timed against the others in turns of 25 poses, the thread {pinned}, no pose asked twice in a round.
+**ns** is CPU time of a query, the median of five rounds. **volumes**, **leaves** and **points** are what a query tests on
+average. **bytes** are those of the nodes a point (the point itself, its normal and weight are 80 more); **build** is the time to
+build the tree, ms. Before it is timed every tree is held to brute force: the same points, the same force and torque.
+",
+        volume = kind.name(),
+        leaf = rule.leaf,
+        axis = BASE.axis(),
+        point = BASE.point(),
+    );
+}
+
+/// One thing varied.
+pub(crate) fn study(study: &Study, scenes: &[Scene], all: &[Measured]) {
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.path.name()).collect();
+    let heads = names.iter().map(|name| format!("{name} ns | volumes | leaves | points |"));
+    println!("| | bytes | build | {}", heads.collect::<Vec<_>>().join(" "));
+    println!("|---|--:|--:|{}", "--:|".repeat(4 * names.len()));
+    for ((word, _), one) in study.rows.iter().zip(all) {
+        let cells = one.scenes.iter().map(|found| {
+            let [tested, leaves, points] = [found.tested, found.leaves, found.points].map(number);
+            format!("{:.0} | {tested} | {leaves} | {points} |", found.time)
+        });
+        let cells = cells.collect::<Vec<_>>().join(" ");
+        println!("| {word} | {} | {} | {cells}", number(one.bytes), number(one.build));
+    }
+    println!();
+    for (at, name) in names.iter().enumerate() {
+        let times = all.iter().zip(&study.rows).map(|(one, row)| (one.scenes[at].time, &row.0[..]));
+        println!("{}", extremes(name, times));
+    }
+    println!();
+}
+
+/// The fastest and the slowest of some, in words.
+fn extremes<'a>(name: &str, times: impl Iterator<Item = (f64, &'a str)> + Clone) -> String {
+    let by_time = |a: &(f64, &str), b: &(f64, &str)| a.0.total_cmp(&b.0);
+    let ends = (times.clone().min_by(by_time), times.max_by(by_time));
+    let (Some((fast, first)), Some((slow, last))) = ends else { return String::new() };
+    format!("- {name}: fastest {first}, slowest {last}, {:.2} times as long.", slow / fast)
+}
+
+/// Two things varied: the time by that of the base in the same race, the geometric mean over scenes.
+pub(crate) fn cross(cross: &Cross, ratios: &[Vec<f64>]) {
+    println!("| | {} |", cross.columns.join(" | "));
+    println!("|---|{}", "--:|".repeat(cross.columns.len()));
+    let mut cells = Vec::new();
+    for ((word, _), row) in cross.rows.iter().zip(ratios) {
+        let written: Vec<String> = row.iter().map(|ratio| format!("{ratio:.2}")).collect();
+        println!("| {word} | {} |", written.join(" | "));
+        for (column, ratio) in cross.columns.iter().zip(row) {
+            cells.push((*ratio, format!("{word} with {column}")));
+        }
+    }
+    let cells = cells.iter().map(|(ratio, word)| (*ratio, &word[..]));
+    println!("\n{}", extremes("all scenes", cells));
+    for (at, column) in cross.columns.iter().enumerate() {
+        let best = cross.rows.iter().zip(ratios).min_by(|a, b| a.1[at].total_cmp(&b.1[at]));
+        if let Some(((word, _), row)) = best {
+            println!("- {column}: fastest {word}, {:.2}.", row[at]);
+        }
+    }
+    println!();
+}
+
+/// Other methods in a race with the base.
+pub(crate) fn beside(scenes: &[Scene], rows: &[(&str, Vec<f64>)]) {
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.path.name()).collect();
+    println!("| ns | {} |", names.join(" | "));
+    println!("|---|{}", "--:|".repeat(names.len()));
+    for (name, times) in rows {
+        let times: Vec<String> = times.iter().map(|time| format!("{time:.0}")).collect();
+        println!("| {name} | {} |", times.join(" | "));
+    }
+    println!();
+}
+
+/// Three digits or so.
+fn number(value: f64) -> String {
+    let digits = if value < 9.95 { 1 } else { 0 };
+    format!("{value:.digits$}")
+}
