@@ -11,6 +11,21 @@ use touchoff::Cloud;
 
 const LANES: usize = 8;
 
+/// What a query has found so far.
+pub(crate) struct Felt {
+    /// Points within the outline.
+    pub(crate) near: usize,
+    /// Which of eight such points are asked: all, or none when only the search is timed.
+    wanted: u32,
+    pub(crate) sums: Sums,
+}
+
+impl Felt {
+    pub(crate) fn nothing(wanted: bool) -> Felt {
+        Felt { near: 0, wanted: if wanted { u32::MAX } else { 0 }, sums: Sums::default() }
+    }
+}
+
 pub(crate) struct Leaves {
     /// Coordinates list by list, with some more behind the last.
     at: [Vec<f64>; 3],
@@ -31,13 +46,15 @@ impl Leaves {
 
     /// Adds what is inside of so many points from the first.
     #[inline(always)]
-    pub(crate) fn feel(&self, view: &View, first: usize, count: usize, sums: &mut Sums) {
+    pub(crate) fn feel(&self, view: &View, (first, count): (usize, usize), felt: &mut Felt) {
         let end = first + count;
         let mut at = first;
         while at < end {
             let mut left = self.near(view, at) & (0xff >> (LANES - (end - at).min(LANES)));
+            felt.near += left.count_ones() as usize;
+            left &= felt.wanted;
             while left != 0 {
-                self.points[at + left.trailing_zeros() as usize].feel(view, sums);
+                self.points[at + left.trailing_zeros() as usize].feel(view, &mut felt.sums);
                 left &= left - 1;
             }
             at += LANES;

@@ -50,8 +50,9 @@ pub(crate) struct Measured {
 /// One tree on one scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Found {
-    /// CPU time of a query, ns.
+    /// CPU time of a query, and of its search alone, ns.
     pub(crate) time: f64,
+    pub(crate) search: f64,
     /// What a query does on average.
     pub(crate) tested: f64,
     pub(crate) leaves: f64,
@@ -72,13 +73,15 @@ pub(crate) fn trees(configs: &[Config], piece: &Workpiece, scenes: &[Scene]) -> 
     }
     for scene in scenes {
         let work: Vec<[f64; 3]> = trees.iter_mut().map(|tree| check(&mut **tree, scene)).collect();
-        let mut racing: Vec<Box<dyn Contender + '_>> = Vec::new();
-        for tree in &mut trees {
-            racing.push(Box::new(Lent(&mut **tree)));
-        }
-        let times = times(&mut racing, scene);
-        for ((measured, [tested, leaves, points]), time) in all.iter_mut().zip(work).zip(times) {
-            measured.scenes.push(Found { time, tested, leaves, points });
+        let mut race = |searching: bool| {
+            let lent = |tree| -> Box<dyn Contender + '_> { Box::new(Lent { tree, searching }) };
+            let mut racing: Vec<_> = trees.iter_mut().map(|tree| lent(&mut **tree)).collect();
+            times(&mut racing, scene)
+        };
+        let (whole, search) = (race(false), race(true));
+        for (at, (measured, [tested, leaves, points])) in all.iter_mut().zip(work).enumerate() {
+            let (time, search) = (whole[at], search[at]);
+            measured.scenes.push(Found { time, search, tested, leaves, points });
         }
     }
     all
@@ -119,14 +122,21 @@ fn wrench(answer: &Answer) -> [nalgebra::Vector3<f64>; 2] {
 }
 
 /// A tree lent to a race.
-pub(crate) struct Lent<'a>(pub(crate) &'a mut dyn Counted);
+pub(crate) struct Lent<'a> {
+    pub(crate) tree: &'a mut dyn Counted,
+    /// Whether it only searches.
+    pub(crate) searching: bool,
+}
 
 impl Contender for Lent<'_> {
     fn name(&self) -> &'static str {
-        self.0.name()
+        self.tree.name()
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        self.0.query(pose)
+        if self.searching {
+            return Answer { colliding: self.tree.search(pose), ..Answer::default() };
+        }
+        self.tree.query(pose)
     }
 }

@@ -20,8 +20,9 @@ struct Row<'a> {
     scene: &'static str,
     /// CPU time of a query.
     ns: f64,
-    /// By that of the base in the same race.
-    ratio: Option<f64>,
+    /// The search alone, and by that of the base in the same race.
+    search_ns: f64,
+    search_ratio: Option<f64>,
     volumes_tested: f64,
     leaves_reached: f64,
     points_tested: f64,
@@ -44,7 +45,8 @@ pub(crate) fn json(study: &str, points: usize, scenes: &[Scene], all: &[Measured
                 build_ms: one.build,
                 scene: scene.path.name(),
                 ns: found.time,
-                ratio: base.map(|base| found.time / base.scenes[at].time),
+                search_ns: found.search,
+                search_ratio: base.map(|base| found.search / base.scenes[at].search),
                 volumes_tested: found.tested,
                 leaves_reached: found.leaves,
                 points_tested: found.points,
@@ -91,20 +93,23 @@ build the tree, ms. Before it is timed every tree is held to brute force: the sa
 /// One thing varied.
 pub(crate) fn study(study: &Study, scenes: &[Scene], all: &[Measured]) {
     let names: Vec<&str> = scenes.iter().map(|scene| scene.path.name()).collect();
-    let heads = names.iter().map(|name| format!("{name} ns | volumes | leaves | points |"));
+    let heads =
+        names.iter().map(|name| format!("{name} ns | search | volumes | leaves | points |"));
     println!("| | bytes | build | {}", heads.collect::<Vec<_>>().join(" "));
-    println!("|---|--:|--:|{}", "--:|".repeat(4 * names.len()));
+    println!("|---|--:|--:|{}", "--:|".repeat(5 * names.len()));
     for ((word, _), one) in study.rows.iter().zip(all) {
         let cells = one.scenes.iter().map(|found| {
             let [tested, leaves, points] = [found.tested, found.leaves, found.points].map(number);
-            format!("{:.0} | {tested} | {leaves} | {points} |", found.time)
+            let (time, search) = (found.time, found.search);
+            format!("{time:.0} | {search:.0} | {tested} | {leaves} | {points} |")
         });
         let cells = cells.collect::<Vec<_>>().join(" ");
         println!("| {word} | {} | {} | {cells}", number(one.bytes), number(one.build));
     }
     println!();
     for (at, name) in names.iter().enumerate() {
-        let times = all.iter().zip(&study.rows).map(|(one, row)| (one.scenes[at].time, &row.0[..]));
+        let times =
+            all.iter().zip(&study.rows).map(|(one, row)| (one.scenes[at].search, &row.0[..]));
         println!("{}", extremes(name, times));
     }
     println!();
@@ -115,10 +120,13 @@ fn extremes<'a>(name: &str, times: impl Iterator<Item = (f64, &'a str)> + Clone)
     let by_time = |a: &(f64, &str), b: &(f64, &str)| a.0.total_cmp(&b.0);
     let ends = (times.clone().min_by(by_time), times.max_by(by_time));
     let (Some((fast, first)), Some((slow, last))) = ends else { return String::new() };
-    format!("- {name}: fastest {first}, slowest {last}, {:.2} times as long.", slow / fast)
+    format!(
+        "- {name}: the search is fastest by {first}; by {last} it takes {:.2} times as long.",
+        slow / fast
+    )
 }
 
-/// Two things varied: the time by that of the base in the same race, the geometric mean over scenes.
+/// Two things varied: the search by that of the base in the same race, the geometric mean over scenes.
 pub(crate) fn cross(cross: &Cross, ratios: &[Vec<f64>]) {
     println!("| | {} |", cross.columns.join(" | "));
     println!("|---|{}", "--:|".repeat(cross.columns.len()));

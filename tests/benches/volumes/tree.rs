@@ -6,8 +6,8 @@
 //! Nodes lie level by level, and a query walks them so: it appends what it keeps to a queue, so the
 //! next node's address is known early, and leaves come after most nodes.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece};
-use crate::leaves::Leaves;
+use crate::contender::{Answer, Contender, View, Workpiece};
+use crate::leaves::{Felt, Leaves};
 use crate::split::{Bounds, Half, Item, Rule};
 use crate::volume::{Frame, Volume};
 use crate::wide::{Nodes, widen};
@@ -60,6 +60,17 @@ impl<V: Volume<F>, const F: usize, const W: usize> Tree<V, F, W> {
         let level = Level::new();
         Tree { level, middle, nodes, leaves, queue, reached: 0, kind: PhantomData }
     }
+
+    /// Finds the points within the outline, and adds what they feel if that is wanted.
+    fn ask(&mut self, pose: &Pose, wanted: bool) -> (Felt, View) {
+        let view = View::of(pose);
+        let seen = V::seen(&Frame::of(&view, self.middle));
+        let mut felt = Felt::nothing(wanted);
+        let (tree, queue) = ((&self.nodes[..], &self.leaves), &mut self.queue[..]);
+        let all = (&seen, &view);
+        self.reached = dispatch!(self.level, _simd => walk::<V, F, W>(tree, all, queue, &mut felt));
+        (felt, view)
+    }
 }
 
 /// All nodes, their children put side by side.
@@ -95,15 +106,15 @@ fn walk<V: Volume<F>, const F: usize, const W: usize>(
     (nodes, leaves): (&[Node<F, W>], &Leaves),
     (seen, view): (&V::Seen, &View),
     queue: &mut [u32],
-    sums: &mut Sums,
+    felt: &mut Felt,
 ) -> usize {
     let (mut at, mut end) = (0, 1);
     queue[0] = 0;
     while at < end {
         let below = queue[at];
         at += 1;
-        if let Some((first, count)) = points_of(below) {
-            leaves.feel(view, first, count, sums);
+        if let Some(points) = points_of(below) {
+            leaves.feel(view, points, felt);
             continue;
         }
         let node = &nodes[below as usize];
@@ -129,13 +140,8 @@ impl<V: Volume<F>, const F: usize, const W: usize> Contender for Tree<V, F, W> {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let view = View::of(pose);
-        let seen = V::seen(&Frame::of(&view, self.middle));
-        let mut sums = Sums::default();
-        let (tree, queue) = ((&self.nodes[..], &self.leaves), &mut self.queue[..]);
-        let all = (&seen, &view);
-        self.reached = dispatch!(self.level, _simd => walk::<V, F, W>(tree, all, queue, &mut sums));
-        sums.answer(&view)
+        let (felt, view) = self.ask(pose, true);
+        felt.sums.answer(&view)
     }
 }
 
@@ -151,6 +157,9 @@ pub(crate) struct Work {
 /// A tree that tells what its last query did, and how large it is.
 pub(crate) trait Counted: Contender {
     fn work(&self) -> Work;
+
+    /// How many points are within the outline: a query without what they feel.
+    fn search(&mut self, pose: &Pose) -> usize;
 
     /// Bytes of its nodes.
     fn bytes(&self) -> usize;
@@ -169,6 +178,10 @@ impl<V: Volume<F>, const F: usize, const W: usize> Counted for Tree<V, F, W> {
             }
         }
         work
+    }
+
+    fn search(&mut self, pose: &Pose) -> usize {
+        self.ask(pose, false).0.near
     }
 
     fn bytes(&self) -> usize {
