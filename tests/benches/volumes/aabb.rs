@@ -26,7 +26,7 @@ impl Volume<6> for Aabb {
     }
 
     #[inline(always)]
-    fn place<const W: usize>(seen: &Seen, volumes: &[[f32; W]; 6], lane: usize) -> Place {
+    fn may_touch<const W: usize>(seen: &Seen, volumes: &[[f32; W]; 6], lane: usize) -> bool {
         let centre = [volumes[0][lane], volumes[1][lane], volumes[2][lane]];
         let half = [volumes[3][lane], volumes[4][lane], volumes[5][lane]];
         let Frame { rows, origin } = &seen.frame;
@@ -38,5 +38,6 @@ impl Volume<6> for Aabb {
             ],
             [dot(seen.reach[0], half), dot(seen.reach[1], half), dot(seen.reach[2], half)],
         )
+        .may_touch()
     }
 }

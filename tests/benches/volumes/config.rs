@@ -4,7 +4,7 @@ use crate::aabb::Aabb;
 use crate::contender::Workpiece;
 use crate::dop::Dop;
 use crate::obb::Obb;
-use crate::sphere::Sphere;
+use crate::sphere::{ByDistance, Sphere};
 use crate::split::{Axis, Point, Rule};
 use crate::tree::{Counted, Tree};
 use crate::volume::Volume;
@@ -13,6 +13,7 @@ use crate::volume::Volume;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Sphere,
+    ByDistance,
     Aabb,
     Obb,
     Dop14,
@@ -21,12 +22,20 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    pub(crate) const ALL: [Kind; 6] =
-        [Kind::Sphere, Kind::Aabb, Kind::Obb, Kind::Dop14, Kind::Dop18, Kind::Dop26];
+    pub(crate) const ALL: [Kind; 7] = [
+        Kind::Sphere,
+        Kind::ByDistance,
+        Kind::Aabb,
+        Kind::Obb,
+        Kind::Dop14,
+        Kind::Dop18,
+        Kind::Dop26,
+    ];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Kind::Sphere => "sphere",
+            Kind::ByDistance => "sphere by distance",
             Kind::Aabb => "AABB",
             Kind::Obb => "OBB",
             Kind::Dop14 => "14-DOP",
@@ -104,6 +113,7 @@ impl Config {
     pub(crate) fn build(self, piece: &Workpiece) -> Box<dyn Counted> {
         match self.kind {
             Kind::Sphere => self.wide::<Sphere, 4>(piece),
+            Kind::ByDistance => self.wide::<ByDistance, 4>(piece),
             Kind::Aabb => self.wide::<Aabb, 6>(piece),
             Kind::Obb => self.wide::<Obb, 12>(piece),
             Kind::Dop14 => self.wide::<Dop<14>, 14>(piece),

@@ -59,7 +59,8 @@ struct Options {
     /// Points of the clouds.
     #[arg(long, value_delimiter = ',', default_value = "20000,1000000")]
     points: Vec<NonZeroUsize>,
-    /// Only these tables: beside, volume, leaf, branching, axis, point, volume-branching and so on.
+    /// Only these tables: beside, volume, leaf, branching, axis, point, volume-branching,
+    /// leaf-branching, volume-leaf, axis-leaf, point-leaf.
     #[arg(long, value_delimiter = ',')]
     study: Vec<String>,
     /// Poses that a path is cut into, fewer of a large cloud.
@@ -81,7 +82,7 @@ impl Options {
 
 /// Seed of the clouds.
 const SEED: u64 = 1;
-/// Of larger clouds only one thing is varied at a time, on a fifth of the poses.
+/// Of larger clouds only one thing is varied at a time, on a tenth of the poses.
 const LARGE: usize = 100_000;
 
 fn main() {
@@ -95,7 +96,7 @@ fn main() {
         let cloud = Cloud::random(&mesh, points.get(), SEED).expect("the tube has a surface");
         let piece = Workpiece { part: Part::from_cloud(&cloud), mesh, cloud };
         let large = points.get() > LARGE;
-        let poses = if large { options.poses.get().div_ceil(5) } else { options.poses.get() };
+        let poses = if large { options.poses.get().div_ceil(10) } else { options.poses.get() };
         let scenes = Path::ALL.map(|path| Scene::new(path, poses, &piece));
         let bench = Bench { options: &options, piece, scenes };
         bench.beside();
@@ -146,7 +147,7 @@ impl Bench<'_> {
         for study in study::studies().iter().filter(|study| self.options.wants(study.name)) {
             self.heading(study.title);
             let configs: Vec<Config> = study.rows.iter().map(|(_, config)| *config).collect();
-            let all = self.race(study.name, &configs);
+            let all = self.race(study.name, &configs, true);
             if !self.options.json {
                 table::study(study, &self.scenes, &all);
             }
@@ -171,15 +172,15 @@ impl Bench<'_> {
         let row = |configs: &Vec<Config>| {
             let mut racing = configs.clone();
             racing.extend((!racing.contains(&BASE)).then_some(BASE));
-            let all = self.race(cross.name, &racing);
+            let all = self.race(cross.name, &racing, false);
             let base = all.iter().find(|one| one.config == BASE).expect("the base is raced");
             all.iter().take(configs.len()).map(|one| ratio(one, base)).collect()
         };
         cross.rows.iter().map(|(_, configs)| row(configs)).collect()
     }
 
-    fn race(&self, name: &str, configs: &[Config]) -> Vec<Measured> {
-        let all = measure::trees(configs, &self.piece, &self.scenes);
+    fn race(&self, name: &str, configs: &[Config], whole: bool) -> Vec<Measured> {
+        let all = measure::trees(configs, &self.piece, &self.scenes, whole);
         if self.options.json {
             table::json(name, self.piece.cloud.len(), &self.scenes, &all);
         }

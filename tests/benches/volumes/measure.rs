@@ -10,7 +10,7 @@ use touchoff::Pose;
 use touchoff::scenes::Path;
 
 /// How often a path is raced over; the median counts.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 /// By how much of itself a force may differ for the order in which it was summed.
 const ROUNDING: f64 = 1e-9;
@@ -19,6 +19,8 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) struct Scene {
     pub(crate) path: Path,
     poses: Vec<Pose>,
+    /// Points inside, on average.
+    pub(crate) colliding: f64,
     truths: Vec<(Pose, Answer)>,
 }
 
@@ -27,8 +29,10 @@ impl Scene {
         let poses: Vec<Pose> = (0..count).map(|k| path.pose(k, count)).collect();
         let mut brute = Scalar::new(piece);
         let some = poses.iter().step_by((poses.len() / checks(piece.cloud.len())).max(1));
-        let truths = some.map(|pose| (*pose, brute.query(pose))).collect();
-        Scene { path, poses, truths }
+        let truths: Vec<_> = some.map(|pose| (*pose, brute.query(pose))).collect();
+        let colliding: usize = truths.iter().map(|(_, truth)| truth.colliding).sum();
+        let colliding = colliding as f64 / truths.len() as f64;
+        Scene { path, poses, colliding, truths }
     }
 }
 
@@ -42,6 +46,8 @@ pub(crate) struct Measured {
     pub(crate) config: Config,
     /// Of nodes, a point.
     pub(crate) bytes: f64,
+    /// Points of a leaf, on average.
+    pub(crate) fill: f64,
     /// To build it, ms.
     pub(crate) build: f64,
     pub(crate) scenes: Vec<Found>,
@@ -50,8 +56,8 @@ pub(crate) struct Measured {
 /// One tree on one scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Found {
-    /// CPU time of a query, and of its search alone, ns.
-    pub(crate) time: f64,
+    /// CPU time of a query, if it was taken, and of its search alone, ns.
+    pub(crate) time: Option<f64>,
     pub(crate) search: f64,
     /// What a query does on average.
     pub(crate) tested: f64,
@@ -59,17 +65,24 @@ pub(crate) struct Found {
     pub(crate) points: f64,
 }
 
-/// Builds trees, checks them, and times them against one another.
-pub(crate) fn trees(configs: &[Config], piece: &Workpiece, scenes: &[Scene]) -> Vec<Measured> {
+/// Builds trees, checks them, and times them against one another: their search, and if `whole` is
+/// wanted the query too.
+pub(crate) fn trees(
+    configs: &[Config],
+    piece: &Workpiece,
+    scenes: &[Scene],
+    whole: bool,
+) -> Vec<Measured> {
     let mut trees = Vec::new();
     let mut all = Vec::new();
     for &config in configs {
         let start = ThreadTime::now();
         let tree = config.build(piece);
         let build = start.elapsed().as_secs_f64() * 1e3;
-        let bytes = tree.bytes() as f64 / piece.cloud.len() as f64;
+        let count = piece.cloud.len() as f64;
+        let (bytes, fill) = (tree.bytes() as f64 / count, count / tree.leaves() as f64);
         trees.push(tree);
-        all.push(Measured { config, bytes, build, scenes: Vec::new() });
+        all.push(Measured { config, bytes, fill, build, scenes: Vec::new() });
     }
     for scene in scenes {
         let work: Vec<[f64; 3]> = trees.iter_mut().map(|tree| check(&mut **tree, scene)).collect();
@@ -78,9 +91,9 @@ pub(crate) fn trees(configs: &[Config], piece: &Workpiece, scenes: &[Scene]) -> 
             let mut racing: Vec<_> = trees.iter_mut().map(|tree| lent(&mut **tree)).collect();
             times(&mut racing, scene)
         };
-        let (whole, search) = (race(false), race(true));
+        let (whole, search) = (whole.then(|| race(false)), race(true));
         for (at, (measured, [tested, leaves, points])) in all.iter_mut().zip(work).enumerate() {
-            let (time, search) = (whole[at], search[at]);
+            let (time, search) = (whole.as_ref().map(|times| times[at]), search[at]);
             measured.scenes.push(Found { time, search, tested, leaves, points });
         }
     }

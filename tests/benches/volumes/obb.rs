@@ -23,7 +23,7 @@ impl Volume<12> for Obb {
     }
 
     #[inline(always)]
-    fn place<const W: usize>(frame: &Frame, volumes: &[[f32; W]; 12], lane: usize) -> Place {
+    fn may_touch<const W: usize>(frame: &Frame, volumes: &[[f32; W]; 12], lane: usize) -> bool {
         let vector =
             |from: usize| [volumes[from][lane], volumes[from + 1][lane], volumes[from + 2][lane]];
         let (centre, axes) = (vector(0), [vector(3), vector(6), vector(9)]);
@@ -37,6 +37,7 @@ impl Volume<12> for Obb {
             [along(rows[0]) + origin[0], along(rows[1]) + origin[1], along(rows[2]) + origin[2]],
             [reach(rows[0]), reach(rows[1]), reach(rows[2])],
         )
+        .may_touch()
     }
 }
 

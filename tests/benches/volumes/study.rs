@@ -43,9 +43,15 @@ fn branchings() -> Choices {
     choices(&BRANCHINGS, |branching| format!("{branching} children"), Config::of_branching)
 }
 
+fn axes() -> Choices {
+    choices(&AXES, |axis| BASE.of_axis(axis).axis().into(), Config::of_axis)
+}
+
+fn points() -> Choices {
+    choices(&POINTS, |point| BASE.of_point(point).point().into(), Config::of_point)
+}
+
 pub(crate) fn studies() -> Vec<Study> {
-    let axes = choices(&AXES, |axis| BASE.of_axis(axis).axis().into(), Config::of_axis);
-    let points = choices(&POINTS, |point| BASE.of_point(point).point().into(), Config::of_point);
     let study = |name, title, choices: Choices| {
         let rows = choices.into_iter().map(|(word, change)| (word, change(BASE))).collect();
         Study { name, title, rows }
@@ -54,8 +60,8 @@ pub(crate) fn studies() -> Vec<Study> {
         study("volume", "Bounding volume", kinds()),
         study("leaf", "Points of a leaf", leaves()),
         study("branching", "Branching", branchings()),
-        study("axis", "Axis of a split", axes),
-        study("point", "Point of a split", points),
+        study("axis", "Axis of a split", axes()),
+        study("point", "Point of a split", points()),
     ]
 }
 
@@ -72,5 +78,7 @@ pub(crate) fn crosses() -> Vec<Cross> {
         cross("volume-branching", "Volume and branching", kinds(), branchings()),
         cross("leaf-branching", "Leaf and branching", leaves(), branchings()),
         cross("volume-leaf", "Volume and leaf", kinds(), leaves()),
+        cross("axis-leaf", "Axis of a split and leaf", axes(), leaves()),
+        cross("point-leaf", "Point of a split and leaf", points(), leaves()),
     ]
 }

@@ -16,10 +16,11 @@ struct Row<'a> {
     point: &'static str,
     points: usize,
     bytes_per_point: f64,
+    points_per_leaf: f64,
     build_ms: f64,
     scene: &'static str,
-    /// CPU time of a query.
-    ns: f64,
+    /// CPU time of a query; of two things varied only the search is timed.
+    ns: Option<f64>,
     /// The search alone, and by that of the base in the same race.
     search_ns: f64,
     search_ratio: Option<f64>,
@@ -42,6 +43,7 @@ pub(crate) fn json(study: &str, points: usize, scenes: &[Scene], all: &[Measured
                 point: one.config.point(),
                 points,
                 bytes_per_point: one.bytes,
+                points_per_leaf: one.fill,
                 build_ms: one.build,
                 scene: scene.path.name(),
                 ns: found.time,
@@ -74,14 +76,18 @@ of ({level}); points are carried in `f64`, eight in a loop, and those within the
 
 Every volume is put to the same test in the tool's frame: from where to where it reaches along the axis, and a distance that it
 keeps from the axis, against the largest radius of the tool over that stretch. A sphere says both by its centre; a box by how
-far it reaches along three axes of the tool; a k-DOP likewise, by the better of two upper bounds of that. A 6-DOP is the AABB.
+far it reaches along three axes of the tool; a k-DOP likewise, by an upper bound from three of its directions. A 6-DOP is the
+AABB. Besides, spheres are held to the distance from the tool, which is closer and which for other volumes would take long.
 What is varied is one thing, all else as in the base: {volume}, at most {leaf} points a leaf, {branching} children, {axis}, {point}.
 All volumes bound the same sets of points, which are divided without regard to the volume.
 
 Every row of a table is timed against the others in turns of 25 poses, the thread {pinned}, no pose asked twice in a round.
-**ns** is CPU time of a query, the median of five rounds. **volumes**, **leaves** and **points** are what a query tests on
-average. **bytes** are those of the nodes a point (the point itself, its normal and weight are 80 more); **build** is the time to
-build the tree, ms. Before it is timed every tree is held to brute force: the same points, the same force and torque.
+**ns** is CPU time of a query, the median of three rounds; **search** is that of a query which stops at the points within the
+tool's outline, since what these feel takes equally long with every tree. **volumes**, **leaves** and **points** are what a query
+tests on average. **bytes** are those of the nodes a point (they begin at cache lines; the point itself, its normal and weight
+are 80 more), **a leaf** is how many points one has on average, **build** is the CPU time to build the tree, ms. The base stands
+in every table: how far its times differ there is what the machine does. Before it is timed every tree is held to brute force at
+hundreds of poses of each scene: the same number of points, the same force and torque.
 ",
         volume = kind.name(),
         leaf = rule.leaf,
@@ -95,16 +101,18 @@ pub(crate) fn study(study: &Study, scenes: &[Scene], all: &[Measured]) {
     let names: Vec<&str> = scenes.iter().map(|scene| scene.path.name()).collect();
     let heads =
         names.iter().map(|name| format!("{name} ns | search | volumes | leaves | points |"));
-    println!("| | bytes | build | {}", heads.collect::<Vec<_>>().join(" "));
-    println!("|---|--:|--:|{}", "--:|".repeat(5 * names.len()));
+    println!("| | bytes | a leaf | build | {}", heads.collect::<Vec<_>>().join(" "));
+    println!("|---|--:|--:|--:|{}", "--:|".repeat(5 * names.len()));
     for ((word, _), one) in study.rows.iter().zip(all) {
         let cells = one.scenes.iter().map(|found| {
             let [tested, leaves, points] = [found.tested, found.leaves, found.points].map(number);
-            let (time, search) = (found.time, found.search);
-            format!("{time:.0} | {search:.0} | {tested} | {leaves} | {points} |")
+            let time = found.time.map_or("-".into(), |time| format!("{time:.0}"));
+            let search = found.search;
+            format!("{time} | {search:.0} | {tested} | {leaves} | {points} |")
         });
         let cells = cells.collect::<Vec<_>>().join(" ");
-        println!("| {word} | {} | {} | {cells}", number(one.bytes), number(one.build));
+        let [bytes, fill, build] = [one.bytes, one.fill, one.build].map(number);
+        println!("| {word} | {bytes} | {fill} | {build} | {cells}");
     }
     println!();
     for (at, name) in names.iter().enumerate() {
@@ -149,15 +157,17 @@ pub(crate) fn cross(cross: &Cross, ratios: &[Vec<f64>]) {
     println!();
 }
 
-/// Other methods in a race with the base.
+/// Other methods in a race with the base, and how many points are inside.
 pub(crate) fn beside(scenes: &[Scene], rows: &[(&str, Vec<f64>)]) {
     let names: Vec<&str> = scenes.iter().map(|scene| scene.path.name()).collect();
-    println!("| ns | {} |", names.join(" | "));
+    println!("| | {} |", names.join(" | "));
     println!("|---|{}", "--:|".repeat(names.len()));
     for (name, times) in rows {
         let times: Vec<String> = times.iter().map(|time| format!("{time:.0}")).collect();
-        println!("| {name} | {} |", times.join(" | "));
+        println!("| {name}, ns | {} |", times.join(" | "));
     }
+    let colliding = scenes.iter().map(|scene| number(scene.colliding));
+    println!("| points inside | {} |", colliding.collect::<Vec<_>>().join(" | "));
     println!();
 }
 

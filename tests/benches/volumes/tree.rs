@@ -15,6 +15,7 @@ use fearless_simd::{Level, dispatch};
 use std::marker::PhantomData;
 use touchoff::Pose;
 
+#[repr(align(64))]
 struct Node<const F: usize, const W: usize> {
     volumes: [[f32; W]; F],
     below: [u32; W],
@@ -37,6 +38,8 @@ pub(crate) struct Tree<V, const F: usize, const W: usize> {
     middle: [f64; 3],
     nodes: Vec<Node<F, W>>,
     leaves: Leaves,
+    /// How many leaves there are.
+    count: usize,
     /// What the last query has reached.
     queue: Vec<u32>,
     reached: usize,
@@ -58,7 +61,16 @@ impl<V: Volume<F>, const F: usize, const W: usize> Tree<V, F, W> {
         let queue = vec![0; nodes.len() + root.leaves + W + 1];
         let leaves = Leaves::new(&piece.cloud, &items);
         let level = Level::new();
-        Tree { level, middle, nodes, leaves, queue, reached: 0, kind: PhantomData }
+        Tree {
+            level,
+            middle,
+            nodes,
+            leaves,
+            count: root.leaves,
+            queue,
+            reached: 0,
+            kind: PhantomData,
+        }
     }
 
     /// Finds the points within the outline, and adds what they feel if that is wanted.
@@ -100,6 +112,21 @@ fn written<V: Volume<F>, const F: usize, const W: usize>(
     nodes.iter().map(node).collect()
 }
 
+/// Appends the children that the tool may reach; how many.
+#[inline(always)]
+fn keep<const W: usize>(hits: &[u32; W], below: &[u32; W], room: &mut [u32]) -> usize {
+    let mut kept = 0;
+    for lane in 0..W {
+        // Of two children a predicted branch was the faster: the next node need not wait for the
+        // test. Of more, each is written and those that hit are kept, with no branch to mispredict.
+        if W > 2 || hits[lane] != 0 {
+            room[kept % W] = below[lane];
+            kept += hits[lane] as usize;
+        }
+    }
+    kept
+}
+
 /// Walks the tree; how much of the queue was used.
 #[inline(always)]
 fn walk<V: Volume<F>, const F: usize, const W: usize>(
@@ -120,16 +147,9 @@ fn walk<V: Volume<F>, const F: usize, const W: usize>(
         let node = &nodes[below as usize];
         let mut hits = [0u32; W];
         for lane in 0..W {
-            hits[lane] = u32::from(V::place(seen, &node.volumes, lane).may_touch());
+            hits[lane] = u32::from(V::may_touch(seen, &node.volumes, lane));
         }
-        // Write every child, keep those that hit: no branch to mispredict.
-        let room = &mut queue[end..end + W];
-        let mut kept = 0;
-        for lane in 0..W {
-            room[kept % W] = node.below[lane];
-            kept += hits[lane] as usize;
-        }
-        end += kept;
+        end += keep(&hits, &node.below, &mut queue[end..end + W]);
     }
     end
 }
@@ -163,6 +183,9 @@ pub(crate) trait Counted: Contender {
 
     /// Bytes of its nodes.
     fn bytes(&self) -> usize;
+
+    /// How many leaves it has.
+    fn leaves(&self) -> usize;
 }
 
 impl<V: Volume<F>, const F: usize, const W: usize> Counted for Tree<V, F, W> {
@@ -186,5 +209,9 @@ impl<V: Volume<F>, const F: usize, const W: usize> Counted for Tree<V, F, W> {
 
     fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..])
+    }
+
+    fn leaves(&self) -> usize {
+        self.count
     }
 }

@@ -18,8 +18,8 @@ pub(crate) trait Volume<const F: usize> {
 
     fn seen(frame: &Frame) -> Self::Seen;
 
-    /// Where one of `W` volumes side by side lies.
-    fn place<const W: usize>(seen: &Self::Seen, volumes: &[[f32; W]; F], lane: usize) -> Place;
+    /// Whether the tool may reach one of `W` volumes side by side; not if it is NaN.
+    fn may_touch<const W: usize>(seen: &Self::Seen, volumes: &[[f32; W]; F], lane: usize) -> bool;
 }
 
 /// The map to the tool's frame, in `f32`.
