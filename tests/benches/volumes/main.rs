@@ -89,7 +89,9 @@ fn main() {
     let options = Options::parse();
     let pinned = pin();
     if !options.json {
-        table::head(pinned, &format!("{:?}", Level::new()));
+        // Its name without what it holds.
+        let level = format!("{:?}", Level::new());
+        table::head(pinned, level.split('(').next().unwrap_or(&level));
     }
     for &points in &options.points {
         let mesh = tube();
@@ -160,7 +162,7 @@ impl Bench<'_> {
             let ratios = self.ratios(cross);
             if !self.options.json {
                 println!(
-                    "The search by that of the base in the same race (a row is one), the geometric mean over scenes.\n"
+                    "Time of the search by that of the base in the same race (a row is one), the geometric mean over scenes.\n"
                 );
                 table::cross(cross, &ratios);
             }

@@ -83,11 +83,13 @@ All volumes bound the same sets of points, which are divided without regard to t
 
 Every row of a table is timed against the others in turns of 25 poses, the thread {pinned}, no pose asked twice in a round.
 **ns** is CPU time of a query, the median of three rounds; **search** is that of a query which stops at the points within the
-tool's outline, since what these feel takes equally long with every tree. **volumes**, **leaves** and **points** are what a query
-tests on average. **bytes** are those of the nodes a point (they begin at cache lines; the point itself, its normal and weight
-are 80 more), **a leaf** is how many points one has on average, **build** is the CPU time to build the tree, ms. The base stands
-in every table: how far its times differ there is what the machine does. Before it is timed every tree is held to brute force at
-hundreds of poses of each scene: the same number of points, the same force and torque.
+tool's outline and does not ask what they feel. **volumes**, **leaves** and **points** are what a query tests on average.
+**bytes** are those of the nodes a point (they begin at cache lines; the point itself, its normal and weight are 80 more), **a
+leaf** is how many points one has on average, **build** is the CPU time to build the tree, ms. The base stands in every table: how
+far its times differ there is what the machine does, and which trees share its caches, so times compare within a table only, and
+what is within a tenth of the fastest is named with it. Of the larger cloud one thing is varied at a time, on fewer poses. Before
+it is timed every tree is held to brute force at hundreds of poses of each scene: the same number of points, the same force and
+torque.
 ",
         volume = kind.name(),
         leaf = rule.leaf,
@@ -115,23 +117,33 @@ pub(crate) fn study(study: &Study, scenes: &[Scene], all: &[Measured]) {
         println!("| {word} | {bytes} | {fill} | {build} | {cells}");
     }
     println!();
+    let words = || study.rows.iter().map(|(word, _)| &word[..]);
     for (at, name) in names.iter().enumerate() {
-        let times =
-            all.iter().zip(&study.rows).map(|(one, row)| (one.scenes[at].search, &row.0[..]));
-        println!("{}", extremes(name, times));
+        let search = all.iter().map(|one| one.scenes[at].search);
+        let whole = all.iter().filter_map(|one| one.scenes[at].time);
+        let (search, whole) = (extremes(search.zip(words())), extremes(whole.zip(words())));
+        println!("- {name}: search {search}; the whole query {whole}.");
     }
     println!();
 }
 
-/// The fastest and the slowest of some, in words.
-fn extremes<'a>(name: &str, times: impl Iterator<Item = (f64, &'a str)> + Clone) -> String {
-    let by_time = |a: &(f64, &str), b: &(f64, &str)| a.0.total_cmp(&b.0);
-    let ends = (times.clone().min_by(by_time), times.max_by(by_time));
-    let (Some((fast, first)), Some((slow, last))) = ends else { return String::new() };
-    format!(
-        "- {name}: the search is fastest by {first}; by {last} it takes {:.2} times as long.",
-        slow / fast
-    )
+/// Times that differ by no more are taken for alike: those of one tree differ so between tables.
+const ALIKE: f64 = 1.1;
+/// How many are named that are like the fastest.
+const NAMED: usize = 3;
+
+/// The fastest of some with those like it, and the slowest, in words.
+fn extremes<'a>(times: impl Iterator<Item = (f64, &'a str)>) -> String {
+    let mut times: Vec<(f64, &str)> = times.collect();
+    times.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(fast, first), others @ .., (slow, last)] = &times[..] else { return String::new() };
+    let like: Vec<_> = others.iter().filter(|(time, _)| *time <= ALIKE * fast).collect();
+    let named: String = like.iter().take(NAMED).map(|(_, word)| format!(" or *{word}*")).collect();
+    let more = match like.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" or {more} more"),
+    };
+    format!("fastest *{first}*{named}{more}, slowest *{last}*, {:.2} times as long", slow / fast)
 }
 
 /// Two things varied: the search by that of the base in the same race, the geometric mean over scenes.
@@ -147,12 +159,10 @@ pub(crate) fn cross(cross: &Cross, ratios: &[Vec<f64>]) {
         }
     }
     let cells = cells.iter().map(|(ratio, word)| (*ratio, &word[..]));
-    println!("\n{}", extremes("all scenes", cells));
+    println!("\n- Of all: {}.", extremes(cells));
     for (at, column) in cross.columns.iter().enumerate() {
-        let best = cross.rows.iter().zip(ratios).min_by(|a, b| a.1[at].total_cmp(&b.1[at]));
-        if let Some(((word, _), row)) = best {
-            println!("- {column}: fastest {word}, {:.2}.", row[at]);
-        }
+        let cells = cross.rows.iter().zip(ratios).map(|((word, _), row)| (row[at], &word[..]));
+        println!("- {column}: {}.", extremes(cells));
     }
     println!();
 }

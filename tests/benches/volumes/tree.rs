@@ -146,8 +146,8 @@ fn walk<V: Volume<F>, const F: usize, const W: usize>(
         }
         let node = &nodes[below as usize];
         let mut hits = [0u32; W];
-        for lane in 0..W {
-            hits[lane] = u32::from(V::may_touch(seen, &node.volumes, lane));
+        for (lane, hit) in hits.iter_mut().enumerate() {
+            *hit = u32::from(V::may_touch(seen, &node.volumes, lane));
         }
         end += keep(&hits, &node.below, &mut queue[end..end + W]);
     }
