@@ -36,7 +36,7 @@ pub(crate) struct Passed {
     pub(crate) colliding_avg: f64,
     /// The fastest pass of each block, summed: the machine undisturbed.
     pub(crate) ns_best: f64,
-    /// The pass in the middle.
+    /// The pass in the middle, with what disturbed it.
     pub(crate) ns_median: f64,
 }
 

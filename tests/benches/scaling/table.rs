@@ -17,7 +17,7 @@ cargo bench -p touchoff-tests --features peers --bench scaling
 
 (`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, one thread, {pinned}. Times are of one query, ns. **best**: the poses
 in blocks of 25, five passes, the fastest pass of each block, summed: the machine undisturbed. **median**: the pass in the
-middle. **CPU**, **p50** and **p99** are timed as `peers` are, every pose asked once; a single query is timed some 20 ns too long.
+middle, by the clock on the wall: where it is far above, other programs had the core. **CPU**, **p50** and **p99** are timed as `peers` are, every pose asked once; a single query is timed some 20 ns too long.
 "
     );
     queries(&some(rows, |row| match row {

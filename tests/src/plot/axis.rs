@@ -4,8 +4,9 @@
 const LINEAR: f64 = 5.0;
 /// How many decades of a logarithmic axis have a label at most.
 const DECADES: f64 = 9.0;
-/// As many decades have labels between the powers of ten, as many have lines there.
-const LABELLED: f64 = 2.3;
+/// So many decades have labels between the powers of ten, if they are numbers or powers.
+const LABELLED: [f64; 2] = [3.05, 1.7];
+/// So many have lines there.
 const RULED: f64 = 6.0;
 /// Beyond it differences are not finite any more.
 const HUGE: f64 = 1e300;
@@ -130,7 +131,12 @@ fn linear(low: f64, high: f64) -> Span {
 }
 
 fn log(low: f64, high: f64) -> Span {
-    let [low, high] = [Round::below(low).value(), Round::above(high).value()];
+    let [mut low, mut high] = [Round::below(low).value(), Round::above(high).value()];
+    // Of a long axis part of a decade is no more than an unlabelled end.
+    if (high / low).log10() > RULED {
+        low = 10f64.powi((low.log10() + SLACK).floor() as i32);
+        high = 10f64.powi((high.log10() - SLACK).ceil() as i32);
+    }
     if high > low * (1.0 + SLACK) {
         return Span { low, high, step: None };
     }
@@ -172,6 +178,7 @@ impl Span {
         let decades = (self.high / self.low).log10();
         let every = (decades / DECADES).ceil().max(1.0) as i32;
         let plain = self.low > 0.000_99 && self.high < 100_001.0;
+        let between = decades <= LABELLED[usize::from(!plain)];
         let mut ticks = Vec::new();
         for power in self.low.log10().floor() as i32..=self.high.log10().ceil() as i32 {
             for digit in 1..=if decades <= RULED { 9 } else { 1 } {
@@ -180,7 +187,7 @@ impl Span {
                     value >= self.low * (1.0 - SLACK) && value <= self.high * (1.0 + SLACK);
                 let labelled = match digit {
                     1 => power.rem_euclid(every) == 0,
-                    _ => decades <= LABELLED && matches!(digit, 2 | 5),
+                    _ => between && matches!(digit, 2 | 5),
                 };
                 let label = labelled.then(|| log_label(digit, power, plain));
                 ticks.extend(inside.then_some(Tick { value, label }));
@@ -264,10 +271,10 @@ mod tests {
     #[test]
     fn log_ticks_are_powers_and_what_lies_between_where_there_is_room() {
         assert_eq!(of_log(&[0.28, 8.0]), ["0.2", "0.5", "1", "2", "5", "10"]);
-        assert_eq!(of_log(&[0.28, 800.0]), ["1", "10", "100", "1000"]);
+        assert_eq!(of_log(&[0.28, 8000.0]), ["1", "10", "100", "1000", "10000"]);
         assert_eq!(of_log(&[1e3, 1e7]), ["10³", "10⁴", "10⁵", "10⁶", "10⁷"]);
         assert_eq!(of_log(&[3e5, 2e6]), ["2·10⁵", "5·10⁵", "10⁶", "2·10⁶"]);
-        assert_eq!(of_log(&[1e-16, 1.0]).first().map(String::as_str), Some("10⁻¹⁶"));
+        assert_eq!(of_log(&[3e-16, 0.2]).first().map(String::as_str), Some("10⁻¹⁶"));
         assert!(of_log(&[1e-300, 1e300]).len() <= 12);
     }
 

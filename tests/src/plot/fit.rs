@@ -29,7 +29,7 @@ pub fn fit(points: &[[f64; 2]]) -> Option<Fit> {
     let across: f64 = points.iter().map(|p| weight(p) * (p[0] - x) * (p[0] - x)).sum();
     let slope = along / across;
     let positive = points.iter().all(|p| p[1] > 0.0);
-    (positive && slope.is_finite()).then(|| Fit { at_zero: y - slope * x, slope })
+    (positive && slope.is_finite()).then_some(Fit { at_zero: y - slope * x, slope })
 }
 
 #[cfg(test)]

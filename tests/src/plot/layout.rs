@@ -6,9 +6,9 @@ use super::series::{Form, Mark, Series};
 use super::svg::{LETTER, Look, Sheet, Side, width};
 
 /// The sheet, pixels.
-const SIZE: [f64; 2] = [840.0, 460.0];
+const SIZE: [f64; 2] = [840.0, 470.0];
 /// Above and below the frame: the title, and labels and a title of the axis.
-const TOP: f64 = 44.0;
+const TOP: f64 = 54.0;
 const BOTTOM: f64 = 62.0;
 /// Between the sheet's edge and what is nearest to it.
 const EDGE: f64 = 16.0;
@@ -110,10 +110,10 @@ fn grid(sheet: &mut Sheet, plot: &Plot, frame: &Frame) {
     }
     sheet.rule([left, bottom], [right, bottom], INK, false);
     sheet.rule([left, bottom], [left, top], INK, false);
-    sheet.title([EDGE, TOP - 18.0], &plot.title);
+    sheet.title([EDGE, TOP - 26.0], INK, &plot.title);
     let middle = [(left + right) / 2.0, bottom + 40.0];
     sheet.text(middle, Side::Middle, INK, &plot.axes[0].title);
-    sheet.upward([EDGE + 6.0, (bottom + top) / 2.0], &plot.axes[1].title);
+    sheet.upward([EDGE + 6.0, (bottom + top) / 2.0], INK, &plot.axes[1].title);
 }
 
 fn label(sheet: &mut Sheet, frame: &Frame, axis: usize, tick: &Tick) {
@@ -125,26 +125,27 @@ fn label(sheet: &mut Sheet, frame: &Frame, axis: usize, tick: &Tick) {
     }
 }
 
-/// A line of reference; its word stands above its right end, or beside its upper one.
+/// A line of reference; its word stands above its left end, where what grows is still below, or
+/// beside its upper one.
 fn refer(sheet: &mut Sheet, frame: &Frame, mark: &Mark) {
     let [from, to] = frame.across(mark.axis, mark.value);
     sheet.rule(from, to, NOTE, true);
     match mark.axis {
         0 => sheet.text([to[0] + 5.0, to[1] + LETTER], Side::Right, NOTE, &mark.name),
-        _ => sheet.text([to[0] - 5.0, to[1] - 5.0], Side::Left, NOTE, &mark.name),
+        _ => sheet.text([from[0] + 5.0, from[1] - 5.0], Side::Right, NOTE, &mark.name),
     }
 }
 
 fn series(sheet: &mut Sheet, frame: &Frame, shown: &Shown<'_>) {
-    let places: Vec<[f64; 2]> = shown.points.iter().map(|point| frame.place(*point)).collect();
+    let places = || shown.points.iter().map(|point| frame.place(*point)).collect::<Vec<_>>();
     match shown.series.form {
-        Form::Line | Form::Dashes => sheet.line(&places, shown.look),
-        Form::Steps => sheet.line(&steps(&places), shown.look),
-        Form::Bars => bars(sheet, frame, &places, shown.look),
+        Form::Line | Form::Dashes => sheet.line(&places(), shown.look),
+        Form::Steps => sheet.line(&steps(&places()), shown.look),
+        Form::Bars => bars(sheet, frame, shown),
         Form::Points => {}
     }
     if shown.series.form.has_markers() {
-        places.iter().for_each(|place| sheet.marker(*place, shown.look));
+        places().into_iter().for_each(|place| sheet.marker(place, shown.look));
     }
 }
 
@@ -154,13 +155,14 @@ fn steps(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     corners.chain(places.last().copied()).collect()
 }
 
-fn bars(sheet: &mut Sheet, frame: &Frame, places: &[[f64; 2]], look: Look) {
+fn bars(sheet: &mut Sheet, frame: &Frame, shown: &Shown<'_>) {
     let span = &frame.spans[1];
     // Where the axis has no 0 bars stand on its end.
-    let foot = frame.along(1, 0f64.clamp(span.low, span.high));
-    for pair in places.windows(2) {
-        let [low, high] = [foot.max(pair[0][1]), foot.min(pair[0][1])];
-        sheet.rectangle([[pair[0][0], low], [pair[1][0], high]], look);
+    let foot = 0f64.clamp(span.low, span.high);
+    for pair in shown.points.windows(2).filter(|pair| pair[0][1] != 0.0) {
+        let [[from, height], [to, _]] = [pair[0], pair[1]];
+        let corners = [[from, foot.min(height)], [to, foot.max(height)]];
+        sheet.rectangle(corners.map(|corner| frame.place(corner)), shown.look);
     }
 }
 

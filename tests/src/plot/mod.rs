@@ -47,6 +47,11 @@ impl Plot {
         self
     }
 
+    /// Whether there is no point in it.
+    pub fn is_empty(&self) -> bool {
+        self.series.iter().all(|series| series.points.is_empty())
+    }
+
     /// How many points the axes cannot show: those that are not finite, and on a logarithmic axis
     /// those that are not above 0.
     pub fn left_out(&self) -> usize {
@@ -73,7 +78,7 @@ mod tests {
             .with(Series::line("a", vec![[1e3, 0.2], [1e6, 9.0]]))
             .with(Series::points("b", vec![[2e3, 3e-16]]))
             .with(Series::dashes("c", vec![[1e3, 1.0], [1e6, 1.0]]))
-            .with(Series::steps("d", vec![[1e3, 5.0], [1e5, 1.0]]))
+            .with(Series::front("d", &[[1e3, 5.0], [1e5, 1.0], [1e5, 9.0]]))
             .with(Series::bars("e", vec![[1e3, 5.0], [1e5, 1.0], [1e6, 0.0]]))
             .mark(Mark::across(1e3, "1 ms"))
             .mark(Mark::upright(2e4, "20,000"));
@@ -99,12 +104,29 @@ mod tests {
     fn nothing_and_one_point_are_plots_too() {
         for plot in [log_log(), Plot::new("", Axis::linear(""), Axis::linear(""))] {
             for points in [vec![], vec![[0.0, 0.0]], vec![[5.0, 5.0]]] {
-                for series in [Series::line, Series::steps, Series::bars, Series::points] {
+                for series in [Series::line, Series::dashes, Series::bars, Series::points] {
                     let svg = plot.clone().with(series("a".to_owned(), points.clone())).svg();
                     assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_bar_without_height_is_no_bar_and_does_not_make_the_one_before_it_wider() {
+        let counts = vec![[0.0, 3.0], [10.0, 0.0], [20.0, 5.0], [30.0, 0.0]];
+        let widths = |y: Axis| -> Vec<String> {
+            let plot = Plot::new("", Axis::linear(""), y).with(Series::bars("", counts.clone()));
+            assert_eq!(plot.left_out(), 0);
+            let svg = plot.svg();
+            let bars = svg.lines().filter(|line| line.contains("fill-opacity"));
+            let width =
+                |bar: &str| bar.split("width=\"").nth(1)?.split('"').next().map(str::to_owned);
+            bars.filter_map(width).collect()
+        };
+        let [linear, log] = [widths(Axis::linear("")), widths(Axis::log(""))];
+        assert!(linear.len() == 2 && linear[0] == linear[1], "{linear:?}");
+        assert!(log.len() == 2 && log[0] == log[1], "{log:?}");
     }
 
     #[test]

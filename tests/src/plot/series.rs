@@ -1,6 +1,7 @@
 //! What is drawn between the axes.
 
 use super::axis::Axis;
+use super::front::front;
 
 /// Points that belong together, and how they are drawn.
 #[derive(Clone, Debug)]
@@ -44,13 +45,19 @@ impl Series {
         Series::new(name.into(), points, Form::Points)
     }
 
-    /// Each point's height as far as the next point: a [front](super::front) that nothing beats.
-    pub fn steps(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
-        Series::new(name.into(), points, Form::Steps)
+    /// The [front] of some points as steps, up to the worst of them: what lies beyond is beaten.
+    pub fn front(name: impl Into<String>, points: &[[f64; 2]]) -> Series {
+        let worst = |axis: usize| points.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
+        let mut corners = front(points);
+        if let [Some(first), Some(last)] = [corners.first().copied(), corners.last().copied()] {
+            corners.insert(0, [first[0], worst(1)]);
+            corners.push([worst(0), last[1]]);
+        }
+        Series::new(name.into(), corners, Form::Steps)
     }
 
     /// A histogram: bars from each point to the next, as high as the first of the two. The last
-    /// point is only where the last bar ends.
+    /// point is only where the last bar ends. A height of 0 is no bar, on every axis.
     pub fn bars(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
         Series::new(name.into(), points, Form::Bars)
     }
@@ -74,10 +81,13 @@ impl Series {
         Series { name, points, form, look: None, bold: false }
     }
 
-    /// Those of its points that have a place on both axes.
-    pub(super) fn shown(&self, axes: &[Axis; 2]) -> Vec<[f64; 2]> {
-        let all = self.points.iter().copied();
-        all.filter(|point| axes.iter().zip(point).all(|(axis, value)| axis.shows(*value))).collect()
+    /// Those of its points that have a place on both axes. Bars without a height need none upward:
+    /// they are where the bar before them ends.
+    pub(super) fn shown(&self, [x, y]: &[Axis; 2]) -> Vec<[f64; 2]> {
+        let no_bar = |point: &[f64; 2]| self.form == Form::Bars && point[1] == 0.0;
+        let has_place =
+            |point: &[f64; 2]| x.shows(point[0]) && (y.shows(point[1]) || no_bar(point));
+        self.points.iter().copied().filter(has_place).collect()
     }
 
     pub(super) fn left_out(&self, axes: &[Axis; 2]) -> usize {

@@ -113,16 +113,16 @@ impl Sheet {
     }
 
     /// Text that runs upward.
-    pub(super) fn upward(&mut self, [x, y]: [f64; 2], text: &str) {
+    pub(super) fn upward(&mut self, [x, y]: [f64; 2], colour: &str, text: &str) {
         let [x, y] = [x, y].map(number);
         let turn = format!("transform=\"translate({x} {y}) rotate(-90)\" {}", anchor(Side::Middle));
-        self.0 += &format!("<text {turn}>{}</text>\n", escape(text));
+        self.0 += &format!("<text {turn} fill=\"{colour}\">{}</text>\n", escape(text));
     }
 
-    pub(super) fn title(&mut self, [x, y]: [f64; 2], text: &str) {
-        let at = format!("x=\"{}\" y=\"{}\"", number(x), number(y));
-        self.0 +=
-            &format!("<text {at} font-size=\"15\" font-weight=\"bold\">{}</text>\n", escape(text));
+    pub(super) fn title(&mut self, [x, y]: [f64; 2], colour: &str, text: &str) {
+        let at = format!("x=\"{}\" y=\"{}\" fill=\"{colour}\"", number(x), number(y));
+        let letters = "font-size=\"15\" font-weight=\"bold\"";
+        self.0 += &format!("<text {at} {letters}>{}</text>\n", escape(text));
     }
 }
 
