@@ -41,7 +41,7 @@ fn scalar((tool, points): (&'static dyn Tool, Points)) -> Felt {
 
 fn evaluate(tool: &dyn Tool, points: &Points, level: Level) -> Felt {
     let mut felt = Felt::default();
-    tool.evaluate(level, Ask::Direction, black_box(points), 1.0, &mut felt);
+    tool.evaluate(level, Ask::DIRECTION, black_box(points), 1.0, &mut felt);
     felt
 }
 

@@ -17,7 +17,7 @@ use touchoff_tests::measure::kernels::{TOOLS, near, part, poses, tool};
 const POINTS: usize = 1 << 16;
 
 fn evaluate(criterion: &mut Criterion) {
-    for (ask, word) in [(Ask::Inside, "inside"), (Ask::Direction, "direction")] {
+    for (ask, word) in [(Ask::INSIDE, "inside"), (Ask::DIRECTION, "direction")] {
         let mut group = criterion.benchmark_group(word);
         group.throughput(Throughput::Elements(POINTS as u64));
         for name in TOOLS {

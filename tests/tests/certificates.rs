@@ -213,7 +213,7 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
             .collect();
         points.iter().for_each(|p| list.push(*p));
         let mut felt = Felt::default();
-        compiled.evaluate(Level::new(), Ask::Everything, &list, 1.0, &mut felt);
+        compiled.evaluate(Level::new(), Ask::EVERYTHING, &list, 1.0, &mut felt);
         for (k, p) in points.iter().enumerate() {
             if felt.inside[k / 8] >> (k % 8) & 1 == 0 {
                 continue;

@@ -45,7 +45,7 @@ touchoff::tool! {
 fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Felt)> {
     let (mut points, mut felt) = (Points::default(), Felt::default());
     points.push(point);
-    tool.evaluate(Level::new(), Ask::Everything, &points, length, &mut felt);
+    tool.evaluate(Level::new(), Ask::EVERYTHING, &points, length, &mut felt);
     (felt.inside[0] == 1).then(|| (felt.region[0] as usize, felt))
 }
 

@@ -17,7 +17,7 @@ pub use wrench::{Deepest, Wrench};
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Ask, Felt, Tool};
-use crate::tree::{Candidates, View, Walker, filter};
+use crate::tree::{Candidates, Search, Sight, View, Walker};
 use fearless_simd::Level;
 use nalgebra::Point3;
 
@@ -35,9 +35,11 @@ pub struct Probe<'a> {
     weights: Weights,
     centre: Point3<f64>,
     level: Level,
+    sight: Sight,
     view: View,
     walker: Walker,
     candidates: Candidates,
+    some_in: Vec<(u32, u32)>,
     felt: Felt,
     contacts: Vec<Contact>,
 }
@@ -45,17 +47,20 @@ pub struct Probe<'a> {
 impl<'a> Probe<'a> {
     /// A probe with the thesis's law, area weights and the tip for a compliance centre.
     pub fn new(part: &'a Part, tool: &'a dyn Tool) -> Probe<'a> {
+        let length = tool.card().unit.to(part.unit());
         Probe {
             part,
             tool,
-            length: tool.card().unit.to(part.unit()),
+            length,
             law: Law::Thesis,
             weights: Weights::Area,
             centre: Point3::origin(),
             level: Level::new(),
-            view: View::new(),
-            walker: Walker::new(),
+            sight: Sight::new(part.tree(), tool, length),
+            view: View::default(),
+            walker: Walker::default(),
             candidates: Candidates::default(),
+            some_in: Vec::new(),
             felt: Felt::default(),
             contacts: Vec::new(),
         }
@@ -111,44 +116,77 @@ impl<'a> Probe<'a> {
     /// Whether any point of the part is inside the tool or on its surface. Stops at the first.
     pub fn detect(&mut self, pose: &Pose) -> bool {
         let tree = self.part.tree();
-        self.view.set(tree, self.tool.card(), pose, self.length);
-        let leaves = self.walker.leaves(self.level, tree, &self.view);
+        if !self.sight.look(tree, pose, &mut self.view) {
+            return false;
+        }
+        let leaves = self.walker.leaves(self.level, tree, &self.sight, &self.view);
         // A few leaves at a time: the first hit ends the question.
-        leaves.chunks(4).any(|leaves| {
+        let some = (0..leaves.len()).step_by(4).map(|from| from..leaves.len().min(from + 4));
+        for some in some {
             self.candidates.clear();
-            filter(self.level, tree, &self.view, leaves, &mut self.candidates);
+            self.tool.search(&mut Search {
+                level: self.level,
+                tree,
+                sight: &self.sight,
+                view: &self.view,
+                leaves,
+                some,
+                skin: false,
+                candidates: &mut self.candidates,
+                some_in: &mut self.some_in,
+            });
             let points = &self.candidates.points;
-            !points.is_empty() && {
-                self.tool.evaluate(self.level, Ask::Inside, points, self.length, &mut self.felt);
-                self.felt.inside.iter().any(|block| *block != 0)
+            if !points.is_empty() {
+                self.tool.evaluate(self.level, Ask::INSIDE, points, self.length, &mut self.felt);
+                if self.felt.inside.iter().any(|block| *block != 0) {
+                    return true;
+                }
             }
-        })
+        }
+        false
     }
 
     /// Force, torque, depth and niceness of the whole contact.
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
-        let ask = if self.law == Law::Gradient { Ask::Gradient } else { Ask::Direction };
-        self.feel(pose, ask);
-        wrench::sum(self, pose)
+        let ask = if self.law == Law::Gradient { Ask::GRADIENT } else { Ask::DIRECTION };
+        if self.feel(pose, ask, true) { wrench::sum(self, pose) } else { wrench::nothing(self) }
     }
 
     /// Every point of the part inside the tool, with all that is felt there.
     pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
-        self.feel(pose, Ask::Everything);
         let mut contacts = std::mem::take(&mut self.contacts);
         contacts.clear();
-        contacts::list(self, pose, &mut contacts);
+        if self.feel(pose, Ask::EVERYTHING, false) {
+            contacts::list(self, pose, &mut contacts);
+        }
         self.contacts = contacts;
         &self.contacts
     }
 
-    /// Finds the candidates and evaluates them.
-    fn feel(&mut self, pose: &Pose, ask: Ask) {
+    /// Finds the candidates and evaluates them; whether there are any.
+    fn feel(&mut self, pose: &Pose, ask: Ask, skin: bool) -> bool {
         let tree = self.part.tree();
-        self.view.set(tree, self.tool.card(), pose, self.length);
+        if !self.sight.look(tree, pose, &mut self.view) {
+            return false;
+        }
+        let leaves = self.walker.leaves(self.level, tree, &self.sight, &self.view);
         self.candidates.clear();
-        let leaves = self.walker.leaves(self.level, tree, &self.view);
-        filter(self.level, tree, &self.view, leaves, &mut self.candidates);
-        self.tool.evaluate(self.level, ask, &self.candidates.points, self.length, &mut self.felt);
+        self.tool.search(&mut Search {
+            level: self.level,
+            tree,
+            sight: &self.sight,
+            view: &self.view,
+            leaves,
+            some: 0..leaves.len(),
+            skin,
+            candidates: &mut self.candidates,
+            some_in: &mut self.some_in,
+        });
+        let points = &self.candidates.points;
+        if points.is_empty() {
+            return false;
+        }
+        self.tool.evaluate(self.level, ask, points, self.length, &mut self.felt);
+        true
     }
 }

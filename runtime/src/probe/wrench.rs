@@ -63,9 +63,24 @@ struct Totals {
     pushes: [f64; 2],
     tool: [f64; 6],
     niceness: f64,
-    /// Each lane's deepest, and which candidate it is.
-    depth: [f64; LANES],
-    deepest: [f64; LANES],
+    /// The deepest, and which candidate it is: the first of several.
+    depth: f64,
+    deepest: f64,
+}
+
+/// What is felt where nothing can be.
+pub(super) fn nothing(probe: &Probe<'_>) -> Wrench {
+    Wrench {
+        law: probe.law,
+        weights: probe.weights,
+        colliding: 0,
+        deepest: None,
+        force: Vector3::zeros(),
+        torque: Vector3::zeros(),
+        niceness: None,
+        integral: 0.0,
+        energy: 0.0,
+    }
 }
 
 /// Sums what the probe has just felt.
@@ -93,13 +108,14 @@ pub(super) fn sum(probe: &Probe<'_>, pose: &Pose) -> Wrench {
 }
 
 fn deepest(probe: &Probe<'_>, pose: &Pose, totals: &Totals) -> Option<Deepest> {
-    let found = totals.depth.iter().zip(&totals.deepest).filter(|(depth, _)| **depth >= 0.0);
-    let (depth, index) = found.min_by(|(a, i), (b, j)| b.total_cmp(a).then(i.total_cmp(j)))?;
-    let candidate = *index as usize;
+    if totals.depth < 0.0 {
+        return None;
+    }
+    let candidate = totals.deepest as usize;
     let place = probe.candidates.indices()[candidate] as usize;
     let tree = probe.part.tree();
     let point = pose.tip() + probe.view.relative(tree, place);
-    Some(Deepest { depth: depth * probe.length, point, triangle: tree.triangle(place) })
+    Some(Deepest { depth: totals.depth * probe.length, point, triangle: tree.triangle(place) })
 }
 
 // What runs on vectors is in functions that are always inlined: a closure would be compiled without
@@ -122,12 +138,15 @@ fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
             add(simd, probe, pose, block, *inside, &mut sums);
         }
     }
+    let depth = sums.depth.reduce_max();
+    let last = f64x8::splat(simd, f64::INFINITY);
+    let deepest = sums.depth.simd_ge(depth).select(sums.deepest, last);
     Totals {
         pushes: [sums.pushes[0].reduce_sum(), sums.pushes[1].reduce_sum()],
         tool: six(&sums.tool),
         niceness: sums.niceness.reduce_min(),
-        depth: sums.depth.to_array(),
-        deepest: sums.deepest.to_array(),
+        depth,
+        deepest: deepest.reduce_min(),
     }
 }
 
@@ -173,11 +192,15 @@ fn add<S: Simd>(
 ) {
     const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
     let (felt, candidates) = (&probe.felt, &probe.candidates);
-    let (weights, normals) = gather(probe, block, inside);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
     let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
-    let push = f64x8::from_slice(simd, &weights) * magnitude;
+    let push = match probe.weights {
+        Weights::Area => {
+            single(simd, &candidates.weights, block) * probe.part.tree().weight * magnitude
+        }
+        Weights::Unit => magnitude,
+    };
     sums.pushes[0] += push;
     sums.pushes[1] += push * magnitude;
     let niceness = sums.niceness.min(load(simd, &felt.niceness, block));
@@ -196,9 +219,9 @@ fn add<S: Simd>(
     }
     let direction = load_vector(simd, &felt.direction, block, in_solid);
     let normal = [
-        f64x8::from_slice(simd, &normals[0]),
-        f64x8::from_slice(simd, &normals[1]),
-        f64x8::from_slice(simd, &normals[2]),
+        single(simd, &candidates.normals[0], block),
+        single(simd, &candidates.normals[1], block),
+        single(simd, &candidates.normals[2], block),
     ];
     // The normal in the tool's frame, where the direction is.
     let mut way = direction;
@@ -216,29 +239,15 @@ fn add<S: Simd>(
     accumulate(&mut sums.tool, force, p, way);
 }
 
-/// Weights and normals of a block's points inside; of the others, 0.
+/// Numbers of single precision.
 #[inline(always)]
-fn gather(probe: &Probe<'_>, block: usize, inside: u8) -> ([f64; LANES], [[f64; LANES]; 3]) {
-    let mut weights = [0.0; LANES];
-    let mut normals = [[0.0; LANES]; 3];
-    let tree = probe.part.tree();
-    let mut left = inside;
-    while left != 0 {
-        let lane = left.trailing_zeros() as usize;
-        left &= left - 1;
-        let index = probe.candidates.indices()[block * LANES + lane] as usize;
-        weights[lane] = match probe.weights {
-            Weights::Area => tree.weight(index),
-            Weights::Unit => 1.0,
-        };
-        if probe.law != Law::Gradient {
-            let normal = tree.normal(index);
-            normals[0][lane] = normal[0];
-            normals[1][lane] = normal[1];
-            normals[2][lane] = normal[2];
-        }
+fn single<S: Simd>(simd: S, list: &[f32], block: usize) -> f64x8<S> {
+    let some = &list[block * LANES..(block + 1) * LANES];
+    let mut wide = [0.0; LANES];
+    for (wide, single) in wide.iter_mut().zip(some) {
+        *wide = f64::from(*single);
     }
-    (weights, normals)
+    f64x8::from_slice(simd, &wide)
 }
 
 /// Adds `push · way` and its moment about the origin.

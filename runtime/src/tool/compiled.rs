@@ -1,14 +1,14 @@
 //! Tools that the macros compile.
 
-use super::{Ask, Card, Felt, LANES, Lane, Points, Tool, present};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
+use super::{Ask, Card, Felt, LANES, Lane, Points, Search, Tool, present};
+use crate::tree::ByTool;
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
 /// Points are finite, in the tool's frame and the file's unit; `length` is the length of the
 /// file's unit in the part's. All but `contains`, `owner` and `clearance` are for points of the solid
-/// and mean nothing elsewhere. Each comes twice: for one point with nested branches, and for lanes with
-/// selects; both give the same bits.
+/// and mean nothing elsewhere. [`Evaluators::feel_lanes`] has the same bits as those for one point.
 pub trait Evaluators: Copy + Send + Sync + 'static {
     /// Who the tool is.
     fn card() -> &'static Card;
@@ -31,22 +31,86 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     /// Distance from a point outside to the tool, in the file's unit.
     fn clearance(point: [f64; 3]) -> f64;
 
-    /// [`Evaluators::contains`] for lanes.
-    fn contains_lanes<L: Lane>(point: [L; 3]) -> L::Mask;
-    /// [`Evaluators::owner`] for lanes; -1 outside.
-    fn owner_lanes<L: Lane>(point: [L; 3]) -> L;
-    /// [`Evaluators::depth`] for lanes.
-    fn depth_lanes<L: Lane>(point: [L; 3]) -> L;
-    /// [`Evaluators::magnitude`] for lanes.
-    fn magnitude_lanes<L: Lane>(point: [L; 3], length: L) -> L;
-    /// [`Evaluators::niceness`] for lanes.
-    fn niceness_lanes<L: Lane>(point: [L; 3]) -> L;
-    /// [`Evaluators::direction`] for lanes.
-    fn direction_lanes<L: Lane>(point: [L; 3]) -> [L; 3];
-    /// [`Evaluators::gradient`] for lanes.
-    fn gradient_lanes<L: Lane>(point: [L; 3], length: L) -> [L; 3];
-    /// [`Evaluators::clearance`] for lanes.
-    fn clearance_lanes<L: Lane>(point: [L; 3]) -> L;
+    /// What [`Evaluators::near_lanes`] compares with, for points that are known to within `margin`, at
+    /// most a thousandth of the tool's largest coordinate.
+    fn near_bounds(margin: f64) -> Vec<f32>;
+    /// Whether points given in single precision may belong to the solid: every one that is within the
+    /// bounds' margin of a point of it does.
+    fn near_lanes<L: Lane>(point: [L; 3], bounds: &[f32]) -> L::Mask;
+    /// What is asked for at those of the points that are `present`, if they belong to the solid.
+    fn feel_lanes<L: Lane>(point: [L; 3], length: L, present: L::Mask, ask: Ask) -> FeltLanes<L>;
+}
+
+/// What is felt at points side by side. Lanes that are not inside, and what was not asked for, mean
+/// nothing.
+#[derive(Clone, Copy)]
+#[expect(missing_docs, reason = "as in Felt")]
+pub struct FeltLanes<L: Lane> {
+    pub inside: L::Mask,
+    pub depth: L,
+    pub magnitude: L,
+    pub niceness: L,
+    pub direction: [L; 3],
+    pub gradient: [L; 3],
+    pub region: L,
+}
+
+impl<L: Lane> FeltLanes<L> {
+    /// Nothing felt, to begin with.
+    #[inline(always)]
+    pub fn nothing(like: L, none: L::Mask) -> FeltLanes<L> {
+        let zero = like.of(0.0);
+        FeltLanes {
+            inside: none,
+            depth: zero,
+            magnitude: zero,
+            niceness: zero,
+            direction: [zero; 3],
+            gradient: [zero; 3],
+            region: zero,
+        }
+    }
+
+    /// Some lanes are in a region.
+    #[inline(always)]
+    pub fn take(&mut self, lanes: L::Mask, region: L) {
+        self.inside = self.inside | lanes;
+        self.region = L::select(lanes, region, self.region);
+    }
+}
+
+/// Returns what is computed on vectors, at levels that have them.
+macro_rules! on_vectors {
+    ($level:expr, $simd:ident => $body:expr) => {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            if let Some($simd) = $level.as_avx512() {
+                return $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                );
+            }
+            if let Some($simd) = $level.as_avx2() {
+                return $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                );
+            }
+            if let Some($simd) = $level.as_sse4_2() {
+                return $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                );
+            }
+        }
+        #[cfg(target_arch = "aarch64")]
+        if let Some($simd) = $level.as_neon() {
+            return $simd.vectorize(
+                #[inline(always)]
+                || $body,
+            );
+        }
+    };
 }
 
 impl<T: Evaluators> Tool for T {
@@ -60,31 +124,18 @@ impl<T: Evaluators> Tool for T {
 
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, ask);
-        // Only levels with vectors of doubles worth having get code of their own: every level more
-        // would add a copy of every tool to the program.
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            if let Some(simd) = level.as_avx512() {
-                return simd.vectorize(
-                    #[inline(always)]
-                    || lanes::<T, _>(simd, ask, points, length, felt),
-                );
-            }
-            if let Some(simd) = level.as_avx2() {
-                return simd.vectorize(
-                    #[inline(always)]
-                    || lanes::<T, _>(simd, ask, points, length, felt),
-                );
-            }
-        }
-        #[cfg(target_arch = "aarch64")]
-        if let Some(simd) = level.as_neon() {
-            return simd.vectorize(
-                #[inline(always)]
-                || lanes::<T, _>(simd, ask, points, length, felt),
-            );
-        }
+        on_vectors!(level, simd => lanes::<T, _>(simd, ask, points, length, felt));
         one_by_one::<T>(ask, points, length, felt);
+    }
+
+    fn near_bounds(&self, margin: f64) -> Vec<f32> {
+        T::near_bounds(margin)
+    }
+
+    fn search(&self, search: &mut Search<'_>) {
+        let Some(test) = ByTool::<T>::of(search) else { return search.by_reach() };
+        on_vectors!(search.level, simd => search.by(simd, &test));
+        search.one_by_one(&test);
     }
 }
 
@@ -111,31 +162,33 @@ fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: usize, values: [f64x8
     store(&mut lists[2], block, values[2]);
 }
 
-/// Blocks of eight; one without a point inside is passed over. What runs on vectors is in
-/// functions that are always inlined, since a closure would be compiled without the vector
-/// instructions of its surroundings.
+/// Blocks of eight. What runs on vectors is in functions that are always inlined, since a closure would
+/// be compiled without the vector instructions of its surroundings.
 #[inline(always)]
 fn lanes<T: Evaluators, S: Simd>(simd: S, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
     let length = f64x8::splat(simd, length);
     let lists = points.coordinates();
     for block in 0..felt.inside.len() {
-        let p = load(simd, lists, block);
-        let inside = T::contains_lanes(p).to_bitmask() as u8 & present(points.len(), block);
-        felt.inside[block] = inside;
-        if ask == Ask::Inside || inside == 0 {
-            continue;
+        let present = mask64x8::from_bitmask(simd, u64::from(present(points.len(), block)));
+        let here = T::feel_lanes(load(simd, lists, block), length, present, ask);
+        felt.inside[block] = here.inside.to_bitmask() as u8;
+        if ask.depth {
+            store(&mut felt.depth, block, here.depth);
         }
-        store(&mut felt.depth, block, T::depth_lanes(p));
-        store(&mut felt.magnitude, block, T::magnitude_lanes(p, length));
-        store(&mut felt.niceness, block, T::niceness_lanes(p));
-        if ask.direction() {
-            store_vector(&mut felt.direction, block, T::direction_lanes(p));
+        if ask.magnitude {
+            store(&mut felt.magnitude, block, here.magnitude);
         }
-        if ask.gradient() {
-            store_vector(&mut felt.gradient, block, T::gradient_lanes(p, length));
+        if ask.niceness {
+            store(&mut felt.niceness, block, here.niceness);
         }
-        if ask == Ask::Everything {
-            store(&mut felt.region, block, T::owner_lanes(p));
+        if ask.direction {
+            store_vector(&mut felt.direction, block, here.direction);
+        }
+        if ask.gradient {
+            store_vector(&mut felt.gradient, block, here.gradient);
+        }
+        if ask.region {
+            store(&mut felt.region, block, here.region);
         }
     }
 }
@@ -149,23 +202,26 @@ fn one_by_one<T: Evaluators>(ask: Ask, points: &Points, length: f64, felt: &mut 
             continue;
         }
         felt.inside[at / LANES] |= 1 << (at % LANES);
-        if ask == Ask::Inside {
-            continue;
+        if ask.depth {
+            felt.depth[at] = T::depth(p);
         }
-        felt.depth[at] = T::depth(p);
-        felt.magnitude[at] = T::magnitude(p, length);
-        felt.niceness[at] = T::niceness(p);
-        if ask.direction() {
+        if ask.magnitude {
+            felt.magnitude[at] = T::magnitude(p, length);
+        }
+        if ask.niceness {
+            felt.niceness[at] = T::niceness(p);
+        }
+        if ask.direction {
             for (list, part) in felt.direction.iter_mut().zip(T::direction(p)) {
                 list[at] = part;
             }
         }
-        if ask.gradient() {
+        if ask.gradient {
             for (list, part) in felt.gradient.iter_mut().zip(T::gradient(p, length)) {
                 list[at] = part;
             }
         }
-        if ask == Ask::Everything {
+        if ask.region {
             felt.region[at] = T::owner(p).map_or(-1.0, |region| region as f64);
         }
     }

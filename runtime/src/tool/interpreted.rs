@@ -142,9 +142,12 @@ impl Interpreted {
     fn all(&self, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         // Results are owner, depth, magnitude, niceness, direction, gradient.
         let wanted = match ask {
-            Ask::Inside => 1,
-            Ask::Direction => 7,
-            Ask::Gradient | Ask::Everything => OUTPUTS,
+            Ask { gradient: true, .. } => OUTPUTS,
+            Ask { direction: true, .. } => 7,
+            Ask { niceness: true, .. } => 4,
+            Ask { magnitude: true, .. } => 3,
+            Ask { depth: true, .. } => 2,
+            _ => 1,
         };
         let coordinates = points.coordinates();
         for start in (0..points.len()).step_by(BLOCK) {
@@ -203,7 +206,7 @@ impl Interpreted {
         for (at, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
             felt.inside[(start + at) / LANES] |= 1 << (at % LANES);
         }
-        if ask == Ask::Inside {
+        if ask == Ask::INSIDE {
             return;
         }
         let mut left: Vec<usize> = (0..count).filter(|at| owners[*at] >= 0.0).collect();
@@ -246,21 +249,24 @@ impl Interpreted {
 
 /// Hands each list that is asked for on, with the number of its result.
 fn put(felt: &mut Felt, ask: Ask, mut copy: impl FnMut(&mut Vec<f64>, usize)) {
-    if ask == Ask::Inside {
-        return;
+    if ask.depth {
+        copy(&mut felt.depth, 1);
     }
-    copy(&mut felt.depth, 1);
-    copy(&mut felt.magnitude, 2);
-    copy(&mut felt.niceness, 3);
+    if ask.magnitude {
+        copy(&mut felt.magnitude, 2);
+    }
+    if ask.niceness {
+        copy(&mut felt.niceness, 3);
+    }
     for part in 0..3 {
-        if ask.direction() {
+        if ask.direction {
             copy(&mut felt.direction[part], 4 + part);
         }
-        if ask.gradient() {
+        if ask.gradient {
             copy(&mut felt.gradient[part], 7 + part);
         }
     }
-    if ask == Ask::Everything {
+    if ask.region {
         copy(&mut felt.region, 0);
     }
 }

@@ -9,11 +9,13 @@ mod compiled;
 mod interpreted;
 mod lane;
 
+pub use crate::tree::Search;
 pub use card::{Card, Depth, Region, Shape, Slab, Surface};
-pub use compiled::Evaluators;
+pub use compiled::{Evaluators, FeltLanes};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
+pub(crate) use lane::{Single, Singles};
 
 use fearless_simd::Level;
 
@@ -34,31 +36,54 @@ pub trait Tool: Send + Sync {
     /// `length` is the length of the file's unit in the part's, by which a magnitude that is the
     /// depth is scaled. The answer has the same bits whatever the level.
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt);
+
+    /// What its own test in single precision compares with ([`Evaluators::near_bounds`]), if it has one.
+    fn near_bounds(&self, margin: f64) -> Vec<f32> {
+        let _ = margin;
+        Vec::new()
+    }
+
+    /// Takes those points of some leaves that may be inside; the more sharply, the fewer there are to
+    /// evaluate.
+    fn search(&self, search: &mut Search<'_>) {
+        search.by_reach();
+    }
 }
 
-/// What a caller wants; what it does not want is not computed.
+/// What a caller wants of every point inside; what it does not want is not computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ask {
-    /// Only which points are inside.
-    Inside,
-    /// Depth, magnitude, direction and niceness too.
-    Direction,
-    /// Depth, magnitude, the magnitude's gradient and niceness too.
-    Gradient,
-    /// All of these, and the region.
-    Everything,
+pub struct Ask {
+    /// Penetration depth.
+    pub depth: bool,
+    /// Magnitude.
+    pub magnitude: bool,
+    /// Niceness.
+    pub niceness: bool,
+    /// The direction to the nearest surface.
+    pub direction: bool,
+    /// The magnitude's gradient.
+    pub gradient: bool,
+    /// The region.
+    pub region: bool,
 }
 
 impl Ask {
-    /// Whether directions are wanted.
-    pub fn direction(self) -> bool {
-        matches!(self, Ask::Direction | Ask::Everything)
-    }
-
-    /// Whether gradients are wanted.
-    pub fn gradient(self) -> bool {
-        matches!(self, Ask::Gradient | Ask::Everything)
-    }
+    /// Only which points are inside.
+    pub const INSIDE: Ask = Ask {
+        depth: false,
+        magnitude: false,
+        niceness: false,
+        direction: false,
+        gradient: false,
+        region: false,
+    };
+    /// What a wrench along directions is summed from.
+    pub const DIRECTION: Ask =
+        Ask { depth: true, magnitude: true, niceness: true, direction: true, ..Ask::INSIDE };
+    /// What a wrench along gradients is summed from.
+    pub const GRADIENT: Ask = Ask { direction: false, gradient: true, ..Ask::DIRECTION };
+    /// All there is.
+    pub const EVERYTHING: Ask = Ask { gradient: true, region: true, ..Ask::DIRECTION };
 }
 
 /// Points of the tool's frame, in the unit of the tool's file.
@@ -78,7 +103,7 @@ impl Points {
     /// One more point.
     pub fn push(&mut self, point: [f64; 3]) {
         self.room(1);
-        for (list, part) in self.next(1).into_iter().zip(point) {
+        for (list, part) in self.next(0, 1).into_iter().zip(point) {
             list[0] = part;
         }
         self.took(1);
@@ -92,10 +117,10 @@ impl Points {
         }
     }
 
-    /// Where the next points go, for which there is room, coordinate by coordinate.
+    /// Where points go that come after so many more, for which there is room, coordinate by coordinate.
     #[inline(always)]
-    pub(crate) fn next(&mut self, count: usize) -> [&mut [f64]; 3] {
-        let place = self.count..self.count + count;
+    pub(crate) fn next(&mut self, after: usize, count: usize) -> [&mut [f64]; 3] {
+        let place = self.count + after..self.count + after + count;
         let [x, y, z] = &mut self.lists;
         [&mut x[place.clone()], &mut y[place.clone()], &mut z[place]]
     }
@@ -167,13 +192,12 @@ impl Felt {
                 list.resize(blocks * LANES, 0.0);
             }
         };
-        let more = ask != Ask::Inside;
-        size(&mut self.depth, more);
-        size(&mut self.magnitude, more);
-        size(&mut self.niceness, more);
-        self.direction.iter_mut().for_each(|list| size(list, ask.direction()));
-        self.gradient.iter_mut().for_each(|list| size(list, ask.gradient()));
-        size(&mut self.region, ask == Ask::Everything);
+        size(&mut self.depth, ask.depth);
+        size(&mut self.magnitude, ask.magnitude);
+        size(&mut self.niceness, ask.niceness);
+        self.direction.iter_mut().for_each(|list| size(list, ask.direction));
+        self.gradient.iter_mut().for_each(|list| size(list, ask.gradient));
+        size(&mut self.region, ask.region);
     }
 }
 

@@ -1,6 +1,6 @@
 //! From a cloud to its tree.
 
-use super::{Boxes, Leaf, Tree, WIDTH};
+use super::{Boxes, Leaf, Skin, Tree, WIDTH};
 use crate::cloud::Cloud;
 use nalgebra::Point3;
 
@@ -67,7 +67,7 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         }
     }
     levels.reverse();
-    let pick = |item: &Item| item.index as usize;
+    let weight = cloud.weights().iter().fold(0.0, |most: f64, weight| most.max(*weight));
     Tree {
         origin: Point3::from(origin),
         scale,
@@ -75,9 +75,9 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         leaves,
         leaf_size,
         size: outward(boxes[0].size()),
-        normals: items.iter().map(|item| cloud.normals()[pick(item)].into()).collect(),
-        weights: items.iter().map(|item| cloud.weights()[pick(item)]).collect(),
-        triangles: items.iter().map(|item| cloud.triangles()[pick(item)]).collect(),
+        skins: items.chunks(WIDTH).map(|items| skin(items, cloud, weight)).collect(),
+        weight,
+        triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
     }
 }
 
@@ -121,6 +121,20 @@ fn leaf(items: &[Item]) -> (Leaf, Bounds) {
     let low = std::array::from_fn(|axis| centre[axis] - half[axis]);
     let high = std::array::from_fn(|axis| centre[axis] + half[axis]);
     (leaf, Bounds { low, high })
+}
+
+fn skin(items: &[Item], cloud: &Cloud, largest: f64) -> Skin {
+    let mut skin = Skin { normal: [[0.0; WIDTH]; 3], weight: [0.0; WIDTH] };
+    for (lane, item) in items.iter().enumerate() {
+        let normal = cloud.normals()[item.index as usize];
+        for axis in 0..3 {
+            skin.normal[axis][lane] = normal[axis] as f32;
+        }
+        if largest > 0.0 {
+            skin.weight[lane] = (cloud.weights()[item.index as usize] / largest) as f32;
+        }
+    }
+    skin
 }
 
 fn side_by_side(bounds: &[Bounds]) -> Boxes {

@@ -1,13 +1,20 @@
 //! Points that may be inside, carried to the tool's frame.
 
-use super::{View, WIDTH};
+use super::walk::{LANE, Triple};
+use super::{Skin, Tree, View, WIDTH};
 use crate::tool::{LANES, Points};
+use fearless_simd::{
+    Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
+};
 
 /// Candidates by their place in the tree, and in the tool's frame in the tool's unit.
 #[derive(Default)]
 pub(crate) struct Candidates {
     indices: Vec<u32>,
     pub(crate) points: Points,
+    /// Of each, if it was wanted.
+    pub(crate) normals: [Vec<f32>; 3],
+    pub(crate) weights: Vec<f32>,
 }
 
 impl Candidates {
@@ -20,50 +27,87 @@ impl Candidates {
         &self.indices[..self.points.len()]
     }
 
+    /// Makes room for the points of so many leaves.
+    pub(super) fn room(&mut self, leaves: usize, skin: bool) {
+        let more = (leaves + 1) * WIDTH;
+        self.points.room(more);
+        let wanted = self.points.len() + more;
+        if self.indices.len() < wanted {
+            self.indices.resize(wanted, 0);
+        }
+        if skin && self.weights.len() < wanted {
+            self.weights.resize(wanted, 0.0);
+            self.normals.iter_mut().for_each(|list| list.resize(wanted, 0.0));
+        }
+    }
+
     /// Takes the points of a leaf whose bits are set: `Rᵀ (p − t)`, the difference first, in `f64`.
-    /// `centre` is the leaf's, in the tree's unit; `first` the place of its first point.
+    /// `base` is the leaf's centre from the tip. There is room for all of them.
     #[inline(always)]
-    pub(super) fn take(
+    pub(super) fn take<S: Simd>(
         &mut self,
+        simd: S,
         view: &View,
-        first: u32,
-        centre: [f64; 3],
-        offset: &[[f32; WIDTH]; 3],
+        (leaf, base): (u32, [f64; 3]),
+        offset: &Triple<S>,
         hits: u32,
     ) {
-        self.points.room(WIDTH);
-        let room = (self.points.len() + WIDTH).next_multiple_of(LANES);
-        if self.indices.len() < room {
-            self.indices.resize(room, 0);
-        }
-        let (scale, base, rows) = (view.scale, view.leaf_from_tip(centre), view.carry);
-        // All lanes together, in the order of operations that one alone would take.
-        let mut p = [[0.0; WIDTH]; 3];
-        for (axis, list) in p.iter_mut().enumerate() {
-            for (value, offset) in list.iter_mut().zip(&offset[axis]) {
-                *value = base[axis] + scale * f64::from(*offset);
-            }
-        }
-        let mut carried = [[0.0; WIDTH]; 3];
-        for (row, list) in rows.iter().zip(&mut carried) {
-            for (lane, value) in list.iter_mut().enumerate() {
-                *value = row[0] * p[0][lane] + row[1] * p[1][lane] + row[2] * p[2][lane];
-            }
-        }
+        let lanes = u32x16::from_slice(simd, &LANE) + leaf * WIDTH as u32;
+        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
         let at = self.points.len();
-        let indices = &mut self.indices[at..at + WIDTH];
-        let points = self.points.next(WIDTH);
-        let (mut left, mut count) = (hits, 0);
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize % WIDTH;
-            left &= left - 1;
-            let to = count % WIDTH;
-            indices[to] = first + lane as u32;
-            for axis in 0..3 {
-                points[axis][to] = carried[axis][lane];
+        lanes.compress(mask).store_slice(&mut self.indices[at..at + WIDTH]);
+        let (x, y, z) = (offset[0].widen(), offset[1].widen(), offset[2].widen());
+        let halves = [[x.0, y.0, z.0], [x.1, y.1, z.1]];
+        let mut count = 0;
+        for (half, bits) in halves.into_iter().zip([hits & 0xff, hits >> 8]) {
+            let p = [
+                half[0] * view.scale + base[0],
+                half[1] * view.scale + base[1],
+                half[2] * view.scale + base[2],
+            ];
+            let mask = mask64x8::from_bitmask(simd, u64::from(bits));
+            let places = self.points.next(count, LANES);
+            for (row, place) in view.carry.iter().zip(places) {
+                let carried: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
+                carried.compress(mask).store_slice(place);
             }
-            count += 1;
+            count += bits.count_ones() as usize;
         }
+    }
+
+    /// Takes what the part has there.
+    #[inline(always)]
+    pub(super) fn take_skin<S: Simd>(&mut self, simd: S, skin: &Skin, hits: u32) {
+        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
+        let place = self.points.len()..self.points.len() + WIDTH;
+        for (list, of) in self.normals.iter_mut().zip(&skin.normal) {
+            f32x16::from_slice(simd, of).compress(mask).store_slice(&mut list[place.clone()]);
+        }
+        f32x16::from_slice(simd, &skin.weight).compress(mask).store_slice(&mut self.weights[place]);
+    }
+
+    /// Takes one point.
+    pub(super) fn take_one(&mut self, tree: &Tree, view: &View, index: usize, skin: bool) {
+        let at = self.points.len();
+        self.indices[at] = index as u32;
+        let p = view.relative(tree, index);
+        let places = self.points.next(0, 1);
+        for (row, place) in view.carry.iter().zip(places) {
+            place[0] = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
+        }
+        if skin {
+            let (skin, lane) = (&tree.skins[index / WIDTH], index % WIDTH);
+            for (list, of) in self.normals.iter_mut().zip(&skin.normal) {
+                list[at] = of[lane];
+            }
+            self.weights[at] = skin.weight[lane];
+        }
+        self.took(1);
+    }
+
+    /// That so many were taken.
+    #[inline(always)]
+    pub(super) fn took(&mut self, count: usize) {
         self.points.took(count);
     }
 }

@@ -14,10 +14,15 @@
 
 mod build;
 mod candidates;
+mod sift;
+mod view;
 mod walk;
 
 pub(crate) use candidates::Candidates;
-pub(crate) use walk::{View, Walker, filter};
+pub(crate) use sift::ByTool;
+pub use sift::Search;
+pub(crate) use view::{Sight, View};
+pub(crate) use walk::Walker;
 
 use crate::cloud::Cloud;
 use nalgebra::Point3;
@@ -38,6 +43,13 @@ pub(crate) struct Leaf {
     pub(crate) offset: [[f32; WIDTH]; 3],
 }
 
+/// What a part has at 16 points: its normal and their weight, as a part of the tree's.
+#[derive(Clone, Debug)]
+pub(crate) struct Skin {
+    pub(crate) normal: [[f32; WIDTH]; 3],
+    pub(crate) weight: [f32; WIDTH],
+}
+
 /// A cloud in its tree.
 #[derive(Clone, Debug)]
 pub struct Tree {
@@ -49,9 +61,11 @@ pub struct Tree {
     /// The largest half extent of a leaf's box, and of the whole.
     pub(crate) leaf_size: f32,
     pub(crate) size: f32,
+    /// Of each leaf.
+    pub(crate) skins: Vec<Skin>,
+    /// The largest weight; the others are parts of it.
+    pub(crate) weight: f64,
     /// Of each point, in the tree's order.
-    pub(crate) normals: Vec<[f64; 3]>,
-    pub(crate) weights: Vec<f64>,
     pub(crate) triangles: Vec<u32>,
 }
 
@@ -74,29 +88,30 @@ impl Tree {
     /// A point as it is stored, by its place in the tree's order, rounded to the world's `f64`;
     /// queries work with the unrounded one.
     pub fn point(&self, index: usize) -> Point3<f64> {
-        let (leaf, lane) = (index / WIDTH, index % WIDTH);
-        let centre = self.centre(leaf);
-        let offset = &self.leaves[leaf].offset;
+        let [centre, offset] = self.stored(index);
         Point3::from(std::array::from_fn(|axis| {
-            self.origin[axis] + (centre[axis] + self.scale * f64::from(offset[axis][lane]))
+            self.origin[axis] + (self.scale * centre[axis] + self.scale * offset[axis])
         }))
     }
 
-    /// The centre of a leaf's box relative to the origin.
-    #[inline]
-    pub(crate) fn centre(&self, leaf: usize) -> [f64; 3] {
+    /// The centre of a point's leaf from the origin, and the point from there, in the tree's unit.
+    pub(crate) fn stored(&self, index: usize) -> [[f64; 3]; 2] {
+        let (leaf, lane) = (index / WIDTH, index % WIDTH);
         let boxes = &self.levels[self.levels.len() - 1][leaf / WIDTH];
-        std::array::from_fn(|axis| self.scale * f64::from(boxes.centre[axis][leaf % WIDTH]))
+        let offset = &self.leaves[leaf].offset;
+        let centre = std::array::from_fn(|axis| f64::from(boxes.centre[axis][leaf % WIDTH]));
+        [centre, std::array::from_fn(|axis| f64::from(offset[axis][lane]))]
     }
 
-    /// A point's outward unit normal.
+    /// A point's outward normal, as it is stored: each part within 2^-24 of the given one.
     pub fn normal(&self, index: usize) -> [f64; 3] {
-        self.normals[index]
+        let normal = &self.skins[index / WIDTH].normal;
+        std::array::from_fn(|axis| f64::from(normal[axis][index % WIDTH]))
     }
 
-    /// A point's share of the surface.
+    /// A point's share of the surface, as it is stored: within 2^-24 of the largest.
     pub fn weight(&self, index: usize) -> f64 {
-        self.weights[index]
+        self.weight * f64::from(self.skins[index / WIDTH].weight[index % WIDTH])
     }
 
     /// The triangle that a point lies on.

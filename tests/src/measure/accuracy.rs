@@ -149,7 +149,7 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
         chunk.iter().for_each(|p| list.push(*p));
         let [one, lanes] = [Level::fallback(), Level::new()].map(|level| {
             let mut felt = Felt::default();
-            tool.evaluate(level, Ask::Everything, &list, 1.0, &mut felt);
+            tool.evaluate(level, Ask::EVERYTHING, &list, 1.0, &mut felt);
             felt
         });
         for (i, p) in chunk.iter().enumerate() {

@@ -92,8 +92,8 @@ fn everything(
     list: &Points,
     length: f64,
 ) -> Vec<Answer> {
-    let felt = evaluated(tool, level, Ask::Everything, list, length);
-    for ask in [Ask::Inside, Ask::Direction, Ask::Gradient] {
+    let felt = evaluated(tool, level, Ask::EVERYTHING, list, length);
+    for ask in [Ask::INSIDE, Ask::DIRECTION, Ask::GRADIENT] {
         let part = evaluated(tool, level, ask, list, length);
         same(what, ask, &part, &felt, list.len());
     }
@@ -148,13 +148,13 @@ fn same(what: &str, ask: Ask, part: &Felt, everything: &Felt, count: usize) {
     assert_eq!(part.inside, everything.inside, "{what}, {ask:?}");
     let lists = |felt: &Felt, i: usize| -> Vec<u64> {
         let mut numbers = Vec::new();
-        if ask != Ask::Inside {
+        if ask != Ask::INSIDE {
             numbers.extend([felt.depth[i], felt.magnitude[i], felt.niceness[i]]);
         }
-        if ask.direction() {
+        if ask.direction {
             numbers.extend(felt.direction.iter().map(|list| list[i]));
         }
-        if ask.gradient() {
+        if ask.gradient {
             numbers.extend(felt.gradient.iter().map(|list| list[i]));
         }
         numbers.into_iter().map(f64::to_bits).collect()

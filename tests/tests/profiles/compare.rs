@@ -87,7 +87,7 @@ pub(crate) fn compare(
         .collect();
     let (mut list, mut felt) = (Points::default(), Lists::default());
     wanted.iter().for_each(|p| list.push(*p));
-    planned.evaluate(Level::new(), Ask::Everything, &list, 1.0, &mut felt);
+    planned.evaluate(Level::new(), Ask::EVERYTHING, &list, 1.0, &mut felt);
     for (k, point) in wanted.into_iter().enumerate() {
         let tape = (felt.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Felt {
             region: felt.region[k] as usize,

@@ -102,7 +102,7 @@ fn judge(tool: &Checked, planned: &Interpreted, outline: &Outline, p: P2) {
     let point = [d, 0.0, z];
     let (mut list, mut lists) = (Points::default(), touchoff::tool::Felt::default());
     list.push(point);
-    planned.evaluate(Level::new(), Ask::Everything, &list, 1.0, &mut lists);
+    planned.evaluate(Level::new(), Ask::EVERYTHING, &list, 1.0, &mut lists);
     let tape = (lists.inside[0] & 1 == 1).then(|| Felt {
         region: lists.region[0] as usize,
         depth: lists.depth[0],

@@ -1,6 +1,5 @@
 //! Expressions and trees as Rust.
 
-use super::masks::mask;
 use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::formula::CurveIndex;
@@ -21,7 +20,7 @@ pub(super) enum Form {
 }
 
 /// One side of a comparison.
-enum Operand {
+pub(super) enum Operand {
     Node(Id),
     Constant(f64),
 }
@@ -58,6 +57,19 @@ impl<'g> Writer<'g> {
             }
         }
         writer
+    }
+
+    /// A writer for a function that computes some roots and walks down a tree.
+    pub(super) fn of_tree<L>(
+        graph: &'g Graph,
+        curves: &'g [Curve],
+        form: Form,
+        roots: &[Id],
+        tree: &Tree<L>,
+    ) -> Writer<'g> {
+        let mut tests = BTreeSet::new();
+        tested(tree, &mut tests);
+        Writer::new(graph, curves, form, roots, &tests)
     }
 
     /// A curve's test as a person reads it.
@@ -102,7 +114,7 @@ impl<'g> Writer<'g> {
 
     /// The two sides of `c ≤ 0` as `left ≤ right`; a sum has the sign of its comparison exactly, so
     /// nothing is lost by not adding it up.
-    fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
+    pub(super) fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
         let value = self.curves[curve].value;
         let operand = |id: Id| match self.graph.constant(id) {
             Some(constant) => Operand::Constant(constant.to_f64()),
@@ -262,7 +274,7 @@ impl<'g> Writer<'g> {
     }
 
     /// A `let` for every shared node that some roots need and that is not yet in scope.
-    fn lets(
+    pub(super) fn lets(
         &self,
         code: &mut Tokens,
         roots: impl IntoIterator<Item = Id>,
@@ -358,20 +370,90 @@ impl<'g> Writer<'g> {
         known.insert(std::ptr::from_ref(tree), own);
     }
 
-    /// The definitions that lanes need for some roots and tests: shared nodes, then masks.
-    pub(super) fn straight(
+    /// A tree as lanes walk it: `leaf` is told the mask of the lanes that come to it. The nodes that
+    /// are named at the end are returned.
+    pub(super) fn walked<L: PartialEq + Default>(
         &self,
         code: &mut Tokens,
-        roots: &[Id],
-        tested: &BTreeSet<(CurveIndex, bool)>,
-    ) {
-        let compared = tested.iter().flat_map(|(curve, _)| self.compared(*curve));
-        self.lets(code, roots.iter().copied().chain(compared), &mut BTreeSet::new());
-        for (curve, strict) in tested {
-            code.word("let").word(&mask(*curve, *strict)).sign("=");
-            self.test(code, *curve, *strict);
-            code.sign(";");
+        tree: &Tree<L>,
+        leaf: &impl Fn(&mut Tokens, &str, &L),
+    ) -> BTreeSet<Id> {
+        let mut always = HashMap::new();
+        self.always(tree, &|_| vec![], &mut always);
+        let mut walk = Walk { writer: self, always, masks: 0, leaf };
+        walk.below(code, tree, "present", &BTreeSet::new())
+    }
+}
+
+/// A walk of lanes down a tree, as it is written.
+struct Walk<'w, 'g, L, F> {
+    writer: &'w Writer<'g>,
+    always: HashMap<*const Tree<L>, BTreeSet<Id>>,
+    /// How many masks have a name.
+    masks: usize,
+    leaf: &'w F,
+}
+
+impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
+    /// The code for the lanes of a mask, and what is named in it.
+    fn below(
+        &mut self,
+        code: &mut Tokens,
+        tree: &Tree<L>,
+        mask: &str,
+        scope: &BTreeSet<Id>,
+    ) -> BTreeSet<Id> {
+        let mut scope = scope.clone();
+        let needed = self.always.get(&std::ptr::from_ref(tree)).into_iter().flatten().copied();
+        self.writer.lets(code, needed, &mut scope);
+        match tree {
+            Tree::Leaf(own) => (self.leaf)(code, mask, own),
+            Tree::Split { curve, strict, below, above } => {
+                self.masks += 1;
+                let test = format!("test{}", self.masks);
+                code.word("let").word(&test).sign("=");
+                self.writer.test(code, *curve, *strict);
+                code.sign(";");
+                self.side(code, below, (mask, "", &test), &scope);
+                self.side(code, above, (mask, "!", &test), &scope);
+            }
         }
+        scope
+    }
+
+    /// One side of a split, if it leads anywhere.
+    fn side(
+        &mut self,
+        code: &mut Tokens,
+        tree: &Tree<L>,
+        (mask, not, test): (&str, &str, &str),
+        scope: &BTreeSet<Id>,
+    ) {
+        if *tree == Tree::Leaf(L::default()) {
+            return;
+        }
+        self.masks += 1;
+        let own = format!("lanes{}", self.masks);
+        code.word("let").word(&own).sign("=").word(mask).sign("&").sign(not).word(test).sign(";");
+        if let Tree::Leaf(leaf) = tree {
+            (self.leaf)(code, &own, leaf);
+            return;
+        }
+        code.word("if").any(&own);
+        let mut inner = Tokens::default();
+        self.below(&mut inner, tree, &own, scope);
+        code.brace(|code| {
+            code.add(inner);
+        });
+    }
+}
+
+/// The curves that a tree tests, and how.
+fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>) {
+    if let Tree::Split { curve, strict, below, above } = tree {
+        tests.insert((*curve, *strict));
+        tested(below, tests);
+        tested(above, tests);
     }
 }
 

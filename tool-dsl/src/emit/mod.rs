@@ -3,8 +3,10 @@
 
 mod code;
 mod dot;
+mod felt;
+mod line;
 mod listing;
-mod masks;
+mod near;
 mod tokens;
 
 pub use dot::dot;
@@ -19,10 +21,8 @@ use crate::model::Outputs;
 use crate::plan::Tree;
 use crate::report::figure;
 use code::{Form, Writer};
-use masks::{logic, selects, tested};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use tokens::{Tokens, literal};
 
@@ -43,8 +43,9 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
     let name = Ident::new(&tool.model.name, Span::call_site());
     let docs = documentation(tool);
     let card = card(tool);
-    let scalar = functions(tool, Form::Scalar);
-    let lanes = functions(tool, Form::Lanes);
+    let scalar = scalar(tool);
+    let lanes = felt::felt(tool);
+    let near = near::near(tool);
     quote! {
         #[doc = #docs]
         #drawing
@@ -53,12 +54,15 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
 
         #[allow(clippy::all, clippy::pedantic, unused_variables, unused_parens)]
         const _: () = {
-            use ::touchoff::tool::{Card, Depth, Evaluators, Lane, Region, Shape, Slab, Surface};
+            use ::touchoff::tool::{
+                Ask, Card, Depth, Evaluators, FeltLanes, Lane, Region, Shape, Slab, Surface,
+            };
 
             impl Evaluators for #name {
                 #card
                 #scalar
                 #lanes
+                #near
             }
         };
     }
@@ -70,27 +74,18 @@ pub fn skeleton(name: &str) -> TokenStream {
     let name = Ident::new(name, Span::call_site());
     let mut functions = quote! { fn card() -> &'static Card { ::core::unreachable!() } };
     let empty = quote! { ::core::unreachable!() };
-    for form in [Form::Scalar, Form::Lanes] {
-        let (contains, _) = signature(form, "contains");
-        let (owner, number) = signature(form, "owner");
-        let (yes, whose) = match form {
-            Form::Scalar => (quote! { bool }, quote! { Option<usize> }),
-            Form::Lanes => (quote! { L::Mask }, quote! { L }),
-        };
-        functions.extend(function(form, &contains, &None, &yes, &empty));
-        functions.extend(function(form, &owner, &None, &whose, &empty));
-        let (clearance, _) = signature(form, "clearance");
-        functions.extend(function(form, &clearance, &None, &number, &empty));
-        for output in &OUTPUTS {
-            let (name, _) = signature(form, output.name);
-            let extra = length(output.with_length, &number);
-            let result = if output.vector {
-                quote! { [#number; 3] }
-            } else {
-                number.clone()
-            };
-            functions.extend(function(form, &name, &extra, &result, &empty));
-        }
+    functions.extend(quote! {
+        fn near_bounds(margin: f64) -> Vec<f32> { #empty }
+        fn near_lanes<L: Lane>(point: [L; 3], bounds: &[f32]) -> L::Mask { #empty }
+        fn feel_lanes<L: Lane>(
+            point: [L; 3], length: L, present: L::Mask, ask: Ask,
+        ) -> FeltLanes<L> { #empty }
+    });
+    functions.extend(function("contains", false, &quote! { bool }, &empty));
+    functions.extend(function("owner", false, &quote! { Option<usize> }, &empty));
+    functions.extend(function("clearance", false, &quote! { f64 }, &empty));
+    for output in &OUTPUTS {
+        functions.extend(function(output.name, output.with_length, &output.result(), &empty));
     }
     quote! {
         #[allow(missing_docs)]
@@ -99,7 +94,7 @@ pub fn skeleton(name: &str) -> TokenStream {
 
         #[allow(unused)]
         const _: () = {
-            use ::touchoff::tool::{Card, Evaluators, Lane};
+            use ::touchoff::tool::{Ask, Card, Evaluators, FeltLanes, Lane};
             impl Evaluators for #name { #functions }
         };
     }
@@ -211,10 +206,31 @@ const OUTPUTS: [Output; 5] = [
     Output { name: "gradient", with_length: true, vector: true, of: |o| o.gradient.to_vec() },
 ];
 
-fn functions(tool: &Checked, form: Form) -> TokenStream {
-    let mut all = TokenStream::new();
-    all.extend(contains(tool, form));
-    all.extend(owner(tool, form));
+impl Output {
+    fn result(&self) -> TokenStream {
+        if self.vector {
+            quote! { [f64; 3] }
+        } else {
+            quote! { f64 }
+        }
+    }
+}
+
+/// The evaluators of one point.
+fn scalar(tool: &Checked) -> TokenStream {
+    let mut all =
+        of_tests(tool, ("contains", &quote! { bool }), &tool.plan.inside, &|code, inside| {
+            code.word(if *inside { "true" } else { "false" });
+        });
+    let owner = |code: &mut Tokens, owner: &Option<usize>| {
+        match owner {
+            Some(index) => code.word("Some").paren(|code| {
+                code.count(*index);
+            }),
+            None => code.word("None"),
+        };
+    };
+    all.extend(of_tests(tool, ("owner", &quote! { Option<usize> }), &tool.plan.owner, &owner));
     for output in &OUTPUTS {
         let tree = tool
             .plan
@@ -223,84 +239,36 @@ fn functions(tool: &Checked, form: Form) -> TokenStream {
             .map(&|owner: &Option<usize>| {
                 owner.map(|r| (output.of)(&tool.model.regions[r].outputs))
             });
-        let Some(tree) = tree else { continue };
-        let body = body(tool, form, &tree);
-        let (name, number) = signature(form, output.name);
-        let extra = length(output.with_length, &number);
-        let result = if output.vector {
-            quote! { [#number; 3] }
-        } else {
-            number
-        };
-        all.extend(function(form, &name, &extra, &result, &body));
+        if let Some(tree) = tree {
+            let body = body(tool, &tree);
+            all.extend(function(output.name, output.with_length, &output.result(), &body));
+        }
     }
-    let outside = tool.plan.outside.map(&|id: &Id| Some(vec![*id]));
-    if let Some(tree) = outside {
-        let (name, number) = signature(form, "clearance");
-        all.extend(function(form, &name, &None, &number, &body(tool, form, &tree)));
+    if let Some(tree) = tool.plan.outside.map(&|id: &Id| Some(vec![*id])) {
+        all.extend(function("clearance", false, &quote! { f64 }, &body(tool, &tree)));
     }
     all
 }
 
-/// The function's name and the type of its numbers.
-fn signature(form: Form, name: &str) -> (Ident, TokenStream) {
-    match form {
-        Form::Scalar => (format_ident!("{name}"), quote! { f64 }),
-        Form::Lanes => (format_ident!("{name}_lanes"), quote! { L }),
-    }
-}
-
-/// The parameter for the unit of length.
-fn length(with: bool, number: &TokenStream) -> Option<TokenStream> {
-    with.then(|| quote! { , length: #number })
-}
-
-fn function(
-    form: Form,
-    name: &Ident,
-    extra: &Option<TokenStream>,
-    result: &TokenStream,
-    body: &TokenStream,
-) -> TokenStream {
-    match form {
-        Form::Scalar => quote! {
-            #[inline]
-            fn #name([x, y, z]: [f64; 3] #extra) -> #result { #body }
-        },
-        Form::Lanes => quote! {
-            #[inline(always)]
-            fn #name<L: Lane>([x, y, z]: [L; 3] #extra) -> #result { #body }
-        },
+fn function(name: &str, length: bool, result: &TokenStream, body: &TokenStream) -> TokenStream {
+    let name = format_ident!("{name}");
+    let extra = length.then(|| quote! { , length: f64 });
+    quote! {
+        #[inline]
+        fn #name([x, y, z]: [f64; 3] #extra) -> #result { #body }
     }
 }
 
 /// The body of a function whose leaves are one or three expressions.
-fn body(tool: &Checked, form: Form, tree: &Tree<Vec<Id>>) -> TokenStream {
+fn body(tool: &Checked, tree: &Tree<Vec<Id>>) -> TokenStream {
     let model = &tool.model;
     let mut roots = Vec::new();
     leaves(tree, &mut roots);
-    let separate: Vec<Tree<Id>> =
-        (0..leaf_width(tree)).filter_map(|part| tree_part(tree, part)).collect();
-    let mut tests = BTreeSet::new();
-    match form {
-        Form::Scalar => tested(tree, &mut tests),
-        Form::Lanes => separate.iter().for_each(|tree| tested(tree, &mut tests)),
-    }
-    let writer = Writer::new(&model.graph, &model.curves, form, &roots, &tests);
+    let writer = Writer::of_tree(&model.graph, &model.curves, Form::Scalar, &roots, tree);
     let mut code = Tokens::default();
-    match form {
-        Form::Scalar => {
-            writer.nested(&mut code, tree, &|ids: &Vec<Id>| ids.clone(), &|code, ids| {
-                together(code, ids, |code, id| writer.leaf(code, *id));
-            });
-        }
-        Form::Lanes => {
-            writer.straight(&mut code, &roots, &tests);
-            together(&mut code, &separate, |code, tree| {
-                selects(code, tree, &|code, id| writer.value(code, *id));
-            });
-        }
-    }
+    writer.nested(&mut code, tree, &|ids: &Vec<Id>| ids.clone(), &|code, ids| {
+        together(code, ids, |code, id| writer.leaf(code, *id));
+    });
     let (given, code) = (writer.given(), code.done());
     quote! { #given #code }
 }
@@ -320,18 +288,6 @@ fn together<T>(code: &mut Tokens, values: &[T], one: impl Fn(&mut Tokens, &T)) {
     });
 }
 
-/// The tree of one component.
-fn tree_part(tree: &Tree<Vec<Id>>, part: usize) -> Option<Tree<Id>> {
-    tree.map(&|ids: &Vec<Id>| ids.get(part).copied())
-}
-
-fn leaf_width(tree: &Tree<Vec<Id>>) -> usize {
-    match tree {
-        Tree::Leaf(ids) => ids.len(),
-        Tree::Split { below, .. } => leaf_width(below),
-    }
-}
-
 fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
     match tree {
         Tree::Leaf(ids) => roots.extend(ids),
@@ -342,63 +298,19 @@ fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
     }
 }
 
-/// A function of the tree of owners that needs nothing but its tests.
+/// A function of a tree that needs nothing but its tests.
 fn of_tests<L>(
     tool: &Checked,
-    (form, name, result): (Form, &str, &TokenStream),
+    (name, result): (&str, &TokenStream),
     tree: &Tree<L>,
     leaf: &impl Fn(&mut Tokens, &L),
-    lanes: impl FnOnce(&mut Tokens),
 ) -> TokenStream {
     let model = &tool.model;
-    let mut tests = BTreeSet::new();
-    tested(tree, &mut tests);
-    let writer = Writer::new(&model.graph, &model.curves, form, &[], &tests);
+    let writer = Writer::of_tree(&model.graph, &model.curves, Form::Scalar, &[], tree);
     let mut code = Tokens::default();
-    match form {
-        Form::Scalar => writer.nested(&mut code, tree, &|_| vec![], leaf),
-        Form::Lanes => {
-            writer.straight(&mut code, &[], &tests);
-            lanes(&mut code);
-        }
-    }
+    writer.nested(&mut code, tree, &|_| vec![], leaf);
     let (given, code) = (writer.given(), code.done());
-    function(form, &signature(form, name).0, &None, result, &quote! { #given #code })
-}
-
-/// Whether a point is inside.
-fn contains(tool: &Checked, form: Form) -> TokenStream {
-    let tree = &tool.plan.inside;
-    let result = match form {
-        Form::Scalar => quote! { bool },
-        Form::Lanes => quote! { L::Mask },
-    };
-    let leaf = |code: &mut Tokens, inside: &bool| {
-        code.word(if *inside { "true" } else { "false" });
-    };
-    of_tests(tool, (form, "contains", &result), tree, &leaf, |code| logic(code, tree))
-}
-
-/// The place of a point's region in the list; `None`, or -1 in lanes, outside.
-fn owner(tool: &Checked, form: Form) -> TokenStream {
-    let tree = &tool.plan.owner;
-    let result = match form {
-        Form::Scalar => quote! { Option<usize> },
-        Form::Lanes => quote! { L },
-    };
-    let leaf = |code: &mut Tokens, owner: &Option<usize>| {
-        match owner {
-            Some(index) => code.word("Some").paren(|code| {
-                code.count(*index);
-            }),
-            None => code.word("None"),
-        };
-    };
-    of_tests(tool, (form, "owner", &result), tree, &leaf, |code| {
-        selects(code, tree, &|code, owner| {
-            code.of_lanes(owner.map_or(-1.0, |index| index as f64));
-        });
-    })
+    function(name, false, result, &quote! { #given #code })
 }
 
 /// The code as a person reads it, without the drawing in its documentation.

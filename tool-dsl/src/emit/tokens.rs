@@ -81,6 +81,13 @@ impl Tokens {
         self.word("Lane").sign("::").word(name).paren(inner)
     }
 
+    /// Whether any lane of a mask is set.
+    pub(super) fn any(&mut self, mask: &str) -> &mut Tokens {
+        self.word("L").sign("::").word("any").paren(|code| {
+            code.word(mask);
+        })
+    }
+
     /// A constant for all lanes.
     pub(super) fn of_lanes(&mut self, value: f64) -> &mut Tokens {
         self.word("z").sign(".").word("of").paren(|code| {

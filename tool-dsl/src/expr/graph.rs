@@ -262,6 +262,11 @@ impl Graph {
                 return self.mul(factor, v);
             }
             (Node::Neg(u), Node::Neg(v)) => return self.mul(u, v),
+            (Node::Sub(c, v), _) if a == b && self.constant(c).is_some() => {
+                // (c - v)² = (v - c)², so that a square is written one way.
+                let root = self.sub(v, c);
+                return self.mul(root, root);
+            }
             (Node::Neg(u), _) => {
                 let product = self.mul(u, b);
                 return self.neg(product);

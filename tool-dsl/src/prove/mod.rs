@@ -9,6 +9,7 @@
 mod aim;
 mod cover;
 mod kink;
+mod near;
 mod parting;
 mod root;
 mod rounding;
@@ -16,6 +17,8 @@ mod slope;
 mod survey;
 mod touch;
 mod witness;
+
+pub(crate) use near::{Compared, slacks};
 
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};

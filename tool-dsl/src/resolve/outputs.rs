@@ -2,14 +2,12 @@
 
 use crate::domain::Domain;
 use crate::expr::derive::derivative;
-use crate::expr::{Coord, Graph, Id};
+use crate::expr::{Coord, Graph, Id, Node};
 use crate::model::Outputs;
 use crate::number::Number;
 
-/// Makes a vector a unit vector. Where it vanishes it is the unit vector along `axis`.
-///
-/// Squares of numbers below 2^-480 lose digits and below 2^-537 vanish, so short vectors are
-/// lengthened by a power of two before they are squared.
+/// Makes a vector a unit vector. One shorter than 2^-480, whose square would lose digits, becomes the
+/// unit vector along `axis`, as one of no length does.
 pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[Id; 3]> {
     let constants = vector.map(|part| graph.constant(part).cloned());
     if let [Some(x), Some(y), Some(z)] = constants {
@@ -17,22 +15,17 @@ pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[I
         let (x, y, z) = (x.over(&norm)?, y.over(&norm)?, z.over(&norm)?);
         return Some([graph.number(x), graph.number(y), graph.number(z)]);
     }
-    let square = |graph: &mut Graph, vector: [Id; 3]| {
-        let [x, y, z] = vector.map(|part| graph.mul(part, part));
-        let across = graph.add(x, y);
-        graph.add(across, z)
-    };
-    let one = graph.int(1);
-    let zero = graph.int(0);
-    let tiny = graph.number(Number::from_f64(2f64.powi(-960))?);
-    let huge = graph.number(Number::from_f64(2f64.powi(600))?);
-    let plain = square(graph, vector);
-    let scale = graph.select(plain, tiny, huge, one);
-    let vector = vector.map(|part| graph.mul(scale, part));
-    let square = square(graph, vector);
+    let [x, y, z] = vector.map(|part| graph.mul(part, part));
+    let across = graph.add(x, y);
+    let square = graph.add(across, z);
     let norm = graph.sqrt(square)?;
-    let mut unit = vector.map(|part| graph.quotient(part, norm));
-    unit[axis] = graph.select(norm, zero, one, unit[axis]);
+    let short = graph.number(Number::from_f64(2f64.powi(-960))?);
+    let mut unit = vector;
+    for (k, part) in unit.iter_mut().enumerate() {
+        let along = graph.int(i64::from(k == axis));
+        let divided = graph.div(*part, norm)?;
+        *part = graph.select(square, short, along, divided);
+    }
     Some(unit)
 }
 
@@ -52,8 +45,32 @@ fn in_space(graph: &mut Graph, domain: Domain, vector: [Id; 3]) -> [Id; 3] {
     let [radial, _, axial] = vector;
     let across = [graph.coord(Coord::X), graph.coord(Coord::Y), graph.int(0)];
     // Coordinates are no constants, so the unit vector exists.
-    let [cos, sin, _] = unit(graph, across, 0).unwrap_or(across);
-    [graph.mul(radial, cos), graph.mul(radial, sin), axial]
+    let unit = unit(graph, across, 0).unwrap_or(across);
+    let [x, y] = [0, 1]
+        .map(|k| turned(graph, radial, across[k]).unwrap_or_else(|| graph.mul(radial, unit[k])));
+    [x, y, axial]
+}
+
+/// A radial part that is the distance from the axis times something, turned: the coordinate times
+/// that. Nothing is divided by the distance first, which costs most of a direction's time, and on the
+/// axis nothing is left to choose.
+fn turned(graph: &mut Graph, radial: Id, coordinate: Id) -> Option<Id> {
+    match *graph.node(radial) {
+        Node::Coord(Coord::D) => Some(coordinate),
+        Node::Neg(a) => turned(graph, a, coordinate).map(|a| graph.neg(a)),
+        Node::Mul(a, b) if graph.constant(a).is_some() => {
+            turned(graph, b, coordinate).map(|b| graph.mul(a, b))
+        }
+        Node::Div(a, b) => turned(graph, a, coordinate).and_then(|a| graph.div(a, b)),
+        Node::Quotient(a, b) => turned(graph, a, coordinate).map(|a| graph.quotient(a, b)),
+        Node::Select { low, high, then, other }
+            if graph.constant(then).is_some_and(Number::is_zero) =>
+        {
+            let other = turned(graph, other, coordinate)?;
+            Some(graph.select(low, high, then, other))
+        }
+        _ => None,
+    }
 }
 
 /// What a region's evaluators compute. A magnitude that is the depth is a length, and changes with

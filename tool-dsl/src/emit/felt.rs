@@ -1,0 +1,131 @@
+//! What lanes feel: one walk down the tree of owners, then each region that has a lane.
+//!
+//! Points that are evaluated together lie side by side, mostly in one region or two. So a side of a
+//! split that no lane takes is not walked, and a region that no lane is in is not computed: what is
+//! left is little more than what one point alone would need.
+
+use super::code::{Form, Writer};
+use super::tokens::Tokens;
+use super::{OUTPUTS, Output};
+use crate::Checked;
+use crate::expr::Id;
+use crate::plan::Tree;
+use proc_macro2::TokenStream;
+use quote::quote;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The function.
+pub(super) fn felt(tool: &Checked) -> TokenStream {
+    let model = &tool.model;
+    let tree = &tool.plan.owner;
+    let mut owners = BTreeSet::new();
+    regions(tree, &mut owners);
+    let outputs = |region: usize| {
+        OUTPUTS.iter().flat_map(move |output| (output.of)(&model.regions[region].outputs))
+    };
+    let roots: Vec<Id> = owners.iter().flat_map(|region| outputs(*region)).collect();
+    let writer = Writer::of_tree(&model.graph, &model.curves, Form::Lanes, &roots, tree);
+    let mut code = Tokens::default();
+    for region in &owners {
+        code.word("let").word("mut").word(&of(*region)).sign("=").word("none").sign(";");
+    }
+    let scope = writer.walked(&mut code, tree, &|code, mask, owner: &Option<usize>| {
+        if let Some(region) = owner {
+            let name = of(*region);
+            code.word(&name).sign("=").word(&name).sign("|").word(mask).sign(";");
+        }
+    });
+    for region in &owners {
+        let section = Section { tool, writer: &writer, region: *region };
+        section.write(&mut code, &scope);
+    }
+    let (given, code) = (writer.given(), code.done());
+    quote! {
+        #[inline(always)]
+        fn feel_lanes<L: Lane>(
+            [x, y, z]: [L; 3], length: L, present: L::Mask, ask: Ask,
+        ) -> FeltLanes<L> {
+            #given
+            let none = present & !present;
+            let mut felt = FeltLanes::nothing(z, none);
+            #code
+            felt
+        }
+    }
+}
+
+/// The lanes of a region.
+fn of(region: usize) -> String {
+    format!("of{region}")
+}
+
+fn regions(tree: &Tree<Option<usize>>, owners: &mut BTreeSet<usize>) {
+    match tree {
+        Tree::Leaf(owner) => owners.extend(*owner),
+        Tree::Split { below, above, .. } => {
+            regions(below, owners);
+            regions(above, owners);
+        }
+    }
+}
+
+/// What is felt in one region.
+struct Section<'a> {
+    tool: &'a Checked,
+    writer: &'a Writer<'a>,
+    region: usize,
+}
+
+impl Section<'_> {
+    fn write(&self, code: &mut Tokens, scope: &BTreeSet<Id>) {
+        let mask = of(self.region);
+        code.word("if").any(&mask);
+        code.brace(|code| {
+            let mut scope = scope.clone();
+            code.word("felt").sign(".").word("take").paren(|code| {
+                code.word(&mask).sign(",").of_lanes(self.region as f64);
+            });
+            code.sign(";");
+            self.writer.lets(code, self.shared(), &mut scope);
+            for output in &OUTPUTS {
+                code.word("if").word("ask").sign(".").word(output.name);
+                code.brace(|code| self.output(code, output, &mask, &mut scope.clone()));
+            }
+        });
+    }
+
+    /// The nodes that several outputs need.
+    fn shared(&self) -> Vec<Id> {
+        let model = &self.tool.model;
+        let mut users: BTreeMap<Id, usize> = BTreeMap::new();
+        for output in &OUTPUTS {
+            for id in model.graph.needed((output.of)(&model.regions[self.region].outputs)) {
+                *users.entry(id).or_default() += 1;
+            }
+        }
+        users.into_iter().filter(|(_, users)| *users > 1).map(|(id, _)| id).collect()
+    }
+
+    fn output(&self, code: &mut Tokens, output: &Output, mask: &str, scope: &mut BTreeSet<Id>) {
+        let values = (output.of)(&self.tool.model.regions[self.region].outputs);
+        self.writer.lets(code, values.iter().copied(), scope);
+        for (k, value) in values.iter().enumerate() {
+            let place = |code: &mut Tokens| {
+                code.word("felt").sign(".").word(output.name);
+                if output.vector {
+                    code.bracket(|code| {
+                        code.count(k);
+                    });
+                }
+            };
+            place(code);
+            code.sign("=").lane("select", |code| {
+                code.word(mask).sign(",");
+                self.writer.value(code, *value);
+                code.sign(",");
+                place(code);
+            });
+            code.sign(";");
+        }
+    }
+}
