@@ -2,8 +2,8 @@
 //!
 //! A tool is written in a small language and compiled by [`include_tool!`], [`tool!`] or
 //! [`tool_library!`] into straight-line code. A [`Part`] is a mesh made into a weighted point
-//! cloud in a tree. A [`Probe`] brings them together: [`Probe::detect`], [`Probe::wrench`],
-//! [`Probe::contacts`].
+//! cloud in a tree. A [`Probe`] brings them together: [`Probe::detect`], [`Probe::deepest`],
+//! [`Probe::posture`], [`Probe::wrench`], [`Probe::contacts`].
 //!
 //! ```
 //! use touchoff::{Part, Pose, Probe, Unit, mesh::shapes};
@@ -42,6 +42,7 @@ mod part;
 mod pose;
 mod probe;
 pub mod program;
+mod scene;
 pub mod scenes;
 pub mod tool;
 mod tree;
@@ -52,8 +53,11 @@ pub use fearless_simd::Level;
 pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
-pub use probe::{Contact, Deepest, Law, Probe, Summary, UnknownWord, Weights, Wrench, summary};
+pub use probe::{
+    Contact, Deepest, Law, Posture, Probe, Summary, UnknownWord, Weights, Wrench, summary,
+};
 pub use program::{Program, ProgramError, Stop};
+pub use scene::{PartId, Scene, SceneError, ToolId};
 pub use tool::Tool;
 pub use tool_macros::{include_tool, tool, tool_library};
 pub use tree::Tree;

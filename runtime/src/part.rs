@@ -48,6 +48,18 @@ impl Part {
         Part { tree: Tree::new(cloud), unit: cloud.unit(), survey: None }
     }
 
+    /// The same part in another unit: its numbers are multiplied, its points and its tree stay.
+    #[must_use]
+    pub fn to(mut self, unit: Unit) -> Part {
+        if unit != self.unit {
+            let factor = self.unit.to(unit);
+            self.tree.scale_by(factor);
+            self.survey = self.survey.map(|survey| survey.to(unit));
+            self.unit = unit;
+        }
+        self
+    }
+
     /// The points in their tree.
     pub fn tree(&self) -> &Tree {
         &self.tree

@@ -102,10 +102,28 @@ impl Pose {
         &self.rotation
     }
 
+    /// The same pose seen from where something else stands: `place⁻¹ ∘ self`, the difference of the
+    /// tips first.
+    pub fn seen_from(&self, place: &Pose) -> Pose {
+        if *place == Pose::default() {
+            return *self;
+        }
+        let back = place.rotation.transpose();
+        let tip = Point3::from(back * (self.tip - place.tip));
+        Pose { rotation: back * self.rotation, tip, full: self.full }
+    }
+
     /// The same pose as nalgebra's isometry.
     pub fn isometry(&self) -> Isometry3<f64> {
         let rotation = nalgebra::Rotation3::from_matrix_unchecked(self.rotation);
         Isometry3::from_parts(self.tip.into(), nalgebra::UnitQuaternion::from(rotation))
+    }
+}
+
+/// At the origin, unturned.
+impl Default for Pose {
+    fn default() -> Pose {
+        Pose { rotation: Matrix3::identity(), tip: Point3::origin(), full: true }
     }
 }
 

@@ -45,6 +45,13 @@ pub struct Survey {
 }
 
 impl Survey {
+    /// The same of the mesh in another unit.
+    pub(crate) fn to(self, unit: Unit) -> Survey {
+        let factor = self.unit.to(unit);
+        let (area, volume) = (self.area * factor.powi(2), self.volume * factor.powi(3));
+        Survey { unit, area, volume, ..self }
+    }
+
     pub(super) fn of(mesh: &Mesh) -> Survey {
         let edges = Edges::of(mesh);
         let (shell_of, shells) = shells(mesh);

@@ -1,7 +1,8 @@
 //! Contacts one by one, and what can be said of them together (Ho 1999, section 4.4).
 
-use super::{Probe, Weights};
+use super::{Beside, Weights};
 use crate::pose::Pose;
+use crate::tool::Card;
 use nalgebra::{Point3, Vector3};
 
 /// A point of the part inside the tool. Vectors are in the world's frame.
@@ -32,10 +33,10 @@ pub struct Contact {
 }
 
 /// Lists what the probe has just felt.
-pub(super) fn list(probe: &Probe<'_>, pose: &Pose, contacts: &mut Vec<Contact>) {
-    let (felt, tree, card) = (&probe.felt, probe.part.tree(), probe.tool.card());
+pub(super) fn list(beside: &Beside<'_>, card: &Card, pose: &Pose, contacts: &mut Vec<Contact>) {
+    let (felt, tree) = (&beside.felt, beside.part.tree());
     let rotation = pose.rotation();
-    for (at, index) in probe.candidates.indices().iter().enumerate() {
+    for (at, index) in beside.candidates.indices().iter().enumerate() {
         if felt.inside[at / crate::tool::LANES] >> (at % crate::tool::LANES) & 1 == 0 {
             continue;
         }
@@ -43,17 +44,17 @@ pub(super) fn list(probe: &Probe<'_>, pose: &Pose, contacts: &mut Vec<Contact>) 
         let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
         let region = felt.region[at] as usize;
         contacts.push(Contact {
-            point: pose.tip() + probe.view.relative(tree, index),
+            point: pose.tip() + beside.view.relative(tree, index),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,
             surface: card.regions[region].surface,
-            depth: felt.depth[at] * probe.length,
+            depth: felt.depth[at] * beside.length,
             magnitude: felt.magnitude[at],
             direction: rotation * vector(&felt.direction),
             gradient: rotation * vector(&felt.gradient),
             niceness: felt.niceness[at],
-            weight: match probe.weights {
+            weight: match beside.weights {
                 Weights::Area => tree.weight(index),
                 Weights::Unit => 1.0,
             },

@@ -1,34 +1,46 @@
 //! A tool feeling a part, pose by pose.
 //!
 //! ```text
-//! pose ──view──▶ leaves near the tool ──filter──▶ candidates ──carry──▶ tool's frame
-//!                                                                          │ evaluate
-//!      detect, wrench, contacts  ◀──sum or list──  what is felt  ◀─────────┘
+//! pose ──look──▶ leaves near the tool ──test──▶ candidates, in the tool's frame
+//!                                                                   │ feel
+//!   detect, deepest, posture, wrench, contacts ◀──sum or list──  what is felt
 //! ```
 
 mod contacts;
 mod law;
+mod posture;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
 pub use law::{Law, UnknownWord, Weights};
-pub use wrench::{Deepest, Wrench};
+pub use posture::{Deepest, Posture};
+pub use wrench::Wrench;
 
 use crate::part::Part;
 use crate::pose::Pose;
-use crate::tool::{Ask, Felt, Tool};
+use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
 use crate::tree::{Candidates, Search, Sight, View, Walker};
 use fearless_simd::Level;
 use nalgebra::Point3;
+use std::ops::Range;
 
 /// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
 /// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
 ///
 /// Memory is kept between questions, so that after the first few none is allocated. The answers
 /// have the same bits on every machine and at every [`Level`].
-pub struct Probe<'a> {
+///
+/// What a question does not need is not computed. Of a tool whose type is known, as in
+/// `Probe::new(&part, &Ball)`, a program has code only for the questions that it asks; of a
+/// `&dyn Tool` for all of them.
+pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
+    tool: &'a T,
+    beside: Beside<'a>,
+}
+
+/// What is beside a tool: a part, how it is to be felt, and room to find out.
+struct Beside<'a> {
     part: &'a Part,
-    tool: &'a dyn Tool,
     /// The tool's unit of length in the part's.
     length: f64,
     law: Law,
@@ -44,13 +56,42 @@ pub struct Probe<'a> {
     contacts: Vec<Contact>,
 }
 
-impl<'a> Probe<'a> {
+/// What is asked for, question by question.
+struct Inside;
+struct Depths;
+struct Postures;
+struct AlongDirections;
+struct AlongGradients;
+struct Everything;
+
+impl Wanted for Inside {
+    const ASK: Ask = Ask::INSIDE;
+}
+impl Wanted for Depths {
+    const ASK: Ask = Ask { depth: true, ..Ask::INSIDE };
+}
+impl Wanted for Postures {
+    const ASK: Ask = Ask { depth: true, niceness: true, region: true, ..Ask::INSIDE };
+}
+impl Wanted for AlongDirections {
+    const ASK: Ask = Ask::DIRECTION;
+}
+impl Wanted for AlongGradients {
+    const ASK: Ask = Ask::GRADIENT;
+}
+impl Wanted for Everything {
+    const ASK: Ask = Ask::EVERYTHING;
+}
+
+/// How many leaves are asked at a time for a first point.
+const FEW: usize = 8;
+
+impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// A probe with the thesis's law, area weights and the tip for a compliance centre.
-    pub fn new(part: &'a Part, tool: &'a dyn Tool) -> Probe<'a> {
+    pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
         let length = tool.card().unit.to(part.unit());
-        Probe {
+        let beside = Beside {
             part,
-            tool,
             length,
             law: Law::Thesis,
             weights: Weights::Area,
@@ -63,36 +104,44 @@ impl<'a> Probe<'a> {
             some_in: Vec::new(),
             felt: Felt::default(),
             contacts: Vec::new(),
-        }
+        };
+        Probe { tool, beside }
     }
 
     /// With another force law.
     #[must_use]
-    pub fn law(mut self, law: Law) -> Probe<'a> {
-        self.law = law;
+    pub fn law(mut self, law: Law) -> Probe<'a, T> {
+        self.beside.law = law;
         self
     }
 
     /// With other weights.
     #[must_use]
-    pub fn weights(mut self, weights: Weights) -> Probe<'a> {
-        self.weights = weights;
+    pub fn weights(mut self, weights: Weights) -> Probe<'a, T> {
+        self.beside.weights = weights;
         self
     }
 
     /// With a compliance centre: a point of the tool's frame, in the part's unit, about which
     /// torque is taken.
     #[must_use]
-    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a> {
-        self.centre = centre;
+    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a, T> {
+        self.beside.centre = centre;
         self
     }
 
     /// With another SIMD level than the best of this machine. The answers do not change.
     #[must_use]
-    pub fn level(mut self, level: Level) -> Probe<'a> {
-        self.level = level;
+    pub fn level(mut self, level: Level) -> Probe<'a, T> {
+        self.beside.level = level;
         self
+    }
+
+    /// Another probe like this one, for another thread.
+    #[must_use]
+    pub fn another(&self) -> Probe<'a, T> {
+        let Beside { part, law, weights, centre, level, .. } = self.beside;
+        Probe::new(part, self.tool).law(law).weights(weights).centre(centre).level(level)
     }
 
     /// How far a depth that is felt can be from that of the point that was given, in the part's unit:
@@ -101,92 +150,135 @@ impl<'a> Probe<'a> {
     /// of the tool ([`crate::tool::Depth::lipschitz`]). What lies between points is not in it.
     pub fn error(&self) -> Option<f64> {
         const HALF: f64 = f64::EPSILON / 2.0;
-        let (card, tree) = (self.tool.card(), self.part.tree());
-        let tool = self.length * card.size();
+        let (card, tree, length) = (self.tool.card(), self.beside.part.tree(), self.beside.length);
+        let tool = length * card.size();
         let [leaf, part] = [tree.leaf_size, tree.size].map(|half| tree.scale * f64::from(half));
         // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
         let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
         // A point inside is no farther from the tip than the tool is large, so neither is the origin
         // but for the part's size: two sums, then three products and a change of unit.
         let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
-        let own = self.length * card.depth.rounding + HALF * tool;
+        let own = length * card.depth.rounding + HALF * tool;
         card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
     }
 
     /// Whether any point of the part is inside the tool or on its surface. Stops at the first.
     pub fn detect(&mut self, pose: &Pose) -> bool {
-        let tree = self.part.tree();
-        if !self.sight.look(tree, pose, &mut self.view) {
-            return false;
-        }
-        let leaves = self.walker.leaves(self.level, tree, &self.sight, &self.view);
+        let leaves = self.beside.look(pose);
         // A few leaves at a time: the first hit ends the question.
-        let some = (0..leaves.len()).step_by(4).map(|from| from..leaves.len().min(from + 4));
-        for some in some {
-            self.candidates.clear();
-            self.tool.search(&mut Search {
-                level: self.level,
-                tree,
-                sight: &self.sight,
-                view: &self.view,
-                leaves,
-                some,
-                skin: false,
-                candidates: &mut self.candidates,
-                some_in: &mut self.some_in,
-            });
-            let points = &self.candidates.points;
-            if !points.is_empty() {
-                self.tool.evaluate(self.level, Ask::INSIDE, points, self.length, &mut self.felt);
-                if self.felt.inside.iter().any(|block| *block != 0) {
-                    return true;
-                }
-            }
+        (0..leaves).step_by(FEW).any(|from| {
+            self.beside.search(self.tool, from..leaves.min(from + FEW), false);
+            self.feel::<Inside>() && self.beside.felt.inside.iter().any(|block| *block != 0)
+        })
+    }
+
+    /// The deepest point; `None` without contact.
+    pub fn deepest(&mut self, pose: &Pose) -> Option<Deepest> {
+        if self.ask::<Depths>(pose, false) { posture::deepest(&self.beside, pose) } else { None }
+    }
+
+    /// What a posture is judged by: niceness, and how deep which surfaces are.
+    pub fn posture(&mut self, pose: &Pose) -> Posture {
+        if self.ask::<Postures>(pose, false) {
+            posture::posture(&self.beside, self.tool.card(), pose)
+        } else {
+            Posture::default()
         }
-        false
     }
 
     /// Force, torque, depth and niceness of the whole contact.
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
-        let ask = if self.law == Law::Gradient { Ask::GRADIENT } else { Ask::DIRECTION };
-        if self.feel(pose, ask, true) { wrench::sum(self, pose) } else { wrench::nothing(self) }
+        let any = match self.beside.law {
+            Law::Gradient => self.ask::<AlongGradients>(pose, true),
+            Law::Thesis | Law::Facing => self.ask::<AlongDirections>(pose, true),
+        };
+        let Beside { law, weights, .. } = self.beside;
+        if any { wrench::sum(&self.beside, pose) } else { Wrench::nothing(law, weights) }
     }
 
     /// Every point of the part inside the tool, with all that is felt there.
     pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
-        let mut contacts = std::mem::take(&mut self.contacts);
+        let mut contacts = std::mem::take(&mut self.beside.contacts);
         contacts.clear();
-        if self.feel(pose, Ask::EVERYTHING, false) {
-            contacts::list(self, pose, &mut contacts);
+        if self.ask::<Everything>(pose, false) {
+            contacts::list(&self.beside, self.tool.card(), pose, &mut contacts);
         }
-        self.contacts = contacts;
-        &self.contacts
+        self.beside.contacts = contacts;
+        &self.beside.contacts
     }
 
-    /// Finds the candidates and evaluates them; whether there are any.
-    fn feel(&mut self, pose: &Pose, ask: Ask, skin: bool) -> bool {
-        let tree = self.part.tree();
-        if !self.sight.look(tree, pose, &mut self.view) {
+    /// Asks the same at many poses, on all cores: what each is asked, it is asked by itself, so the
+    /// answers are those of one thread, in the order of the poses.
+    ///
+    /// ```
+    /// # use touchoff::{Part, Pose, Probe, Tool};
+    /// # fn deepest(part: &Part, tool: &dyn Tool, poses: &[Pose]) -> f64 {
+    /// let depths = Probe::new(part, tool).map(poses, |probe, pose| probe.wrench(pose).depth());
+    /// # depths.into_iter().fold(0.0, f64::max) }
+    /// ```
+    #[cfg(feature = "parallel")]
+    pub fn map<R: Send>(
+        &self,
+        poses: &[Pose],
+        ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
+    ) -> Vec<R> {
+        use rayon::prelude::*;
+        // So many that starting another probe is nothing beside them.
+        const TOGETHER: usize = 256;
+        poses
+            .par_chunks(TOGETHER)
+            .map_init(
+                || self.another(),
+                |probe, poses| poses.iter().map(|pose| ask(probe, pose)).collect::<Vec<R>>(),
+            )
+            .flatten_iter()
+            .collect()
+    }
+
+    /// Finds the candidates of all leaves and evaluates them; whether there are any.
+    fn ask<W: Wanted>(&mut self, pose: &Pose, skin: bool) -> bool {
+        let leaves = self.beside.look(pose);
+        if leaves == 0 {
             return false;
         }
-        let leaves = self.walker.leaves(self.level, tree, &self.sight, &self.view);
+        self.beside.search(self.tool, 0..leaves, skin);
+        self.feel::<W>()
+    }
+
+    /// Evaluates the candidates; whether there are any.
+    fn feel<W: Wanted>(&mut self) -> bool {
+        let Beside { level, candidates, length, felt, .. } = &mut self.beside;
+        let any = !candidates.points.is_empty();
+        if any {
+            self.tool.feel::<W>(*level, &candidates.points, *length, felt);
+        }
+        any
+    }
+}
+
+impl Beside<'_> {
+    /// How many leaves the tool may reach from a pose.
+    fn look(&mut self, pose: &Pose) -> usize {
+        let tree = self.part.tree();
+        if !self.sight.look(tree, pose, &mut self.view) {
+            return 0;
+        }
+        self.walker.find(self.level, tree, &self.sight, &self.view)
+    }
+
+    /// Finds the candidates of some leaves.
+    fn search<T: Tool + ?Sized>(&mut self, tool: &T, some: Range<usize>, skin: bool) {
         self.candidates.clear();
-        self.tool.search(&mut Search {
+        tool.search(&mut Search {
             level: self.level,
-            tree,
+            tree: self.part.tree(),
             sight: &self.sight,
             view: &self.view,
-            leaves,
-            some: 0..leaves.len(),
+            leaves: self.walker.leaves(),
+            some,
             skin,
             candidates: &mut self.candidates,
             some_in: &mut self.some_in,
         });
-        let points = &self.candidates.points;
-        if points.is_empty() {
-            return false;
-        }
-        self.tool.evaluate(self.level, ask, points, self.length, &mut self.felt);
-        true
     }
 }

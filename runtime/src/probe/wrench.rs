@@ -1,10 +1,10 @@
 //! The whole contact as one force and torque (Ho 1999, eq. 5.1 to 5.5).
 
-use super::{Law, Probe, Weights};
+use super::{Beside, Deepest, Law, Weights, posture};
 use crate::pose::Pose;
 use crate::tool::LANES;
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 
 /// What a tool feels at a pose. Forces and torques are on the tool, in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,18 +29,51 @@ pub struct Wrench {
     pub energy: f64,
 }
 
-/// The deepest point of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deepest {
-    /// Its penetration depth, in the part's unit.
-    pub depth: f64,
-    /// Where it is, in the world.
-    pub point: Point3<f64>,
-    /// The triangle it lies on.
-    pub triangle: u32,
-}
-
 impl Wrench {
+    /// What is felt without contact.
+    pub(crate) fn nothing(law: Law, weights: Weights) -> Wrench {
+        Wrench {
+            law,
+            weights,
+            colliding: 0,
+            deepest: None,
+            force: Vector3::zeros(),
+            torque: Vector3::zeros(),
+            niceness: None,
+            integral: 0.0,
+            energy: 0.0,
+        }
+    }
+
+    /// Adds what is felt of another part, in the same frame and about the same point.
+    pub(crate) fn add(&mut self, other: &Wrench) {
+        self.colliding += other.colliding;
+        self.deepest = match (self.deepest, other.deepest) {
+            (Some(mine), Some(theirs)) if theirs.depth > mine.depth => Some(theirs),
+            (mine, theirs) => mine.or(theirs),
+        };
+        self.force += other.force;
+        self.torque += other.torque;
+        self.niceness = match (self.niceness, other.niceness) {
+            (Some(mine), Some(theirs)) => Some(mine.min(theirs)),
+            (mine, theirs) => mine.or(theirs),
+        };
+        self.integral += other.integral;
+        self.energy += other.energy;
+    }
+
+    /// The same in the frame in which its own is at `place`.
+    pub(crate) fn turned(mut self, place: &Pose) -> Wrench {
+        if *place != Pose::default() {
+            self.force = place.rotation() * self.force;
+            self.torque = place.rotation() * self.torque;
+            if let Some(deepest) = &mut self.deepest {
+                deepest.point = place.tip() + place.rotation() * deepest.point.coords;
+            }
+        }
+        self
+    }
+
     /// Penetration depth of the deepest point; 0 without contact.
     pub fn depth(&self) -> f64 {
         self.deepest.map_or(0.0, |deepest| deepest.depth)
@@ -68,37 +101,23 @@ struct Totals {
     deepest: f64,
 }
 
-/// What is felt where nothing can be.
-pub(super) fn nothing(probe: &Probe<'_>) -> Wrench {
-    Wrench {
-        law: probe.law,
-        weights: probe.weights,
-        colliding: 0,
-        deepest: None,
-        force: Vector3::zeros(),
-        torque: Vector3::zeros(),
-        niceness: None,
-        integral: 0.0,
-        energy: 0.0,
-    }
-}
-
 /// Sums what the probe has just felt.
-pub(super) fn sum(probe: &Probe<'_>, pose: &Pose) -> Wrench {
-    let colliding = probe.felt.inside.iter().map(|block| block.count_ones() as usize).sum();
-    let totals = dispatch!(probe.level, simd => totals(simd, probe, pose));
+pub(super) fn sum(beside: &Beside<'_>, pose: &Pose) -> Wrench {
+    let colliding = beside.felt.inside.iter().map(|block| block.count_ones() as usize).sum();
+    let totals = dispatch!(beside.level, simd => totals(simd, beside, pose));
     let rotation = pose.rotation();
     let half =
         |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
     // In the tool's frame lengths are the tool's.
     let force = rotation * half(&totals.tool, 0);
-    let about_tip = rotation * (half(&totals.tool, 3) * probe.length);
-    let arm = rotation * probe.centre.coords;
+    let about_tip = rotation * (half(&totals.tool, 3) * beside.length);
+    let arm = rotation * beside.centre.coords;
     Wrench {
-        law: probe.law,
-        weights: probe.weights,
+        law: beside.law,
+        weights: beside.weights,
         colliding,
-        deepest: deepest(probe, pose, &totals),
+        deepest: (totals.depth >= 0.0)
+            .then(|| posture::at(beside, pose, totals.deepest as usize, totals.depth)),
         force,
         torque: about_tip - arm.cross(&force),
         niceness: (colliding > 0).then_some(totals.niceness),
@@ -107,24 +126,13 @@ pub(super) fn sum(probe: &Probe<'_>, pose: &Pose) -> Wrench {
     }
 }
 
-fn deepest(probe: &Probe<'_>, pose: &Pose, totals: &Totals) -> Option<Deepest> {
-    if totals.depth < 0.0 {
-        return None;
-    }
-    let candidate = totals.deepest as usize;
-    let place = probe.candidates.indices()[candidate] as usize;
-    let tree = probe.part.tree();
-    let point = pose.tip() + probe.view.relative(tree, place);
-    Some(Deepest { depth: totals.depth * probe.length, point, triangle: tree.triangle(place) })
-}
-
 // What runs on vectors is in functions that are always inlined: a closure would be compiled without
 // the vector instructions of its surroundings.
 
 type Triple<S> = [f64x8<S>; 3];
 
 #[inline(always)]
-fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
+fn totals<S: Simd>(simd: S, beside: &Beside<'_>, pose: &Pose) -> Totals {
     let zero = f64x8::splat(simd, 0.0);
     let mut sums = Sums {
         pushes: [zero; 2],
@@ -133,9 +141,9 @@ fn totals<S: Simd>(simd: S, probe: &Probe<'_>, pose: &Pose) -> Totals {
         depth: f64x8::splat(simd, -1.0),
         deepest: zero,
     };
-    for (block, inside) in probe.felt.inside.iter().enumerate() {
+    for (block, inside) in beside.felt.inside.iter().enumerate() {
         if *inside != 0 {
-            add(simd, probe, pose, block, *inside, &mut sums);
+            add(simd, beside, pose, block, *inside, &mut sums);
         }
     }
     let depth = sums.depth.reduce_max();
@@ -184,20 +192,20 @@ fn load_vector<S: Simd>(
 #[inline(always)]
 fn add<S: Simd>(
     simd: S,
-    probe: &Probe<'_>,
+    beside: &Beside<'_>,
     pose: &Pose,
     block: usize,
     inside: u8,
     sums: &mut Sums<S>,
 ) {
     const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let (felt, candidates) = (&probe.felt, &probe.candidates);
+    let (felt, candidates) = (&beside.felt, &beside.candidates);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
     let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
-    let push = match probe.weights {
+    let push = match beside.weights {
         Weights::Area => {
-            single(simd, &candidates.weights, block) * probe.part.tree().weight * magnitude
+            single(simd, &candidates.weights, block) * beside.part.tree().weight * magnitude
         }
         Weights::Unit => magnitude,
     };
@@ -212,7 +220,7 @@ fn add<S: Simd>(
     sums.deepest = deeper.select(indices, sums.deepest);
 
     let p = load_vector(simd, candidates.points.lists(), block, in_solid);
-    if probe.law == Law::Gradient {
+    if beside.law == Law::Gradient {
         let slope = load_vector(simd, &felt.gradient, block, in_solid);
         accumulate(&mut sums.tool, push, p, slope);
         return;
@@ -232,7 +240,7 @@ fn add<S: Simd>(
         along += turned * *part;
         *part = turned - *part;
     }
-    let force = match probe.law {
+    let force = match beside.law {
         Law::Facing => along.simd_le(zero).select(push, zero),
         _ => push,
     };

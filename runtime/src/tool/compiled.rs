@@ -1,6 +1,6 @@
 //! Tools that the macros compile.
 
-use super::{Ask, Card, Felt, LANES, Lane, Points, Search, Tool, present};
+use super::{Ask, Card, Felt, LANES, Lane, Points, Search, Senses, Tool, Wanted, present};
 use crate::tree::ByTool;
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
@@ -136,6 +136,14 @@ impl<T: Evaluators> Tool for T {
         let Some(test) = ByTool::<T>::of(search) else { return search.by_reach() };
         on_vectors!(search.level, simd => search.by(simd, &test));
         search.one_by_one(&test);
+    }
+}
+
+impl<T: Evaluators> Senses for T {
+    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
+        felt.reserve(points, W::ASK);
+        on_vectors!(level, simd => lanes::<T, _>(simd, W::ASK, points, length, felt));
+        one_by_one::<T>(W::ASK, points, length, felt);
     }
 }
 

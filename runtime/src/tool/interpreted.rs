@@ -1,6 +1,8 @@
 //! Tools that are loaded at run time.
 
-use super::{Ask, Card, Depth, Felt, LANES, Points, Region, Shape, Slab, Surface, Tool};
+use super::{
+    Ask, Card, Depth, Felt, LANES, Points, Region, Senses, Shape, Slab, Surface, Tool, Wanted,
+};
 use crate::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
@@ -134,6 +136,12 @@ impl Tool for Interpreted {
             #[inline(always)]
             || self.all(ask, points, length, felt),
         ));
+    }
+}
+
+impl Senses for Interpreted {
+    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
+        self.evaluate(level, W::ASK, points, length, felt);
     }
 }
 

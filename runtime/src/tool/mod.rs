@@ -50,6 +50,25 @@ pub trait Tool: Send + Sync {
     }
 }
 
+/// What a caller wants, as a type.
+pub trait Wanted {
+    /// What is wanted.
+    const ASK: Ask;
+}
+
+/// A tool that knows what is wanted of it when it is compiled, so that no code is made for what nobody
+/// wants. Every compiled tool does; a `dyn Tool` learns it when it is asked.
+pub trait Senses: Tool {
+    /// [`Tool::evaluate`] for what a type says.
+    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt);
+}
+
+impl Senses for dyn Tool + '_ {
+    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
+        self.evaluate(level, W::ASK, points, length, felt);
+    }
+}
+
 /// What a caller wants of every point inside; what it does not want is not computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ask {

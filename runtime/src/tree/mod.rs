@@ -54,6 +54,7 @@ pub(crate) struct Skin {
 #[derive(Clone, Debug)]
 pub struct Tree {
     pub(crate) origin: Point3<f64>,
+    /// A power of two, if the part is in the unit that it came in.
     pub(crate) scale: f64,
     /// From the root's children down to the leaves' boxes.
     pub(crate) levels: Vec<Vec<Boxes>>,
@@ -73,6 +74,13 @@ impl Tree {
     /// The tree of a cloud.
     pub fn new(cloud: &Cloud) -> Tree {
         build::build(cloud)
+    }
+
+    /// Multiplies every length.
+    pub(crate) fn scale_by(&mut self, factor: f64) {
+        self.origin *= factor;
+        self.scale *= factor;
+        self.weight *= factor * factor;
     }
 
     /// How many points there are.

@@ -49,7 +49,7 @@ impl Sight {
     /// of the factors themselves it errs by less than 8 units of roundoff of the sum of their
     /// sizes. Twice that is allowed for. No part is looked at that is farther away than tool and
     /// part are large, so the margin is the same at every pose.
-    pub(crate) fn new(tree: &Tree, tool: &dyn Tool, length: f64) -> Sight {
+    pub(crate) fn new<T: Tool + ?Sized>(tree: &Tree, tool: &T, length: f64) -> Sight {
         let card = tool.card();
         let unit = tree.scale / length;
         let part = unit * 3f64.sqrt() * f64::from(tree.size);

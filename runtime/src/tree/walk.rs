@@ -6,7 +6,11 @@ use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, f32x16, m
 
 /// The descent, with its memory kept between queries: nodes of a level and of the next, in turns.
 #[derive(Default)]
-pub(crate) struct Walker([Nodes; 2]);
+pub(crate) struct Walker {
+    nodes: [Nodes; 2],
+    /// Which of the two has the leaves.
+    found: usize,
+}
 
 /// Nodes or leaves that the tool may reach, and a block of room behind them.
 #[derive(Default)]
@@ -28,15 +32,19 @@ pub(crate) struct Near {
 }
 
 impl Nodes {
-    /// How many there are.
-    pub(crate) fn len(&self) -> usize {
-        self.count
-    }
-
     #[inline(always)]
     pub(super) fn get(&self, at: usize) -> Near {
         let middle = [self.middle[0][at], self.middle[1][at], self.middle[2][at]];
         Near { index: self.index[at], slabs: self.slabs[at], middle }
+    }
+
+    /// All of so many.
+    fn all(&mut self, count: usize) {
+        self.room(count);
+        self.count = count;
+        for (place, index) in self.index[..count].iter_mut().zip(0..) {
+            *place = index;
+        }
     }
 
     /// Makes room for so many and a block more.
@@ -51,36 +59,26 @@ impl Nodes {
 }
 
 impl Walker {
-    /// The leaves that may have a point inside the tool, in order.
-    pub(crate) fn leaves(
-        &mut self,
-        level: Level,
-        tree: &Tree,
-        sight: &Sight,
-        view: &View,
-    ) -> &Nodes {
-        if !sight.fits {
-            return self.all(tree);
+    /// Finds the leaves that may have a point inside the tool; how many there are.
+    pub(crate) fn find(&mut self, level: Level, tree: &Tree, sight: &Sight, view: &View) -> usize {
+        let [first, _] = &mut self.nodes;
+        if sight.fits {
+            first.room(1);
+            first.count = 1;
+            first.index[0] = 0;
+            first.slabs[0] = sight.reach.all;
+            dispatch!(level, simd => descend(simd, &mut self.nodes, tree, sight, view));
+            self.found = tree.levels.len() % 2;
+        } else {
+            first.all(tree.leaves.len());
+            self.found = 0;
         }
-        let [first, _] = &mut self.0;
-        first.room(1);
-        first.count = 1;
-        first.index[0] = 0;
-        first.slabs[0] = sight.reach.all;
-        dispatch!(level, simd => descend(simd, self, tree, sight, view));
-        &self.0[tree.levels.len() % 2]
+        self.leaves().count
     }
 
-    /// Every leaf.
-    fn all(&mut self, tree: &Tree) -> &Nodes {
-        let [nodes, _] = &mut self.0;
-        let count = tree.leaves.len();
-        nodes.room(count);
-        nodes.count = count;
-        for (place, leaf) in nodes.index.iter_mut().zip(0..count as u32) {
-            *place = leaf;
-        }
-        nodes
+    /// The leaves that were found, in order.
+    pub(crate) fn leaves(&self) -> &Nodes {
+        &self.nodes[self.found]
     }
 }
 
@@ -150,10 +148,10 @@ pub(super) fn within<S: Simd>(
     (hit.to_bitmask() as u32, by)
 }
 
-/// From the root, which is the first of the walker's nodes, down to the leaves.
+/// From the root, which is in the first of the two, down to the leaves.
 #[inline(always)]
-fn descend<S: Simd>(simd: S, walker: &mut Walker, tree: &Tree, sight: &Sight, view: &View) {
-    let [even, odd] = &mut walker.0;
+fn descend<S: Simd>(simd: S, nodes: &mut [Nodes; 2], tree: &Tree, sight: &Sight, view: &View) {
+    let [even, odd] = nodes;
     for (level, boxes) in tree.levels.iter().enumerate() {
         if level % 2 == 0 {
             below(simd, boxes, sight, view, even, odd);

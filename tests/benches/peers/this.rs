@@ -4,7 +4,7 @@ use crate::contender::{Answer, Contender, Workpiece};
 use tools_library::Fig73;
 use touchoff::{Pose, Probe};
 
-pub(crate) struct This<'a>(Probe<'a>);
+pub(crate) struct This<'a>(Probe<'a, Fig73>);
 
 impl<'a> This<'a> {
     pub(crate) fn new(piece: &'a Workpiece) -> Self {

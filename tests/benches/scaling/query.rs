@@ -10,10 +10,10 @@ use touchoff::scenes::Path;
 use touchoff::{Part, Pose, Probe};
 
 /// Force, torque and all else of the contact.
-pub(crate) struct Wrench<'a>(Probe<'a>);
+pub(crate) struct Wrench<'a>(Probe<'a, Fig73>);
 
 /// Whether there is contact; it counts as one point.
-struct Detect<'a>(Probe<'a>);
+struct Detect<'a>(Probe<'a, Fig73>);
 
 impl<'a> Wrench<'a> {
     pub(crate) fn new(part: &'a Part) -> Wrench<'a> {

@@ -1,0 +1,79 @@
+//! How deep a contact is, and what a posture is judged by (Ho 1999, chapter 6).
+
+use super::Beside;
+use crate::pose::Pose;
+use crate::tool::{Card, LANES};
+use nalgebra::Point3;
+
+/// The deepest point of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deepest {
+    /// Its penetration depth, in the part's unit.
+    pub depth: f64,
+    /// Where it is, in the world.
+    pub point: Point3<f64>,
+    /// The triangle it lies on.
+    pub triangle: u32,
+}
+
+/// What a posture is judged by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Posture {
+    /// How many points of the part are inside the tool.
+    pub colliding: usize,
+    /// The deepest of them.
+    pub deepest: Option<Deepest>,
+    /// The least niceness of all points; `None` without contact.
+    pub niceness: Option<f64>,
+    /// The penetration depth of the deepest point at a surface that does not cut, in the part's unit;
+    /// `None` if no such surface touches.
+    pub body: Option<f64>,
+}
+
+/// The candidates that are inside.
+fn inside(beside: &Beside<'_>) -> impl Iterator<Item = usize> {
+    beside.felt.inside.iter().enumerate().flat_map(|(block, bits)| {
+        let mut left = *bits;
+        std::iter::from_fn(move || {
+            let lane = (left != 0).then(|| left.trailing_zeros() as usize)?;
+            left &= left - 1;
+            Some(block * LANES + lane)
+        })
+    })
+}
+
+/// The deepest of what was felt, the first of several.
+pub(super) fn deepest(beside: &Beside<'_>, pose: &Pose) -> Option<Deepest> {
+    let mut most = None;
+    for candidate in inside(beside) {
+        let depth = beside.felt.depth[candidate];
+        if most.is_none_or(|(most, _)| depth > most) {
+            most = Some((depth, candidate));
+        }
+    }
+    most.map(|(depth, candidate)| at(beside, pose, candidate, depth))
+}
+
+/// A candidate as the deepest; its depth is in the tool's unit.
+pub(super) fn at(beside: &Beside<'_>, pose: &Pose, candidate: usize, depth: f64) -> Deepest {
+    let place = beside.candidates.indices()[candidate] as usize;
+    let tree = beside.part.tree();
+    let point = pose.tip() + beside.view.relative(tree, place);
+    Deepest { depth: depth * beside.length, point, triangle: tree.triangle(place) }
+}
+
+/// What was felt as a posture.
+pub(super) fn posture(beside: &Beside<'_>, card: &Card, pose: &Pose) -> Posture {
+    let felt = &beside.felt;
+    let mut posture = Posture { deepest: deepest(beside, pose), ..Posture::default() };
+    for candidate in inside(beside) {
+        posture.colliding += 1;
+        let niceness = felt.niceness[candidate];
+        posture.niceness = Some(posture.niceness.map_or(niceness, |least| least.min(niceness)));
+        if !card.surface_of(felt.region[candidate] as usize).cutting {
+            let depth = felt.depth[candidate] * beside.length;
+            posture.body = Some(posture.body.map_or(depth, |most| most.max(depth)));
+        }
+    }
+    posture
+}

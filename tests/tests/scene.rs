@@ -1,0 +1,125 @@
+//! Scenes of several parts and tools: each pair as a probe alone has it, wherever the part is put.
+
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use touchoff::mesh::shapes;
+use touchoff::scenes::Path;
+use touchoff::{Part, Pose, Probe, Scene, Tool, Unit, Wrench};
+use touchoff_tests::measure::kernels::{part, poses};
+
+fn fig73() -> &'static dyn Tool {
+    tools_library::find("Fig73").expect("a tool of the library")
+}
+
+fn near(what: &str, found: Vector3<f64>, expected: Vector3<f64>) {
+    let off = (found - expected).norm();
+    assert!(off <= 1e-9 * (1.0 + expected.norm()), "{what}: {found} for {expected}");
+}
+
+#[test]
+fn a_pair_is_a_probe() {
+    let part = part(5_000);
+    let mut scene = Scene::new(Unit::Millimetre);
+    let tube = scene.add_part(&part, Pose::default()).expect("millimetres");
+    let tool = scene.add_tool(fig73());
+    let mut probe = Probe::new(&part, fig73());
+    for pose in poses(Path::Hold, 200) {
+        scene.move_tool(tool, pose);
+        let expected = probe.wrench(&pose);
+        // The second time the answer is remembered.
+        for _ in 0..2 {
+            assert_eq!(scene.between(tool, tube), expected);
+        }
+        assert_eq!(scene.wrench(tool), expected);
+        assert_eq!(scene.detect(tool), probe.detect(&pose).then_some(tube));
+        assert_eq!(scene.deepest(tool).map(|(_, deepest)| deepest), expected.deepest);
+    }
+}
+
+#[test]
+fn what_moves_together_feels_the_same() {
+    let part = part(5_000);
+    let moved = Isometry3::from_parts(
+        Translation3::new(300.0, -40.0, 7.0),
+        UnitQuaternion::from_euler_angles(0.4, -1.1, 2.3),
+    );
+    let mut scene = Scene::new(Unit::Millimetre);
+    let tube = scene.add_part(&part, moved.try_into().expect("finite")).expect("millimetres");
+    let tool = scene.add_tool(fig73());
+    let mut probe = Probe::new(&part, fig73());
+    let mut contacts = 0;
+    for pose in poses(Path::Hold, 100) {
+        let expected = probe.wrench(&pose);
+        scene.move_tool(tool, Pose::try_from(moved * pose.isometry()).expect("finite"));
+        let found = scene.between(tool, tube);
+        // A point within rounding of the surface may change sides.
+        assert!(found.colliding.abs_diff(expected.colliding) <= 1);
+        near("force", found.force, moved * expected.force);
+        near("torque", found.torque, moved * expected.torque);
+        if let (Some(found), Some(expected)) = (found.deepest, expected.deepest) {
+            near("deepest", found.point.coords, (moved * expected.point).coords);
+            contacts += 1;
+        }
+    }
+    assert!(contacts > 50);
+}
+
+#[test]
+fn parts_add_up_and_move() {
+    let cube = shapes::cuboid(Point3::origin(), Point3::new(20., 20., 20.), Unit::Millimetre);
+    let cube = Part::from_mesh(&cube.expect("a cube"), 4_000, 1).expect("a part");
+    let mut scene = Scene::new(Unit::Millimetre);
+    let beside = |x: f64| Pose::try_from(Isometry3::translation(x, 0.0, 0.0)).expect("finite");
+    let left = scene.add_part(&cube, beside(-20.5)).expect("millimetres");
+    let tool = scene.add_tool(fig73());
+    let right = scene.add_part(&cube, beside(0.5)).expect("millimetres");
+    // The cutter of radius 1 stands in a slot 1 wide.
+    scene.move_tool(
+        tool,
+        Pose::from_axis(Point3::new(0.0, 10.0, 15.0), Vector3::z()).expect("unit"),
+    );
+    let [a, b] = [left, right].map(|part| scene.between(tool, part));
+    assert!(a.colliding > 10 && b.colliding > 10 && a.force.x > 0.0 && b.force.x < 0.0);
+    let both = scene.wrench(tool);
+    let mut sum = Wrench { force: a.force + b.force, torque: a.torque + b.torque, ..a };
+    sum.colliding += b.colliding;
+    sum.integral += b.integral;
+    sum.energy += b.energy;
+    assert_eq!((both.force, both.torque, both.colliding), (sum.force, sum.torque, sum.colliding));
+    assert_eq!((both.integral, both.energy), (sum.integral, sum.energy));
+    assert_eq!(both.depth(), a.depth().max(b.depth()));
+    assert_eq!(scene.detect(tool), Some(left));
+    scene.move_part(left, beside(-60.0));
+    assert_eq!((scene.wrench(tool), scene.detect(tool)), (b, Some(right)));
+}
+
+#[test]
+fn a_part_in_another_unit_is_converted() {
+    let part = part(5_000);
+    let pose = Path::Inside.pose(3400, 10_000);
+    let expected = Probe::new(&part, fig73()).wrench(&pose);
+    let inches = part.to(Unit::Inch);
+    let mut scene = Scene::new(Unit::Millimetre);
+    let error = scene.add_part(&inches, Pose::default()).expect_err("inches");
+    assert!(error.to_string().contains("inch") && error.to_string().contains("Part::to"));
+    let area = inches.survey().expect("of a mesh").area;
+    let millimetres = inches.to(Unit::Millimetre);
+    let again = millimetres.survey().expect("of a mesh").area;
+    assert!((again / area - 25.4f64.powi(2)).abs() < 1e-9);
+    scene.add_part(&millimetres, Pose::default()).expect("millimetres");
+    let tool = scene.add_tool(fig73());
+    scene.move_tool(tool, pose);
+    let found = scene.wrench(tool);
+    assert_eq!(found.colliding, expected.colliding);
+    near("force", found.force, expected.force);
+}
+
+#[test]
+fn many_poses_at_once_are_one_after_the_other() {
+    let part = part(5_000);
+    let poses = poses(Path::Outside, 3_000);
+    let mut probe = Probe::new(&part, &tools_library::Fig73);
+    let together = probe.map(&poses, |probe, pose| probe.wrench(pose));
+    for (pose, found) in poses.iter().zip(together) {
+        assert_eq!(probe.wrench(pose), found);
+    }
+}
