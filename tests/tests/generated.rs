@@ -10,9 +10,9 @@ use tool_dsl::source::Source;
 use tool_dsl::{compile, emit};
 
 /// Methods that generated code may call: none panics, none is a libm function.
-const METHODS: [&str; 3] = ["sqrt", "abs", "of"];
+const METHODS: [&str; 5] = ["sqrt", "abs", "of", "single", "take"];
 /// Functions that it may call.
-const FUNCTIONS: [&str; 12] = [
+const FUNCTIONS: [&str; 14] = [
     "Some",
     "Lane::of",
     "Lane::le",
@@ -21,6 +21,8 @@ const FUNCTIONS: [&str; 12] = [
     "Lane::min",
     "Lane::max",
     "Lane::quotient",
+    "L::any",
+    "FeltLanes::nothing",
     "Card::new",
     "Region::new",
     "Slab::new",

@@ -36,11 +36,8 @@ pub struct Contact {
 pub(super) fn list(beside: &Beside<'_>, card: &Card, pose: &Pose, contacts: &mut Vec<Contact>) {
     let (felt, tree) = (&beside.felt, beside.part.tree());
     let rotation = pose.rotation();
-    for (at, index) in beside.candidates.indices().iter().enumerate() {
-        if felt.inside[at / crate::tool::LANES] >> (at % crate::tool::LANES) & 1 == 0 {
-            continue;
-        }
-        let index = *index as usize;
+    for at in felt.places() {
+        let index = beside.candidates.indices()[at] as usize;
         let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
         let region = felt.region[at] as usize;
         contacts.push(Contact {

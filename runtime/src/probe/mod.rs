@@ -168,7 +168,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         // A few leaves at a time: the first hit ends the question.
         (0..leaves).step_by(FEW).any(|from| {
             self.beside.search(self.tool, from..leaves.min(from + FEW), false);
-            self.feel::<Inside>() && self.beside.felt.inside.iter().any(|block| *block != 0)
+            self.feel::<Inside>()
         })
     }
 
@@ -245,14 +245,14 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         self.feel::<W>()
     }
 
-    /// Evaluates the candidates; whether there are any.
+    /// Evaluates the candidates; whether any is inside.
     fn feel<W: Wanted>(&mut self) -> bool {
         let Beside { level, candidates, length, felt, .. } = &mut self.beside;
-        let any = !candidates.points.is_empty();
-        if any {
-            self.tool.feel::<W>(*level, &candidates.points, *length, felt);
+        if candidates.points.is_empty() {
+            return false;
         }
-        any
+        self.tool.feel::<W>(*level, &candidates.points, *length, felt);
+        felt.inside.iter().any(|block| *block != 0)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Beside;
 use crate::pose::Pose;
-use crate::tool::{Card, LANES};
+use crate::tool::Card;
 use nalgebra::Point3;
 
 /// The deepest point of a contact.
@@ -30,22 +30,10 @@ pub struct Posture {
     pub body: Option<f64>,
 }
 
-/// The candidates that are inside.
-fn inside(beside: &Beside<'_>) -> impl Iterator<Item = usize> {
-    beside.felt.inside.iter().enumerate().flat_map(|(block, bits)| {
-        let mut left = *bits;
-        std::iter::from_fn(move || {
-            let lane = (left != 0).then(|| left.trailing_zeros() as usize)?;
-            left &= left - 1;
-            Some(block * LANES + lane)
-        })
-    })
-}
-
 /// The deepest of what was felt, the first of several.
 pub(super) fn deepest(beside: &Beside<'_>, pose: &Pose) -> Option<Deepest> {
     let mut most = None;
-    for candidate in inside(beside) {
+    for candidate in beside.felt.places() {
         let depth = beside.felt.depth[candidate];
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
@@ -65,9 +53,9 @@ pub(super) fn at(beside: &Beside<'_>, pose: &Pose, candidate: usize, depth: f64)
 /// What was felt as a posture.
 pub(super) fn posture(beside: &Beside<'_>, card: &Card, pose: &Pose) -> Posture {
     let felt = &beside.felt;
-    let mut posture = Posture { deepest: deepest(beside, pose), ..Posture::default() };
-    for candidate in inside(beside) {
-        posture.colliding += 1;
+    let colliding = felt.count();
+    let mut posture = Posture { colliding, deepest: deepest(beside, pose), ..Posture::default() };
+    for candidate in felt.places() {
         let niceness = felt.niceness[candidate];
         posture.niceness = Some(posture.niceness.map_or(niceness, |least| least.min(niceness)));
         if !card.surface_of(felt.region[candidate] as usize).cutting {

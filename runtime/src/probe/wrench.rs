@@ -103,7 +103,7 @@ struct Totals {
 
 /// Sums what the probe has just felt.
 pub(super) fn sum(beside: &Beside<'_>, pose: &Pose) -> Wrench {
-    let colliding = beside.felt.inside.iter().map(|block| block.count_ones() as usize).sum();
+    let colliding = beside.felt.count();
     let totals = dispatch!(beside.level, simd => totals(simd, beside, pose));
     let rotation = pose.rotation();
     let half =

@@ -33,7 +33,7 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
 
     /// What [`Evaluators::near_lanes`] compares with, for points that are known to within `margin`, at
     /// most a thousandth of the tool's largest coordinate.
-    fn near_bounds(margin: f64) -> Vec<f32>;
+    fn near_bounds(margin: f64) -> impl AsRef<[f64]>;
     /// Whether points given in single precision may belong to the solid: every one that is within the
     /// bounds' margin of a point of it does.
     fn near_lanes<L: Lane>(point: [L; 3], bounds: &[f32]) -> L::Mask;
@@ -79,7 +79,8 @@ impl<L: Lane> FeltLanes<L> {
     }
 }
 
-/// Returns what is computed on vectors, at levels that have them.
+/// Returns what is computed on vectors, at levels that have those of four doubles at least, or are all
+/// there is: with two a side, a tool would be compiled to four times the code for nothing.
 macro_rules! on_vectors {
     ($level:expr, $simd:ident => $body:expr) => {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -91,12 +92,6 @@ macro_rules! on_vectors {
                 );
             }
             if let Some($simd) = $level.as_avx2() {
-                return $simd.vectorize(
-                    #[inline(always)]
-                    || $body,
-                );
-            }
-            if let Some($simd) = $level.as_sse4_2() {
                 return $simd.vectorize(
                     #[inline(always)]
                     || $body,
@@ -129,7 +124,7 @@ impl<T: Evaluators> Tool for T {
     }
 
     fn near_bounds(&self, margin: f64) -> Vec<f32> {
-        T::near_bounds(margin)
+        T::near_bounds(margin).as_ref().iter().map(|bound| *bound as f32).collect()
     }
 
     fn search(&self, search: &mut Search<'_>) {

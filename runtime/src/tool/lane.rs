@@ -29,6 +29,11 @@ pub trait Lane:
 
     /// A constant in all the lanes that `self` has.
     fn of(self, value: f64) -> Self;
+    /// One given in single precision.
+    #[inline(always)]
+    fn single(self, value: f32) -> Self {
+        self.of(f64::from(value))
+    }
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.

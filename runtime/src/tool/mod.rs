@@ -201,6 +201,23 @@ pub struct Felt {
 }
 
 impl Felt {
+    /// How many points are inside.
+    pub(crate) fn count(&self) -> usize {
+        self.inside.iter().map(|block| block.count_ones() as usize).sum()
+    }
+
+    /// Which points are inside, in order.
+    pub(crate) fn places(&self) -> impl Iterator<Item = usize> {
+        self.inside.iter().enumerate().flat_map(|(block, bits)| {
+            let mut left = *bits;
+            std::iter::from_fn(move || {
+                let lane = (left != 0).then(|| left.trailing_zeros() as usize)?;
+                left &= left - 1;
+                Some(block * LANES + lane)
+            })
+        })
+    }
+
     /// Makes room for what is asked of so many points.
     pub(crate) fn reserve(&mut self, points: &Points, ask: Ask) {
         let blocks = points.count.div_ceil(LANES);

@@ -109,23 +109,42 @@ impl Section<'_> {
     fn output(&self, code: &mut Tokens, output: &Output, mask: &str, scope: &mut BTreeSet<Id>) {
         let values = (output.of)(&self.tool.model.regions[self.region].outputs);
         self.writer.lets(code, values.iter().copied(), scope);
-        for (k, value) in values.iter().enumerate() {
-            let place = |code: &mut Tokens| {
-                code.word("felt").sign(".").word(output.name);
-                if output.vector {
-                    code.bracket(|code| {
-                        code.count(k);
-                    });
-                }
-            };
-            place(code);
-            code.sign("=").lane("select", |code| {
+        let field = |code: &mut Tokens| {
+            code.word("felt").sign(".").word(output.name);
+        };
+        let select = |code: &mut Tokens, value: &Id, other: &dyn Fn(&mut Tokens)| {
+            code.lane("select", |code| {
                 code.word(mask).sign(",");
                 self.writer.value(code, *value);
                 code.sign(",");
-                place(code);
+                other(code);
             });
+        };
+        if let [value] = values[..] {
+            field(code);
+            code.sign("=");
+            select(code, &value, &field);
             code.sign(";");
+            return;
         }
+        let parts = ["along_x", "along_y", "along_z"];
+        code.word("let").bracket(|code| {
+            for part in parts {
+                code.word(part).sign(",");
+            }
+        });
+        code.sign("=");
+        field(code);
+        code.sign(";");
+        field(code);
+        code.sign("=").bracket(|code| {
+            for (value, part) in values.iter().zip(parts) {
+                select(code, value, &|code| {
+                    code.word(part);
+                });
+                code.sign(",");
+            }
+        });
+        code.sign(";");
     }
 }

@@ -134,22 +134,29 @@ impl Bounds {
     /// The square of the same; of a negative number, 0.
     pub(super) fn least_squared(&mut self, c: f64, slack: &Slack) -> String {
         let (c, margin) = (literal(c - slack.rounding), literal(slack.margin));
-        self.put(quote! { (#c - margin * #margin).max(0.0).powi(2) })
+        self.put(quote! { Lane::max(#c - margin * #margin, 0.0) * Lane::max(#c - margin * #margin, 0.0) })
     }
 
-    /// The function that computes them, and their names taken from a slice.
-    pub(super) fn done(self) -> [TokenStream; 2] {
+    /// The function that computes them, and code that has them in lanes.
+    pub(super) fn done(self, code: &TokenStream) -> [TokenStream; 2] {
         let (all, names) = (&self.0, (0..self.0.len()).map(|k| format_ident!("bound{k}")));
         let names: Vec<Ident> = names.collect();
+        let count = names.len();
         let compute = quote! {
-            fn near_bounds(margin: f64) -> Vec<f32> {
-                vec![#((#all) as f32),*]
+            fn near_bounds(margin: f64) -> impl AsRef<[f64]> {
+                let bounds: [f64; #count] = [#(#all),*];
+                bounds
             }
         };
         let take = quote! {
-            // Of what is not this tool's, nothing.
-            let &[#(#names),*] = bounds else { return Lane::lt(z, z) };
-            #(let #names = z.of(f64::from(#names));)*
+            match bounds {
+                &[#(#names),*] => {
+                    #(let #names = z.single(#names);)*
+                    #code
+                }
+                // Of what is not this tool's, nothing.
+                _ => Lane::lt(z, z),
+            }
         };
         [compute, take]
     }

@@ -75,7 +75,7 @@ pub fn skeleton(name: &str) -> TokenStream {
     let mut functions = quote! { fn card() -> &'static Card { ::core::unreachable!() } };
     let empty = quote! { ::core::unreachable!() };
     functions.extend(quote! {
-        fn near_bounds(margin: f64) -> Vec<f32> { #empty }
+        fn near_bounds(margin: f64) -> impl AsRef<[f64]> { [0.0; 0] }
         fn near_lanes<L: Lane>(point: [L; 3], bounds: &[f32]) -> L::Mask { #empty }
         fn feel_lanes<L: Lane>(
             point: [L; 3], length: L, present: L::Mask, ask: Ask,

@@ -60,13 +60,12 @@ pub(super) fn near(tool: &Checked) -> TokenStream {
         code.sign(";");
     }
     logic(&mut code, &tool.plan.inside);
-    let (code, [compute, take]) = (code.done(), bounds.done());
+    let [compute, code] = bounds.done(&code.done());
     quote! {
         #compute
 
         #[inline(always)]
         fn near_lanes<L: Lane>([x, y, z]: [L; 3], bounds: &[f32]) -> L::Mask {
-            #take
             let q = x * x + y * y;
             let d = q.sqrt();
             #code
