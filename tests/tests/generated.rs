@@ -100,6 +100,20 @@ fn every_tool_of_the_library_is_straight_line_code() {
     assert_eq!(seen, tools_library::TOOLS.len());
 }
 
+#[test]
+fn every_tool_of_the_library_has_a_feature() {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library");
+    let there = std::fs::read_dir(package.join("tools")).expect("the library's folder");
+    let files = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut tools: Vec<String> =
+        files.filter_map(|file| file.strip_suffix(".tool").map(str::to_owned)).collect();
+    tools.sort();
+    let manifest = std::fs::read_to_string(package.join("Cargo.toml")).expect("its manifest");
+    let features = manifest.lines().filter_map(|line| line.strip_suffix(" = []"));
+    let features: Vec<&str> = features.filter(|feature| *feature != "all").collect();
+    assert_eq!(features, tools);
+}
+
 macro_rules! snapshots {
     ($($test:ident),*) => {
         $(#[test]

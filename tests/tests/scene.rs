@@ -98,13 +98,14 @@ fn a_part_in_another_unit_is_converted() {
     let pose = Path::Inside.pose(3400, 10_000);
     let expected = Probe::new(&part, fig73()).wrench(&pose);
     let inches = part.to(Unit::Inch);
-    let mut scene = Scene::new(Unit::Millimetre);
-    let error = scene.add_part(&inches, Pose::default()).expect_err("inches");
+    let error = Scene::new(Unit::Millimetre).add_part(&inches, Pose::default());
+    let error = error.expect_err("inches");
     assert!(error.to_string().contains("inch") && error.to_string().contains("Part::to"));
     let area = inches.survey().expect("of a mesh").area;
     let millimetres = inches.to(Unit::Millimetre);
     let again = millimetres.survey().expect("of a mesh").area;
     assert!((again / area - 25.4f64.powi(2)).abs() < 1e-9);
+    let mut scene = Scene::new(Unit::Millimetre);
     scene.add_part(&millimetres, Pose::default()).expect("millimetres");
     let tool = scene.add_tool(fig73());
     scene.move_tool(tool, pose);

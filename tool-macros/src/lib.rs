@@ -81,6 +81,9 @@ pub fn tool(input: TokenStream) -> TokenStream {
 /// `tool_library!("tools")`: the types of all `.tool` files of a folder, in the order of their
 /// names, and `TOOLS`, a list of them all. A file that is added needs a build script that says
 /// `cargo::rerun-if-changed=tools`.
+///
+/// If that script also says `cargo::rustc-env=TOUCHOFF_TOOLS=ball,drill`, only these files are compiled:
+/// so a package's features choose among its tools.
 #[proc_macro]
 pub fn tool_library(input: TokenStream) -> TokenStream {
     let folder = syn::parse_macro_input!(input as LitStr);
@@ -106,7 +109,9 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
         }
     }
     files.sort();
-    if files.is_empty() {
+    if let Ok(wanted) = std::env::var("TOUCHOFF_TOOLS") {
+        files = chosen(&wanted, &files, folder)?;
+    } else if files.is_empty() {
         let message = format!("the folder `{}` has no .tool file", folder.value());
         return Err(syn::Error::new(folder.span(), message));
     }
@@ -126,6 +131,23 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
         /// Every tool of the library, in the order of their files' names.
         pub static TOOLS: &[&dyn ::touchoff::Tool] = &[#(&#names),*];
     })
+}
+
+/// The files that are wanted, by their names without an ending and separated by commas.
+fn chosen(wanted: &str, files: &[PathBuf], folder: &LitStr) -> syn::Result<Vec<PathBuf>> {
+    let wanted = wanted.split(',').filter(|name| !name.is_empty());
+    wanted
+        .map(|name| {
+            let file = files.iter().find(|path| path.file_stem().is_some_and(|stem| stem == name));
+            file.cloned().ok_or_else(|| {
+                let message = format!(
+                    "`TOUCHOFF_TOOLS` asks for `{name}`, and the folder `{}` has no {name}.tool",
+                    folder.value()
+                );
+                syn::Error::new(folder.span(), message)
+            })
+        })
+        .collect()
 }
 
 /// The package whose source the macro stands in.

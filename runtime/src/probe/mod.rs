@@ -83,9 +83,6 @@ impl Wanted for Everything {
     const ASK: Ask = Ask::EVERYTHING;
 }
 
-/// How many leaves are asked at a time for a first point.
-const FEW: usize = 8;
-
 impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// A probe with the thesis's law, area weights and the tip for a compliance centre.
     pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
@@ -164,10 +161,10 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// Whether any point of the part is inside the tool or on its surface. Stops at the first.
     pub fn detect(&mut self, pose: &Pose) -> bool {
-        let leaves = self.beside.look(pose);
-        // A few leaves at a time: the first hit ends the question.
-        (0..leaves).step_by(FEW).any(|from| {
-            self.beside.search(self.tool, from..leaves.min(from + FEW), false);
+        let nodes = self.beside.look(pose);
+        // Sixteen leaves at a time: the first hit ends the question.
+        (0..nodes).any(|node| {
+            self.beside.search(self.tool, node..node + 1, false);
             self.feel::<Inside>()
         })
     }
@@ -237,11 +234,11 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// Finds the candidates of all leaves and evaluates them; whether there are any.
     fn ask<W: Wanted>(&mut self, pose: &Pose, skin: bool) -> bool {
-        let leaves = self.beside.look(pose);
-        if leaves == 0 {
+        let nodes = self.beside.look(pose);
+        if nodes == 0 {
             return false;
         }
-        self.beside.search(self.tool, 0..leaves, skin);
+        self.beside.search(self.tool, 0..nodes, skin);
         self.feel::<W>()
     }
 
@@ -257,7 +254,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 }
 
 impl Beside<'_> {
-    /// How many leaves the tool may reach from a pose.
+    /// How many nodes above leaves the tool may reach from a pose.
     fn look(&mut self, pose: &Pose) -> usize {
         let tree = self.part.tree();
         if !self.sight.look(tree, pose, &mut self.view) {
@@ -266,16 +263,16 @@ impl Beside<'_> {
         self.walker.find(self.level, tree, &self.sight, &self.view)
     }
 
-    /// Finds the candidates of some leaves.
+    /// Finds the candidates of the leaves under some of them.
     fn search<T: Tool + ?Sized>(&mut self, tool: &T, some: Range<usize>, skin: bool) {
         self.candidates.clear();
+        let (level, tree, sight, view) = (self.level, self.part.tree(), &self.sight, &self.view);
         tool.search(&mut Search {
-            level: self.level,
-            tree: self.part.tree(),
-            sight: &self.sight,
-            view: &self.view,
-            leaves: self.walker.leaves(),
-            some,
+            level,
+            tree,
+            sight,
+            view,
+            leaves: self.walker.leaves(level, tree, sight, view, some),
             skin,
             candidates: &mut self.candidates,
             some_in: &mut self.some_in,

@@ -6,7 +6,6 @@ use super::{Candidates, Sight, Tree, View, WIDTH};
 use crate::tool::{Evaluators, Single, Singles};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use std::marker::PhantomData;
-use std::ops::Range;
 
 /// A part seen from a tool at a pose, leaves that the tool may reach, and room for those of their
 /// points that may be inside.
@@ -16,8 +15,6 @@ pub struct Search<'a> {
     pub(crate) sight: &'a Sight,
     pub(crate) view: &'a View,
     pub(crate) leaves: &'a Nodes,
-    /// Which of the leaves.
-    pub(crate) some: Range<usize>,
     /// Whether what the part has at a point, its normal and weight, is wanted.
     pub(crate) skin: bool,
     pub(crate) candidates: &'a mut Candidates,
@@ -77,9 +74,9 @@ impl Search<'_> {
         let (tree, fits, rows) = (self.tree, self.sight.fits, self.view.rows);
         // First which leaves have some: a branch at each leaf would be mispredicted at every other.
         let mut count = 0;
-        self.some_in.resize(self.some.len() + 1, (0, 0));
+        self.some_in.resize(self.leaves.len() + 1, (0, 0));
         let some_in = &mut self.some_in[..];
-        for at in self.some.clone() {
+        for at in 0..self.leaves.len() {
             let leaf = self.leaves.get(at);
             let offset = load(simd, &tree.leaves[leaf.index as usize].offset);
             let hits = if fits {
@@ -109,8 +106,8 @@ impl Search<'_> {
 
     /// The same, to the bit, point by point.
     pub(crate) fn one_by_one<T: Evaluators>(&mut self, test: &ByTool<T>) {
-        self.candidates.room(self.some.len(), self.skin);
-        for at in self.some.clone() {
+        self.candidates.room(self.leaves.len(), self.skin);
+        for at in 0..self.leaves.len() {
             let leaf = self.leaves.get(at);
             let points = &self.tree.leaves[leaf.index as usize].offset;
             for lane in 0..WIDTH {

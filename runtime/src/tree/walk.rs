@@ -3,13 +3,14 @@
 use super::view::{Reach, SLABS};
 use super::{Boxes, Sight, Tree, View, WIDTH};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16, u32x16};
+use std::ops::Range;
 
 /// The descent, with its memory kept between queries: nodes of a level and of the next, in turns.
 #[derive(Default)]
 pub(crate) struct Walker {
     nodes: [Nodes; 2],
-    /// Which of the two has the leaves.
-    found: usize,
+    /// Which of the two has the nodes above the leaves.
+    above: usize,
 }
 
 /// Nodes or leaves that the tool may reach, and a block of room behind them.
@@ -32,6 +33,11 @@ pub(crate) struct Near {
 }
 
 impl Nodes {
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.count
+    }
+
     #[inline(always)]
     pub(super) fn get(&self, at: usize) -> Near {
         let middle = [self.middle[0][at], self.middle[1][at], self.middle[2][at]];
@@ -59,26 +65,42 @@ impl Nodes {
 }
 
 impl Walker {
-    /// Finds the leaves that may have a point inside the tool; how many there are.
+    /// Finds the nodes above the leaves that the tool may reach; how many there are.
     pub(crate) fn find(&mut self, level: Level, tree: &Tree, sight: &Sight, view: &View) -> usize {
-        let [first, _] = &mut self.nodes;
+        let above = tree.levels.len() - 1;
+        self.above = above % 2;
         if sight.fits {
+            let [first, _] = &mut self.nodes;
             first.room(1);
             first.count = 1;
             first.index[0] = 0;
             first.slabs[0] = sight.reach.all;
-            dispatch!(level, simd => descend(simd, &mut self.nodes, tree, sight, view));
-            self.found = tree.levels.len() % 2;
+            let levels = &tree.levels[..above];
+            dispatch!(level, simd => descend(simd, &mut self.nodes, levels, sight, view));
         } else {
-            first.all(tree.leaves.len());
-            self.found = 0;
+            self.nodes[self.above].all(tree.levels[above].len());
         }
-        self.leaves().count
+        self.nodes[self.above].count
     }
 
-    /// The leaves that were found, in order.
-    pub(crate) fn leaves(&self) -> &Nodes {
-        &self.nodes[self.found]
+    /// The leaves under some of those nodes that may have a point inside the tool, in order.
+    pub(crate) fn leaves(
+        &mut self,
+        level: Level,
+        tree: &Tree,
+        sight: &Sight,
+        view: &View,
+        some: Range<usize>,
+    ) -> &Nodes {
+        let [even, odd] = &mut self.nodes;
+        let (nodes, leaves) = if self.above == 0 { (even, odd) } else { (odd, even) };
+        if sight.fits {
+            let boxes = &tree.levels[tree.levels.len() - 1];
+            dispatch!(level, simd => below(simd, boxes, sight, view, (nodes, some), leaves));
+        } else {
+            leaves.all(tree.leaves.len());
+        }
+        leaves
     }
 }
 
@@ -148,15 +170,21 @@ pub(super) fn within<S: Simd>(
     (hit.to_bitmask() as u32, by)
 }
 
-/// From the root, which is in the first of the two, down to the leaves.
+/// Down some levels from the root, which is in the first of the two.
 #[inline(always)]
-fn descend<S: Simd>(simd: S, nodes: &mut [Nodes; 2], tree: &Tree, sight: &Sight, view: &View) {
+fn descend<S: Simd>(
+    simd: S,
+    nodes: &mut [Nodes; 2],
+    levels: &[Vec<Boxes>],
+    sight: &Sight,
+    view: &View,
+) {
     let [even, odd] = nodes;
-    for (level, boxes) in tree.levels.iter().enumerate() {
+    for (level, boxes) in levels.iter().enumerate() {
         if level % 2 == 0 {
-            below(simd, boxes, sight, view, even, odd);
+            below(simd, boxes, sight, view, (even, 0..even.count), odd);
         } else {
-            below(simd, boxes, sight, view, odd, even);
+            below(simd, boxes, sight, view, (odd, 0..odd.count), even);
         }
     }
 }
@@ -169,12 +197,12 @@ fn below<S: Simd>(
     boxes: &[Boxes],
     sight: &Sight,
     view: &View,
-    nodes: &Nodes,
+    (nodes, some): (&Nodes, Range<usize>),
     kept: &mut Nodes,
 ) {
-    kept.room(nodes.count * WIDTH);
+    kept.room(some.len() * WIDTH);
     let mut count = 0;
-    for at in 0..nodes.count {
+    for at in some {
         let node = nodes.index[at];
         let children = &boxes[node as usize];
         let (centre, half) = (load(simd, &children.centre), load(simd, &children.half));
