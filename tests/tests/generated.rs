@@ -10,7 +10,7 @@ use tool_dsl::source::Source;
 use tool_dsl::{compile, emit};
 
 /// Methods that generated code may call: none panics, none is a libm function.
-const METHODS: [&str; 5] = ["sqrt", "abs", "of", "single", "take"];
+const METHODS: [&str; 4] = ["sqrt", "abs", "of", "take"];
 /// Functions that it may call.
 const FUNCTIONS: [&str; 14] = [
     "Some",

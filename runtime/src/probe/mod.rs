@@ -19,7 +19,7 @@ pub use wrench::Wrench;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
-use crate::tree::{Candidates, Search, Sight, View, Walker};
+use crate::tree::{Candidates, Sieve, Sight, View, Walker};
 use fearless_simd::Level;
 use nalgebra::Point3;
 use std::ops::Range;
@@ -51,7 +51,7 @@ struct Beside<'a> {
     view: View,
     walker: Walker,
     candidates: Candidates,
-    some_in: Vec<(u32, u32)>,
+    sieve: Sieve,
     felt: Felt,
     contacts: Vec<Contact>,
 }
@@ -94,11 +94,11 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             weights: Weights::Area,
             centre: Point3::origin(),
             level: Level::new(),
-            sight: Sight::new(part.tree(), tool, length),
+            sight: Sight::new(part.tree(), tool.card(), length),
             view: View::default(),
             walker: Walker::default(),
             candidates: Candidates::default(),
-            some_in: Vec::new(),
+            sieve: Sieve::default(),
             felt: Felt::default(),
             contacts: Vec::new(),
         };
@@ -164,7 +164,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         let nodes = self.beside.look(pose);
         // Sixteen leaves at a time: the first hit ends the question.
         (0..nodes).any(|node| {
-            self.beside.search(self.tool, node..node + 1, false);
+            self.beside.search(node..node + 1, false);
             self.feel::<Inside>()
         })
     }
@@ -238,7 +238,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         if nodes == 0 {
             return false;
         }
-        self.beside.search(self.tool, 0..nodes, skin);
+        self.beside.search(0..nodes, skin);
         self.feel::<W>()
     }
 
@@ -264,18 +264,10 @@ impl Beside<'_> {
     }
 
     /// Finds the candidates of the leaves under some of them.
-    fn search<T: Tool + ?Sized>(&mut self, tool: &T, some: Range<usize>, skin: bool) {
+    fn search(&mut self, some: Range<usize>, skin: bool) {
         self.candidates.clear();
         let (level, tree, sight, view) = (self.level, self.part.tree(), &self.sight, &self.view);
-        tool.search(&mut Search {
-            level,
-            tree,
-            sight,
-            view,
-            leaves: self.walker.leaves(level, tree, sight, view, some),
-            skin,
-            candidates: &mut self.candidates,
-            some_in: &mut self.some_in,
-        });
+        let leaves = self.walker.leaves(level, tree, sight, view, some);
+        self.sieve.sift(level, (tree, sight, view), (leaves, skin), &mut self.candidates);
     }
 }

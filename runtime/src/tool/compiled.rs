@@ -1,7 +1,6 @@
 //! Tools that the macros compile.
 
-use super::{Ask, Card, Felt, LANES, Lane, Points, Search, Senses, Tool, Wanted, present};
-use crate::tree::ByTool;
+use super::{Ask, Card, Felt, LANES, Lane, Points, Senses, Tool, Wanted, present};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
@@ -31,12 +30,6 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     /// Distance from a point outside to the tool, in the file's unit.
     fn clearance(point: [f64; 3]) -> f64;
 
-    /// What [`Evaluators::near_lanes`] compares with, for points that are known to within `margin`, at
-    /// most a thousandth of the tool's largest coordinate.
-    fn near_bounds(margin: f64) -> impl AsRef<[f64]>;
-    /// Whether points given in single precision may belong to the solid: every one that is within the
-    /// bounds' margin of a point of it does.
-    fn near_lanes<L: Lane>(point: [L; 3], bounds: &[f32]) -> L::Mask;
     /// What is asked for at those of the points that are `present`, if they belong to the solid.
     fn feel_lanes<L: Lane>(point: [L; 3], length: L, present: L::Mask, ask: Ask) -> FeltLanes<L>;
 }
@@ -121,16 +114,6 @@ impl<T: Evaluators> Tool for T {
         felt.reserve(points, ask);
         on_vectors!(level, simd => lanes::<T, _>(simd, ask, points, length, felt));
         one_by_one::<T>(ask, points, length, felt);
-    }
-
-    fn near_bounds(&self, margin: f64) -> Vec<f32> {
-        T::near_bounds(margin).as_ref().iter().map(|bound| *bound as f32).collect()
-    }
-
-    fn search(&self, search: &mut Search<'_>) {
-        let Some(test) = ByTool::<T>::of(search) else { return search.by_reach() };
-        on_vectors!(search.level, simd => search.by(simd, &test));
-        search.one_by_one(&test);
     }
 }
 

@@ -9,13 +9,11 @@ mod compiled;
 mod interpreted;
 mod lane;
 
-pub use crate::tree::Search;
 pub use card::{Card, Depth, Region, Shape, Slab, Surface};
 pub use compiled::{Evaluators, FeltLanes};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
-pub(crate) use lane::{Single, Singles};
 
 use fearless_simd::Level;
 
@@ -36,18 +34,6 @@ pub trait Tool: Send + Sync {
     /// `length` is the length of the file's unit in the part's, by which a magnitude that is the
     /// depth is scaled. The answer has the same bits whatever the level.
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt);
-
-    /// What its own test in single precision compares with ([`Evaluators::near_bounds`]), if it has one.
-    fn near_bounds(&self, margin: f64) -> Vec<f32> {
-        let _ = margin;
-        Vec::new()
-    }
-
-    /// Takes those points of some leaves that may be inside; the more sharply, the fewer there are to
-    /// evaluate.
-    fn search(&self, search: &mut Search<'_>) {
-        search.by_reach();
-    }
 }
 
 /// What a caller wants, as a type.

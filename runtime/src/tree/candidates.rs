@@ -1,7 +1,7 @@
 //! Points that may be inside, carried to the tool's frame.
 
 use super::walk::{LANE, Triple};
-use super::{Skin, Tree, View, WIDTH};
+use super::{Skin, View, WIDTH};
 use crate::tool::{LANES, Points};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
@@ -84,25 +84,6 @@ impl Candidates {
             f32x16::from_slice(simd, of).compress(mask).store_slice(&mut list[place.clone()]);
         }
         f32x16::from_slice(simd, &skin.weight).compress(mask).store_slice(&mut self.weights[place]);
-    }
-
-    /// Takes one point.
-    pub(super) fn take_one(&mut self, tree: &Tree, view: &View, index: usize, skin: bool) {
-        let at = self.points.len();
-        self.indices[at] = index as u32;
-        let p = view.relative(tree, index);
-        let places = self.points.next(0, 1);
-        for (row, place) in view.carry.iter().zip(places) {
-            place[0] = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
-        }
-        if skin {
-            let (skin, lane) = (&tree.skins[index / WIDTH], index % WIDTH);
-            for (list, of) in self.normals.iter_mut().zip(&skin.normal) {
-                list[at] = of[lane];
-            }
-            self.weights[at] = skin.weight[lane];
-        }
-        self.took(1);
     }
 
     /// That so many were taken.

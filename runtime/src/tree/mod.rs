@@ -19,8 +19,7 @@ mod view;
 mod walk;
 
 pub(crate) use candidates::Candidates;
-pub(crate) use sift::ByTool;
-pub use sift::Search;
+pub(crate) use sift::Sieve;
 pub(crate) use view::{Sight, View};
 pub(crate) use walk::Walker;
 

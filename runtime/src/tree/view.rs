@@ -2,16 +2,13 @@
 
 use super::Tree;
 use crate::pose::Pose;
-use crate::tool::{Card, Shape, Tool};
+use crate::tool::{Card, Shape};
 use nalgebra::Vector3;
 
 /// The most slabs; the compiler makes no more than 24.
 pub(super) const SLABS: usize = 32;
 /// The unit roundoff of `f32`.
 const ROUNDOFF: f64 = 1.0 / 16_777_216.0;
-/// As a part of the tool's size, how far a point may be off for its own test in `f32`
-/// ([`crate::tool::Evaluators::near_lanes`]).
-const FARTHEST: f64 = 1.0 / 1024.0;
 /// Between which sizes a tool's coordinates and their squares are good numbers in `f32`.
 const SIZES: [f64; 2] = [1e-12, 1e12];
 
@@ -25,8 +22,6 @@ pub(crate) struct Sight {
     pub(super) reach: Reach,
     /// Whether `f32` holds what is seen; if not, no point is ruled out.
     pub(super) fits: bool,
-    /// What the tool's own test compares with, if `f32` is sharp enough for it.
-    pub(super) bounds: Option<Vec<f32>>,
     /// Where the middle of a part that the tool reaches can be along the axis, and how far from it.
     along: [f64; 2],
     across: f64,
@@ -49,8 +44,7 @@ impl Sight {
     /// of the factors themselves it errs by less than 8 units of roundoff of the sum of their
     /// sizes. Twice that is allowed for. No part is looked at that is farther away than tool and
     /// part are large, so the margin is the same at every pose.
-    pub(crate) fn new<T: Tool + ?Sized>(tree: &Tree, tool: &T, length: f64) -> Sight {
-        let card = tool.card();
+    pub(crate) fn new(tree: &Tree, card: &Card, length: f64) -> Sight {
         let unit = tree.scale / length;
         let part = unit * 3f64.sqrt() * f64::from(tree.size);
         let (size, [low, high]) = (card.size(), card.reach());
@@ -65,9 +59,6 @@ impl Sight {
             scale: tree.scale,
             unit,
             fits,
-            // A place's distance from where it is seen is within the margin, with that of three coordinates.
-            bounds: (fits && 2.0 * margin < FARTHEST * size)
-                .then(|| tool.near_bounds(2.0 * margin)),
             reach,
             along: [low - part, high + part],
             across: (card.radius() + part).powi(2),
@@ -90,10 +81,8 @@ impl Sight {
             let place = row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
             seen[axis] = place * per_length;
             view.origin[axis] = seen[axis] as f32;
-            for part in 0..3 {
-                view.carry[axis][part] = row[part] * per_length;
-                view.rows[axis][part] = (row[part] * self.unit) as f32;
-            }
+            view.carry[axis] = row.map(|part| part * per_length);
+            view.rows[axis] = row.map(|part| (part * self.unit) as f32);
         }
         view.scale = self.scale;
         let [x, y, z] = seen;

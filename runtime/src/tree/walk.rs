@@ -216,8 +216,8 @@ fn below<S: Simd>(
         let place = count..count + WIDTH;
         index.compress(mask).store_slice(&mut kept.index[place.clone()]);
         by.compress(mask).store_slice(&mut kept.slabs[place.clone()]);
-        for axis in 0..3 {
-            middle[axis].compress(mask).store_slice(&mut kept.middle[axis][place.clone()]);
+        for (list, middle) in kept.middle.iter_mut().zip(middle) {
+            middle.compress(mask).store_slice(&mut list[place.clone()]);
         }
         count += hits.count_ones() as usize;
     }

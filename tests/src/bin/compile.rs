@@ -56,9 +56,7 @@ fn row(parts: &Parts, took: Times, slow: Times) -> String {
         "| {} | {segments} | {} | {} | {} | {:.1} | {:.1} |",
         parts.name, parts.regions, parts.curves, parts.tests, parts.splits[0], parts.splits[1],
     );
-    for output in ["near", "feel"] {
-        row += &format!(" {} |", operations(output));
-    }
+    row += &format!(" {} |", operations("feel"));
     for took in [took, slow] {
         for time in [took.best, took.median, took.worst] {
             row += &format!(" {:.1} |", 1e3 * time);
@@ -80,17 +78,16 @@ cargo run --release -p touchoff-tests --bin compile > docs/measured/compile.md
     writeln!(
         page,
         "**Tests** are those of the tree of owners; **met** is how many of them one point meets on average, within 2 % of the largest
-radius from the surface and anywhere in the tool's box. **Near** and **feel** are the operations of the code for lanes:
-arithmetic, square roots, comparisons, selects; of the test in single precision, where every one is executed, and of all that is
-felt, where a block of points executes those on its way and of its regions. **Times** are from a text to its tokens, in ms: best, median and worst
+radius from the surface and anywhere in the tool's box. **Feel** are the operations of the code for lanes: arithmetic, square
+roots, comparisons, selects; a block of points executes those on its way and of its regions. **Times** are from a text to its tokens, in ms: best, median and worst
 of {} in a release build, of {} in one where nothing is optimised, as when a user's `cargo build` expands a macro (profile
 `user`). `Assembly30` is a cutter, its nut, a holder and a spindle nose. Goals for it: 50 ms and 300 ms.
 ",
         COUNTS[0], COUNTS[1]
     )?;
     page += "
-| tool | segments | regions | curves | tests | met near | met in box | near | feel | release: best | median | worst | debug: best | median | worst |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
+| tool | segments | regions | curves | tests | met near | met in box | feel | release: best | median | worst | debug: best | median | worst |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 ";
     page += rows;
     Ok(page)

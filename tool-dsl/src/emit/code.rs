@@ -20,7 +20,7 @@ pub(super) enum Form {
 }
 
 /// One side of a comparison.
-pub(super) enum Operand {
+enum Operand {
     Node(Id),
     Constant(f64),
 }
@@ -114,7 +114,7 @@ impl<'g> Writer<'g> {
 
     /// The two sides of `c ≤ 0` as `left ≤ right`; a sum has the sign of its comparison exactly, so
     /// nothing is lost by not adding it up.
-    pub(super) fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
+    fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
         let value = self.curves[curve].value;
         let operand = |id: Id| match self.graph.constant(id) {
             Some(constant) => Operand::Constant(constant.to_f64()),

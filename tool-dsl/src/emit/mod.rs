@@ -4,9 +4,7 @@
 mod code;
 mod dot;
 mod felt;
-mod line;
 mod listing;
-mod near;
 mod tokens;
 
 pub use dot::dot;
@@ -45,7 +43,6 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
     let card = card(tool);
     let scalar = scalar(tool);
     let lanes = felt::felt(tool);
-    let near = near::near(tool);
     quote! {
         #[doc = #docs]
         #drawing
@@ -62,7 +59,6 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
                 #card
                 #scalar
                 #lanes
-                #near
             }
         };
     }
@@ -75,8 +71,6 @@ pub fn skeleton(name: &str) -> TokenStream {
     let mut functions = quote! { fn card() -> &'static Card { ::core::unreachable!() } };
     let empty = quote! { ::core::unreachable!() };
     functions.extend(quote! {
-        fn near_bounds(margin: f64) -> impl AsRef<[f64]> { [0.0; 0] }
-        fn near_lanes<L: Lane>(point: [L; 3], bounds: &[f32]) -> L::Mask { #empty }
         fn feel_lanes<L: Lane>(
             point: [L; 3], length: L, present: L::Mask, ask: Ask,
         ) -> FeltLanes<L> { #empty }

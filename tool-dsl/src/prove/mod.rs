@@ -9,7 +9,6 @@
 mod aim;
 mod cover;
 mod kink;
-mod near;
 mod parting;
 mod root;
 mod rounding;
@@ -17,8 +16,6 @@ mod slope;
 mod survey;
 mod touch;
 mod witness;
-
-pub(crate) use near::{Compared, slacks};
 
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};

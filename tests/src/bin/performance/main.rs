@@ -1,4 +1,4 @@
-//! The plots of `docs/performance/`, of what the benches wrote: `performance ROWS.json...`.
+//! The plots of `docs/performance/`, and beside them `goals.md`, of what the benches wrote: `performance ROWS.json...`.
 //!
 //! ```sh
 //! cargo bench -p touchoff-tests --features peers --bench peers -- --json > peers.json
@@ -7,6 +7,8 @@
 //! ```
 //!
 //! A plot for which the files have no rows is left as it was.
+
+mod goals;
 
 use serde_json::Value;
 use std::error::Error;
@@ -33,6 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/performance");
     std::fs::create_dir_all(&folder)?;
+    std::fs::write(folder.join("goals.md"), goals::table(&rows)?)?;
     for (name, plot) in plots(&rows)? {
         if plot.is_empty() {
             eprintln!("{name}.svg: no rows for it");
