@@ -14,7 +14,7 @@ pub(crate) struct Chapter {
 }
 
 /// All of them.
-pub(crate) const CHAPTERS: [Chapter; 11] = [
+pub(crate) const CHAPTERS: [Chapter; 12] = [
     Chapter {
         word: "outputs felt",
         title: "Outputs that a question does not need are not computed",
@@ -61,18 +61,27 @@ pub(crate) const CHAPTERS: [Chapter; 11] = [
         measure: reach::axis,
     },
     Chapter {
+        word: "far part",
+        title: "A part that is far",
+        how: "`Probe::wrench`. With: the ball is 200 mm from the outer wall, so that one test of the whole part answers. Without: it \
+              is 0.1 mm from it, so that the part is walked and nothing is found. Other poses, since at the same ones the test \
+              either answers or does not.",
+        measure: world::far_part,
+    },
+    Chapter {
         word: "far parts",
-        title: "Parts that are far",
+        title: "Far parts of a scene",
         how: "Ten parts in a scene, of which the ball is 0.05 mm deep in one. With: the nine others stand 200 mm away. Without: \
               they stand in the same place as the one, their outer wall 0.1 mm from the ball, so that each is walked and \
-              nothing is found. ns are those of one part: what the scene takes more than the touched part alone, by nine.",
+              nothing is found. ns are those of one part: what the scene takes more than the touched part alone, by nine. \
+              Besides the probe's it has the pose seen from where the part is, and the comparison with the last.",
         measure: world::far_parts,
     },
     Chapter {
         word: "still",
         title: "Frames in which nothing moved",
         how: "With: `Scene::wrench` asked again where the tool already was: 25 tools, which stand at the poses of a block and were \
-              asked before, untimed. Without: `Probe::wrench` of a `dyn Tool` at these poses. Reading the clock is some \
+              asked there before, untimed. Without: `Probe::wrench` of a `dyn Tool` at these poses. Reading the clock is some \
               1 or 2 ns of the first.",
         measure: world::still,
     },
@@ -81,15 +90,15 @@ pub(crate) const CHAPTERS: [Chapter; 11] = [
         title: "Regions that no point of a block of eight is in",
         how: "`Tool::evaluate`, as for a wrench, of the points that collide along the path, in blocks of whole queries with 2,000 \
               points at least. With: in the tree's order, so that neighbours are evaluated together. Without: the points of each \
-              block shuffled. ns a point. Only in blocks of one region anything is saved: where the path touches with one region \
-              at a time, as `inside` does, no order is better than another.",
+              block shuffled. ns a point. What a region costs when no lane is in it cannot be had \
+              by public API, so this is what is left of the skip when neighbours are apart, not what it saves.",
         measure: regions::order,
     },
     Chapter {
         word: "cores",
         title: "Many poses on all cores",
         how: "With: `Probe::map`. Without: `Probe::wrench` at one pose after the other, on one core. Wall time, ns a pose, in \
-              blocks of 1,024 poses a core; what else runs on the machine takes from the first.",
+              blocks of 1,024 poses a core, no CPU time: what else runs on the machine takes from the first.",
         measure: cores::map,
     },
 ];

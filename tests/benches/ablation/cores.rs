@@ -2,10 +2,7 @@
 
 use crate::asked::{felt, wrench};
 use crate::line::{Row, Setting, agree, trial};
-use crate::passes::thinned;
 use crate::turns::{Clock, Variant, turns};
-use std::num::NonZeroUsize;
-use std::thread::available_parallelism;
 use tools_library::Fig73;
 use touchoff::{Part, Pose, Probe};
 
@@ -47,14 +44,13 @@ pub(crate) fn start(part: &Part, poses: &[Pose]) {
 pub(crate) fn map(setting: &Setting) -> Vec<Row> {
     let probe = Probe::new(setting.part, &Fig73);
     let ns = 2.0 * trial(&mut wrench(probe.another()), &setting.poses);
-    let poses = thinned(&setting.poses, ns, LONGER * setting.seconds);
+    let poses = setting.some(ns / LONGER);
     let shared = probe.map(&poses, |probe, pose| felt(&probe.wrench(pose)));
     let mut one = probe.another();
     for (pose, shared) in poses.iter().zip(&shared) {
         agree("map", pose, shared, &felt(&one.wrench(pose)));
     }
-    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
-    let blocks: Vec<&[Pose]> = poses.chunks(TOGETHER * HANDED * cores).collect();
+    let blocks: Vec<&[Pose]> = poses.chunks(TOGETHER * HANDED * setting.cores).collect();
     let [mut shared, mut one] = [true, false].map(|parallel| Many {
         probe: probe.another(),
         blocks: blocks.clone(),

@@ -1,7 +1,7 @@
 //! A line: what it costs with a skip and without it, once both gave the same answers.
 
 use crate::contender::{Answer, Contender};
-use crate::passes::{BLOCK, thinned};
+use crate::passes::{BLOCK, PASSES};
 use crate::turns::{Along, Clock, turns};
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -25,6 +25,8 @@ pub(crate) struct Setting<'a> {
     pub(crate) path: Path,
     pub(crate) poses: Vec<Pose>,
     pub(crate) seconds: f64,
+    /// How many the machine has.
+    pub(crate) cores: usize,
 }
 
 /// How many poses tell what a query takes.
@@ -45,8 +47,12 @@ impl Setting<'_> {
     }
 
     /// As many of the poses as there is time for, given what all variants together take at one, ns.
+    ///
+    /// Evenly along the path, pose by pose: of the slowest queries there would be but a block.
     pub(crate) fn some(&self, ns: f64) -> Vec<Pose> {
-        thinned(&self.poses, ns, self.seconds)
+        let all = ns * 1e-9 * (self.poses.len() * PASSES) as f64;
+        let every = (all / self.seconds).ceil().max(1.0) as usize;
+        self.poses.iter().step_by(every).copied().collect()
     }
 
     /// Two ways to the same answer.

@@ -27,7 +27,7 @@ mod clock;
 #[expect(dead_code, reason = "what other methods share is of no use to this one")]
 mod contender;
 #[path = "../scaling/passes.rs"]
-#[expect(dead_code, reason = "passes of one method; here two take turns")]
+#[expect(dead_code, reason = "passes of one method; here several take turns")]
 mod passes;
 #[path = "../scaling/row.rs"]
 #[expect(dead_code, reason = "what passes make")]
@@ -37,6 +37,7 @@ use crate::chapter::CHAPTERS;
 use crate::line::{Row, Setting};
 use clap::Parser;
 use std::num::NonZeroUsize;
+use std::thread::available_parallelism;
 use touchoff::scenes::{POSES, Path, tube};
 use touchoff::{Part, Pose};
 
@@ -53,7 +54,7 @@ struct Options {
     #[arg(long, default_value_t = NonZeroUsize::new(POSES).expect("some poses"))]
     poses: NonZeroUsize,
     /// How long a line may take; poses sit out if need be.
-    #[arg(long, default_value_t = 0.4)]
+    #[arg(long, default_value_t = 0.6)]
     seconds: f64,
     /// One object a row.
     #[arg(long)]
@@ -69,12 +70,14 @@ fn main() {
     if let Some(first) = parts.first() {
         cores::start(first, &poses(Path::Outside, options.poses.get()));
     }
+    // Asked before the thread is pinned, since it is told of how many cores it may use.
+    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let pinned = pin();
     let mut rows: Vec<Vec<Row>> = CHAPTERS.iter().map(|_| Vec::new()).collect();
     for part in &parts {
         for path in Path::ALL {
             let poses = poses(path, options.poses.get());
-            let setting = Setting { part, path, poses, seconds: options.seconds };
+            let setting = Setting { part, path, poses, seconds: options.seconds, cores };
             for (chapter, rows) in CHAPTERS.iter().zip(&mut rows) {
                 rows.extend((chapter.measure)(&setting));
             }
@@ -84,7 +87,7 @@ fn main() {
     if options.json {
         table::json(&rows);
     } else {
-        table::markdown(&rows, pinned);
+        table::markdown(&rows, cores, pinned);
     }
 }
 

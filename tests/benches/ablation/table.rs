@@ -4,6 +4,9 @@ use crate::chapter::CHAPTERS;
 use crate::line::Row;
 use serde_json::json;
 
+/// How wide text is.
+const COLUMNS: usize = 130;
+
 /// The lines of a chapter together, as they came: each of all scenes and clouds.
 pub(crate) fn in_order(rows: &mut [Row]) {
     let mut skips: Vec<String> = Vec::new();
@@ -29,7 +32,7 @@ pub(crate) fn json(chapters: &[Vec<Row>]) {
     }
 }
 
-pub(crate) fn markdown(chapters: &[Vec<Row>], pinned: bool) {
+pub(crate) fn markdown(chapters: &[Vec<Row>], cores: usize, pinned: bool) {
     let pinned = if pinned { "pinned to one core" } else { "not pinned (the system refuses)" };
     println!(
         "# What the runtime skips, and what it would cost
@@ -38,19 +41,36 @@ pub(crate) fn markdown(chapters: &[Vec<Row>], pinned: bool) {
 cargo bench -p touchoff-tests --features peers --bench ablation > docs/measured/ablation.md
 ```
 
-(`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, the thread {pinned}. A line takes a query as it is, **with** a
-skip, and one that does the same **without** it, made by public API alone; it says what was changed. Both are asked at the same
-poses, 25 at a time in turns, so that what disturbs the machine hits both; no pose is asked again before all others were. Of each
-block the fastest of five passes counts, and all blocks are summed: ns a query. **ratio** is without by with: below 1 the skip
-costs more than it saves. Differences of some hundredths are the machine's. Before a line is timed both must give the same answers
-at every pose: as many points, as deep, and the same force and torque to 1e-9."
+(`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, one thread, {pinned}, of a machine of {cores} cores that runs
+other programs too. A line takes a query as it is, **with** a skip, and one that does the same **without** it, made by public API
+alone; it says what was changed. Both are asked at the same poses, 25 at a time in turns, so that what disturbs the machine hits
+both; no pose is asked again before all others were. Of each block the fastest of five passes counts, and all blocks are summed: ns
+a query. **ratio** is without by with: below 1 the skip costs more than it saves. Some hundredths are the machine's, and times of
+different lines differ by more, since the machine was not the same a second later: compare within a line. Where queries are slow,
+poses sit out, evenly. Before a line is timed both must give the same answers at every pose: as many points, as deep, and the same
+force and torque to 1e-9."
     );
     for (chapter, rows) in CHAPTERS.iter().zip(chapters).filter(|(_, rows)| !rows.is_empty()) {
-        println!("\n## {}\n\n{}\n", chapter.title, chapter.how);
+        println!("\n## {}\n\n{}\n", chapter.title, wrapped(chapter.how));
         println!("| skip | scene | points | with ns | without ns | ratio |");
         println!("|---|---|--:|--:|--:|--:|");
         rows.iter().for_each(line);
     }
+}
+
+/// A paragraph in lines.
+fn wrapped(text: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + word.len() <= COLUMNS => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("\n")
 }
 
 fn line(row: &Row) {
