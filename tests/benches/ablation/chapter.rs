@@ -90,8 +90,8 @@ pub(crate) const CHAPTERS: [Chapter; 12] = [
         title: "Regions that no point of a block of eight is in",
         how: "`Tool::evaluate`, as for a wrench, of the points that collide along the path, in blocks of whole queries with 2,000 \
               points at least. With: in the tree's order, so that neighbours are evaluated together. Without: the points of each \
-              block shuffled. ns a point. What a region costs when no lane is in it cannot be had \
-              by public API, so this is what is left of the skip when neighbours are apart, not what it saves.",
+              block shuffled. ns a point. What a region costs that is computed for \
+              nothing cannot be had by public API: this is how much of the skip hangs on neighbours being together.",
         measure: regions::order,
     },
     Chapter {

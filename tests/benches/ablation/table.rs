@@ -41,14 +41,14 @@ pub(crate) fn markdown(chapters: &[Vec<Row>], cores: usize, pinned: bool) {
 cargo bench -p touchoff-tests --features peers --bench ablation > docs/measured/ablation.md
 ```
 
-(`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, one thread, {pinned}, of a machine of {cores} cores that runs
-other programs too. A line takes a query as it is, **with** a skip, and one that does the same **without** it, made by public API
-alone; it says what was changed. Both are asked at the same poses, 25 at a time in turns, so that what disturbs the machine hits
-both; no pose is asked again before all others were. Of each block the fastest of five passes counts, and all blocks are summed: ns
-a query. **ratio** is without by with: below 1 the skip costs more than it saves. Some hundredths are the machine's, and times of
-different lines differ by more, since the machine was not the same a second later: compare within a line. Where queries are slow,
-poses sit out, evenly. Before a line is timed both must give the same answers at every pose: as many points, as deep, and the same
-force and torque to 1e-9."
+(`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, one thread, {pinned}, of a machine of {cores} cores
+that runs other programs too. A line takes a query as it is, **with** a skip, and one that does the same **without** it,
+made by public API alone; it says what was changed. Both are asked at the same poses, 25 at a time in turns, so that what
+disturbs the machine hits both; no pose is asked again before all others were. Of each block the fastest of five passes
+counts, and all blocks are summed: ns a query. **ratio** is without by with: below 1 the skip costs more than it saves.
+Some hundredths are the machine's, and times of different lines differ by more, since the machine was not the same a
+second later: compare within a line. Where queries are slow, poses sit out, evenly. Before a line is timed both must give
+the same answers at every pose: as many points, as deep, and the same force and torque to 1e-9."
     );
     for (chapter, rows) in CHAPTERS.iter().zip(chapters).filter(|(_, rows)| !rows.is_empty()) {
         println!("\n## {}\n\n{}\n", chapter.title, wrapped(chapter.how));
