@@ -56,8 +56,8 @@ pub(crate) const CHAPTERS: [Chapter; 12] = [
         word: "axis",
         title: "Spin and turn about the axis are not looked at",
         how: "Without: the same tool said to be a solid, as far across as its largest radius, which is what boxes are held to \
-              besides. It finds the same leaves, so this is only what the tests cost; a solid's own code, which cannot work \
-              with the distance from the axis, costs more than that.",
+              besides. It finds the same leaves, so this is only what the tests cost; what a solid's own code costs \
+              more, which cannot work with the distance from the axis, is not in it.",
         measure: reach::axis,
     },
     Chapter {
