@@ -53,15 +53,23 @@ pub(super) fn at(beside: &Beside<'_>, pose: &Pose, candidate: usize, depth: f64)
 /// What was felt as a posture.
 pub(super) fn posture(beside: &Beside<'_>, card: &Card, pose: &Pose) -> Posture {
     let felt = &beside.felt;
-    let colliding = felt.count();
-    let mut posture = Posture { colliding, deepest: deepest(beside, pose), ..Posture::default() };
+    let (mut colliding, mut most, mut niceness) = (0, None, f64::INFINITY);
+    let mut body: Option<f64> = None;
     for candidate in felt.places() {
-        let niceness = felt.niceness[candidate];
-        posture.niceness = Some(posture.niceness.map_or(niceness, |least| least.min(niceness)));
+        colliding += 1;
+        let depth = felt.depth[candidate];
+        if most.is_none_or(|(most, _)| depth > most) {
+            most = Some((depth, candidate));
+        }
+        niceness = niceness.min(felt.niceness[candidate]);
         if !card.surface_of(felt.region[candidate] as usize).cutting {
-            let depth = felt.depth[candidate] * beside.length;
-            posture.body = Some(posture.body.map_or(depth, |most| most.max(depth)));
+            body = Some(body.map_or(depth, |most| most.max(depth)));
         }
     }
-    posture
+    Posture {
+        colliding,
+        deepest: most.map(|(depth, candidate)| at(beside, pose, candidate, depth)),
+        niceness: (colliding > 0).then_some(niceness),
+        body: body.map(|depth| depth * beside.length),
+    }
 }

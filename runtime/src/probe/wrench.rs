@@ -47,6 +47,9 @@ impl Wrench {
 
     /// Adds what is felt of another part, in the same frame and about the same point.
     pub(crate) fn add(&mut self, other: &Wrench) {
+        if other.colliding == 0 {
+            return;
+        }
         self.colliding += other.colliding;
         self.deepest = match (self.deepest, other.deepest) {
             (Some(mine), Some(theirs)) if theirs.depth > mine.depth => Some(theirs),
@@ -64,7 +67,7 @@ impl Wrench {
 
     /// The same in the frame in which its own is at `place`.
     pub(crate) fn turned(mut self, place: &Pose) -> Wrench {
-        if *place != Pose::default() {
+        if self.colliding > 0 && *place != Pose::default() {
             self.force = place.rotation() * self.force;
             self.torque = place.rotation() * self.torque;
             if let Some(deepest) = &mut self.deepest {

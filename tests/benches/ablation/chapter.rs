@@ -42,15 +42,8 @@ pub(crate) const CHAPTERS: [Chapter; 12] = [
     Chapter {
         word: "envelope",
         title: "Boxes that the tool's radius along its axis keeps away from",
-        how: "Without: a card whose envelope is one slab, the whole reach and the largest radius. The points of leaves that are \
-              left are held to the tool's own test in both, or (by envelope only) to the envelope that there is.",
+        how: "Without: a card whose envelope is one slab, the whole reach and the largest radius.",
         measure: reach::envelope,
-    },
-    Chapter {
-        word: "own test",
-        title: "Points that the tool's own test rules out in single precision",
-        how: "Without: the `search` that a tool has which has no such test, by the envelope only.",
-        measure: reach::own_test,
     },
     Chapter {
         word: "axis",
@@ -84,6 +77,12 @@ pub(crate) const CHAPTERS: [Chapter; 12] = [
               asked there before, untimed. Without: `Probe::wrench` of a `dyn Tool` at these poses. Reading the clock is some \
               1 or 2 ns of the first.",
         measure: world::still,
+    },
+    Chapter {
+        word: "level",
+        title: "Vectors of the machine",
+        how: "With: the best level of this machine. Without: the next ones, as the row says, by `Probe::level`.",
+        measure: outputs::levels,
     },
     Chapter {
         word: "regions",

@@ -9,7 +9,7 @@ use crate::without::Thorough;
 use std::hint::black_box;
 use tools_library::Fig73;
 use touchoff::tool::Senses;
-use touchoff::{Law, Probe, Tool, Weights};
+use touchoff::{Law, Level, Probe, Tool, Weights};
 
 /// Every question, and its answer made of the list of contacts.
 pub(crate) fn of_contacts(setting: &Setting) -> Vec<Row> {
@@ -82,4 +82,25 @@ pub(crate) fn known_type(setting: &Setting) -> Vec<Row> {
         setting.compare("detect", &mut detect(with.another()), &mut detect(without.another())),
         setting.compare("wrench", &mut wrench(with), &mut wrench(without)),
     ]
+}
+
+/// The same wrench on narrower vectors.
+pub(crate) fn levels(setting: &Setting) -> Vec<Row> {
+    let best = Level::new();
+    let narrower = narrower(best);
+    let probe = |level| wrench(Probe::new(setting.part, &Fig73).level(level));
+    let rows = narrower.into_iter();
+    rows.map(|(name, level)| setting.compare(name, &mut probe(best), &mut probe(level))).collect()
+}
+
+/// The levels below the best.
+fn narrower(best: Level) -> Vec<(&'static str, Level)> {
+    let mut levels = vec![("wrench, no vectors", Level::fallback())];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        let avx2 = best.as_avx512().and(best.as_avx2()).map(Level::Avx2);
+        levels.extend(best.as_sse4_2().map(|level| ("wrench, SSE4.2", Level::Sse4_2(level))));
+        levels.extend(avx2.map(|level| ("wrench, AVX2", level)));
+    }
+    levels
 }

@@ -1,25 +1,16 @@
-//! What rules out boxes and points: the envelope, the tool's own test, the axis.
+//! What rules out boxes and points: the envelope and the axis.
 
 use crate::asked::{detect, wrench};
 use crate::line::{Row, Setting};
-use crate::without::{OtherCard, Untested};
+use crate::without::OtherCard;
 use tools_library::Fig73;
 use touchoff::tool::{Card, Senses, Shape, Slab};
 use touchoff::{Probe, Tool};
 
-/// The envelope as one slab, with the tool's own test and without it.
+/// The envelope as one slab.
 pub(crate) fn envelope(setting: &Setting) -> Vec<Row> {
     let single = OtherCard { tool: &Fig73, card: one_slab(Fig73.card()) };
-    let (by_envelope, by_slab) = (Untested(&Fig73), Untested(&single));
-    let mut rows = both(setting, ["detect", "wrench"], &Fig73, &single);
-    let names = ["detect, by envelope only", "wrench, by envelope only"];
-    rows.extend(both(setting, names, &by_envelope, &by_slab));
-    rows
-}
-
-/// Points ruled out by the envelope alone.
-pub(crate) fn own_test(setting: &Setting) -> Vec<Row> {
-    both(setting, ["detect", "wrench"], &Fig73, &Untested(&Fig73))
+    both(setting, ["detect", "wrench"], &Fig73, &single)
 }
 
 /// A tool that is taken for a solid without an axis.

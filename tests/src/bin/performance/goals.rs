@@ -90,6 +90,13 @@ fn goals(rows: &[Row]) -> Result<Vec<Goal>, String> {
     let mut built = select(rows, &[("table", "build")]);
     let found = built.find_map(|row| row.number("geometry_bytes").transpose()).transpose()?;
     goals.push(Goal { words: "geometry of a point".into(), found, most: 14.0, unit: "bytes" });
+    for scene in ["outside", "inside"] {
+        let words = [("table", "ablation"), ("skip", "level: wrench, AVX2"), ("scene", scene)];
+        let row = select(rows, &words).find(|row| row.is("points", 20_000.0));
+        let found = row.map_or(Ok(None), |row| row.number("ratio"))?;
+        let words = format!("AVX2 by AVX-512, {scene}, 20000 points");
+        goals.push(Goal { words, found, most: 1.6, unit: "" });
+    }
     goals.extend(against_peers(rows)?);
     Ok(goals)
 }
