@@ -24,7 +24,7 @@ pub(crate) fn json(chapters: &[Vec<Row>]) {
         for Row { skip, scene, points, ns_with, ns_without, ratio } in rows {
             let skip = format!("{}: {skip}", chapter.word);
             let row = json!({
-                "skip": skip, "scene": scene, "points": points,
+                "table": "ablation", "skip": skip, "scene": scene, "points": points,
                 "ns_with": ns_with, "ns_without": ns_without, "ratio": ratio,
             });
             println!("{row}");
