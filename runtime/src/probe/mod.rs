@@ -19,7 +19,7 @@ pub use wrench::Wrench;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
-use crate::tree::{Candidates, Sieve, Sight, View, Walker};
+use crate::tree::{Candidates, Sieve, Sight, View, WIDTH, Walker};
 use fearless_simd::Level;
 use nalgebra::Point3;
 use std::ops::Range;
@@ -52,6 +52,8 @@ struct Beside<'a> {
     walker: Walker,
     candidates: Candidates,
     sieve: Sieve,
+    /// A leaf that had a point inside when it was asked last whether any has.
+    hit: u32,
     felt: Felt,
     contacts: Vec<Contact>,
 }
@@ -99,6 +101,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             walker: Walker::default(),
             candidates: Candidates::default(),
             sieve: Sieve::default(),
+            hit: 0,
             felt: Felt::default(),
             contacts: Vec::new(),
         };
@@ -159,14 +162,25 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
     }
 
-    /// Whether any point of the part is inside the tool or on its surface. Stops at the first.
+    /// Whether any point of the part is inside the tool or on its surface. Stops at the first, and looks
+    /// first where one was found last: tools move little from pose to pose.
     pub fn detect(&mut self, pose: &Pose) -> bool {
-        let nodes = self.beside.look(pose);
-        // Sixteen leaves at a time: the first hit ends the question.
-        (0..nodes).any(|node| {
-            self.beside.search(node..node + 1, false);
-            self.feel::<Inside>()
-        })
+        if !self.beside.look(pose) {
+            return false;
+        }
+        self.beside.search_again();
+        let any = self.feel::<Inside>() || {
+            // Sixteen leaves at a time.
+            let nodes = self.beside.find();
+            (0..nodes).any(|node| {
+                self.beside.search(node..node + 1, false);
+                self.feel::<Inside>()
+            })
+        };
+        if any {
+            self.beside.remember();
+        }
+        any
     }
 
     /// The deepest point; `None` without contact.
@@ -234,10 +248,10 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// Finds the candidates of all leaves and evaluates them; whether there are any.
     fn ask<W: Wanted>(&mut self, pose: &Pose, skin: bool) -> bool {
-        let nodes = self.beside.look(pose);
-        if nodes == 0 {
+        if !self.beside.look(pose) {
             return false;
         }
+        let nodes = self.beside.find();
         self.beside.search(0..nodes, skin);
         self.feel::<W>()
     }
@@ -254,13 +268,29 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 }
 
 impl Beside<'_> {
-    /// How many nodes above leaves the tool may reach from a pose.
-    fn look(&mut self, pose: &Pose) -> usize {
-        let tree = self.part.tree();
-        if !self.sight.look(tree, pose, &mut self.view) {
-            return 0;
+    /// Looks from a pose; whether the tool may reach the part.
+    fn look(&mut self, pose: &Pose) -> bool {
+        self.sight.look(self.part.tree(), pose, &mut self.view)
+    }
+
+    /// Finds the nodes above leaves that the tool may reach; how many there are.
+    fn find(&mut self) -> usize {
+        self.walker.find(self.level, self.part.tree(), &self.sight, &self.view)
+    }
+
+    /// Finds the candidates of the leaf that was hit last.
+    fn search_again(&mut self) {
+        self.candidates.clear();
+        let (level, tree, sight, view) = (self.level, self.part.tree(), &self.sight, &self.view);
+        let leaf = self.walker.only(self.hit, tree, sight, view);
+        self.sieve.sift(level, (tree, sight, view), (leaf, false), &mut self.candidates);
+    }
+
+    /// Notes the leaf of a point inside.
+    fn remember(&mut self) {
+        if let Some(place) = self.felt.places().next() {
+            self.hit = self.candidates.indices()[place] / WIDTH as u32;
         }
-        self.walker.find(self.level, tree, &self.sight, &self.view)
     }
 
     /// Finds the candidates of the leaves under some of them.

@@ -83,6 +83,21 @@ impl Walker {
         self.nodes[self.above].count
     }
 
+    /// One leaf alone.
+    pub(crate) fn only(&mut self, leaf: u32, tree: &Tree, sight: &Sight, view: &View) -> &Nodes {
+        let [nodes, _] = &mut self.nodes;
+        nodes.room(1);
+        nodes.count = 1;
+        nodes.index[0] = leaf;
+        nodes.slabs[0] = sight.reach.all;
+        let [centre, _] = tree.stored(leaf as usize * WIDTH);
+        for (axis, list) in nodes.middle.iter_mut().enumerate() {
+            let (row, [x, y, z]) = (view.rows[axis], centre.map(|part| part as f32));
+            list[0] = x * row[0] + y * row[1] + z * row[2] + view.origin[axis];
+        }
+        nodes
+    }
+
     /// The leaves under some of those nodes that may have a point inside the tool, in order.
     pub(crate) fn leaves(
         &mut self,
