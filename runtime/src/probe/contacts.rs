@@ -37,7 +37,7 @@ pub(super) fn list(beside: &Beside<'_>, card: &Card, pose: &Pose, contacts: &mut
     let (felt, tree) = (&beside.felt, beside.part.tree());
     let rotation = pose.rotation();
     for at in felt.places() {
-        let index = beside.candidates.indices()[at] as usize;
+        let index = beside.search.candidates.indices()[at] as usize;
         let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
         let region = felt.region[at] as usize;
         contacts.push(Contact {

@@ -19,10 +19,9 @@ pub use wrench::Wrench;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
-use crate::tree::{Candidates, Sieve, Sight, View, WIDTH, Walker};
+use crate::tree::{Search, Sight, View, WIDTH};
 use fearless_simd::Level;
 use nalgebra::Point3;
-use std::ops::Range;
 
 /// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
 /// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
@@ -49,9 +48,7 @@ struct Beside<'a> {
     level: Level,
     sight: Sight,
     view: View,
-    walker: Walker,
-    candidates: Candidates,
-    sieve: Sieve,
+    search: Search,
     /// A leaf that had a point inside when it was asked last whether any has.
     hit: u32,
     felt: Felt,
@@ -98,9 +95,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             level: Level::new(),
             sight: Sight::new(part.tree(), tool.card(), length),
             view: View::default(),
-            walker: Walker::default(),
-            candidates: Candidates::default(),
-            sieve: Sieve::default(),
+            search: Search::default(),
             hit: 0,
             felt: Felt::default(),
             contacts: Vec::new(),
@@ -168,12 +163,15 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         if !self.beside.look(pose) {
             return false;
         }
-        self.beside.search_again();
+        let Beside { search, part, sight, view, level, hit, .. } = &mut self.beside;
+        search.leaf(*level, (part.tree(), sight, view), *hit);
         let any = self.feel::<Inside>() || {
+            let Beside { search, part, sight, view, level, .. } = &mut self.beside;
+            let nodes = search.nodes(*level, (part.tree(), sight, view));
             // Sixteen leaves at a time.
-            let nodes = self.beside.find();
             (0..nodes).any(|node| {
-                self.beside.search(node..node + 1, false);
+                let Beside { search, part, sight, view, level, .. } = &mut self.beside;
+                search.under(*level, (part.tree(), sight, view), node);
                 self.feel::<Inside>()
             })
         };
@@ -251,14 +249,15 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         if !self.beside.look(pose) {
             return false;
         }
-        let nodes = self.beside.find();
-        self.beside.search(0..nodes, skin);
+        let Beside { search, part, sight, view, level, .. } = &mut self.beside;
+        search.all(*level, (part.tree(), sight, view), skin);
         self.feel::<W>()
     }
 
     /// Evaluates the candidates; whether any is inside.
     fn feel<W: Wanted>(&mut self) -> bool {
-        let Beside { level, candidates, length, felt, .. } = &mut self.beside;
+        let Beside { level, search, length, felt, .. } = &mut self.beside;
+        let candidates = &search.candidates;
         if candidates.points.is_empty() {
             return false;
         }
@@ -273,31 +272,10 @@ impl Beside<'_> {
         self.sight.look(self.part.tree(), pose, &mut self.view)
     }
 
-    /// Finds the nodes above leaves that the tool may reach; how many there are.
-    fn find(&mut self) -> usize {
-        self.walker.find(self.level, self.part.tree(), &self.sight, &self.view)
-    }
-
-    /// Finds the candidates of the leaf that was hit last.
-    fn search_again(&mut self) {
-        self.candidates.clear();
-        let (level, tree, sight, view) = (self.level, self.part.tree(), &self.sight, &self.view);
-        let leaf = self.walker.only(self.hit, tree, sight, view);
-        self.sieve.sift(level, (tree, sight, view), (leaf, false), &mut self.candidates);
-    }
-
     /// Notes the leaf of a point inside.
     fn remember(&mut self) {
         if let Some(place) = self.felt.places().next() {
-            self.hit = self.candidates.indices()[place] / WIDTH as u32;
+            self.hit = self.search.candidates.indices()[place] / WIDTH as u32;
         }
-    }
-
-    /// Finds the candidates of the leaves under some of them.
-    fn search(&mut self, some: Range<usize>, skin: bool) {
-        self.candidates.clear();
-        let (level, tree, sight, view) = (self.level, self.part.tree(), &self.sight, &self.view);
-        let leaves = self.walker.leaves(level, tree, sight, view, some);
-        self.sieve.sift(level, (tree, sight, view), (leaves, skin), &mut self.candidates);
     }
 }

@@ -202,7 +202,7 @@ fn add<S: Simd>(
     sums: &mut Sums<S>,
 ) {
     const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let (felt, candidates) = (&beside.felt, &beside.candidates);
+    let (felt, candidates) = (&beside.felt, &beside.search.candidates);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
     let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);

@@ -18,10 +18,9 @@ mod sift;
 mod view;
 mod walk;
 
-pub(crate) use candidates::Candidates;
-pub(crate) use sift::Sieve;
+use candidates::Candidates;
+pub(crate) use sift::Search;
 pub(crate) use view::{Sight, View};
-pub(crate) use walk::Walker;
 
 use crate::cloud::Cloud;
 use nalgebra::Point3;

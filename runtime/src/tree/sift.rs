@@ -1,36 +1,73 @@
 //! Which points of the leaves may be inside a tool.
 
-use super::walk::{Nodes, load, seen, within};
+use super::walk::{Nodes, Walker, load, seen, within};
 use super::{Candidates, Sight, Tree, View, WIDTH};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
-/// Leaves with points that may be inside, and a bit for each of these.
+/// The search for the points of a part that may be inside a tool, with its memory kept between queries.
 #[derive(Default)]
-pub(crate) struct Sieve(Vec<(u32, u32)>);
+pub(crate) struct Search {
+    walker: Walker,
+    /// Leaves with points that may be inside, and a bit for each of these.
+    some: Vec<(u32, u32)>,
+    pub(crate) candidates: Candidates,
+}
 
-impl Sieve {
-    /// Takes the points of some leaves that the tool's envelope reaches. `skin` says whether what the
-    /// part has there, normals and weights, is wanted.
-    pub(crate) fn sift(
-        &mut self,
-        level: Level,
-        seen: (&Tree, &Sight, &View),
-        (leaves, skin): (&Nodes, bool),
-        candidates: &mut Candidates,
-    ) {
-        self.0.resize(leaves.len() + 1, (0, 0));
-        dispatch!(level, simd => sift(simd, &mut self.0, seen, (leaves, skin), candidates));
+/// A part as a tool sees it.
+type Seen<'a> = (&'a Tree, &'a Sight, &'a View);
+
+impl Search {
+    /// Finds the candidates of a part. `skin` says whether what it has there, normals and weights, is
+    /// wanted.
+    pub(crate) fn all(&mut self, level: Level, seen: Seen<'_>, skin: bool) {
+        self.candidates.clear();
+        dispatch!(level, simd => self.all_on(simd, seen, skin));
+    }
+
+    // One function for one dispatch.
+    #[inline(always)]
+    fn all_on<S: Simd>(&mut self, simd: S, seen: Seen<'_>, skin: bool) {
+        let nodes = self.walker.find(simd, seen);
+        let leaves = self.walker.leaves(simd, seen, 0..nodes);
+        sift(simd, &mut self.some, seen, (leaves, skin), &mut self.candidates);
+    }
+
+    /// Finds the nodes above the leaves that the tool may reach; how many there are.
+    pub(crate) fn nodes(&mut self, level: Level, seen: Seen<'_>) -> usize {
+        dispatch!(level, simd => self.walker.find(simd, seen))
+    }
+
+    /// Finds the candidates under one of them.
+    pub(crate) fn under(&mut self, level: Level, seen: Seen<'_>, node: usize) {
+        self.candidates.clear();
+        dispatch!(level, simd => self.under_on(simd, seen, node));
+    }
+
+    #[inline(always)]
+    fn under_on<S: Simd>(&mut self, simd: S, seen: Seen<'_>, node: usize) {
+        let leaves = self.walker.leaves(simd, seen, node..node + 1);
+        sift(simd, &mut self.some, seen, (leaves, false), &mut self.candidates);
+    }
+
+    /// Finds the candidates of one leaf.
+    pub(crate) fn leaf(&mut self, level: Level, seen: Seen<'_>, leaf: u32) {
+        self.candidates.clear();
+        let leaf = self.walker.only(leaf, seen);
+        let (some, candidates) = (&mut self.some, &mut self.candidates);
+        dispatch!(level, simd => sift(simd, some, seen, (leaf, false), candidates));
     }
 }
 
+/// Takes the points of some leaves that the tool's envelope reaches.
 #[inline(always)]
 fn sift<S: Simd>(
     simd: S,
-    some: &mut [(u32, u32)],
-    (tree, sight, view): (&Tree, &Sight, &View),
+    some: &mut Vec<(u32, u32)>,
+    (tree, sight, view): Seen<'_>,
     (leaves, skin): (&Nodes, bool),
     candidates: &mut Candidates,
 ) {
+    some.resize(leaves.len() + 1, (0, 0));
     let point = [f32x16::splat(simd, 0.0); 3];
     // First which leaves have some: a branch at each leaf would be mispredicted at every other.
     let mut count = 0;

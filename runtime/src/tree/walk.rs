@@ -2,7 +2,7 @@
 
 use super::view::{Reach, SLABS};
 use super::{Boxes, Sight, Tree, View, WIDTH};
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, f32x16, mask32x16, u32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
 use std::ops::Range;
 
 /// The descent, with its memory kept between queries: nodes of a level and of the next, in turns.
@@ -66,7 +66,12 @@ impl Nodes {
 
 impl Walker {
     /// Finds the nodes above the leaves that the tool may reach; how many there are.
-    pub(crate) fn find(&mut self, level: Level, tree: &Tree, sight: &Sight, view: &View) -> usize {
+    #[inline(always)]
+    pub(super) fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        (tree, sight, view): (&Tree, &Sight, &View),
+    ) -> usize {
         let above = tree.levels.len() - 1;
         self.above = above % 2;
         if sight.fits {
@@ -75,8 +80,7 @@ impl Walker {
             first.count = 1;
             first.index[0] = 0;
             first.slabs[0] = sight.reach.all;
-            let levels = &tree.levels[..above];
-            dispatch!(level, simd => descend(simd, &mut self.nodes, levels, sight, view));
+            descend(simd, &mut self.nodes, &tree.levels[..above], sight, view);
         } else {
             self.nodes[self.above].all(tree.levels[above].len());
         }
@@ -84,7 +88,11 @@ impl Walker {
     }
 
     /// One leaf alone.
-    pub(crate) fn only(&mut self, leaf: u32, tree: &Tree, sight: &Sight, view: &View) -> &Nodes {
+    pub(super) fn only(
+        &mut self,
+        leaf: u32,
+        (tree, sight, view): (&Tree, &Sight, &View),
+    ) -> &Nodes {
         let [nodes, _] = &mut self.nodes;
         nodes.room(1);
         nodes.count = 1;
@@ -99,19 +107,18 @@ impl Walker {
     }
 
     /// The leaves under some of those nodes that may have a point inside the tool, in order.
-    pub(crate) fn leaves(
+    #[inline(always)]
+    pub(super) fn leaves<S: Simd>(
         &mut self,
-        level: Level,
-        tree: &Tree,
-        sight: &Sight,
-        view: &View,
+        simd: S,
+        (tree, sight, view): (&Tree, &Sight, &View),
         some: Range<usize>,
     ) -> &Nodes {
         let [even, odd] = &mut self.nodes;
         let (nodes, leaves) = if self.above == 0 { (even, odd) } else { (odd, even) };
         if sight.fits {
             let boxes = &tree.levels[tree.levels.len() - 1];
-            dispatch!(level, simd => below(simd, boxes, sight, view, (nodes, some), leaves));
+            below(simd, boxes, sight, view, (nodes, some), leaves);
         } else {
             leaves.all(tree.leaves.len());
         }
