@@ -11,13 +11,17 @@ pub(crate) fn json(row: &Row) {
 pub(crate) fn markdown(rows: &[Row], pinned: bool) {
     let pinned = if pinned { "pinned to one core" } else { "not pinned (the system refuses)" };
     println!(
-        "```sh
-cargo bench -p touchoff-tests --features peers --bench scaling
+        "# How a query's time grows
+
+```sh
+cargo bench -p touchoff-tests --features peers --bench scaling > docs/measured/scaling.md
 ```
 
-(`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, one thread, {pinned}. Times are of one query, ns. **best**: the poses
-in blocks of 25, five passes, the fastest pass of each block, summed: the machine undisturbed. **median**: the pass in the
-middle, by the clock on the wall: where it is far above, other programs had the core. **CPU**, **p50** and **p99** are timed as `peers` are, every pose asked once; a single query is timed some 20 ns too long.
+(`-- --json` for one object a row.) The tool of fig. 7.3 on the tube, one thread, {pinned}. Times are of one query, ns. **best**:
+the poses in blocks of 25, five passes, the fastest pass of each block, summed: the machine undisturbed. **median**: the pass in the
+middle, by the clock on the wall: where it is far above, other programs had the core. **CPU**, **p50** and **p99** are timed as
+`peers` are, every pose asked once; a single query is timed some 20 ns too long. **detect** begins where it hit last, which along a
+path is mostly where it hits again.
 "
     );
     queries(&some(rows, |row| match row {
