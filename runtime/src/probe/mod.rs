@@ -163,15 +163,12 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         if !self.beside.look(pose) {
             return false;
         }
-        let Beside { search, part, sight, view, level, hit, .. } = &mut self.beside;
-        search.leaf(*level, (part.tree(), sight, view), *hit);
+        self.beside.again();
         let any = self.feel::<Inside>() || {
-            let Beside { search, part, sight, view, level, .. } = &mut self.beside;
-            let nodes = search.nodes(*level, (part.tree(), sight, view));
             // Sixteen leaves at a time.
+            let nodes = self.beside.nodes();
             (0..nodes).any(|node| {
-                let Beside { search, part, sight, view, level, .. } = &mut self.beside;
-                search.under(*level, (part.tree(), sight, view), node);
+                self.beside.under(node);
                 self.feel::<Inside>()
             })
         };
@@ -244,13 +241,12 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             .collect()
     }
 
-    /// Finds the candidates of all leaves and evaluates them; whether there are any.
+    /// Finds the candidates of the whole part and evaluates them; whether any is inside.
     fn ask<W: Wanted>(&mut self, pose: &Pose, skin: bool) -> bool {
         if !self.beside.look(pose) {
             return false;
         }
-        let Beside { search, part, sight, view, level, .. } = &mut self.beside;
-        search.all(*level, (part.tree(), sight, view), skin);
+        self.beside.all(skin);
         self.feel::<W>()
     }
 
@@ -270,6 +266,26 @@ impl Beside<'_> {
     /// Looks from a pose; whether the tool may reach the part.
     fn look(&mut self, pose: &Pose) -> bool {
         self.sight.look(self.part.tree(), pose, &mut self.view)
+    }
+
+    /// Finds the candidates of the whole part.
+    fn all(&mut self, skin: bool) {
+        self.search.all(self.level, (self.part.tree(), &self.sight, &self.view), skin);
+    }
+
+    /// Finds those of the leaf that was hit last.
+    fn again(&mut self) {
+        self.search.leaf(self.level, (self.part.tree(), &self.sight, &self.view), self.hit);
+    }
+
+    /// Finds the nodes above the leaves that the tool may reach; how many there are.
+    fn nodes(&mut self) -> usize {
+        self.search.nodes(self.level, (self.part.tree(), &self.sight, &self.view))
+    }
+
+    /// Finds the candidates under one of them.
+    fn under(&mut self, node: usize) {
+        self.search.under(self.level, (self.part.tree(), &self.sight, &self.view), node);
     }
 
     /// Notes the leaf of a point inside.
