@@ -1,7 +1,7 @@
 //! A tool feeling a part, pose by pose.
 //!
 //! ```text
-//! pose ──look──▶ leaves near the tool ──test──▶ candidates, in the tool's frame
+//! pose ──look──▶ leaves near the tool ──sift──▶ candidates, in the tool's frame
 //!                                                                   │ feel
 //!   detect, deepest, posture, wrench, contacts ◀──sum or list──  what is felt
 //! ```

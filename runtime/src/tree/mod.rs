@@ -103,10 +103,15 @@ impl Tree {
     /// The centre of a point's leaf from the origin, and the point from there, in the tree's unit.
     pub(crate) fn stored(&self, index: usize) -> [[f64; 3]; 2] {
         let (leaf, lane) = (index / WIDTH, index % WIDTH);
-        let boxes = &self.levels[self.levels.len() - 1][leaf / WIDTH];
         let offset = &self.leaves[leaf].offset;
-        let centre = std::array::from_fn(|axis| f64::from(boxes.centre[axis][leaf % WIDTH]));
-        [centre, std::array::from_fn(|axis| f64::from(offset[axis][lane]))]
+        [self.centre(leaf), std::array::from_fn(|axis| f64::from(offset[axis][lane]))]
+    }
+
+    /// The centre of a leaf's box from the origin, in the tree's unit.
+    #[inline(always)]
+    pub(crate) fn centre(&self, leaf: usize) -> [f64; 3] {
+        let (boxes, lane) = (&self.levels[self.levels.len() - 1][leaf / WIDTH], leaf % WIDTH);
+        std::array::from_fn(|axis| f64::from(boxes.centre[axis][lane]))
     }
 
     /// A point's outward normal, as it is stored: each part within 2^-24 of the given one.

@@ -1,7 +1,7 @@
 //! Which points of the leaves may be inside a tool.
 
 use super::walk::{Nodes, Walker, load, seen, within};
-use super::{Candidates, Sight, Tree, View, WIDTH};
+use super::{Candidates, Sight, Tree, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
 /// The search for the points of a part that may be inside a tool, with its memory kept between queries.
@@ -84,12 +84,9 @@ fn sift<S: Simd>(
         count += usize::from(hits != 0);
     }
     candidates.room(count, skin);
-    let boxes = &tree.levels[tree.levels.len() - 1];
     for (leaf, hits) in &some[..count] {
         let index = *leaf as usize;
-        let (last, lane) = (&boxes[index / WIDTH].centre, index % WIDTH);
-        let centre = [f64::from(last[0][lane]), f64::from(last[1][lane]), f64::from(last[2][lane])];
-        let base = view.leaf_from_tip(centre);
+        let base = view.leaf_from_tip(tree.centre(index));
         let offset = load(simd, &tree.leaves[index].offset);
         candidates.take(simd, view, (*leaf, base), &offset, *hits);
         if skin {

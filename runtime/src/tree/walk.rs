@@ -98,7 +98,7 @@ impl Walker {
         nodes.count = 1;
         nodes.index[0] = leaf;
         nodes.slabs[0] = sight.reach.all;
-        let [centre, _] = tree.stored(leaf as usize * WIDTH);
+        let centre = tree.centre(leaf as usize);
         for (axis, list) in nodes.middle.iter_mut().enumerate() {
             let (row, [x, y, z]) = (view.rows[axis], centre.map(|part| part as f32));
             list[0] = x * row[0] + y * row[1] + z * row[2] + view.origin[axis];

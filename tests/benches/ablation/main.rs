@@ -72,7 +72,7 @@ fn main() {
     }
     // Asked before the thread is pinned, since it is told of how many cores it may use.
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
-    let pinned = pin();
+    let pinned = clock::pin();
     let mut rows: Vec<Vec<Row>> = CHAPTERS.iter().map(|_| Vec::new()).collect();
     for part in &parts {
         for path in Path::ALL {
@@ -97,10 +97,4 @@ fn part(points: usize) -> Part {
 
 fn poses(path: Path, count: usize) -> Vec<Pose> {
     (0..count).map(|k| path.pose(k, count)).collect()
-}
-
-/// Keeps the thread on the last core; whether that worked.
-fn pin() -> bool {
-    let cores = core_affinity::get_core_ids().unwrap_or_default();
-    cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
 }

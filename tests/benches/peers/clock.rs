@@ -67,6 +67,12 @@ impl Times {
     }
 }
 
+/// Keeps the thread on the last core; whether that worked.
+pub(crate) fn pin() -> bool {
+    let cores = core_affinity::get_core_ids().unwrap_or_default();
+    cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
+}
+
 /// Times methods on a path, each for about `seconds` at most.
 pub(crate) fn race(
     methods: &mut [Box<dyn Contender + '_>],

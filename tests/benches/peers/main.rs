@@ -132,7 +132,7 @@ fn main() {
     };
     let methods = chosen(&options.method);
     let scenes = if options.scene.is_empty() { Scene::value_variants() } else { &options.scene };
-    let pinned = pin();
+    let pinned = clock::pin();
     if !options.json {
         table::head(pinned);
     }
@@ -186,10 +186,4 @@ fn measure(
 /// At how many poses the truth is worked out, which takes long of many points.
 fn checks(points: usize) -> usize {
     (20_000_000 / points.max(1)).clamp(40, 200)
-}
-
-/// Keeps the thread on the last core; whether that worked.
-fn pin() -> bool {
-    let cores = core_affinity::get_core_ids().unwrap_or_default();
-    cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
 }

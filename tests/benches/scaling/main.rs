@@ -85,7 +85,7 @@ const MILLION: usize = 1_000_000;
 
 fn main() {
     let options = Options::parse();
-    let pinned = pin();
+    let pinned = clock::pin();
     let mut rows = Vec::new();
     for points in &options.points {
         let points = points.get();
@@ -119,10 +119,4 @@ fn measure(part: &Part, options: &Options, rows: &mut Vec<Row>) {
     if options.has(Table::Apart) {
         rows.extend(apart::apart(part, options).into_iter().map(Row::Apart));
     }
-}
-
-/// Keeps the thread on the last core; whether that worked.
-fn pin() -> bool {
-    let cores = core_affinity::get_core_ids().unwrap_or_default();
-    cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
 }

@@ -87,7 +87,7 @@ const LARGE: usize = 100_000;
 
 fn main() {
     let options = Options::parse();
-    let pinned = pin();
+    let pinned = clock::pin();
     if !options.json {
         // Its name without what it holds.
         let level = format!("{:?}", Level::new());
@@ -195,10 +195,4 @@ fn ratio(one: &Measured, other: &Measured) -> f64 {
     let pairs = one.scenes.iter().zip(&other.scenes);
     let logs: f64 = pairs.map(|(one, other)| (one.search / other.search).ln()).sum();
     (logs / one.scenes.len() as f64).exp()
-}
-
-/// Keeps the thread on the last core; whether that worked.
-fn pin() -> bool {
-    let cores = core_affinity::get_core_ids().unwrap_or_default();
-    cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
 }
