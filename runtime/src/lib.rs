@@ -36,6 +36,7 @@ struct Readme;
 // Generated code names this crate `::touchoff`, here as elsewhere.
 extern crate self as touchoff;
 
+pub mod certify;
 pub mod cloud;
 pub mod mesh;
 mod part;

@@ -84,7 +84,7 @@ fn cards_carry_the_bounds() {
     let card = tools_library::Fig73.card();
     assert!(card.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
     assert!(card.depth.least.is_some_and(|least| (least - 1.0).abs() < 1e-12));
-    for tool in tools_library::TOOLS.iter().filter(|tool| tool.card().exact) {
+    for tool in tools_library::TOOLS.iter().filter(|tool| tool.card().exact()) {
         let depth = tool.card().depth;
         assert_eq!([depth.least, depth.lipschitz], [Some(1.0); 2], "{}", tool.card().name);
     }

@@ -87,7 +87,7 @@ fn a_bracket_at_its_hole_and_edges() {
 fn clearance_is_that_of_the_box() {
     for oracle in [&oracle::Block as &dyn Oracle, &oracle::LBracket] {
         let tool = tools_library::find(oracle.name()).expect("in the library");
-        assert!(!tool.card().exact);
+        assert!(!tool.card().exact());
         let mut draw = Draw::new(8);
         for _ in 0..20_000 {
             let p = [0; 3].map(|_| draw.between(-40.0, 40.0));

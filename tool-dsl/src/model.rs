@@ -116,6 +116,27 @@ impl Model {
     pub fn is_exact(&self) -> bool {
         self.section.is_some()
     }
+
+    /// The pieces of the profile, in order, in doubles; none without one.
+    pub fn outline(&self) -> impl Iterator<Item = Piece> + '_ {
+        let segments = self.section.iter().flat_map(|section| &section.outline);
+        segments.map(|segment| Piece {
+            ends: segment.ends(),
+            circle: segment.round(),
+            surface: segment.surface,
+        })
+    }
+}
+
+/// A piece of a profile, as `[d, z]` in the tool's frame and the file's unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Where it begins and ends.
+    pub ends: [[f64; 2]; 2],
+    /// Centre, radius and whether the material is inside, of an arc.
+    pub circle: Option<([f64; 2], f64, bool)>,
+    /// The surface it belongs to.
+    pub surface: usize,
 }
 
 /// A part of the outside and the distance from the tool there.

@@ -93,7 +93,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             weights: Weights::Area,
             centre: Point3::origin(),
             level: Level::new(),
-            sight: Sight::new(part.tree(), tool.card(), length),
+            sight: Sight::new(&part.tree().frame, tool.card(), length),
             view: View::default(),
             search: Search::default(),
             hit: 0,
@@ -147,7 +147,8 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         const HALF: f64 = f64::EPSILON / 2.0;
         let (card, tree, length) = (self.tool.card(), self.beside.part.tree(), self.beside.length);
         let tool = length * card.size();
-        let [leaf, part] = [tree.leaf_size, tree.size].map(|half| tree.scale * f64::from(half));
+        let frame = &tree.frame;
+        let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
         // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
         let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
         // A point inside is no farther from the tip than the tool is large, so neither is the origin
@@ -265,7 +266,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 impl Beside<'_> {
     /// Looks from a pose; whether the tool may reach the part.
     fn look(&mut self, pose: &Pose) -> bool {
-        self.sight.look(self.part.tree(), pose, &mut self.view)
+        self.sight.look(&self.part.tree().frame, pose, &mut self.view)
     }
 
     /// Finds the candidates of the whole part.

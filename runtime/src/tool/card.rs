@@ -20,10 +20,10 @@ pub struct Card {
     pub envelope: Cow<'static, [Slab]>,
     /// Whether it has an axis.
     pub shape: Shape,
-    /// Whether depth and clearance are true distances; farther out than 48 sizes of the tool
-    /// clearance is a lower bound. Without a profile, depth is what the file says and clearance a
-    /// lower bound everywhere.
-    pub exact: bool,
+    /// The profile: the boundary of its half of the section, from the axis at its lower end
+    /// counter-clockwise to the axis, each piece beginning where the last one ends. Empty without
+    /// one.
+    pub outline: Cow<'static, [Piece]>,
     /// What is proved of depth.
     pub depth: Depth,
 }
@@ -59,7 +59,7 @@ impl Card {
         unit: Unit,
         (surfaces, regions): (&'static [Surface], &'static [Region]),
         (shape, envelope): (Shape, &'static [Slab]),
-        (exact, depth): (bool, Depth),
+        (outline, depth): (&'static [Piece], Depth),
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -69,9 +69,16 @@ impl Card {
             regions: Cow::Borrowed(regions),
             envelope: Cow::Borrowed(envelope),
             shape,
-            exact,
+            outline: Cow::Borrowed(outline),
             depth,
         }
+    }
+
+    /// Whether depth and clearance are true distances; farther out than 48 sizes of the tool
+    /// clearance is a lower bound. Without a profile, depth is what the file says and clearance a
+    /// lower bound everywhere.
+    pub fn exact(&self) -> bool {
+        !self.outline.is_empty()
     }
 
     /// The surface that a region belongs to.
@@ -127,6 +134,42 @@ impl Region {
     /// A region from constants.
     pub const fn new(name: &'static str, surface: usize) -> Region {
         Region { name: Cow::Borrowed(name), surface }
+    }
+}
+
+/// A piece of a profile, a line or an arc, as `[d, z]`; the material lies on its left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Its beginning.
+    pub from: [f64; 2],
+    /// Its end.
+    pub to: [f64; 2],
+    /// The circle that an arc is of.
+    pub circle: Option<Circle>,
+    /// Its surface's place in the card's list.
+    pub surface: usize,
+}
+
+/// The circle of an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    /// Its centre, as `[d, z]`.
+    pub centre: [f64; 2],
+    /// Its radius.
+    pub radius: f64,
+    /// Whether the material is inside: then it is walked counter-clockwise.
+    pub convex: bool,
+}
+
+impl Piece {
+    /// A line.
+    pub const fn line(from: [f64; 2], to: [f64; 2], surface: usize) -> Piece {
+        Piece { from, to, circle: None, surface }
+    }
+
+    /// An arc.
+    pub const fn arc(ends: [[f64; 2]; 2], circle: Circle, surface: usize) -> Piece {
+        Piece { from: ends[0], to: ends[1], circle: Some(circle), surface }
     }
 }
 

@@ -72,34 +72,7 @@ impl<L: Lane> FeltLanes<L> {
     }
 }
 
-/// Returns what is computed on vectors, at levels that have those of four doubles at least, or are all
-/// there is: with two a side, a tool would be compiled to four times the code for nothing.
-macro_rules! on_vectors {
-    ($level:expr, $simd:ident => $body:expr) => {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            if let Some($simd) = $level.as_avx512() {
-                return $simd.vectorize(
-                    #[inline(always)]
-                    || $body,
-                );
-            }
-            if let Some($simd) = $level.as_avx2() {
-                return $simd.vectorize(
-                    #[inline(always)]
-                    || $body,
-                );
-            }
-        }
-        #[cfg(target_arch = "aarch64")]
-        if let Some($simd) = $level.as_neon() {
-            return $simd.vectorize(
-                #[inline(always)]
-                || $body,
-            );
-        }
-    };
-}
+use super::on_vectors;
 
 impl<T: Evaluators> Tool for T {
     fn card(&self) -> &Card {

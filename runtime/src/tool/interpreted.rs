@@ -1,7 +1,8 @@
 //! Tools that are loaded at run time.
 
 use super::{
-    Ask, Card, Depth, Felt, LANES, Points, Region, Senses, Shape, Slab, Surface, Tool, Wanted,
+    Ask, Card, Circle, Depth, Felt, LANES, Piece, Points, Region, Senses, Shape, Slab, Surface,
+    Tool, Wanted,
 };
 use crate::Unit;
 use fearless_simd::{Level, Simd, dispatch};
@@ -105,12 +106,18 @@ fn card(tool: &Checked) -> Card {
             Domain::HalfPlane => Shape::Revolved,
             Domain::Space => Shape::Solid { across: across(&tool.extent) },
         },
-        exact: model.is_exact(),
+        outline: model.outline().map(piece).collect(),
         depth: {
             let Bounds { least, lipschitz, rounding } = tool.bounds;
             Depth { least, lipschitz, rounding }
         },
     }
+}
+
+fn piece(of: model::Piece) -> Piece {
+    let model::Piece { ends: [from, to], circle, surface } = of;
+    let circle = circle.map(|(centre, radius, convex)| Circle { centre, radius, convex });
+    Piece { from, to, circle, surface }
 }
 
 impl Tool for Interpreted {

@@ -9,7 +9,7 @@ mod compiled;
 mod interpreted;
 mod lane;
 
-pub use card::{Card, Depth, Region, Shape, Slab, Surface};
+pub use card::{Card, Circle, Depth, Piece, Region, Shape, Slab, Surface};
 pub use compiled::{Evaluators, FeltLanes};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
@@ -20,13 +20,44 @@ use fearless_simd::Level;
 /// How many points evaluators do at a time; buffers are padded to a multiple of it.
 pub const LANES: usize = 8;
 
+/// Returns what is computed on vectors, at levels that have those of four doubles at least, or are all
+/// there is: with two a side, there would be four times the code for nothing.
+macro_rules! on_vectors {
+    ($level:expr, $simd:ident => $body:expr) => {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            if let Some($simd) = $level.as_avx512() {
+                return $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                );
+            }
+            if let Some($simd) = $level.as_avx2() {
+                return $simd.vectorize(
+                    #[inline(always)]
+                    || $body,
+                );
+            }
+        }
+        #[cfg(target_arch = "aarch64")]
+        if let Some($simd) = $level.as_neon() {
+            return $simd.vectorize(
+                #[inline(always)]
+                || $body,
+            );
+        }
+    };
+}
+
+pub(crate) use on_vectors;
+
 /// A tool that can be asked what it feels: one that was compiled, or one that is interpreted.
 pub trait Tool: Send + Sync {
     /// Who it is and how far it reaches.
     fn card(&self) -> &Card;
 
     /// The distance from a point of the tool's frame to the tool, in the file's unit: 0 inside, a
-    /// lower bound where [`Card::exact`] says so.
+    /// lower bound unless [`Card::exact`].
     fn clearance(&self, point: [f64; 3]) -> f64;
 
     /// Evaluates what is asked for at points of the tool's frame.

@@ -1,36 +1,36 @@
 //! From a cloud to its tree.
 
-use super::{Boxes, Leaf, Skin, Tree, WIDTH};
+use super::{Boxes, Frame, Leaf, Skin, Tree, WIDTH};
 use crate::cloud::Cloud;
 use nalgebra::Point3;
 
-/// A point on its way to a leaf.
+/// Something on its way to a leaf, by its place in the frame.
 #[derive(Clone, Copy)]
-struct Item {
-    at: [f64; 3],
-    index: u32,
+pub(crate) struct Item {
+    pub(crate) at: [f64; 3],
+    pub(crate) index: u32,
 }
 
 /// A box by its ends.
 #[derive(Clone, Copy)]
-struct Bounds {
+pub(crate) struct Bounds {
     low: [f64; 3],
     high: [f64; 3],
 }
 
 impl Bounds {
-    fn of(items: &[Item]) -> Bounds {
+    pub(crate) fn of(places: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
         let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-        for item in items {
+        for place in places {
             for axis in 0..3 {
-                bounds.low[axis] = bounds.low[axis].min(item.at[axis]);
-                bounds.high[axis] = bounds.high[axis].max(item.at[axis]);
+                bounds.low[axis] = bounds.low[axis].min(place[axis]);
+                bounds.high[axis] = bounds.high[axis].max(place[axis]);
             }
         }
         bounds
     }
 
-    fn middle(&self, axis: usize) -> f64 {
+    pub(crate) fn middle(&self, axis: usize) -> f64 {
         self.low[axis] / 2.0 + self.high[axis] / 2.0
     }
 
@@ -40,23 +40,47 @@ impl Bounds {
 }
 
 pub(super) fn build(cloud: &Cloud) -> Tree {
-    let points = cloud.points();
-    let mut items: Vec<Item> = points
-        .iter()
+    let places = || cloud.points().iter().map(|p| [p.x, p.y, p.z]);
+    let frame = Frame::around(places());
+    let mut items: Vec<Item> = places()
         .zip(0u32..)
-        .map(|(point, index)| Item { at: [point.x, point.y, point.z], index })
+        .map(|(place, index)| Item { at: frame.inside(place), index })
         .collect();
-    let whole = Bounds::of(&items);
-    let origin: [f64; 3] = std::array::from_fn(|axis| whole.middle(axis));
-    let scale = power_of_two(whole.size());
-    for item in &mut items {
-        for (value, origin) in item.at.iter_mut().zip(origin) {
-            *value = (*value - origin) / scale;
-        }
-    }
     order(&mut items);
-    let (leaves, mut boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(leaf).unzip();
+    let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(leaf).unzip();
     let leaf_size = boxes.iter().map(|b| outward(b.size() / 2.0)).fold(0.0, f32::max);
+    let levels = levels(boxes);
+    let weight = cloud.weights().iter().fold(0.0, |most: f64, weight| most.max(*weight));
+    Tree {
+        frame,
+        levels,
+        leaves,
+        leaf_size,
+        skins: items.chunks(WIDTH).map(|items| skin(items, cloud, weight)).collect(),
+        weight,
+        triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
+    }
+}
+
+impl Frame {
+    /// The frame of what has these places.
+    pub(crate) fn around(places: impl IntoIterator<Item = [f64; 3]>) -> Frame {
+        let whole = Bounds::of(places);
+        let scale = power_of_two(whole.size());
+        let origin = Point3::from([0, 1, 2].map(|axis| whole.middle(axis)));
+        // A box about boxes is a little larger than what is in them.
+        let size = outward(whole.size() / scale * (1.0 + 1e-6));
+        Frame { origin, scale, size }
+    }
+
+    /// A place as the frame has it.
+    pub(crate) fn inside(&self, place: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| (place[axis] - self.origin[axis]) / self.scale)
+    }
+}
+
+/// From the root's children down to those boxes, side by side.
+pub(crate) fn levels(mut boxes: Vec<Bounds>) -> Vec<Vec<Boxes>> {
     let mut levels = Vec::new();
     loop {
         let level: Vec<Boxes> = boxes.chunks(WIDTH).map(side_by_side).collect();
@@ -67,18 +91,7 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         }
     }
     levels.reverse();
-    let weight = cloud.weights().iter().fold(0.0, |most: f64, weight| most.max(*weight));
-    Tree {
-        origin: Point3::from(origin),
-        scale,
-        levels,
-        leaves,
-        leaf_size,
-        size: outward(boxes[0].size()),
-        skins: items.chunks(WIDTH).map(|items| skin(items, cloud, weight)).collect(),
-        weight,
-        triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
-    }
+    levels
 }
 
 /// The power of two next to a size; 1 for a single point.
@@ -87,13 +100,13 @@ fn power_of_two(size: f64) -> f64 {
 }
 
 /// Kd order: across the longest side, the left part a power of two of full leaves.
-fn order(items: &mut [Item]) {
+pub(crate) fn order(items: &mut [Item]) {
     if items.len() <= WIDTH {
         return;
     }
     let leaves = items.len().div_ceil(WIDTH);
     let left = WIDTH * (leaves.next_power_of_two() / 2);
-    let bounds = Bounds::of(items);
+    let bounds = Bounds::of(items.iter().map(|item| item.at));
     let size = |axis: usize| bounds.high[axis] - bounds.low[axis];
     let axis = (0..3).fold(0, |best, axis| if size(axis) > size(best) { axis } else { best });
     // Equal coordinates are told apart by the index, so the order is the cloud's alone.
@@ -107,7 +120,7 @@ fn order(items: &mut [Item]) {
 
 /// A leaf and the box about its points as they are stored.
 fn leaf(items: &[Item]) -> (Leaf, Bounds) {
-    let bounds = Bounds::of(items);
+    let bounds = Bounds::of(items.iter().map(|item| item.at));
     let centre: [f64; 3] = std::array::from_fn(|axis| f64::from(bounds.middle(axis) as f32));
     let mut leaf = Leaf { offset: [[f32::NAN; WIDTH]; 3] };
     let mut half = [0f64; 3];

@@ -18,9 +18,11 @@ mod sift;
 mod view;
 mod walk;
 
+pub(crate) use build::{Bounds, Item, levels, order};
 use candidates::Candidates;
 pub(crate) use sift::Search;
 pub(crate) use view::{Sight, View};
+pub(crate) use walk::{extent, load, seen};
 
 use crate::cloud::Cloud;
 use nalgebra::Point3;
@@ -48,18 +50,26 @@ pub(crate) struct Skin {
     pub(crate) weight: [f32; WIDTH],
 }
 
+/// Where boxes are: what their numbers mean.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame {
+    /// The middle of the part.
+    pub(crate) origin: Point3<f64>,
+    /// The unit of length; a power of two, if the part is in the unit that it came in.
+    pub(crate) scale: f64,
+    /// The largest half extent of the whole.
+    pub(crate) size: f32,
+}
+
 /// A cloud in its tree.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    pub(crate) origin: Point3<f64>,
-    /// A power of two, if the part is in the unit that it came in.
-    pub(crate) scale: f64,
+    pub(crate) frame: Frame,
     /// From the root's children down to the leaves' boxes.
     pub(crate) levels: Vec<Vec<Boxes>>,
     pub(crate) leaves: Vec<Leaf>,
-    /// The largest half extent of a leaf's box, and of the whole.
+    /// The largest half extent of a leaf's box.
     pub(crate) leaf_size: f32,
-    pub(crate) size: f32,
     /// Of each leaf.
     pub(crate) skins: Vec<Skin>,
     /// The largest weight; the others are parts of it.
@@ -76,8 +86,8 @@ impl Tree {
 
     /// Multiplies every length.
     pub(crate) fn scale_by(&mut self, factor: f64) {
-        self.origin *= factor;
-        self.scale *= factor;
+        self.frame.origin *= factor;
+        self.frame.scale *= factor;
         self.weight *= factor * factor;
     }
 
@@ -96,7 +106,8 @@ impl Tree {
     pub fn point(&self, index: usize) -> Point3<f64> {
         let [centre, offset] = self.stored(index);
         Point3::from(std::array::from_fn(|axis| {
-            self.origin[axis] + (self.scale * centre[axis] + self.scale * offset[axis])
+            self.frame.origin[axis]
+                + (self.frame.scale * centre[axis] + self.frame.scale * offset[axis])
         }))
     }
 

@@ -1,6 +1,6 @@
 //! A part as a tool sees it: what is the same at every pose, and what changes.
 
-use super::Tree;
+use super::{Frame, Tree};
 use crate::pose::Pose;
 use crate::tool::{Card, Shape};
 use nalgebra::Vector3;
@@ -21,7 +21,9 @@ pub(crate) struct Sight {
     unit: f64,
     pub(super) reach: Reach,
     /// Whether `f32` holds what is seen; if not, no point is ruled out.
-    pub(super) fits: bool,
+    pub(crate) fits: bool,
+    /// How far `f32` can take a place, in the tool's unit.
+    pub(crate) margin: f64,
     /// Where the middle of a part that the tool reaches can be along the axis, and how far from it.
     along: [f64; 2],
     across: f64,
@@ -44,9 +46,9 @@ impl Sight {
     /// of the factors themselves it errs by less than 8 units of roundoff of the sum of their
     /// sizes. Twice that is allowed for. No part is looked at that is farther away than tool and
     /// part are large, so the margin is the same at every pose.
-    pub(crate) fn new(tree: &Tree, card: &Card, length: f64) -> Sight {
-        let unit = tree.scale / length;
-        let part = unit * 3f64.sqrt() * f64::from(tree.size);
+    pub(crate) fn new(frame: &Frame, card: &Card, length: f64) -> Sight {
+        let unit = frame.scale / length;
+        let part = unit * 3f64.sqrt() * f64::from(frame.size);
         let (size, [low, high]) = (card.size(), card.reach());
         let margin = 16.0 * ROUNDOFF * (size + 4.0 * part);
         let reach = Reach::new(card, margin);
@@ -56,9 +58,10 @@ impl Sight {
         let part = part * (1.0 + 1e-9) + 1e-9 * size;
         Sight {
             length,
-            scale: tree.scale,
+            scale: frame.scale,
             unit,
             fits,
+            margin,
             reach,
             along: [low - part, high + part],
             across: (card.radius() + part).powi(2),
@@ -67,11 +70,11 @@ impl Sight {
 
     /// Looks from a pose; whether the tool may reach the part from there.
     #[inline]
-    pub(crate) fn look(&self, tree: &Tree, pose: &Pose, view: &mut View) -> bool {
+    pub(crate) fn look(&self, frame: &Frame, pose: &Pose, view: &mut View) -> bool {
         let (rotation, tip) = (pose.rotation(), pose.tip());
         let per_length = 1.0 / self.length;
         for axis in 0..3 {
-            view.from_tip[axis] = tree.origin[axis] - tip[axis];
+            view.from_tip[axis] = frame.origin[axis] - tip[axis];
         }
         let from = view.from_tip;
         let mut seen = [0.0; 3];
@@ -127,14 +130,14 @@ impl Reach {
 #[derive(Default)]
 pub(crate) struct View {
     /// From the tree's frame and unit to the tool's.
-    pub(super) rows: [[f32; 3]; 3],
+    pub(crate) rows: [[f32; 3]; 3],
     /// The cloud's origin in the tool's frame and unit.
-    pub(super) origin: [f32; 3],
+    pub(crate) origin: [f32; 3],
     /// The cloud's origin from the tip, and the tree's unit, in the part's frame and unit.
     from_tip: [f64; 3],
     pub(super) scale: f64,
     /// From the part's frame and unit to the tool's.
-    pub(super) carry: [[f64; 3]; 3],
+    pub(crate) carry: [[f64; 3]; 3],
 }
 
 impl View {
@@ -142,6 +145,14 @@ impl View {
     #[inline(always)]
     pub(super) fn leaf_from_tip(&self, centre: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.from_tip[axis] + self.scale * centre[axis])
+    }
+
+    /// A place given in the tree's unit, in the tool's frame and unit.
+    #[inline(always)]
+    pub(crate) fn seen(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        let [a, b, c] = &self.rows;
+        let along = |row: &[f32; 3], from: f32| x * row[0] + y * row[1] + z * row[2] + from;
+        [along(a, self.origin[0]), along(b, self.origin[1]), along(c, self.origin[2])]
     }
 
     /// A point from the tip in the part's frame, by its place in the tree.

@@ -99,9 +99,9 @@ impl Walker {
         nodes.index[0] = leaf;
         nodes.slabs[0] = sight.reach.all;
         let centre = tree.centre(leaf as usize);
-        for (axis, list) in nodes.middle.iter_mut().enumerate() {
-            let (row, [x, y, z]) = (view.rows[axis], centre.map(|part| part as f32));
-            list[0] = x * row[0] + y * row[1] + z * row[2] + view.origin[axis];
+        let middle = view.seen(centre.map(|part| part as f32));
+        for (list, part) in nodes.middle.iter_mut().zip(middle) {
+            list[0] = part;
         }
         nodes
     }
@@ -127,13 +127,13 @@ impl Walker {
 }
 
 /// Sixteen points or boxes, coordinate by coordinate.
-pub(super) type Triple<S> = [f32x16<S>; 3];
+pub(crate) type Triple<S> = [f32x16<S>; 3];
 
 // What runs on vectors is written in functions that are always inlined: a closure, as `array::map`
 // takes one, would be compiled without the vector instructions of its surroundings.
 
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> Triple<S> {
+pub(crate) fn load<S: Simd>(simd: S, lists: &[[f32; WIDTH]; 3]) -> Triple<S> {
     [
         f32x16::from_slice(simd, &lists[0]),
         f32x16::from_slice(simd, &lists[1]),
@@ -148,13 +148,13 @@ fn dot<S: Simd>(v: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
 
 /// Places turned to the tool's frame, from one whose place there is known.
 #[inline(always)]
-pub(super) fn seen<S: Simd>(v: &Triple<S>, rows: &[[f32; 3]; 3], from: [f32; 3]) -> Triple<S> {
+pub(crate) fn seen<S: Simd>(v: &Triple<S>, rows: &[[f32; 3]; 3], from: [f32; 3]) -> Triple<S> {
     [dot(v, rows[0]) + from[0], dot(v, rows[1]) + from[1], dot(v, rows[2]) + from[2]]
 }
 
 /// How far boxes with these half extents reach along a row.
 #[inline(always)]
-fn extent<S: Simd>(half: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
+pub(crate) fn extent<S: Simd>(half: &Triple<S>, row: [f32; 3]) -> f32x16<S> {
     dot(half, [row[0].abs(), row[1].abs(), row[2].abs()])
 }
 

@@ -211,7 +211,7 @@ impl Judge<'_> {
             row.sides.see(depth.abs() / self.ulp, p, "");
         }
         let Some([region, found, magnitude, niceness, ux, uy, uz]) = answer else {
-            if self.tool.card().exact {
+            if self.tool.card().exact() {
                 let off = (self.tool.clearance(p) + depth).abs();
                 row.clearance.see(off / self.ulp, p, "");
             }

@@ -6,7 +6,7 @@ use touchoff_tests::oracle::{Nearest, Oracle};
 /// Compares a tool's card with the regions that a restated profile should have.
 pub(crate) fn of(tool: &dyn Tool, oracle: &Nearest) {
     let card = tool.card();
-    if !card.exact {
+    if !card.exact() {
         // Written by hand, in an order and with names of its own.
         return;
     }

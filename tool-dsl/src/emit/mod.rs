@@ -49,10 +49,11 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct #name;
 
-        #[allow(clippy::all, clippy::pedantic, unused_variables, unused_parens)]
+        #[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, unused_parens)]
         const _: () = {
             use ::touchoff::tool::{
-                Ask, Card, Depth, Evaluators, FeltLanes, Lane, Region, Shape, Slab, Surface,
+                Ask, Card, Circle, Depth, Evaluators, FeltLanes, Lane, Piece, Region, Shape, Slab,
+                Surface,
             };
 
             impl Evaluators for #name {
@@ -133,7 +134,7 @@ fn reach(tool: &Checked) -> String {
 
 fn card(tool: &Checked) -> TokenStream {
     let model = &tool.model;
-    let (name, exact) = (&model.name, model.is_exact());
+    let name = &model.name;
     let title = model.title.as_deref().unwrap_or("");
     let unit = Ident::new(&format!("{:?}", model.unit), Span::call_site());
     let surfaces = model.surfaces.iter().map(|surface| {
@@ -147,6 +148,23 @@ fn card(tool: &Checked) -> TokenStream {
     let slabs = tool.envelope.iter().map(|slab| {
         let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
         quote! { Slab::new(#low, #high, #radius) }
+    });
+    let pieces = model.outline().map(|piece| {
+        let [[fd, fz], [td, tz]] = piece.ends.map(|end| end.map(literal));
+        let surface = piece.surface;
+        match piece.circle {
+            None => quote! { Piece::line([#fd, #fz], [#td, #tz], #surface) },
+            Some((centre, radius, convex)) => {
+                let ([cd, cz], radius) = (centre.map(literal), literal(radius));
+                quote! {
+                    Piece::arc(
+                        [[#fd, #fz], [#td, #tz]],
+                        Circle { centre: [#cd, #cz], radius: #radius, convex: #convex },
+                        #surface,
+                    )
+                }
+            }
+        }
     });
     let rounding = literal(tool.bounds.rounding);
     let [least, lipschitz] = [tool.bounds.least, tool.bounds.lipschitz].map(|bound| match bound {
@@ -171,12 +189,13 @@ fn card(tool: &Checked) -> TokenStream {
             static SURFACES: &[Surface] = &[#(#surfaces),*];
             static REGIONS: &[Region] = &[#(#regions),*];
             static SLABS: &[Slab] = &[#(#slabs),*];
+            static OUTLINE: &[Piece] = &[#(#pieces),*];
             static CARD: Card = Card::new(
                 [#name, #title],
                 ::touchoff::Unit::#unit,
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
-                (#exact, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
+                (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
             );
             &CARD
         }

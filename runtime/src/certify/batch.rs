@@ -1,0 +1,118 @@
+//! Eight triangles in the tool's frame, side by side in `f64`.
+
+use super::facets::Facets;
+use super::hull::Hull;
+use crate::pose::Pose;
+use crate::tool::{LANES, on_vectors};
+use crate::tree::View;
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+/// A coordinate of each.
+type Lanes = [f64; LANES];
+
+/// Up to eight triangles: how deep each is at most, and where it may be so.
+#[derive(Default)]
+pub(super) struct Batch {
+    indices: Vec<u32>,
+    /// First from the tip in the part's frame and unit, then in the tool's.
+    corners: [[Lanes; 3]; 3],
+    pub(super) bounds: Lanes,
+    places: [Lanes; 3],
+}
+
+impl Batch {
+    /// Takes triangles by their places in the tree's order.
+    pub(super) fn begin(&mut self, facets: &Facets, pose: &Pose, indices: &[u32]) {
+        self.indices.clear();
+        self.indices.extend(indices);
+        let tip = pose.tip();
+        for (lane, index) in self.indices.iter().enumerate() {
+            for (list, corner) in self.corners.iter_mut().zip(&facets.corners[*index as usize]) {
+                for axis in 0..3 {
+                    list[axis][lane] = corner[axis] - tip[axis];
+                }
+            }
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    pub(super) fn index(&self, lane: usize) -> u32 {
+        self.indices[lane]
+    }
+
+    pub(super) fn place(&self, lane: usize) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.places[axis][lane])
+    }
+
+    pub(super) fn corners(&self, lane: usize) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|k| [0, 1, 2].map(|axis| self.corners[k][axis][lane]))
+    }
+
+    pub(super) fn any_above(&self, depth: f64) -> bool {
+        self.bounds[..self.len()].iter().any(|bound| *bound > depth)
+    }
+
+    /// Turns them to the tool's frame, and bounds them.
+    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, view: &View) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, view));
+        for corner in &mut self.corners {
+            let p = *corner;
+            for lane in 0..LANES {
+                for (axis, row) in view.carry.iter().enumerate() {
+                    corner[axis][lane] =
+                        p[0][lane] * row[0] + p[1][lane] * row[1] + p[2][lane] * row[2];
+                }
+            }
+        }
+        // Without vectors nothing is known before their edges are looked at.
+        self.bounds = [f64::INFINITY; LANES];
+        self.places = self.corners[0];
+    }
+
+    #[inline(always)]
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, view: &View) {
+        for corner in &mut self.corners {
+            let p = load(simd, corner);
+            for (list, row) in corner.iter_mut().zip(&view.carry) {
+                (p[0] * row[0] + p[1] * row[1] + p[2] * row[2]).store_slice(list);
+            }
+        }
+        let (bound, place) = hull.of_triangles(simd, &self.load_corners(simd), None);
+        bound.store_slice(&mut self.bounds);
+        store(&mut self.places, place);
+    }
+
+    /// Bounds them again, as seen from where they may be deepest.
+    pub(super) fn closer(&mut self, level: Level, hull: &Hull<f64>) {
+        on_vectors!(level, simd => self.closer_on(simd, hull));
+    }
+
+    #[inline(always)]
+    fn closer_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>) {
+        let places = load(simd, &self.places);
+        let (bound, place) = hull.of_triangles(simd, &self.load_corners(simd), Some(&places));
+        f64x8::from_slice(simd, &self.bounds).min(bound).store_slice(&mut self.bounds);
+        store(&mut self.places, place);
+    }
+
+    #[inline(always)]
+    fn load_corners<S: Simd>(&self, simd: S) -> [[f64x8<S>; 3]; 3] {
+        let [a, b, c] = &self.corners;
+        [load(simd, a), load(simd, b), load(simd, c)]
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, [x, y, z]: &[Lanes; 3]) -> [f64x8<S>; 3] {
+    [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
+}
+
+#[inline(always)]
+fn store<S: Simd>([x, y, z]: &mut [Lanes; 3], from: [f64x8<S>; 3]) {
+    from[0].store_slice(x);
+    from[1].store_slice(y);
+    from[2].store_slice(z);
+}

@@ -1,0 +1,142 @@
+//! The way down a tree of triangles, the deepest first.
+
+use super::facets::{Corners, Facets};
+use super::hull::Hull;
+use crate::tool::{LANES, on_vectors};
+use crate::tree::{View, WIDTH, load, seen};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch};
+
+/// A node of the tree, a leaf or a triangle, and how deep the tool can be in it.
+#[derive(Clone, Copy)]
+pub(super) struct Node {
+    /// That of its children; leaves are those whose children are triangles.
+    level: u32,
+    index: u32,
+    pub(super) bound: f32,
+}
+
+impl Node {
+    pub(super) fn is_triangle(&self, facets: &Facets) -> bool {
+        self.level as usize > facets.levels.len()
+    }
+}
+
+/// What is yet to be looked at, the deepest of the last opened on top.
+#[derive(Default)]
+pub(super) struct Descent {
+    stack: Vec<Node>,
+    some: Vec<u32>,
+    /// Whether anything was.
+    looked: bool,
+}
+
+/// A part as a tool sees it.
+type Seen<'a> = (&'a Facets, &'a Hull<f32>, &'a View);
+
+impl Descent {
+    pub(super) fn clear(&mut self) {
+        self.stack.clear();
+        self.looked = false;
+    }
+
+    /// Begins at the root.
+    pub(super) fn begin(&mut self) {
+        self.stack.push(Node { level: 0, index: 0, bound: f32::INFINITY });
+        self.looked = true;
+    }
+
+    /// Whether it began.
+    pub(super) fn looked(&self) -> bool {
+        self.looked
+    }
+
+    pub(super) fn pop(&mut self) -> Option<Node> {
+        self.stack.pop()
+    }
+
+    /// A triangle, and those that lie on the stack behind it: up to eight that may be deeper than that.
+    pub(super) fn triangles(&mut self, facets: &Facets, first: Node, wanted: f32) -> &[u32] {
+        self.some.clear();
+        self.some.push(first.index);
+        while self.some.len() < LANES
+            && let Some(next) = self.stack.pop_if(|node| node.is_triangle(facets))
+        {
+            if next.bound > wanted {
+                self.some.push(next.index);
+            }
+        }
+        &self.some
+    }
+
+    /// Puts the children of a node on the stack that may be deeper than that.
+    pub(super) fn open(&mut self, level: Level, seen: Seen<'_>, node: Node, wanted: f32) {
+        let facets = seen.0;
+        let mut bounds = [node.bound; WIDTH];
+        if (node.level as usize) < facets.levels.len() {
+            dispatch!(level, simd => of_boxes(simd, seen, node, &mut bounds));
+        } else {
+            of_leaf(level, seen, node, wanted, &mut bounds);
+        }
+        let children = facets.children(node.level as usize, node.index as usize);
+        let first = self.stack.len();
+        for (bound, lane) in bounds.into_iter().zip(0..children as u32) {
+            // What `f32` cannot hold may be anything.
+            if bound <= wanted {
+                continue;
+            }
+            let index = node.index * WIDTH as u32 + lane;
+            let child = Node { level: node.level + 1, index, bound };
+            let mut at = self.stack.len();
+            self.stack.push(child);
+            while at > first && self.stack[at - 1].bound > bound {
+                self.stack[at] = self.stack[at - 1];
+                at -= 1;
+            }
+            self.stack[at] = child;
+        }
+    }
+}
+
+#[inline(always)]
+fn of_boxes<S: Simd>(
+    simd: S,
+    (facets, hull, view): Seen<'_>,
+    node: Node,
+    bounds: &mut [f32; WIDTH],
+) {
+    let boxes = &facets.levels[node.level as usize][node.index as usize];
+    hull.of_boxes(simd, boxes, view).store_slice(bounds);
+}
+
+/// Without vectors, the triangles of a leaf are as deep as it is.
+fn of_leaf(level: Level, seen: Seen<'_>, node: Node, wanted: f32, bounds: &mut [f32; WIDTH]) {
+    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted, bounds));
+}
+
+#[inline(always)]
+fn of_leaf_on<S: Simd>(
+    simd: S,
+    (facets, hull, view): Seen<'_>,
+    node: Node,
+    wanted: f32,
+    bounds: &mut [f32; WIDTH],
+) {
+    let index = node.index as usize;
+    let boxes = &facets.levels[node.level as usize - 1][index / WIDTH];
+    let centre = [0, 1, 2].map(|axis| boxes.centre[axis][index % WIDTH]);
+    let middle = view.seen(centre);
+    let Corners(corners) = &facets.leaves[index];
+    let corners = [
+        seen(&load(simd, &corners[0]), &view.rows, middle),
+        seen(&load(simd, &corners[1]), &view.rows, middle),
+        seen(&load(simd, &corners[2]), &view.rows, middle),
+    ];
+    let (mut bound, place) = hull.of_triangles(simd, &corners, None);
+    if bound.simd_gt(wanted).to_bitmask().count_ones() > SEVERAL {
+        bound = bound.min(hull.of_triangles(simd, &corners, Some(&place)).0);
+    }
+    bound.store_slice(bounds);
+}
+
+/// Of more triangles than these it is worth to look at all more closely.
+const SEVERAL: u32 = 2;

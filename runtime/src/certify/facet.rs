@@ -1,0 +1,95 @@
+//! A triangle in the tool's frame as courses.
+//!
+//! Depth is a function of d and z alone. Where it is greatest inside a triangle, its gradient, which lies
+//! in the plane through the axis there, is normal to the triangle; so the place lies in the plane through
+//! the axis that has the triangle's normal. That is also so on a ridge, where gradients of two features
+//! mix to the normal. So it is greatest on an edge, or on the *meridian*, the line in which the triangle
+//! meets that plane. A level triangle meets it everywhere: its depth depends on d alone, and any line
+//! through the axis has all values that the edges do not have.
+
+use super::course::Course;
+
+type Point = [f64; 3];
+
+fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn norm(a: Point) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// A triangle in the tool's frame and unit.
+pub(super) struct Facet {
+    corners: [Point; 3],
+    normal: Point,
+    /// The base of its meridian, and the way along it.
+    base: Point,
+    way: Point,
+    /// How far the computed meridian can be from the true one.
+    pub(super) skew: f64,
+}
+
+impl Facet {
+    pub(super) fn new(corners: [Point; 3]) -> Facet {
+        let [a, b, c] = corners;
+        let edges = [minus(b, a), minus(c, b), minus(a, c)];
+        let lengths = edges.map(norm);
+        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
+        let across = if lengths[0] == longest {
+            cross(edges[1], edges[2])
+        } else if lengths[1] == longest {
+            cross(edges[2], edges[0])
+        } else {
+            cross(edges[0], edges[1])
+        };
+        let area = norm(across);
+        let reach = corners.iter().flatten().fold(0.0, |most: f64, part| most.max(part.abs()));
+        let height = if longest > 0.0 { area / longest } else { 0.0 };
+        // A normal errs by what corners are rounded by, seen across the triangle.
+        let skew = (32.0 * f64::EPSILON * reach * (reach / height)).min(height);
+        if area == 0.0 || !area.is_finite() {
+            return Facet { corners, normal: [0.0; 3], base: a, way: [0.0; 3], skew: 0.0 };
+        }
+        let normal = across.map(|part| part / area);
+        let base = normal.map(|part| part * dot(normal, a));
+        let level = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt();
+        let [x, y] = if level > 0.0 { [normal[0] / level, normal[1] / level] } else { [1.0, 0.0] };
+        let way = [normal[2] * x, normal[2] * y, -level];
+        Facet { corners, normal, base, way, skew }
+    }
+
+    /// The part of the meridian within it.
+    pub(super) fn meridian(&self) -> Option<Course> {
+        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+        for k in 0..3 {
+            let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let inward = cross(self.normal, minus(b, a));
+            // inward · (base + t way - a) >= 0
+            let (speed, least) = (dot(inward, self.way), dot(inward, minus(a, self.base)));
+            if speed > 0.0 {
+                from = from.max(least / speed);
+            } else if speed < 0.0 {
+                to = to.min(least / speed);
+            } else if least > 0.0 {
+                return None;
+            }
+        }
+        (from < to && from.is_finite() && to.is_finite())
+            .then(|| Course::new(self.base, self.way, [from, to]))
+    }
+
+    /// Its edges.
+    pub(super) fn edges(&self) -> [Course; 3] {
+        let [a, b, c] = self.corners;
+        [[a, b], [b, c], [c, a]].map(|[from, to]| Course::new(from, minus(to, from), [0.0, 1.0]))
+    }
+}

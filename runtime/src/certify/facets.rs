@@ -1,0 +1,104 @@
+//! A part's triangles in a tree.
+
+use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
+use crate::{Mesh, Unit};
+
+/// The triangles of a part, arranged for being asked how deep a tool is in them: a 16-wide tree of boxes
+/// like that of a cloud, whose last level has a box for each triangle.
+///
+/// Corners are kept as they were given, in the part's frame and unit. Triangles without area stay: they
+/// are edges, and are as deep as their points.
+#[derive(Clone, Debug)]
+pub struct Facets {
+    pub(super) frame: Frame,
+    /// From the root's children down to the triangles' boxes.
+    pub(super) levels: Vec<Vec<Boxes>>,
+    /// The corners of 16 triangles.
+    pub(super) leaves: Vec<Corners>,
+    /// Of each triangle, in the tree's order.
+    pub(super) corners: Vec<[[f64; 3]; 3]>,
+    /// Their ids in the mesh.
+    pub(super) ids: Vec<u32>,
+    unit: Unit,
+    /// Whether it can be known what is inside.
+    pub(super) solid: bool,
+}
+
+/// The first, second and third corners of 16 triangles from the middle of their box, coordinate by
+/// coordinate; what is not there is NaN.
+#[derive(Clone, Debug)]
+pub(super) struct Corners(pub(super) [[[f32; WIDTH]; 3]; 3]);
+
+impl Facets {
+    /// The triangles of a mesh.
+    pub fn new(mesh: &Mesh) -> Facets {
+        let corners: Vec<[[f64; 3]; 3]> =
+            mesh.corners().map(|corners| corners.map(|p| [p.x, p.y, p.z])).collect();
+        let frame = Frame::around(corners.iter().flatten().copied());
+        let bounds = |corners: &[[f64; 3]; 3]| Bounds::of(corners.map(|place| frame.inside(place)));
+        let mut items: Vec<Item> = corners
+            .iter()
+            .zip(0u32..)
+            .map(|(corners, index)| {
+                let bounds = bounds(corners);
+                Item { at: [0, 1, 2].map(|axis| bounds.middle(axis)), index }
+            })
+            .collect();
+        order(&mut items);
+        let corners: Vec<_> = items.iter().map(|item| corners[item.index as usize]).collect();
+        let boxes: Vec<Bounds> = corners
+            .chunks(WIDTH)
+            .map(|leaf| Bounds::of(leaf.iter().flatten().map(|corner| frame.inside(*corner))))
+            .collect();
+        let levels = levels(boxes);
+        let above = &levels[levels.len() - 1];
+        let leaves = corners.chunks(WIDTH).enumerate().map(|(leaf, triangles)| {
+            let mut corners = Corners([[[f32::NAN; WIDTH]; 3]; 3]);
+            let boxes = &above[leaf / WIDTH];
+            for (lane, triangle) in triangles.iter().enumerate() {
+                for (list, corner) in corners.0.iter_mut().zip(triangle) {
+                    let place = frame.inside(*corner);
+                    for axis in 0..3 {
+                        let middle = f64::from(boxes.centre[axis][leaf % WIDTH]);
+                        list[axis][lane] = (place[axis] - middle) as f32;
+                    }
+                }
+            }
+            corners
+        });
+        Facets {
+            leaves: leaves.collect(),
+            levels,
+            corners,
+            ids: items.iter().map(|item| item.index).collect(),
+            frame,
+            unit: mesh.unit(),
+            solid: mesh.survey().solid(),
+        }
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is none; a [`Mesh`] always has some.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// The unit of its lengths.
+    pub fn unit(&self) -> Unit {
+        self.unit
+    }
+
+    /// How many children a node of a level has; behind the last level are leaves.
+    pub(super) fn children(&self, level: usize, node: usize) -> usize {
+        let below = match self.levels.len() - level.min(self.levels.len()) {
+            0 => self.len(),
+            1 => self.leaves.len(),
+            _ => self.levels[level + 1].len(),
+        };
+        (below - WIDTH * node).min(WIDTH)
+    }
+}

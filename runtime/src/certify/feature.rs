@@ -1,0 +1,271 @@
+//! A piece of a profile as geometry of the half plane.
+
+use crate::tool::{Circle, Piece};
+
+/// A place in the half plane, `[d, z]`.
+pub(super) type Place = [f64; 2];
+
+/// Three places. Of those that bound what lies between two ends, the third is the apex.
+pub(super) type Triangle = [Place; 3];
+
+/// A piece, an arc no more than a quarter of its circle, so that it is monotone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Feature {
+    pub(super) ends: [Place; 2],
+    /// From end to end: a unit vector.
+    pub(super) along: Place,
+    pub(super) length: f64,
+    pub(super) circle: Option<Circle>,
+    pub(super) surface: usize,
+}
+
+pub(super) fn minus(a: Place, b: Place) -> Place {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+pub(super) fn dot(a: Place, b: Place) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(super) fn cross(a: Place, b: Place) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(super) fn norm(a: Place) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn least([a, b, c]: [f64; 3]) -> f64 {
+    a.min(b).min(c)
+}
+
+fn most([a, b, c]: [f64; 3]) -> f64 {
+    a.max(b).max(c)
+}
+
+impl Feature {
+    fn new(ends: [Place; 2], circle: Option<Circle>, surface: usize) -> Feature {
+        let way = minus(ends[1], ends[0]);
+        let length = norm(way);
+        let along = if length > 0.0 { way.map(|part| part / length) } else { [0.0; 2] };
+        Feature { ends, along, length, circle, surface }
+    }
+
+    /// The direction of travel at its beginning or end.
+    pub(super) fn heading(&self, end: usize) -> Place {
+        let Some(Circle { centre, radius, convex }) = self.circle else { return self.along };
+        let [d, z] = minus(self.ends[end], centre).map(|part| part / radius);
+        if convex { [-z, d] } else { [z, -d] }
+    }
+
+    /// The line itself, or one that touches a convex arc at its middle.
+    pub(super) fn tangent(&self) -> Option<Feature> {
+        match self.circle {
+            None => Some(*self),
+            Some(Circle { centre, radius, convex: true }) => {
+                let out = [self.along[1], -self.along[0]];
+                let touch = [0, 1].map(|k| centre[k] + radius * out[k]);
+                Some(Feature { ends: [touch; 2], length: 0.0, circle: None, ..*self })
+            }
+            Some(_) => None,
+        }
+    }
+
+    /// How far a place is on the tool's side of this, of the places of its heights: at least 0 just
+    /// inside. A convex arc is taken to go on level toward the axis, a hollow one away from it.
+    #[inline]
+    pub(super) fn over(&self, p: Place) -> f64 {
+        let Some(Circle { centre, radius, convex }) = self.circle else {
+            return cross(self.along, minus(p, self.ends[0]));
+        };
+        let [d, z] = minus(p, centre);
+        if convex {
+            radius - norm([d.max(0.0), z])
+        } else if d <= 0.0 {
+            norm([d, z]) - radius
+        } else {
+            z.abs() - radius - d
+        }
+    }
+
+    /// The gradient of [`Feature::over`].
+    pub(super) fn inward(&self, p: Place) -> Place {
+        let Some(Circle { centre, convex, .. }) = self.circle else {
+            return [-self.along[1], self.along[0]];
+        };
+        let [d, z] = minus(p, centre);
+        let way = if convex { [-d.max(0.0), -z] } else { [d, z] };
+        let far = norm(way);
+        if (!convex && d > 0.0) || far == 0.0 { [-1.0, 0.0] } else { way.map(|part| part / far) }
+    }
+
+    /// No less than [`Feature::over`] at any place in a triangle.
+    #[inline]
+    pub(super) fn over_at_most(&self, triangle: &Triangle) -> f64 {
+        match &self.circle {
+            Some(circle) if circle.convex => below_tangents(circle, triangle),
+            // Linear, or convex where it is not below 0.
+            _ => most(triangle.map(|p| self.over(p))),
+        }
+    }
+
+    /// Whether the foot of a place on an arc's circle lies on the arc.
+    #[inline]
+    fn sector(&self, circle: &Circle, p: Place) -> bool {
+        let [from, to] = self.ends.map(|end| minus(end, circle.centre));
+        let out = minus(p, circle.centre);
+        let (first, last) = (cross(from, out), cross(out, to));
+        if circle.convex { first >= 0.0 && last >= 0.0 } else { first <= 0.0 && last <= 0.0 }
+    }
+
+    fn faces(&self, circle: &Circle, triangle: &Triangle) -> bool {
+        triangle.iter().all(|p| self.sector(circle, *p))
+    }
+
+    /// Whether [`Feature::over`] is the distance from the feature, below 0 beyond it, at all places of a
+    /// triangle: their feet are `from` one place `to` another of a line, or on the arc.
+    #[inline]
+    pub(super) fn square(&self, triangle: &Triangle, [from, to]: [f64; 2]) -> bool {
+        match &self.circle {
+            None => triangle.iter().all(|p| {
+                let at = dot(self.along, minus(*p, self.ends[0]));
+                from <= at && at <= to
+            }),
+            Some(circle) => self.faces(circle, triangle),
+        }
+    }
+
+    /// The nearest point.
+    #[inline]
+    pub(super) fn foot(&self, p: Place) -> Place {
+        match &self.circle {
+            None => {
+                let at = dot(self.along, minus(p, self.ends[0]));
+                if at <= 0.0 {
+                    self.ends[0]
+                } else if at >= self.length {
+                    self.ends[1]
+                } else {
+                    [0, 1].map(|k| self.ends[0][k] + at * self.along[k])
+                }
+            }
+            Some(circle) if self.sector(circle, p) => {
+                let out = minus(p, circle.centre);
+                let far = norm(out);
+                if far > 0.0 {
+                    [0, 1].map(|k| circle.centre[k] + circle.radius * (out[k] / far))
+                } else {
+                    self.ends[0]
+                }
+            }
+            Some(_) => {
+                let [from, to] = self.ends.map(|end| minus(p, end));
+                self.ends[usize::from(dot(to, to) < dot(from, from))]
+            }
+        }
+    }
+
+    /// The distance.
+    #[inline]
+    pub(super) fn away(&self, p: Place) -> f64 {
+        match &self.circle {
+            None => {
+                let off = minus(p, self.ends[0]);
+                let at = dot(self.along, off);
+                if at <= 0.0 {
+                    norm(off)
+                } else if at >= self.length {
+                    norm(minus(p, self.ends[1]))
+                } else {
+                    cross(self.along, off).abs()
+                }
+            }
+            Some(circle) if self.sector(circle, p) => {
+                (norm(minus(p, circle.centre)) - circle.radius).abs()
+            }
+            Some(_) => {
+                let [from, to] = self.ends.map(|end| minus(p, end));
+                dot(from, from).min(dot(to, to)).sqrt()
+            }
+        }
+    }
+
+    /// The gradient of [`Feature::away`].
+    pub(super) fn outward(&self, p: Place) -> Place {
+        let way = minus(p, self.foot(p));
+        let far = norm(way);
+        if far > 0.0 { way.map(|part| part / far) } else { self.inward(p) }
+    }
+
+    /// No less than the distance of any place in a triangle.
+    #[inline]
+    pub(super) fn at_most(&self, triangle: &Triangle) -> f64 {
+        match &self.circle {
+            // The distance from a convex set is convex.
+            None => most(triangle.map(|p| self.away(p))),
+            Some(circle) if self.faces(circle, triangle) => {
+                let out = most(triangle.map(|p| norm(minus(p, circle.centre)) - circle.radius));
+                if circle.convex { out.max(below_tangents(circle, triangle)) } else { out }
+            }
+            Some(_) => {
+                let [from, to] = self.ends.map(|end| most(triangle.map(|p| norm(minus(p, end)))));
+                from.min(to)
+            }
+        }
+    }
+
+    /// No more than the distance of any place in a triangle, by the line that parts the feature from
+    /// `seen`, one of its places.
+    #[inline]
+    pub(super) fn at_least(&self, triangle: &Triangle, seen: Place) -> f64 {
+        if let Some(Circle { centre, radius, convex: false }) = self.circle {
+            // From inside the circle; from beyond it only an end is near.
+            return least(triangle.map(|p| radius - norm(minus(p, centre)))).max(0.0);
+        }
+        let foot = self.foot(seen);
+        let way = minus(seen, foot);
+        let far = norm(way);
+        if far == 0.0 {
+            return 0.0;
+        }
+        (least(triangle.map(|p| dot(way, minus(p, foot)))) / far).max(0.0)
+    }
+}
+
+/// No less than how far any place of a triangle is inside a circle: no place is deeper than under a
+/// tangent. Taken are those at the feet of the end that is farther inside and of the apex.
+#[inline]
+fn below_tangents(circle: &Circle, triangle: &Triangle) -> f64 {
+    let out = triangle.map(|p| minus(p, circle.centre));
+    let beneath = |n: Place| {
+        let far = norm(n);
+        if far > 0.0 { circle.radius - least(out.map(|v| dot(n, v))) / far } else { circle.radius }
+    };
+    let deeper = usize::from(dot(out[1], out[1]) < dot(out[0], out[0]));
+    beneath(out[deeper]).min(beneath(out[2]))
+}
+
+/// The features of a piece: an arc is cut where it is level or upright.
+pub(super) fn quarters(piece: &Piece) -> Vec<Feature> {
+    let Some(circle) = piece.circle else {
+        return vec![Feature::new([piece.from, piece.to], None, piece.surface)];
+    };
+    let Circle { centre, radius, convex } = circle;
+    const FULL: f64 = std::f64::consts::TAU;
+    let angle = |p: Place| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+    let sense = if convex { 1.0 } else { -1.0 };
+    let turned = |p: Place| (sense * (angle(p) - angle(piece.from))).rem_euclid(FULL);
+    let turn = turned(piece.to);
+    let mut cuts: Vec<Place> = [[radius, 0.0], [0.0, radius], [-radius, 0.0], [0.0, -radius]]
+        .into_iter()
+        .map(|[d, z]| [centre[0] + d, centre[1] + z])
+        // Those at the ends are none.
+        .filter(|cut| (1e-9..turn - 1e-9).contains(&turned(*cut)))
+        .collect();
+    cuts.sort_by(|a, b| turned(*a).total_cmp(&turned(*b)));
+    cuts.push(piece.to);
+    let mut from = piece.from;
+    cuts.into_iter()
+        .map(|to| Feature::new([std::mem::replace(&mut from, to), to], Some(circle), piece.surface))
+        .collect()
+}

@@ -1,0 +1,255 @@
+//! How deep a tool is at most in boxes and triangles, side by side.
+
+use super::feature::{Feature, Place};
+use super::nearest::{
+    Clip, Many, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least,
+    most, under_both,
+};
+use super::section::Section;
+use crate::tool::Circle;
+use crate::tree::{Boxes, View, extent, load, seen};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
+
+/// A tool's slabs, for bounds.
+pub(super) struct Hull<R> {
+    slabs: Vec<Slab<R>>,
+}
+
+/// Between two heights depth is no more than each of these says.
+struct Slab<R> {
+    low: R,
+    high: R,
+    /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`.
+    planes: Vec<[R; 3]>,
+    /// How far it is inside a ball about a place of the axis, as `[z, radius]`.
+    ball: Option<[R; 2]>,
+    /// How far it is from a circle about the axis, as `[d, z]`; and whether the level ring beyond the
+    /// circle is the tool's surface too.
+    rings: Vec<([R; 2], bool)>,
+}
+
+impl<R: Real> Hull<R> {
+    /// For places inside: none is deeper.
+    pub(super) fn new(section: &Section) -> Hull<R> {
+        let slabs = section.slabs.iter().enumerate().map(|(index, slab)| {
+            let side = &section.features[slab.side];
+            let [[d0, z0], [d1, z1]] = side.ends;
+            let plane = |n: Place, [d, z]: Place| [n[0], n[1], n[0] * d + n[1] * z].map(R::of);
+            let touching = |line: &Feature| plane([line.along[1], -line.along[0]], line.ends[0]);
+            // How far it is to the surface on the level.
+            let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
+            let slope = (d1 - d0) / (z1 - z0);
+            let convex = side.circle.is_some_and(|circle| circle.convex);
+            let line = side.tangent();
+            if line.as_ref().is_some_and(|line| section.covers(line, index)) {
+                planes.extend(line.as_ref().map(touching));
+            } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
+                planes.push(plane([1.0, -slope], side.ends[0]));
+            }
+            let [low, high] = section.reach();
+            if slab.low - low <= slab.radius {
+                planes.push(plane([0.0, -1.0], [0.0, low]));
+            }
+            if high - slab.high <= slab.radius {
+                planes.push(plane([0.0, 1.0], [0.0, high]));
+            }
+            // Toward the axis from its centre an arc says nothing of depth.
+            let about_axis =
+                |circle: &&Circle| circle.convex && circle.centre[0].abs() <= 1e-9 * section.size;
+            let ball = side.circle.as_ref().filter(about_axis);
+            let ball = ball.map(|circle| [circle.centre[1], circle.radius].map(R::of));
+            let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
+            let [low, high] = [slab.low - section.error, slab.high + section.error].map(R::of);
+            Slab { low, high, planes, ball, rings: rings.collect() }
+        });
+        Hull { slabs: slabs.collect() }
+    }
+
+    /// No less than the depth of any place of each of some triangles, but for rounding; and where depth
+    /// may be greatest. What is not there has NaN. Given such places, it looks closer from there.
+    #[inline(always)]
+    pub(super) fn of_triangles<S: Simd, V: Many<S, R>>(
+        &self,
+        simd: S,
+        corners: &[Space<V>; 3],
+        again: Option<&Space<V>>,
+    ) -> (V, Space<V>) {
+        let [a, b, c] = corners;
+        let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
+        let near = Near::to_axis(simd, corners);
+        let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
+        let mut place = near.place;
+        for slab in &self.slabs {
+            let (from, to) = (V::splat(simd, slab.low), V::splat(simd, slab.high));
+            let here = low.simd_le(to) & high.simd_ge(from);
+            if !here.any_true() {
+                continue;
+            }
+            let (depth, deepest) = slab.of_triangles(simd, corners, &near, here, again);
+            let better = here & depth.simd_gt(bound);
+            bound = better.select(depth, bound);
+            place = choose(better, &deepest, &place);
+        }
+        (bound, place)
+    }
+}
+
+/// The most bounds that a slab has for a triangle.
+const BOUNDS: usize = 8;
+
+impl<R: Real> Slab<R> {
+    /// The same of the parts of triangles between a slab's heights.
+    #[inline(always)]
+    fn of_triangles<S: Simd, V: Many<S, R>>(
+        &self,
+        simd: S,
+        corners: &[Space<V>; 3],
+        near: &Near<V>,
+        here: V::Mask,
+        again: Option<&Space<V>>,
+    ) -> (V, Space<V>) {
+        let zero = V::splat(simd, R::of(0.0));
+        let (from, to) = (V::splat(simd, self.low), V::splat(simd, self.high));
+        // Where a triangle is nearest beyond a slab, the part of it in the slab is so at that end.
+        let (mut deepest, mut way) = (near.place, near.way);
+        let mut clip = None;
+        let outside = here & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
+        if outside.any_true() {
+            let part = Clip::new(simd, corners, [self.low, self.high]);
+            let end = part.at_end(simd, corners, deepest[2].simd_gt(to));
+            deepest = choose(outside, &end, &deepest);
+            way = direction(simd, &[deepest[0], deepest[1], zero], zero);
+            clip = Some(part);
+        }
+        if let Some(place) = again {
+            let within = place[2].simd_ge(from) & place[2].simd_le(to);
+            let other = direction(simd, &[place[0], place[1], zero], zero);
+            way = choose(within, &other, &way);
+        }
+        // No corner is nearer to the axis than it is out in that direction.
+        let out = across(corners, &way);
+        let mut depth = V::splat(simd, R::of(f64::INFINITY));
+        // Of each bound what it is at the corners; between them it is no more than linear.
+        let mut bounds = [[zero; 3]; BOUNDS];
+        let mut count = 0;
+        for &[nd, nz, most] in &self.planes {
+            let (nd, nz, most) = (V::splat(simd, nd), V::splat(simd, nz), V::splat(simd, most));
+            let [a, b, c] = corners;
+            let here = [
+                most - (out[0] * nd + a[2] * nz),
+                most - (out[1] * nd + b[2] * nz),
+                most - (out[2] * nd + c[2] * nz),
+            ];
+            depth = depth.min(most_of(simd, &clip, here));
+            bounds[count % BOUNDS] = here;
+            count += 1;
+        }
+        if let Some([z, radius]) = self.ball {
+            let (centre, radius) = (V::splat(simd, z), V::splat(simd, radius));
+            let ball = Near::to_place(simd, corners, z);
+            let (mut foot, mut way) = (ball.place, ball.way);
+            let outside = here & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
+            if outside.any_true() {
+                if clip.is_none() {
+                    clip = Some(Clip::new(simd, corners, [self.low, self.high]));
+                }
+                if let Some(part) = &clip {
+                    let end = part.at_end(simd, corners, foot[2].simd_gt(to));
+                    foot = choose(outside, &end, &foot);
+                    way = direction(simd, &foot, centre);
+                }
+            }
+            if let Some(place) = again {
+                let within = place[2].simd_ge(from) & place[2].simd_le(to);
+                way = choose(within, &direction(simd, place, centre), &way);
+            }
+            let beyond = beyond(simd, corners, &way, z);
+            let here = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
+            let beneath = most_of(simd, &clip, here);
+            let under = beneath.simd_lt(depth);
+            depth = under.select(beneath, depth);
+            deepest = choose(under, &foot, &deepest);
+            bounds[count % BOUNDS] = here;
+            count += 1;
+        }
+        if !self.rings.is_empty() {
+            let far = distances(corners);
+            for ring in &self.rings {
+                let here = from_ring(simd, corners, (&out, &far), *ring);
+                depth = depth.min(most_of(simd, &clip, here));
+                bounds[count % BOUNDS] = here;
+                count += 1;
+            }
+        }
+        let count = count.min(BOUNDS);
+        if count > 1 && again.is_some() {
+            for first in 0..count - 1 {
+                for second in first + 1..count {
+                    let (both, place) = under_both(zero, corners, &bounds[first], &bounds[second]);
+                    let under = both.simd_lt(depth);
+                    depth = under.select(both, depth);
+                    deepest = choose(under, &place, &deepest);
+                }
+            }
+        }
+        (depth, deepest)
+    }
+}
+
+impl Hull<f32> {
+    /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
+    /// NaN.
+    #[inline(always)]
+    pub(super) fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
+        let (centre, half) = (load(simd, &boxes.centre), load(simd, &boxes.half));
+        let [x, y, z] = seen(&centre, &view.rows, view.origin);
+        let zero = f32x16::splat(simd, 0.0);
+        let (x, y) = (x.abs(), y.abs());
+        let (wide_x, wide_y) = (extent(&half, view.rows[0]), extent(&half, view.rows[1]));
+        let (near_x, near_y) = ((x - wide_x).max(zero), (y - wide_y).max(zero));
+        let near = (near_x * near_x + near_y * near_y).sqrt();
+        let (far_x, far_y) = (x + wide_x, y + wide_y);
+        let far = (far_x * far_x + far_y * far_y).sqrt();
+        let wide = extent(&half, view.rows[2]);
+        let (low, high) = (z - wide, z + wide);
+        let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);
+        for slab in &self.slabs {
+            let here = low.simd_le(slab.high) & high.simd_ge(slab.low);
+            let low = low.max(f32x16::splat(simd, slab.low));
+            let high = high.min(f32x16::splat(simd, slab.high));
+            let mut depth = f32x16::splat(simd, f32::INFINITY);
+            for &[nd, nz, most] in &slab.planes {
+                let z = if nz > 0.0 { low } else { high };
+                depth = depth.min(f32x16::splat(simd, most) - near * nd - z * nz);
+            }
+            if let Some([z, radius]) = slab.ball {
+                let centre = f32x16::splat(simd, z);
+                let along = centre.max(low).min(high) - centre;
+                let beyond = (near * near + along * along).sqrt();
+                depth = depth.min(f32x16::splat(simd, radius) - beyond);
+            }
+            for &([d, z], level) in &slab.rings {
+                let inward = f32x16::splat(simd, d) - near;
+                let outward = if level { zero } else { far - d };
+                let across = inward.max(outward).max(zero);
+                let along = (low - z).abs().max((high - z).abs());
+                depth = depth.min((across * across + along * along).sqrt());
+            }
+            bound = here.select(bound.max(depth), bound);
+        }
+        bound
+    }
+}
+
+/// The most of what is linear between corners, within a slab if that cuts them.
+#[inline(always)]
+fn most_of<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    clip: &Option<Clip<V, V::Mask>>,
+    [a, b, c]: [V; 3],
+) -> V {
+    match clip {
+        Some(clip) => clip.most(simd, [a, b, c]),
+        None => most(a, b, c),
+    }
+}

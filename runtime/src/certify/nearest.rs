@@ -1,0 +1,384 @@
+//! Where triangles are nearest to the axis, and to places on it, side by side in either precision.
+//!
+//! Distances are bounded by directions: how far out the corners of a triangle are in some direction is no
+//! more than how far any of its points is from the axis, whatever was rounded in finding the direction.
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+
+/// Points side by side.
+pub(super) type Space<V> = [V; 3];
+
+/// What there are vectors of.
+pub(super) trait Real: Copy + PartialOrd {
+    /// A unit vector is made that long, so that rounding makes it no longer than 1.
+    const SHORT: Self;
+    /// The least number to divide by.
+    const LEAST: Self;
+
+    fn of(value: f64) -> Self;
+}
+
+impl Real for f32 {
+    const SHORT: f32 = 1.0 - 4.0 * f32::EPSILON;
+    const LEAST: f32 = f32::MIN_POSITIVE;
+
+    fn of(value: f64) -> f32 {
+        value as f32
+    }
+}
+
+impl Real for f64 {
+    const SHORT: f64 = 1.0 - 4.0 * f64::EPSILON;
+    const LEAST: f64 = f64::MIN_POSITIVE;
+
+    fn of(value: f64) -> f64 {
+        value
+    }
+}
+
+/// A vector of them.
+pub(super) trait Many<S: Simd, R>: SimdFloat<S, Element = R> {}
+impl<S: Simd, R, V: SimdFloat<S, Element = R>> Many<S, R> for V {}
+
+/// Where a triangle is nearest to the axis or a place on it.
+pub(super) struct Near<V> {
+    pub(super) place: Space<V>,
+    /// A direction away from the axis or the place, no longer than 1; 0 where it is on the triangle.
+    pub(super) way: Space<V>,
+}
+
+#[inline(always)]
+pub(super) fn least<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
+    a.min(b).min(c)
+}
+
+#[inline(always)]
+pub(super) fn most<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
+    a.max(b).max(c)
+}
+
+/// The first where a mask says so.
+#[inline(always)]
+pub(super) fn choose<S: Simd, V: SimdBase<S>>(
+    mask: V::Mask,
+    a: &Space<V>,
+    b: &Space<V>,
+) -> Space<V> {
+    [mask.select(a[0], b[0]), mask.select(a[1], b[1]), mask.select(a[2], b[2])]
+}
+
+#[inline(always)]
+fn minus<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> Space<V> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> V {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> V {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// The points of segments that are nearest to the origin, if `level` those nearest to the axis, and the
+/// squares of their distances.
+#[inline(always)]
+fn on_edge<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    a: &Space<V>,
+    b: &Space<V>,
+    level: bool,
+) -> (Space<V>, V) {
+    let way = minus(b, a);
+    let length = product(&way, &way, level).max(V::splat(simd, R::LEAST));
+    let at = (-product(a, &way, level) / length).max(V::splat(simd, R::of(0.0)));
+    let at = at.min(V::splat(simd, R::of(1.0)));
+    let p = [a[0] + at * way[0], a[1] + at * way[1], a[2] + at * way[2]];
+    (p, product(&p, &p, level))
+}
+
+#[inline(always)]
+fn product<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>, level: bool) -> V {
+    let across = a[0] * b[0] + a[1] * b[1];
+    if level { across } else { across + a[2] * b[2] }
+}
+
+/// The same of the edges of triangles.
+#[inline(always)]
+fn on_edges<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    [a, b, c]: [&Space<V>; 3],
+    level: bool,
+) -> (Space<V>, V) {
+    let (p, square) = on_edge(simd, a, b, level);
+    let (q, other) = on_edge(simd, b, c, level);
+    let nearer = other.simd_lt(square);
+    let (p, square) = (choose(nearer, &q, &p), nearer.select(other, square));
+    let (q, other) = on_edge(simd, c, a, level);
+    let nearer = other.simd_lt(square);
+    (choose(nearer, &q, &p), nearer.select(other, square))
+}
+
+impl<V: Copy> Near<V> {
+    /// Where triangles are nearest to the axis.
+    #[inline(always)]
+    pub(super) fn to_axis<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3]) -> Near<V>
+    where
+        V: Many<S, R>,
+    {
+        let zero = V::splat(simd, R::of(0.0));
+        let (place, square) = on_edges(simd, [a, b, c], true);
+        // The axis goes through what it has on one side of all edges.
+        let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
+        let through = (u.simd_gt(zero) & v.simd_gt(zero) & w.simd_gt(zero))
+            | (u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero));
+        let z = (u * a[2] + v * b[2] + w * c[2]) / (u + v + w);
+        let far = square.sqrt();
+        let scale = (through | far.simd_le(zero)).select(zero, V::splat(simd, R::SHORT) / far);
+        let way = [place[0] * scale, place[1] * scale, zero];
+        Near { place: choose(through, &[zero, zero, z], &place), way }
+    }
+
+    /// Where triangles are nearest to a place on the axis.
+    #[inline(always)]
+    pub(super) fn to_place<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3], z: R) -> Near<V>
+    where
+        V: Many<S, R>,
+    {
+        let zero = V::splat(simd, R::of(0.0));
+        let centre = V::splat(simd, z);
+        let a = [a[0], a[1], a[2] - centre];
+        let b = [b[0], b[1], b[2] - centre];
+        let c = [c[0], c[1], c[2] - centre];
+        let (edge, _) = on_edges(simd, [&a, &b, &c], false);
+        // The foot on the plane, in barycentric coordinates times a positive number.
+        let (ab, ac) = (minus(&b, &a), minus(&c, &a));
+        let (bb, bc, cc) = (dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac));
+        let (to_b, to_c) = (-dot(&a, &ab), -dot(&a, &ac));
+        let whole = bb * cc - bc * bc;
+        let (v, w) = (cc * to_b - bc * to_c, bb * to_c - bc * to_b);
+        let within = v.simd_gt(zero) & w.simd_gt(zero) & (v + w).simd_lt(whole);
+        let (v, w) = (v / whole, w / whole);
+        let foot = [
+            a[0] + v * ab[0] + w * ac[0],
+            a[1] + v * ab[1] + w * ac[1],
+            a[2] + v * ab[2] + w * ac[2],
+        ];
+        let place = choose(within, &foot, &edge);
+        let far = dot(&place, &place).sqrt();
+        let scale = far.simd_gt(zero).select(V::splat(simd, R::SHORT) / far, zero);
+        Near {
+            place: [place[0], place[1], place[2] + centre],
+            way: [place[0] * scale, place[1] * scale, place[2] * scale],
+        }
+    }
+}
+
+/// What triangles have between two heights: polygons, by which corners they keep and where their sides are
+/// cut. Cut at a height, what is below and what is above share the places of the cut.
+pub(super) struct Clip<V, M> {
+    kept: [M; 3],
+    /// Of each side: where it is cut at the lower and at the upper height, and whether.
+    cuts: [[(V, M); 2]; 3],
+}
+
+impl<V: Copy, M: Copy> Clip<V, M> {
+    #[inline(always)]
+    pub(super) fn new<S: Simd, R: Real>(
+        simd: S,
+        [a, b, c]: &[Space<V>; 3],
+        [low, high]: [R; 2],
+    ) -> Clip<V, M>
+    where
+        V: Many<S, R> + SimdBase<S, Mask = M>,
+        M: SimdMask<S>,
+    {
+        let zero = V::splat(simd, R::of(0.0));
+        let (low, high) = (V::splat(simd, low), V::splat(simd, high));
+        let kept = [
+            a[2].simd_ge(low) & a[2].simd_le(high),
+            b[2].simd_ge(low) & b[2].simd_le(high),
+            c[2].simd_ge(low) & c[2].simd_le(high),
+        ];
+        let cuts = [
+            [cut(zero, a[2], b[2], low), cut(zero, a[2], b[2], high)],
+            [cut(zero, b[2], c[2], low), cut(zero, b[2], c[2], high)],
+            [cut(zero, c[2], a[2], low), cut(zero, c[2], a[2], high)],
+        ];
+        Clip { kept, cuts }
+    }
+
+    /// The most of something that is linear between corners.
+    #[inline(always)]
+    pub(super) fn most<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
+    where
+        V: Many<S, R> + SimdBase<S, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let none = V::splat(simd, R::of(f64::NEG_INFINITY));
+        let mut most = none;
+        for k in 0..3 {
+            let (from, to) = (values[k], values[(k + 1) % 3]);
+            most = most.max(self.kept[k].select(from, none));
+            for (at, cut) in self.cuts[k] {
+                most = most.max(cut.select(from + at * (to - from), none));
+            }
+        }
+        most
+    }
+
+    /// The place at the lower height, or at the upper one where a mask says so, that is nearest to the
+    /// axis.
+    #[inline(always)]
+    pub(super) fn at_end<S: Simd, R: Real>(
+        &self,
+        simd: S,
+        corners: &[Space<V>; 3],
+        upper: M,
+    ) -> Space<V>
+    where
+        V: Many<S, R> + SimdBase<S, Mask = M>,
+        M: SimdMask<S> + Select<V>,
+    {
+        let [a, b, c] = corners;
+        let (first, is_first) = cut_at(a, b, &self.cuts[0], upper);
+        let (second, _) = cut_at(b, c, &self.cuts[1], upper);
+        let (third, is_third) = cut_at(c, a, &self.cuts[2], upper);
+        // Of three sides two are cut.
+        let from = choose(is_first, &first, &second);
+        let to = choose(is_third, &third, &second);
+        on_edge(simd, &from, &to, true).0
+    }
+}
+
+/// Where a side is cut at the lower height, or at the upper one where a mask says so, and whether.
+#[inline(always)]
+fn cut_at<S: Simd, V: SimdBase<S>>(
+    from: &Space<V>,
+    to: &Space<V>,
+    [(low, at_low), (high, at_high)]: &[(V, V::Mask); 2],
+    upper: V::Mask,
+) -> (Space<V>, V::Mask) {
+    let (at, way) = (upper.select(*high, *low), minus(to, from));
+    let place = [from[0] + at * way[0], from[1] + at * way[1], from[2] + at * way[2]];
+    (place, (upper & *at_high) | (!upper & *at_low))
+}
+
+/// Where the side from one height to another is cut at a third, and whether.
+#[inline(always)]
+fn cut<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, at: V) -> (V, V::Mask) {
+    let is = (from.simd_lt(at) & to.simd_gt(at)) | (from.simd_gt(at) & to.simd_lt(at));
+    (is.select((at - from) / (to - from), zero), is)
+}
+
+/// The direction of a place from one of the axis, no longer than 1.
+#[inline(always)]
+pub(super) fn direction<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    place: &Space<V>,
+    z: V,
+) -> Space<V> {
+    let zero = V::splat(simd, R::of(0.0));
+    let way = [place[0], place[1], place[2] - z];
+    let far = dot(&way, &way).sqrt();
+    let scale = far.simd_gt(zero).select(V::splat(simd, R::SHORT) / far, zero);
+    [way[0] * scale, way[1] * scale, way[2] * scale]
+}
+
+/// How far out corners are in a direction across the axis.
+#[inline(always)]
+pub(super) fn across<S: Simd, V: SimdBase<S>>([a, b, c]: &[Space<V>; 3], way: &Space<V>) -> [V; 3] {
+    [a[0] * way[0] + a[1] * way[1], b[0] * way[0] + b[1] * way[1], c[0] * way[0] + c[1] * way[1]]
+}
+
+/// How far out corners are in a direction from a place of the axis.
+#[inline(always)]
+pub(super) fn beyond<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    corners: &[Space<V>; 3],
+    way: &Space<V>,
+    z: R,
+) -> [V; 3] {
+    let [a, b, c] = corners;
+    let out = across(corners, way);
+    let centre = V::splat(simd, z);
+    [
+        out[0] + (a[2] - centre) * way[2],
+        out[1] + (b[2] - centre) * way[2],
+        out[2] + (c[2] - centre) * way[2],
+    ]
+}
+
+/// How far corners are from the axis.
+#[inline(always)]
+pub(super) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> [V; 3] {
+    [
+        (a[0] * a[0] + a[1] * a[1]).sqrt(),
+        (b[0] * b[0] + b[1] * b[1]).sqrt(),
+        (c[0] * c[0] + c[1] * c[1]).sqrt(),
+    ]
+}
+
+/// How far corners are from a circle about the axis, or from the level ring beyond it, or more, so that
+/// between them it is no more than linear: `out` is no more, `far` no less than how far they are from the
+/// axis.
+#[inline(always)]
+pub(super) fn from_ring<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    [a, b, c]: &[Space<V>; 3],
+    (out, far): (&[V; 3], &[V; 3]),
+    ([d, z], level): ([R; 2], bool),
+) -> [V; 3] {
+    let ring = [V::splat(simd, d), V::splat(simd, z)];
+    [
+        to_ring(simd, [out[0], far[0], a[2]], ring, level),
+        to_ring(simd, [out[1], far[1], b[2]], ring, level),
+        to_ring(simd, [out[2], far[2], c[2]], ring, level),
+    ]
+}
+
+/// The most that is under two bounds at once, which are linear between corners, and where.
+#[inline(always)]
+pub(super) fn under_both<S: Simd, V: SimdFloat<S>>(
+    zero: V,
+    corners: &[Space<V>; 3],
+    first: &[V; 3],
+    second: &[V; 3],
+) -> (V, Space<V>) {
+    let mut most = first[0].min(second[0]);
+    let mut place = corners[0];
+    for k in 1..3 {
+        let here = first[k].min(second[k]);
+        let more = here.simd_gt(most);
+        most = more.select(here, most);
+        place = choose(more, &corners[k], &place);
+    }
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        let (from, to) = (first[k] - second[k], first[next] - second[next]);
+        let (at, is) = cut(zero, from, to, zero);
+        let here = is.select(first[k] + at * (first[next] - first[k]), most);
+        let more = here.simd_gt(most);
+        most = more.select(here, most);
+        let way = minus(&corners[next], &corners[k]);
+        let on =
+            [corners[k][0] + at * way[0], corners[k][1] + at * way[1], corners[k][2] + at * way[2]];
+        place = choose(more, &on, &place);
+    }
+    (most, place)
+}
+
+#[inline(always)]
+fn to_ring<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    [out, far, z]: [V; 3],
+    [d, height]: [V; 2],
+    level: bool,
+) -> V {
+    let inward = (d - out).max(V::splat(simd, R::of(0.0)));
+    let across = if level { inward } else { inward.max(far - d) };
+    let along = z - height;
+    (across * across + along * along).sqrt()
+}
