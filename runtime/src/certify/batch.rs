@@ -55,9 +55,8 @@ impl Batch {
         self.bounds[..self.len()].iter().any(|bound| *bound > depth)
     }
 
-    /// Turns them to the tool's frame, and bounds them.
-    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, view: &View) {
-        on_vectors!(level, simd => self.bound_on(simd, hull, view));
+    /// Turns them to the tool's frame.
+    pub(super) fn turn(&mut self, view: &View) {
         for corner in &mut self.corners {
             let p = *corner;
             for lane in 0..LANES {
@@ -67,33 +66,32 @@ impl Batch {
                 }
             }
         }
+    }
+
+    /// Bounds how deep they are.
+    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, wanted));
         // Without vectors nothing is known before their edges are looked at.
         self.bounds = [f64::INFINITY; LANES];
         self.places = self.corners[0];
     }
 
     #[inline(always)]
-    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, view: &View) {
-        for corner in &mut self.corners {
-            let p = load(simd, corner);
-            for (list, row) in corner.iter_mut().zip(&view.carry) {
-                (p[0] * row[0] + p[1] * row[1] + p[2] * row[2]).store_slice(list);
-            }
-        }
-        let (bound, place) = hull.of_triangles(simd, &self.load_corners(simd), None);
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, wanted: f64) {
+        let (bound, place) = hull.triangles(simd, &self.load_corners(simd), wanted, None);
         bound.store_slice(&mut self.bounds);
         store(&mut self.places, place);
     }
 
     /// Bounds them again, as seen from where they may be deepest.
-    pub(super) fn closer(&mut self, level: Level, hull: &Hull<f64>) {
-        on_vectors!(level, simd => self.closer_on(simd, hull));
+    pub(super) fn closer(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
+        on_vectors!(level, simd => self.closer_on(simd, hull, wanted));
     }
 
     #[inline(always)]
-    fn closer_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>) {
+    fn closer_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, wanted: f64) {
         let places = load(simd, &self.places);
-        let (bound, place) = hull.of_triangles(simd, &self.load_corners(simd), Some(&places));
+        let (bound, place) = hull.triangles(simd, &self.load_corners(simd), wanted, Some(&places));
         f64x8::from_slice(simd, &self.bounds).min(bound).store_slice(&mut self.bounds);
         store(&mut self.places, place);
     }

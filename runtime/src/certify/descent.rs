@@ -1,10 +1,10 @@
 //! The way down a tree of triangles, the deepest first.
 
 use super::facets::{Corners, Facets};
-use super::hull::Hull;
+use super::nearest::Space;
 use crate::tool::{LANES, on_vectors};
-use crate::tree::{View, WIDTH, load, seen};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch};
+use crate::tree::{Boxes, View, WIDTH, load, seen};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
 /// A node of the tree, a leaf or a triangle, and how deep the tool can be in it.
 #[derive(Clone, Copy)]
@@ -30,8 +30,22 @@ pub(super) struct Descent {
     looked: bool,
 }
 
+/// Something that depth, or a negative distance, is no more than.
+pub(super) trait Bounds {
+    /// In 16 boxes; what is not there has NaN.
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S>;
+
+    /// In 16 triangles in the tool's frame. What is no more than wanted need not be close.
+    fn of_triangles<S: Simd>(
+        &self,
+        simd: S,
+        corners: &[Space<f32x16<S>>; 3],
+        wanted: f32,
+    ) -> f32x16<S>;
+}
+
 /// A part as a tool sees it.
-type Seen<'a> = (&'a Facets, &'a Hull<f32>, &'a View);
+type Seen<'a, B> = (&'a Facets, &'a B, &'a View);
 
 impl Descent {
     pub(super) fn clear(&mut self) {
@@ -69,21 +83,27 @@ impl Descent {
     }
 
     /// Puts the children of a node on the stack that may be deeper than that.
-    pub(super) fn open(&mut self, level: Level, seen: Seen<'_>, node: Node, wanted: f32) {
+    pub(super) fn open<B: Bounds>(
+        &mut self,
+        level: Level,
+        seen: Seen<'_, B>,
+        node: Node,
+        wanted: f32,
+    ) {
         let facets = seen.0;
         let mut bounds = [node.bound; WIDTH];
-        if (node.level as usize) < facets.levels.len() {
-            dispatch!(level, simd => of_boxes(simd, seen, node, &mut bounds));
+        let hits = if (node.level as usize) < facets.levels.len() {
+            dispatch!(level, simd => of_boxes(simd, seen, node, wanted, &mut bounds))
         } else {
-            of_leaf(level, seen, node, wanted, &mut bounds);
-        }
+            of_leaf(level, seen, node, wanted, &mut bounds)
+        };
         let children = facets.children(node.level as usize, node.index as usize);
+        let mut hits = hits & (u32::MAX >> (32 - children));
         let first = self.stack.len();
-        for (bound, lane) in bounds.into_iter().zip(0..children as u32) {
-            // What `f32` cannot hold may be anything.
-            if bound <= wanted {
-                continue;
-            }
+        while hits != 0 {
+            let lane = hits.trailing_zeros();
+            hits &= hits - 1;
+            let bound = bounds[lane as usize];
             let index = node.index * WIDTH as u32 + lane;
             let child = Node { level: node.level + 1, index, bound };
             let mut at = self.stack.len();
@@ -97,30 +117,46 @@ impl Descent {
     }
 }
 
+/// Which are more than wanted; what `f32` cannot hold may be.
 #[inline(always)]
-fn of_boxes<S: Simd>(
-    simd: S,
-    (facets, hull, view): Seen<'_>,
-    node: Node,
-    bounds: &mut [f32; WIDTH],
-) {
-    let boxes = &facets.levels[node.level as usize][node.index as usize];
-    hull.of_boxes(simd, boxes, view).store_slice(bounds);
-}
-
-/// Without vectors, the triangles of a leaf are as deep as it is.
-fn of_leaf(level: Level, seen: Seen<'_>, node: Node, wanted: f32, bounds: &mut [f32; WIDTH]) {
-    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted, bounds));
+fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
+    !bound.simd_le(wanted).to_bitmask() as u32
 }
 
 #[inline(always)]
-fn of_leaf_on<S: Simd>(
+fn of_boxes<S: Simd, B: Bounds>(
     simd: S,
-    (facets, hull, view): Seen<'_>,
+    (facets, bounded, view): Seen<'_, B>,
     node: Node,
     wanted: f32,
     bounds: &mut [f32; WIDTH],
-) {
+) -> u32 {
+    let boxes = &facets.levels[node.level as usize][node.index as usize];
+    let bound = bounded.of_boxes(simd, boxes, view);
+    bound.store_slice(bounds);
+    above(bound, wanted)
+}
+
+/// Without vectors, the triangles of a leaf are as deep as it is.
+fn of_leaf<B: Bounds>(
+    level: Level,
+    seen: Seen<'_, B>,
+    node: Node,
+    wanted: f32,
+    bounds: &mut [f32; WIDTH],
+) -> u32 {
+    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted, bounds));
+    u32::MAX
+}
+
+#[inline(always)]
+fn of_leaf_on<S: Simd, B: Bounds>(
+    simd: S,
+    (facets, bounded, view): Seen<'_, B>,
+    node: Node,
+    wanted: f32,
+    bounds: &mut [f32; WIDTH],
+) -> u32 {
     let index = node.index as usize;
     let boxes = &facets.levels[node.level as usize - 1][index / WIDTH];
     let centre = [0, 1, 2].map(|axis| boxes.centre[axis][index % WIDTH]);
@@ -131,12 +167,7 @@ fn of_leaf_on<S: Simd>(
         seen(&load(simd, &corners[1]), &view.rows, middle),
         seen(&load(simd, &corners[2]), &view.rows, middle),
     ];
-    let (mut bound, place) = hull.of_triangles(simd, &corners, None);
-    if bound.simd_gt(wanted).to_bitmask().count_ones() > SEVERAL {
-        bound = bound.min(hull.of_triangles(simd, &corners, Some(&place)).0);
-    }
+    let bound = bounded.of_triangles(simd, &corners, wanted);
     bound.store_slice(bounds);
+    above(bound, wanted)
 }
-
-/// Of more triangles than these it is worth to look at all more closely.
-const SEVERAL: u32 = 2;

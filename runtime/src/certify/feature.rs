@@ -71,6 +71,12 @@ impl Feature {
         }
     }
 
+    /// Height of the centre and radius of a convex arc about the axis, in a tool of that size.
+    pub(super) fn ball(&self, size: f64) -> Option<[f64; 2]> {
+        let about_axis = |circle: &Circle| circle.convex && circle.centre[0].abs() <= 1e-9 * size;
+        self.circle.filter(about_axis).map(|circle| [circle.centre[1], circle.radius])
+    }
+
     /// How far a place is on the tool's side of this, of the places of its heights: at least 0 just
     /// inside. A convex arc is taken to go on level toward the axis, a hollow one away from it.
     #[inline]

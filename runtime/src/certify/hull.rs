@@ -1,12 +1,12 @@
 //! How deep a tool is at most in boxes and triangles, side by side.
 
+use super::descent::Bounds;
 use super::feature::{Feature, Place};
 use super::nearest::{
     Clip, Many, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least,
     most, under_both,
 };
 use super::section::Section;
-use crate::tool::Circle;
 use crate::tree::{Boxes, View, extent, load, seen};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
@@ -53,11 +53,7 @@ impl<R: Real> Hull<R> {
             if high - slab.high <= slab.radius {
                 planes.push(plane([0.0, 1.0], [0.0, high]));
             }
-            // Toward the axis from its centre an arc says nothing of depth.
-            let about_axis =
-                |circle: &&Circle| circle.convex && circle.centre[0].abs() <= 1e-9 * section.size;
-            let ball = side.circle.as_ref().filter(about_axis);
-            let ball = ball.map(|circle| [circle.centre[1], circle.radius].map(R::of));
+            let ball = side.ball(section.size).map(|ball| ball.map(R::of));
             let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
             let [low, high] = [slab.low - section.error, slab.high + section.error].map(R::of);
             Slab { low, high, planes, ball, rings: rings.collect() }
@@ -66,26 +62,33 @@ impl<R: Real> Hull<R> {
     }
 
     /// No less than the depth of any place of each of some triangles, but for rounding; and where depth
-    /// may be greatest. What is not there has NaN. Given such places, it looks closer from there.
+    /// may be greatest. What is not there has NaN. What is no more than wanted need not be close. Given
+    /// such places, it looks closer from there.
     #[inline(always)]
-    pub(super) fn of_triangles<S: Simd, V: Many<S, R>>(
+    pub(super) fn triangles<S: Simd, V: Many<S, R>>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
+        wanted: R,
         again: Option<&Space<V>>,
     ) -> (V, Space<V>) {
         let [a, b, c] = corners;
         let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
         let near = Near::to_axis(simd, corners);
+        let wanted = V::splat(simd, wanted);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
         let mut place = near.place;
         for slab in &self.slabs {
             let (from, to) = (V::splat(simd, slab.low), V::splat(simd, slab.high));
             let here = low.simd_le(to) & high.simd_ge(from);
-            if !here.any_true() {
-                continue;
-            }
-            let (depth, deepest) = slab.of_triangles(simd, corners, &near, here, again);
+            // No corner is nearer to the axis than it is out in that direction.
+            let depth = slab.under_planes(simd, corners, &across(corners, &near.way), &None);
+            let open = here & depth.simd_gt(wanted);
+            let (depth, deepest) = if open.any_true() {
+                slab.triangles(simd, corners, &near, open, again)
+            } else {
+                (depth, near.place)
+            };
             let better = here & depth.simd_gt(bound);
             bound = better.select(depth, bound);
             place = choose(better, &deepest, &place);
@@ -97,65 +100,70 @@ impl<R: Real> Hull<R> {
 /// The most bounds that a slab has for a triangle.
 const BOUNDS: usize = 8;
 
+/// A part of triangles, if a slab cuts them.
+type Part<V, M> = Option<Clip<V, M>>;
+
 impl<R: Real> Slab<R> {
-    /// The same of the parts of triangles between a slab's heights.
+    /// The least of the most of what planes say of each triangle.
     #[inline(always)]
-    fn of_triangles<S: Simd, V: Many<S, R>>(
+    fn under_planes<S: Simd, V: Many<S, R>>(
+        &self,
+        simd: S,
+        corners: &[Space<V>; 3],
+        out: &[V; 3],
+        part: &Part<V, V::Mask>,
+    ) -> V {
+        let mut depth = V::splat(simd, R::of(f64::INFINITY));
+        for plane in &self.planes {
+            depth = depth.min(most_of(simd, part, under_plane(simd, corners, out, *plane)));
+        }
+        depth
+    }
+
+    /// The same of the parts of triangles between a slab's heights, for those that are open.
+    #[inline(always)]
+    fn triangles<S: Simd, V: Many<S, R>>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
         near: &Near<V>,
-        here: V::Mask,
+        open: V::Mask,
         again: Option<&Space<V>>,
     ) -> (V, Space<V>) {
         let zero = V::splat(simd, R::of(0.0));
         let (from, to) = (V::splat(simd, self.low), V::splat(simd, self.high));
         // Where a triangle is nearest beyond a slab, the part of it in the slab is so at that end.
-        let (mut deepest, mut way) = (near.place, near.way);
-        let mut clip = None;
-        let outside = here & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
-        if outside.any_true() {
-            let part = Clip::new(simd, corners, [self.low, self.high]);
-            let end = part.at_end(simd, corners, deepest[2].simd_gt(to));
-            deepest = choose(outside, &end, &deepest);
+        let (mut deepest, mut way, mut part) = (near.place, near.way, None);
+        let beyond_it = open & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
+        if beyond_it.any_true() {
+            let clip = Clip::new(simd, corners, [self.low, self.high]);
+            let end = clip.at_end(simd, corners, deepest[2].simd_gt(to));
+            deepest = choose(beyond_it, &end, &deepest);
             way = direction(simd, &[deepest[0], deepest[1], zero], zero);
-            clip = Some(part);
+            part = Some(clip);
         }
         if let Some(place) = again {
             let within = place[2].simd_ge(from) & place[2].simd_le(to);
             let other = direction(simd, &[place[0], place[1], zero], zero);
             way = choose(within, &other, &way);
         }
-        // No corner is nearer to the axis than it is out in that direction.
         let out = across(corners, &way);
-        let mut depth = V::splat(simd, R::of(f64::INFINITY));
+        let mut depth = self.under_planes(simd, corners, &out, &part);
         // Of each bound what it is at the corners; between them it is no more than linear.
         let mut bounds = [[zero; 3]; BOUNDS];
         let mut count = 0;
-        for &[nd, nz, most] in &self.planes {
-            let (nd, nz, most) = (V::splat(simd, nd), V::splat(simd, nz), V::splat(simd, most));
-            let [a, b, c] = corners;
-            let here = [
-                most - (out[0] * nd + a[2] * nz),
-                most - (out[1] * nd + b[2] * nz),
-                most - (out[2] * nd + c[2] * nz),
-            ];
-            depth = depth.min(most_of(simd, &clip, here));
-            bounds[count % BOUNDS] = here;
-            count += 1;
-        }
         if let Some([z, radius]) = self.ball {
             let (centre, radius) = (V::splat(simd, z), V::splat(simd, radius));
             let ball = Near::to_place(simd, corners, z);
             let (mut foot, mut way) = (ball.place, ball.way);
-            let outside = here & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
-            if outside.any_true() {
-                if clip.is_none() {
-                    clip = Some(Clip::new(simd, corners, [self.low, self.high]));
+            let beyond_it = open & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
+            if beyond_it.any_true() {
+                if part.is_none() {
+                    part = Some(Clip::new(simd, corners, [self.low, self.high]));
                 }
-                if let Some(part) = &clip {
-                    let end = part.at_end(simd, corners, foot[2].simd_gt(to));
-                    foot = choose(outside, &end, &foot);
+                if let Some(clip) = &part {
+                    let end = clip.at_end(simd, corners, foot[2].simd_gt(to));
+                    foot = choose(beyond_it, &end, &foot);
                     way = direction(simd, &foot, centre);
                 }
             }
@@ -165,24 +173,31 @@ impl<R: Real> Slab<R> {
             }
             let beyond = beyond(simd, corners, &way, z);
             let here = [radius - beyond[0], radius - beyond[1], radius - beyond[2]];
-            let beneath = most_of(simd, &clip, here);
+            let beneath = most_of(simd, &part, here);
             let under = beneath.simd_lt(depth);
             depth = under.select(beneath, depth);
             deepest = choose(under, &foot, &deepest);
-            bounds[count % BOUNDS] = here;
+            bounds[count] = here;
             count += 1;
         }
         if !self.rings.is_empty() {
             let far = distances(corners);
             for ring in &self.rings {
                 let here = from_ring(simd, corners, (&out, &far), *ring);
-                depth = depth.min(most_of(simd, &clip, here));
-                bounds[count % BOUNDS] = here;
-                count += 1;
+                depth = depth.min(most_of(simd, &part, here));
+                if again.is_some() && count < BOUNDS {
+                    bounds[count] = here;
+                    count += 1;
+                }
             }
         }
-        let count = count.min(BOUNDS);
-        if count > 1 && again.is_some() {
+        if again.is_some() {
+            for plane in &self.planes {
+                if count < BOUNDS {
+                    bounds[count] = under_plane(simd, corners, &out, *plane);
+                    count += 1;
+                }
+            }
             for first in 0..count - 1 {
                 for second in first + 1..count {
                     let (both, place) = under_both(zero, corners, &bounds[first], &bounds[second]);
@@ -196,11 +211,27 @@ impl<R: Real> Slab<R> {
     }
 }
 
-impl Hull<f32> {
+/// How far corners are under a plane, as far out as they are.
+#[inline(always)]
+fn under_plane<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    [a, b, c]: &[Space<V>; 3],
+    out: &[V; 3],
+    [nd, nz, most]: [R; 3],
+) -> [V; 3] {
+    let (nd, nz, most) = (V::splat(simd, nd), V::splat(simd, nz), V::splat(simd, most));
+    [
+        most - (out[0] * nd + a[2] * nz),
+        most - (out[1] * nd + b[2] * nz),
+        most - (out[2] * nd + c[2] * nz),
+    ]
+}
+
+impl Bounds for Hull<f32> {
     /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
     /// NaN.
     #[inline(always)]
-    pub(super) fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
         let (centre, half) = (load(simd, &boxes.centre), load(simd, &boxes.half));
         let [x, y, z] = seen(&centre, &view.rows, view.origin);
         let zero = f32x16::splat(simd, 0.0);
@@ -239,16 +270,33 @@ impl Hull<f32> {
         }
         bound
     }
+
+    #[inline(always)]
+    fn of_triangles<S: Simd>(
+        &self,
+        simd: S,
+        corners: &[Space<f32x16<S>>; 3],
+        wanted: f32,
+    ) -> f32x16<S> {
+        let (mut bound, place) = self.triangles(simd, corners, wanted, None);
+        if bound.simd_gt(wanted).to_bitmask().count_ones() > SEVERAL {
+            bound = bound.min(self.triangles(simd, corners, wanted, Some(&place)).0);
+        }
+        bound
+    }
 }
+
+/// Of more triangles than these it is worth to look at all more closely.
+const SEVERAL: u32 = 2;
 
 /// The most of what is linear between corners, within a slab if that cuts them.
 #[inline(always)]
 fn most_of<S: Simd, R: Real, V: Many<S, R>>(
     simd: S,
-    clip: &Option<Clip<V, V::Mask>>,
+    part: &Part<V, V::Mask>,
     [a, b, c]: [V; 3],
 ) -> V {
-    match clip {
+    match part {
         Some(clip) => clip.most(simd, [a, b, c]),
         None => most(a, b, c),
     }

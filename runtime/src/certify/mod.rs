@@ -22,6 +22,7 @@ mod feature;
 mod hull;
 mod nearest;
 mod section;
+mod shell;
 mod winding;
 
 pub use facets::Facets;
@@ -37,6 +38,7 @@ use fearless_simd::Level;
 use hull::Hull;
 use nalgebra::{Point3, Vector3};
 use section::Section;
+use shell::Shell;
 
 /// A tool beside a part's triangles, ready to be asked what is proved at one pose after another.
 ///
@@ -76,6 +78,7 @@ pub struct Certifier<'a> {
     section: Section,
     hull: Hull<f32>,
     exact: Hull<f64>,
+    shell: Shell,
     level: Level,
     sight: Sight,
     /// The tool's unit of length in the part's.
@@ -99,6 +102,13 @@ struct Best {
     point: [f64; 3],
     feature: usize,
     index: u32,
+}
+
+/// Where places are looked for: inside the tool, or outside while none is inside.
+#[derive(Clone, Copy)]
+enum Side {
+    Inside,
+    Outside,
 }
 
 /// A tool of which nothing can be certified.
@@ -189,6 +199,7 @@ impl<'a> Certifier<'a> {
         Ok(Certifier {
             hull: Hull::new(&section),
             exact: Hull::new(&section),
+            shell: Shell::new(&section),
             section,
             level: Level::new(),
             sight,
@@ -258,6 +269,36 @@ impl<'a> Certifier<'a> {
         }
     }
 
+    /// How far the part's triangles are from the tool: an interval no wider than the tolerance, in the
+    /// part's unit, and what rounding adds; 0 where they touch. A tool wholly inside the material is as
+    /// far from its surface.
+    pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
+        let touch = 2.0 * self.error;
+        self.inside(pose, -touch, 0.0, touch);
+        if let Some(witness) = self.witness(pose) {
+            let high = if self.search.best > touch { 0.0 } else { touch + self.skew };
+            return Clearance { distance: [0.0, high * self.length], witness: Some(witness) };
+        }
+        // Rounding grows with the distance.
+        let far =
+            self.view.origin.iter().fold(0.0, |far: f64, part| far.max(f64::from(part.abs())));
+        let error = self.error + 64.0 * f64::EPSILON * far;
+        let margin = self.sight.margin + far / f64::from(1 << 20);
+        let tolerance = (4.0 * error).max(tolerance / self.length);
+        self.best = None;
+        self.search.begin(f64::NEG_INFINITY, tolerance, self.budget);
+        self.batch.begin(self.facets, pose, &[self.last]);
+        self.beside();
+        self.descend(pose, Side::Outside, margin, f64::INFINITY);
+        let more = error + self.skew;
+        let low = -self.search.wanted().max(self.search.most) - more;
+        let high = -self.search.best + more;
+        Clearance {
+            distance: [low.max(0.0), high].map(|distance| distance * self.length),
+            witness: self.witness(pose),
+        }
+    }
+
     /// Searches for what is deeper than `least`, to a tolerance, and stops at what is deeper than
     /// `enough`.
     fn inside(&mut self, pose: &Pose, least: f64, tolerance: f64, enough: f64) {
@@ -271,29 +312,36 @@ impl<'a> Certifier<'a> {
         // A triangle that was deepest is likely to be deep.
         self.batch.begin(self.facets, pose, &[self.last]);
         self.glance();
+        self.descend(pose, Side::Inside, self.sight.margin, enough);
+    }
+
+    /// Searches the tree; what `f32` says errs by no more than a margin.
+    fn descend(&mut self, pose: &Pose, side: Side, margin: f64, enough: f64) {
         self.descent.begin();
         while let Some(node) = self.descent.pop() {
             if self.search.best > enough {
                 break;
             }
-            let wanted = self.search.wanted() - self.sight.margin;
-            if f64::from(node.bound) <= wanted {
+            let bound = f64::from(node.bound) + margin;
+            if bound <= self.search.wanted() || !self.search.spend(bound) {
                 continue;
             }
-            if !self.search.spend(f64::from(node.bound) + self.sight.margin) {
-                continue;
-            }
+            let wanted = (self.search.wanted() - margin) as f32;
             if node.is_triangle(self.facets) {
-                let some = self.descent.triangles(self.facets, node, wanted as f32);
+                let some = self.descent.triangles(self.facets, node, wanted);
                 self.batch.begin(self.facets, pose, some);
-                self.triangles();
-            } else {
-                self.descent.open(
-                    self.level,
-                    (self.facets, &self.hull, &self.view),
-                    node,
-                    wanted as f32,
-                );
+                match side {
+                    Side::Inside => self.triangles(),
+                    Side::Outside => self.beside(),
+                }
+                continue;
+            }
+            let (level, facets, view) = (self.level, self.facets, &self.view);
+            match side {
+                Side::Inside => self.descent.open(level, (facets, &self.hull, view), node, wanted),
+                Side::Outside => {
+                    self.descent.open(level, (facets, &self.shell, view), node, wanted)
+                }
             }
         }
         if let Some(best) = &self.best {
@@ -303,8 +351,20 @@ impl<'a> Certifier<'a> {
 
     /// Looks at the triangles of the batch where they may be deepest.
     fn glance(&mut self) {
-        self.batch.bound(self.level, &self.exact, &self.view);
+        self.batch.turn(&self.view);
+        self.batch.bound(self.level, &self.exact, self.search.wanted());
         self.places();
+    }
+
+    /// Looks at the triangles of the batch, which are outside.
+    fn beside(&mut self) {
+        self.batch.turn(&self.view);
+        for lane in 0..self.batch.len() {
+            if self.search.spend(0.0) {
+                let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
+                self.facet(facet, index, Side::Outside);
+            }
+        }
     }
 
     fn places(&mut self) {
@@ -328,24 +388,29 @@ impl<'a> Certifier<'a> {
             if !self.batch.any_above(self.search.wanted()) {
                 return;
             }
-            self.batch.closer(self.level, &self.exact);
+            self.batch.closer(self.level, &self.exact, self.search.wanted());
             self.places();
         }
         for lane in 0..self.batch.len() {
             let bound = self.batch.bounds[lane];
             if bound > self.search.wanted() && self.search.spend(bound) {
-                self.facet(Facet::new(self.batch.corners(lane)), self.batch.index(lane));
+                let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
+                self.facet(facet, index, Side::Inside);
             }
         }
     }
 
     /// Looks at a triangle's meridian and edges.
-    fn facet(&mut self, facet: Facet, index: u32) {
+    fn facet(&mut self, facet: Facet, index: u32, side: Side) {
         self.skew = self.skew.max(facet.skew);
         let edges = facet.edges();
         let courses = facet.meridian().into_iter().chain(edges);
         for course in courses {
-            if let Some(found) = self.search.inside(&self.section, &course) {
+            let found = match side {
+                Side::Inside => self.search.inside(&self.section, &course),
+                Side::Outside => self.search.outside(&self.section, &course),
+            };
+            if let Some(found) = found {
                 let point = course.point(found.t);
                 self.best = Some(Best { point, feature: found.feature, index });
             }
