@@ -130,6 +130,19 @@ pub(crate) struct Run {
     /// Compliance centre, in the tool's frame and the part's unit [default: the tip].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) center: Option<Point3<f64>>,
+    /// Prove how deep the part's triangles are in the tool, to this tolerance in the part's unit; 0 is as
+    /// close as arithmetic allows.
+    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance)]
+    pub(crate) certify: Option<f64>,
+}
+
+/// A length that is not negative.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        Ok(value) => Err(format!("{value} is no tolerance: write a length of 0 or more")),
+        Err(_) => Err(format!("`{text}` is not a number")),
+    }
 }
 
 /// `x,y,z`

@@ -34,6 +34,12 @@ pub(crate) enum Failure {
     /// The tool could not be loaded.
     #[error(transparent)]
     Tool(#[from] ToolError),
+    /// What was asked to be proved cannot be.
+    #[error(transparent)]
+    Uncertified(#[from] touchoff::certify::Uncertified),
+    /// The part's mesh could not be read.
+    #[error(transparent)]
+    Stl(#[from] touchoff::StlError),
     /// No tool has this name.
     #[error(
         "no tool is called `{name}`{meant}: `touchoff tools` lists them; a file's name ends in `.tool`"

@@ -9,8 +9,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::time::Instant;
+use touchoff::certify::{Certifier, Facets, Penetration};
 use touchoff::tool::Card;
-use touchoff::{Contact, Part, Probe, Program, Unit, Wrench};
+use touchoff::{Contact, Mesh, Part, Probe, Program, Unit, Wrench};
 
 #[derive(Serialize)]
 struct Row<'a> {
@@ -27,6 +28,36 @@ struct Row<'a> {
     law: String,
     /// The deepest point of each surface in contact.
     surfaces: BTreeMap<&'a str, f64>,
+    #[serde(flatten)]
+    certified: Option<Certified<'a>>,
+}
+
+/// What is proved of a pose.
+#[derive(Serialize)]
+struct Certified<'a> {
+    /// Between what the depth of the part's triangles lies.
+    deepest: [f64; 2],
+    /// The triangle that is deepest, if one is inside.
+    triangle: Option<u32>,
+    /// The surface of the tool that is nearest to it there.
+    surface: Option<&'a str>,
+}
+
+impl<'a> Certified<'a> {
+    fn new(found: &Penetration, card: &'a Card) -> Certified<'a> {
+        Certified {
+            deepest: found.depth,
+            triangle: found.witness.map(|witness| witness.triangle),
+            surface: found.witness.map(|witness| &*card.surfaces[witness.surface].name),
+        }
+    }
+
+    /// For people: what is proved, as far as figures differ.
+    fn shown(&self, unit: Unit) -> String {
+        let [low, high] = self.deepest.map(|depth| figure(depth, unit));
+        let depth = if low == high { high } else { format!("{low} to {high}") };
+        format!("{depth} {}", self.surface.unwrap_or_default())
+    }
 }
 
 /// Runs a tool along a path.
@@ -38,12 +69,19 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     program.check_unit(wanted.unit)?;
     program.check_poses(tool.card())?;
     let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
-    let part = Part::read_stl(&wanted.part, wanted.unit, points, wanted.seed)?;
+    let mesh = Mesh::read_stl(&wanted.part, wanted.unit)?;
+    let part = Part::from_mesh(&mesh, points, wanted.seed)?;
+    let facets = wanted.certify.map(|tolerance| (Facets::new(&mesh), tolerance));
+    let mut certifier = match &facets {
+        Some((facets, tolerance)) => Some((Certifier::new(facets, tool)?, *tolerance)),
+        None => None,
+    };
     about(wanted, &part, &program, tool.card());
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     if !json {
-        writeln!(out, "    line  points   depth ({})  by surface", wanted.unit)?;
+        let proved = if certifier.is_some() { "proved to be at most; " } else { "" };
+        writeln!(out, "    line  points   depth ({})  {proved}by surface", wanted.unit)?;
     }
     let mut probe = Probe::new(&part, tool)
         .law(wanted.law)
@@ -57,18 +95,26 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         let contacts = if felt.colliding > 0 { probe.contacts(&stop.pose) } else { &[] };
         let surfaces = by_surface(contacts, tool.card());
         summary.add(stop.line, &felt, &surfaces, ns);
+        let certified = certifier.as_mut().map(|(certifier, tolerance)| {
+            let start = Instant::now();
+            let found = certifier.deepest(&stop.pose, *tolerance);
+            summary.certify(stop.line, &found, nanoseconds(start.elapsed()));
+            Certified::new(&found, tool.card())
+        });
         if json {
-            let row = row(index, stop.line, &felt, ns, surfaces);
+            let row = row((index, stop.line), &felt, ns, surfaces, certified);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
-        } else if felt.colliding > 0 {
+        } else if felt.colliding > 0 || certified.as_ref().is_some_and(|c| c.triangle.is_some()) {
+            let proved = certified.map(|c| format!("{}; ", c.shown(wanted.unit)));
             let each: Vec<String> = surfaces
                 .iter()
                 .map(|(name, depth)| format!("{name} {}", figure(*depth, wanted.unit)))
                 .collect();
             let depth = figure(felt.depth(), wanted.unit);
             let (line, points) = (stop.line, felt.colliding);
-            writeln!(out, "{line:>8} {points:>7} {depth:>12}  {}", each.join(", "))?;
+            let (proved, each) = (proved.unwrap_or_default(), each.join(", "));
+            writeln!(out, "{line:>8} {points:>7} {depth:>12}  {proved}{each}")?;
         }
     }
     out.flush()?;
@@ -112,11 +158,11 @@ fn by_surface<'a>(contacts: &[Contact], card: &'a Card) -> BTreeMap<&'a str, f64
 }
 
 fn row<'a>(
-    pose: usize,
-    line: usize,
+    (pose, line): (usize, usize),
     felt: &Wrench,
     ns: u64,
     surfaces: BTreeMap<&'a str, f64>,
+    certified: Option<Certified<'a>>,
 ) -> Row<'a> {
     let parts = |v: Vector3<f64>| [v.x, v.y, v.z];
     Row {
@@ -132,6 +178,7 @@ fn row<'a>(
         ns,
         law: felt.law.to_string(),
         surfaces,
+        certified,
     }
 }
 
@@ -144,6 +191,16 @@ struct Summary {
     deepest: Option<(f64, usize)>,
     /// Poses in contact, depth and line of the deepest, for each surface.
     surfaces: BTreeMap<String, (usize, f64, usize)>,
+    times: Vec<u64>,
+    proved: Option<Proved>,
+}
+
+/// What was proved along the path.
+#[derive(Default)]
+struct Proved {
+    in_contact: usize,
+    /// Between what the greatest depth lies, and its line.
+    deepest: ([f64; 2], usize),
     times: Vec<u64>,
 }
 
@@ -164,6 +221,15 @@ impl Summary {
             if *depth > entry.1 {
                 (entry.1, entry.2) = (*depth, line);
             }
+        }
+    }
+
+    fn certify(&mut self, line: usize, found: &Penetration, ns: u64) {
+        let proved = self.proved.get_or_insert_default();
+        proved.times.push(ns);
+        proved.in_contact += usize::from(found.witness.is_some());
+        if found.depth[1] > proved.deepest.0[1] {
+            proved.deepest = (found.depth, line);
         }
     }
 
@@ -188,5 +254,20 @@ impl Summary {
             timing.p99 as f64 / 1e3,
             timing.max as f64 / 1e3,
         );
+        if let Some(mut proved) = self.proved {
+            let timing = Timing::of(&mut proved.times);
+            let ([low, high], line) = proved.deepest;
+            say!(
+                "proved: {} poses in contact, deepest {} to {} at line {line}; {:.2} µs on average, \
+                 {:.2} median, {:.2} p99, {:.2} at most",
+                proved.in_contact,
+                figure(low, unit),
+                length(high, unit),
+                timing.avg / 1e3,
+                timing.p50 as f64 / 1e3,
+                timing.p99 as f64 / 1e3,
+                timing.max as f64 / 1e3,
+            );
+        }
     }
 }

@@ -254,7 +254,7 @@ impl<'a> Certifier<'a> {
     /// Whether the tool is clear of the part. It stops at the first point that is inside.
     pub fn clear(&mut self, pose: &Pose) -> Clear {
         let touch = 2.0 * self.error;
-        self.inside(pose, -touch, 0.0, touch);
+        self.inside(pose, -touch, touch, touch);
         match self.witness(pose) {
             Some(witness) if self.search.best > touch + self.skew => Clear::Touching(witness),
             None if !self.search.open() => match self.within(pose) {
@@ -263,7 +263,7 @@ impl<'a> Certifier<'a> {
                 None => Clear::Untouched,
             },
             _ => {
-                let high = self.search.most.max(self.search.best) + touch + self.skew;
+                let high = self.search.most.max(self.search.wanted()) + touch + self.skew;
                 Clear::Undecided(high * self.length)
             }
         }
@@ -274,9 +274,9 @@ impl<'a> Certifier<'a> {
     /// far from its surface.
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
         let touch = 2.0 * self.error;
-        self.inside(pose, -touch, 0.0, touch);
+        self.inside(pose, -touch, touch, touch);
         if let Some(witness) = self.witness(pose) {
-            let high = if self.search.best > touch { 0.0 } else { touch + self.skew };
+            let high = if self.search.best > touch { 0.0 } else { 2.0 * touch + self.skew };
             return Clearance { distance: [0.0, high * self.length], witness: Some(witness) };
         }
         // Rounding grows with the distance.

@@ -25,6 +25,7 @@ mod shell;
 mod table;
 mod thesis;
 mod this;
+mod triangles;
 
 use crate::contender::{Contender, Workpiece};
 use crate::exact::{Errors, Exact};
@@ -43,6 +44,9 @@ struct Options {
     /// Points of the cloud.
     #[arg(long, value_delimiter = ',', default_value = "1000,5000,20000,100000,1000000")]
     points: Vec<NonZeroUsize>,
+    /// Triangles of the meshes; 0 for none.
+    #[arg(long, value_delimiter = ',', default_value = "2000,20000,200000")]
+    triangles: Vec<usize>,
     /// Only these methods.
     #[arg(long, value_delimiter = ',')]
     method: Vec<Method>,
@@ -154,6 +158,8 @@ fn main() {
     if !options.json {
         table::markdown(&rows);
     }
+    let meshes: Vec<usize> = options.triangles.iter().copied().filter(|size| *size > 0).collect();
+    triangles::measure(&meshes, options.seconds, options.json);
 }
 
 /// A scene, a cloud, all methods.

@@ -1,0 +1,249 @@
+//! Depth in a part's triangles: this project's, proved, beside `parry3d`'s contact.
+
+use crate::clock::{self, Times};
+use crate::contender::{Answer, Contender, Workpiece};
+use crate::parry_contact::ParryContact;
+use nalgebra::{Point3, Vector3};
+use serde::Serialize;
+use std::f64::consts::PI;
+use tools_library::{Fig73Exact, Flat};
+use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::mesh::shapes;
+use touchoff::scenes::{HEIGHT, INNER, POSES, Path, apart};
+use touchoff::{Cloud, Mesh, Part, Pose, Tool, Unit};
+
+/// How closely depth is proved, mm.
+const TOLERANCE: f64 = 1e-9;
+/// How deep tools are in the scenes where many triangles are as deep, mm.
+const TIED: f64 = 0.1;
+
+/// A scene of triangles.
+#[derive(Clone, Copy)]
+enum Scene {
+    /// The tube and a path of `touchoff::scenes`.
+    Along(Path),
+    /// The ball that far from the tube.
+    Apart(f64),
+    /// A flat end flat on a plate.
+    Flat,
+    /// The side of a cutter along a plate.
+    Line,
+    /// A cutter in a bore as wide as it is, but for the depth.
+    Bore,
+}
+
+impl Scene {
+    const ALL: [Scene; 8] = [
+        Scene::Along(Path::Outside),
+        Scene::Along(Path::Inside),
+        Scene::Along(Path::Hold),
+        Scene::Apart(1.0),
+        Scene::Apart(0.01),
+        Scene::Flat,
+        Scene::Line,
+        Scene::Bore,
+    ];
+
+    fn name(self) -> String {
+        match self {
+            Scene::Along(path) => path.name().to_owned(),
+            Scene::Apart(gap) => format!("apart {gap}"),
+            Scene::Flat => "flat".to_owned(),
+            Scene::Line => "line".to_owned(),
+            Scene::Bore => "bore".to_owned(),
+        }
+    }
+
+    fn tool(self) -> &'static dyn Tool {
+        match self {
+            Scene::Along(_) | Scene::Apart(_) => &Fig73Exact,
+            Scene::Flat | Scene::Line | Scene::Bore => &Flat,
+        }
+    }
+
+    /// A mesh of about so many triangles.
+    fn mesh(self, triangles: usize) -> Mesh {
+        let root = (triangles as f64).sqrt();
+        let tube = |inner: f64, height: f64| {
+            // As wide as high, as triangles of a wall are.
+            let around = (root * 0.9).round().max(3.0);
+            let layers = (triangles as f64 / (4.0 * around) - 1.0).round().max(1.0);
+            shapes::tube(inner, inner + 2.0, height, around as u32, layers as u32, Unit::Millimetre)
+        };
+        match self {
+            Scene::Along(_) | Scene::Apart(_) => tube(INNER, HEIGHT),
+            Scene::Flat | Scene::Line => {
+                shapes::plane(30.0, (root / 2f64.sqrt()).round() as u32, Unit::Millimetre)
+            }
+            Scene::Bore => tube(6.0 - TIED, 20.0),
+        }
+        .expect("a shape by construction")
+    }
+
+    fn pose(self, k: usize, n: usize) -> Pose {
+        let u = k as f64 / n as f64;
+        let [x, y] = [3.0 * (2.0 * PI * u).cos(), 3.0 * (6.0 * PI * u).sin()];
+        let stand = |tip: Point3<f64>, axis: Vector3<f64>| {
+            Pose::from_axis(tip, axis).expect("a unit vector")
+        };
+        match self {
+            Scene::Along(path) => path.pose(k, n),
+            Scene::Apart(gap) => apart(gap, k, n),
+            Scene::Flat => stand(Point3::new(x, y, -TIED), Vector3::z()),
+            Scene::Line => {
+                let turn = 2.0 * PI * u;
+                let axis = Vector3::new(turn.cos(), turn.sin(), 0.0);
+                stand(Point3::new(x, y, 6.0 - TIED), axis)
+            }
+            Scene::Bore => stand(Point3::new(0.0, 0.0, -5.0 + 10.0 * u), Vector3::z()),
+        }
+    }
+}
+
+/// One method on one scene and mesh.
+#[derive(Serialize)]
+struct Row {
+    scene: String,
+    triangles: usize,
+    method: &'static str,
+    poses: usize,
+    ns_avg: f64,
+    ns_p50: Option<u64>,
+    ns_p99: Option<u64>,
+    ns_max: Option<u64>,
+    cpu_avg: f64,
+    /// At how many poses something was inside.
+    in_contact: f64,
+    /// How far a depth is from the proved one at most, mm; of the proved one, how wide its interval is.
+    err_depth: f64,
+}
+
+/// The depth, proved.
+struct Certified<'a>(Certifier<'a>);
+
+impl Contender for Certified<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let found = self.0.deepest(pose, TOLERANCE);
+        let colliding = usize::from(found.witness.is_some());
+        Answer { colliding, depth: found.depth[1], wrench: None }
+    }
+}
+
+/// Whether it is clear.
+struct Cleared<'a>(Certifier<'a>);
+
+impl Contender for Cleared<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff clear"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let clear = matches!(self.0.clear(pose), Clear::Clear | Clear::Untouched);
+        Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
+    }
+}
+
+/// Times all scenes on meshes of these sizes.
+pub(crate) fn measure(sizes: &[usize], seconds: f64, json: bool) {
+    let mut rows = Vec::new();
+    for &size in sizes {
+        for scene in Scene::ALL {
+            let mesh = scene.mesh(size);
+            let facets = Facets::new(&mesh);
+            let certifier = || {
+                Certifier::new(&facets, scene.tool()).expect("a profile that is a function of z")
+            };
+            let cloud = Cloud::random(&mesh, 1, 1).expect("the mesh has a surface");
+            let piece = Workpiece { part: Part::from_cloud(&cloud), mesh: mesh.clone(), cloud };
+            let mut methods: Vec<Box<dyn Contender>> =
+                vec![Box::new(Certified(certifier())), Box::new(Cleared(certifier()))];
+            if let Scene::Along(_) | Scene::Apart(_) = scene {
+                methods.push(Box::new(ParryContact::new(&piece)));
+            }
+            let poses: Vec<Pose> = (0..POSES).map(|k| scene.pose(k, POSES)).collect();
+            let times = clock::race(&mut methods, &poses, seconds);
+            for (method, times) in methods.iter_mut().zip(&times) {
+                let error = error(&mut **method, &mut certifier(), &poses);
+                let row = row(scene, mesh.triangles().len(), method.name(), times, error);
+                if json {
+                    println!("{}", serde_json::to_string(&row).expect("a row of numbers"));
+                }
+                rows.push(row);
+            }
+        }
+    }
+    if !json {
+        markdown(&rows);
+    }
+}
+
+/// How far a method's depths are from proved ones at most.
+fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pose]) -> f64 {
+    if method.name() == "touchoff clear" {
+        return 0.0;
+    }
+    let some = poses.iter().step_by(poses.len() / 50);
+    let errors = some.map(|pose| {
+        let [low, high] = certifier.deepest(pose, TOLERANCE).depth;
+        let depth = method.query(pose).depth;
+        (depth - low).abs().max((depth - high).abs())
+    });
+    errors.fold(0.0, f64::max)
+}
+
+fn row(scene: Scene, triangles: usize, method: &'static str, times: &Times, error: f64) -> Row {
+    Row {
+        scene: scene.name(),
+        triangles,
+        method,
+        poses: times.poses(),
+        ns_avg: times.average(),
+        ns_p50: times.percentile(0.5),
+        ns_p99: times.percentile(0.99),
+        ns_max: times.longest(),
+        cpu_avg: times.cpu(),
+        in_contact: times.colliding().0,
+        err_depth: error,
+    }
+}
+
+fn markdown(rows: &[Row]) {
+    println!(
+        "## Triangles
+
+How deep the part's triangles are in the tool. `touchoff` proves it to {TOLERANCE:e} mm (`Certifier::deepest`), with the tool of
+fig. 7.3 as its profile has it on `outside`, `inside`, `hold` and `apart`, where its ball is that many mm off; `touchoff clear`
+only asks whether anything touches. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED} mm deep with its end or
+its side in a plate, or in a bore, where a great many triangles are as deep. **In contact** is at which part of the poses
+something is inside, **error** how far a depth is from the proved one at most, in mm, and of the proved one how wide its interval is.
+
+| scene | triangles | method | poses | avg µs | p50 | p99 | max | CPU | in contact | error |
+|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|"
+    );
+    for row in rows {
+        let time = |ns: Option<u64>| ns.map_or("-".into(), |ns| format!("{:.2}", ns as f64 / 1e3));
+        println!(
+            "| {} | {} | `{}` | {} | {:.2} | {} | {} | {} | {:.2} | {:.2} | {} |",
+            row.scene,
+            row.triangles,
+            row.method,
+            row.poses,
+            row.ns_avg / 1e3,
+            time(row.ns_p50),
+            time(row.ns_p99),
+            time(row.ns_max),
+            row.cpu_avg / 1e3,
+            row.in_contact,
+            if row.method == "touchoff clear" {
+                "-".into()
+            } else {
+                format!("{:.0e}", row.err_depth)
+            },
+        );
+    }
+    println!();
+}
