@@ -1,6 +1,7 @@
 //! The way down a tree of triangles, the deepest first.
 
 use super::facets::{Corners, Facets};
+use super::flat::Ring;
 use super::nearest::Space;
 use crate::tool::{LANES, on_vectors};
 use crate::tree::{Boxes, View, WIDTH, load, seen};
@@ -16,6 +17,11 @@ pub(super) struct Node {
 }
 
 impl Node {
+    /// What it is within, as `f64` knows it.
+    pub(super) fn ring(&self, facets: &Facets, view: &View) -> Option<Ring> {
+        facets.ring(self.level as usize, self.index as usize, view)
+    }
+
     pub(super) fn is_triangle(&self, facets: &Facets) -> bool {
         self.level as usize > facets.levels.len()
     }

@@ -1,5 +1,6 @@
 //! A part's triangles in a tree.
 
+use super::flat::Plane;
 use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
 use crate::{Mesh, Unit};
 
@@ -13,6 +14,8 @@ pub struct Facets {
     pub(super) frame: Frame,
     /// From the root's children down to the triangles' boxes.
     pub(super) levels: Vec<Vec<Boxes>>,
+    /// Of each node of a level, and of each leaf behind the last.
+    pub(super) planes: Vec<Vec<Plane>>,
     /// The corners of 16 triangles.
     pub(super) leaves: Vec<Corners>,
     /// Of each triangle, in the tree's order.
@@ -66,7 +69,15 @@ impl Facets {
             }
             corners
         });
+        let inside: Vec<_> =
+            corners.iter().map(|triangle| triangle.map(|corner| frame.inside(corner))).collect();
+        let depth = levels.len() as u32;
+        let planes = (0..=depth).map(|level| {
+            let below = WIDTH.pow(depth + 1 - level);
+            inside.chunks(below).map(Plane::of).collect()
+        });
         Facets {
+            planes: planes.collect(),
             leaves: leaves.collect(),
             levels,
             corners,

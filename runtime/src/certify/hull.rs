@@ -2,6 +2,7 @@
 
 use super::descent::Bounds;
 use super::feature::{Feature, Place};
+use super::flat::Ring;
 use super::nearest::{
     Clip, Many, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least,
     most, under_both,
@@ -225,6 +226,25 @@ fn under_plane<S: Simd, R: Real, V: Many<S, R>>(
         most - (out[1] * nd + b[2] * nz),
         most - (out[2] * nd + c[2] * nz),
     ]
+}
+
+impl Hull<f64> {
+    /// No less than the depth of any place of a ring.
+    pub(super) fn of_ring(&self, ring: &Ring) -> f64 {
+        let here = self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
+        let depths = here.map(|slab| {
+            let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
+            let planes = slab.planes.iter().map(|[nd, nz, most]| {
+                most - nd * ring.near - nz * if *nz > 0.0 { low } else { high }
+            });
+            let ball = slab.ball.map(|[z, radius]| {
+                let along = z.max(low).min(high) - z;
+                radius - (ring.near * ring.near + along * along).sqrt()
+            });
+            planes.chain(ball).fold(f64::INFINITY, f64::min)
+        });
+        depths.fold(f64::NEG_INFINITY, f64::max)
+    }
 }
 
 impl Bounds for Hull<f32> {

@@ -19,6 +19,7 @@ mod descent;
 mod facet;
 mod facets;
 mod feature;
+mod flat;
 mod hull;
 mod nearest;
 mod section;
@@ -318,6 +319,7 @@ impl<'a> Certifier<'a> {
     /// Searches the tree; what `f32` says errs by no more than a margin.
     fn descend(&mut self, pose: &Pose, side: Side, margin: f64, enough: f64) {
         self.descent.begin();
+        let mut opened = 0;
         while let Some(node) = self.descent.pop() {
             if self.search.best > enough {
                 break;
@@ -337,6 +339,15 @@ impl<'a> Certifier<'a> {
                 continue;
             }
             let (level, facets, view) = (self.level, self.facets, &self.view);
+            // Where `f32` cannot tell, or boxes do not, a plane may.
+            opened += 1;
+            if let Side::Inside = side
+                && (bound - 2.0 * margin <= self.search.wanted() || opened > MANY)
+                && let Some(ring) = node.ring(facets, view)
+                && self.exact.of_ring(&ring) <= self.search.wanted()
+            {
+                continue;
+            }
             match side {
                 Side::Inside => self.descent.open(level, (facets, &self.hull, view), node, wanted),
                 Side::Outside => {
@@ -432,6 +443,9 @@ impl<'a> Certifier<'a> {
         self.facets.contains(pose.tip() + top * pose.axis())
     }
 }
+
+/// A query that opened more nodes than these has many that are as deep.
+const MANY: usize = 24;
 
 /// How often triangles are looked at more closely before their edges are.
 const LOOKS: usize = 2;

@@ -147,6 +147,13 @@ impl View {
         std::array::from_fn(|axis| self.from_tip[axis] + self.scale * centre[axis])
     }
 
+    /// From the tree's frame and unit to the tool's, in `f64`: the rows, and the origin there.
+    pub(crate) fn exactly(&self) -> ([[f64; 3]; 3], [f64; 3]) {
+        let [x, y, z] = self.from_tip;
+        let origin = self.carry.map(|row| row[0] * x + row[1] * y + row[2] * z);
+        (self.carry.map(|row| row.map(|part| part * self.scale)), origin)
+    }
+
     /// A place given in the tree's unit, in the tool's frame and unit.
     #[inline(always)]
     pub(crate) fn seen(&self, [x, y, z]: [f32; 3]) -> [f32; 3] {

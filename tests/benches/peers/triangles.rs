@@ -103,6 +103,7 @@ impl Scene {
 /// One method on one scene and mesh.
 #[derive(Serialize)]
 struct Row {
+    table: &'static str,
     scene: String,
     triangles: usize,
     method: &'static str,
@@ -197,6 +198,7 @@ fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pos
 
 fn row(scene: Scene, triangles: usize, method: &'static str, times: &Times, error: f64) -> Row {
     Row {
+        table: "triangles",
         scene: scene.name(),
         triangles,
         method,
