@@ -12,12 +12,15 @@ use touchoff::{Mesh, Pose};
 /// A point or vector in the tool's frame and unit.
 pub type Point = [f64; 3];
 
-/// Samples of a triangle, of either kind.
-const SAMPLES: usize = 8;
+/// Samples of a triangle, of either kind: the fewer triangles are near, the more.
+const SAMPLES: [usize; 2] = [8, 150];
+/// Samples of all that are near, unless they are more than that.
+const TOGETHER: usize = 600;
 /// Of how many triangles there are samples at most.
-const TRIANGLES: usize = 400;
-/// From how many of them the search climbs, and in how many steps.
-const STARTS: usize = 4;
+const TRIANGLES: usize = 1000;
+/// From how many samples the search climbs, of how many of a triangle, and in how many steps.
+const STARTS: usize = 6;
+const EACH: usize = 3;
 const STEPS: usize = 500;
 
 /// A part's triangles and a tool.
@@ -46,6 +49,10 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 fn along(a: Point, t: f64, way: Point) -> Point {
     [a[0] + t * way[0], a[1] + t * way[1], a[2] + t * way[2]]
 }
@@ -58,16 +65,18 @@ pub fn distance(a: Point, b: Point) -> f64 {
 
 /// The point of a triangle that is nearest to another: the foot on its plane, else one on an edge.
 pub fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
-    let (ab, ac, ap) = (minus(b, a), minus(c, a), minus(p, a));
-    let (bb, bc, cc) = (dot(ab, ab), dot(ab, ac), dot(ac, ac));
-    let whole = bb * cc - bc * bc;
-    let (v, w) = (
-        (cc * dot(ap, ab) - bc * dot(ap, ac)) / whole,
-        (bb * dot(ap, ac) - bc * dot(ap, ab)) / whole,
-    );
-    // Of a sliver only the edges are known well.
-    if whole > 1e-9 * bb * cc && v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
-        return along(along(a, v, ab), w, ac);
+    // The two shortest edges tell the plane of a sliver best.
+    let mut ways = [minus(b, a), minus(c, b), minus(a, c)];
+    ways.sort_by(|e, f| dot(*e, *e).total_cmp(&dot(*f, *f)));
+    let normal = cross(ways[0], ways[1]);
+    let square = dot(normal, normal);
+    if square > 0.0 {
+        let foot = along(p, -dot(normal, minus(p, a)) / square, normal);
+        let side = |from: Point, to: Point| dot(cross(minus(to, from), minus(foot, from)), normal);
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        if sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0) {
+            return foot;
+        }
     }
     let edges = [[a, b], [b, c], [c, a]].map(|[from, to]| {
         let way = minus(to, from);
@@ -144,16 +153,17 @@ impl<'a> Brute<'a> {
         }
         *samples += near.len() as u64;
         near.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let count = (TOGETHER / near.len().max(1)).clamp(SAMPLES[0], SAMPLES[1]);
         let mut best = f64::NEG_INFINITY;
         let mut starts: Vec<(f64, usize, Point)> = Vec::new();
         for (bound, id) in near.into_iter().take(TRIANGLES) {
             if bound <= best {
                 break;
             }
-            let (depth, point) = self.sample(&self.triangle(seen, id), draw);
-            *samples += (3 + 2 * SAMPLES) as u64;
-            best = best.max(depth);
-            starts.push((depth, id, point));
+            let felt = self.sample(&self.triangle(seen, id), count, draw);
+            *samples += felt.len() as u64;
+            best = best.max(felt[0].0);
+            starts.extend(felt.into_iter().take(EACH).map(|(depth, point)| (depth, id, point)));
         }
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
         let climbs = starts.into_iter().take(STARTS);
@@ -161,12 +171,12 @@ impl<'a> Brute<'a> {
         reached.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The deepest of a triangle's samples.
-    fn sample(&self, triangle: &[Point; 3], draw: &mut Draw) -> (f64, Point) {
+    /// Samples of a triangle, the deepest first.
+    fn sample(&self, triangle: &[Point; 3], count: usize, draw: &mut Draw) -> Vec<(f64, Point)> {
         let [radius, height] = self.oracle.extent();
         let [a, b, c] = *triangle;
         let mut points = vec![a, b, c];
-        for _ in 0..SAMPLES {
+        for _ in 0..count {
             let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
             let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
             points.push(along(along(a, v, minus(b, a)), w, minus(c, a)));
@@ -176,8 +186,9 @@ impl<'a> Brute<'a> {
             let mut across = || draw.between(-0.5, 0.5) * radius;
             points.push(nearest([across(), across(), draw.between(0.0, high)], triangle));
         }
-        let felt = points.into_iter().map(|p| (self.depth(p), p));
-        felt.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::NEG_INFINITY, a))
+        let mut felt: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
+        felt.sort_by(|a, b| b.0.total_cmp(&a.0));
+        felt
     }
 
     /// The deepest that a search from a point of a triangle reaches, in the part's unit.

@@ -54,6 +54,8 @@ pub struct Row {
     pub under: Worst,
     /// By how much the lower bound is above what brute force finds on its own: how strong that is.
     pub behind: Worst,
+    /// At how many poses it finds the lower bound on its own, to 1e-6.
+    pub reached: usize,
     /// By how much an interval is wider than the tolerance.
     pub wide: Worst,
     /// How many intervals are wider than tolerance and rounding.
@@ -98,6 +100,7 @@ impl Pair<'_> {
             over: Worst::default(),
             under: Worst::default(),
             behind: Worst::default(),
+            reached: 0,
             wide: Worst::default(),
             wider: 0,
             undecided: 0,
@@ -149,6 +152,7 @@ impl Judge<'_> {
         );
         self.row.touching += usize::from(deep > 0.0);
         self.row.behind.see(low - deep.max(0.0), || at.clone());
+        self.row.reached += usize::from(low - deep.max(0.0) <= 1e-6);
         let mut most = deep;
         match found.witness {
             Some(witness) => {
@@ -230,19 +234,20 @@ impl Judge<'_> {
 /// # Errors
 /// None that a text could have.
 pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
-    let mut page = "| tool | part | poses | in contact | worst over | worst under | brute behind | over the tolerance | wider \
-                    | undecided | violations |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+    let mut page = "| tool | part | poses | in contact | worst over | worst under | brute behind | reached | over the tolerance | wider \
+                    | undecided | violations |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
         .to_owned();
     for row in rows {
         let [over, under, behind, wide] =
             [&row.over, &row.under, &row.behind, &row.wide].map(|worst| worst.by);
         writeln!(
             page,
-            "| {} | {} | {} | {} | {over:.1e} | {under:.1e} | {behind:.1e} | {wide:.1e} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {over:.1e} | {under:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} | {} |",
             row.tool,
             row.part,
             row.poses,
             row.touching,
+            row.reached,
             row.wider,
             row.undecided,
             row.violations.len()
