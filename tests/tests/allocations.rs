@@ -1,8 +1,9 @@
-//! A haptic loop must not wait for memory: after the first round a probe asks for none.
+//! A haptic loop must not wait for memory: after the first round a probe asks for none, nor a certifier.
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
-use touchoff::scenes::Path;
+use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::scenes::{Path, tube};
 use touchoff::{Law, Pose, Probe};
 use touchoff_tests::measure::kernels::{part, poses};
 
@@ -40,5 +41,36 @@ fn a_second_round_allocates_nothing() {
             let change = region.change();
             assert_eq!((second, change.allocations, change.reallocations), (first, 0, 0));
         }
+    }
+    a_certifier();
+}
+
+/// Whether a tool that touches nothing is inside is asked of a ray, which does ask for memory.
+fn a_certifier() {
+    let facets = Facets::new(&tube());
+    for name in ["Fig73Exact", "BallEr16"] {
+        let tool = tools_library::find(name).expect("a tool");
+        let mut certifier = Certifier::new(&facets, tool).expect("a profile");
+        let mut round = |poses: &[Pose]| -> f64 {
+            let depths = poses.iter().map(|pose| certifier.deepest(pose, 1e-6).depth[0]);
+            depths.sum()
+        };
+        let poses: Vec<Pose> = Path::ALL.into_iter().flat_map(|path| poses(path, 200)).collect();
+        let first = round(&poses);
+        assert!(first > 0.0);
+        let region = Region::new(COUNTED);
+        let second = round(&poses);
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0));
+        assert!((first - second).abs() <= 1e-6 * poses.len() as f64);
+        let touches = |pose: &&Pose| certifier.deepest(pose, 1e-6).depth[0] > 1e-3;
+        let touching: Vec<Pose> = poses.iter().filter(touches).copied().collect();
+        let mut all_touch =
+            || touching.iter().all(|pose| matches!(certifier.clear(pose), Clear::Touching(_)));
+        assert!(all_touch());
+        let region = Region::new(COUNTED);
+        let again = all_touch();
+        let change = region.change();
+        assert_eq!((again, change.allocations, change.reallocations), (true, 0, 0));
     }
 }

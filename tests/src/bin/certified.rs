@@ -1,0 +1,101 @@
+//! The table of `docs/measured/certified.md`: `certified [--poses N] [--seed S] [--parts FOLDER]`, 100,000
+//! poses in all if it is not said. The folder's parts are asked about where it is there.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+use touchoff::certify::Facets;
+use touchoff::{Mesh, Unit};
+use touchoff_tests::measure::certified::{Pair, Row, poses, table};
+use touchoff_tests::oracle::Nearest;
+
+const TOOLS: [&str; 6] = ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
+
+/// Real parts, where there is a folder of them, and their units.
+const FILES: [(&str, Unit); 4] = [
+    ("impeller.stl", Unit::Millimetre),
+    ("featuretype_inch.stl", Unit::Inch),
+    ("octagonal_pocket_metre.stl", Unit::Metre),
+    ("kiri_pocket_test.stl", Unit::Millimetre),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let (mut count, mut seed) = (100_000, 1);
+    let mut folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let value = words.next().ok_or_else(|| format!("what is `{word}`?"))?;
+        match word.as_str() {
+            "--poses" => count = value.parse()?,
+            "--seed" => seed = value.parse()?,
+            "--parts" => folder = PathBuf::from(value),
+            _ => return Err(format!("`{word}` is not known").into()),
+        }
+    }
+    let start = Instant::now();
+    let mut parts = poses::parts()?;
+    for (name, unit) in FILES {
+        let path = folder.join(name);
+        if path.exists() {
+            parts.push((name, Mesh::read_stl(path, unit)?));
+        } else {
+            eprintln!("{name} is skipped: there is no {}", path.display());
+        }
+    }
+    let each = count / (parts.len() * TOOLS.len()).max(1);
+    let rows = rows(&parts, each, seed);
+    println!(
+        "# Certified penetrations beside brute force
+
+```sh
+cargo run --release -p touchoff-tests --bin certified -- --poses {count} --seed {seed} > docs/measured/certified.md
+```
+
+For each tool and part {each} poses: most put the tool's surface between 1e-9 and 6 mm into a triangle, a sixth lie along the
+coordinate axes and flush with the part's box, a tenth are anywhere about the part. Tolerances are 0, 1e-9, 1e-6 and 1e-3 in turn.
+All lengths are in the part's unit. *Over* is by how much a sample of brute force, or one beside the witness, is above the upper bound,
+*under* by how much the witness is shallower than the lower one; 0 where it never is. *Brute behind* is by how much brute force without
+the witness falls short of the lower bound, *reached* at how many poses by no more than 1e-6. *Wider* counts intervals wider than the tolerance and rounding.
+"
+    );
+    print!("{}", table(&rows)?);
+    eprintln!("{} s", start.elapsed().as_secs());
+    let violations: usize = rows.iter().map(|row| row.violations.len()).sum();
+    if violations > 0 {
+        return Err(format!("{violations} violations").into());
+    }
+    Ok(())
+}
+
+/// A row for each part and tool, on all cores.
+fn rows(parts: &[(&str, Mesh)], each: usize, seed: u64) -> Vec<Row> {
+    let facets: Vec<Facets> = parts.iter().map(|(_, mesh)| Facets::new(mesh)).collect();
+    let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    let (Some((part, mesh)), name) =
+                        (parts.get(k / TOOLS.len()), TOOLS[k % TOOLS.len()])
+                    else {
+                        break;
+                    };
+                    let tool = tools_library::find(name).expect("a tool of the library");
+                    let oracle = Nearest::of(name);
+                    let facets = &facets[k / TOOLS.len()];
+                    let pair = Pair { part, mesh, facets, tool, oracle: &oracle };
+                    let row = pair.measure(each, seed + k as u64);
+                    eprintln!("{} in {}: {} violations", row.tool, part, row.violations.len());
+                    rows.lock().unwrap_or_else(PoisonError::into_inner).push((k, row));
+                }
+            });
+        }
+    });
+    let mut rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    rows.sort_by_key(|(k, _)| *k);
+    rows.into_iter().map(|(_, row)| row).collect()
+}
