@@ -31,7 +31,9 @@ struct Slab<R> {
 
 impl<R: Real> Hull<R> {
     /// For places inside: none is deeper.
-    pub(super) fn new(section: &Section) -> Hull<R> {
+    ///
+    /// Slabs reach farther by how far heights are known.
+    pub(super) fn new(section: &Section, error: f64) -> Hull<R> {
         let slabs = section.slabs.iter().enumerate().map(|(index, slab)| {
             let side = &section.features[slab.side];
             let [[d0, z0], [d1, z1]] = side.ends;
@@ -54,9 +56,11 @@ impl<R: Real> Hull<R> {
             if high - slab.high <= slab.radius {
                 planes.push(plane([0.0, 1.0], [0.0, high]));
             }
-            let ball = side.ball(section.size).map(|ball| ball.map(R::of));
+            // Of an arc that does not come to the axis, feet beside it are not on the surface.
+            let to_axis = d0.min(d1) <= 1e-9 * section.size;
+            let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
             let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
-            let [low, high] = [slab.low - section.error, slab.high + section.error].map(R::of);
+            let [low, high] = [slab.low - error, slab.high + error].map(R::of);
             Slab { low, high, planes, ball, rings: rings.collect() }
         });
         Hull { slabs: slabs.collect() }

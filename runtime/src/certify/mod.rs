@@ -198,8 +198,8 @@ impl<'a> Certifier<'a> {
         let section = Section::new(card, error)
             .ok_or_else(|| Uncertified::Overhang { tool: card.name.to_string() })?;
         Ok(Certifier {
-            hull: Hull::new(&section),
-            exact: Hull::new(&section),
+            hull: Hull::new(&section, sight.margin),
+            exact: Hull::new(&section, error),
             shell: Shell::new(&section),
             section,
             level: Level::new(),

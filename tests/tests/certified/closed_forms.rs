@@ -132,7 +132,6 @@ fn what_is_inside_an_inverted_part_or_a_hole_is_not_said_to_be_in_material() {
 }
 
 #[test]
-#[ignore = "the bound by a ball does not see that the neck takes away the feet"]
 fn above_the_centre_of_a_ball_on_a_neck_the_corner_is_nearest() {
     // The ball is of 5 mm about (0, 5), the neck begins at (3, 9). The first triangle is 3.2 mm deep; the
     // second's bound is 3 mm, so that it is not looked at.
