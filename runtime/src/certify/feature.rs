@@ -243,7 +243,9 @@ impl Feature {
 #[inline]
 fn below_tangents(circle: &Circle, triangle: &Triangle) -> f64 {
     let out = triangle.map(|p| minus(p, circle.centre));
-    let beneath = |n: Place| {
+    let beneath = |[d, z]: Place| {
+        // Those that touch toward the axis bound nothing: the tool goes on there.
+        let n = [d.max(0.0), z];
         let far = norm(n);
         if far > 0.0 { circle.radius - least(out.map(|v| dot(n, v))) / far } else { circle.radius }
     };

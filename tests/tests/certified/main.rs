@@ -60,7 +60,7 @@ fn brute_force_finds_nothing_outside_the_intervals() {
 }
 
 #[test]
-fn nor_in_a_ball_on_a_neck() {
+fn brute_force_finds_nothing_outside_on_a_neck() {
     let violations = violations(&["Lollipop"], 4 * POSES, 2);
     assert!(violations.is_empty(), "{violations:#?}");
 }
