@@ -348,11 +348,10 @@ impl<'a> Certifier<'a> {
             {
                 continue;
             }
+            let descent = &mut self.descent;
             match side {
-                Side::Inside => self.descent.open(level, (facets, &self.hull, view), node, wanted),
-                Side::Outside => {
-                    self.descent.open(level, (facets, &self.shell, view), node, wanted)
-                }
+                Side::Inside => descent.open(level, (facets, &self.hull, view), node, wanted),
+                Side::Outside => descent.open(level, (facets, &self.shell, view), node, wanted),
             }
         }
         if let Some(best) = &self.best {
@@ -372,8 +371,7 @@ impl<'a> Certifier<'a> {
         self.batch.turn(&self.view);
         for lane in 0..self.batch.len() {
             if self.search.spend(0.0) {
-                let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
-                self.facet(facet, index, Side::Outside);
+                self.facet(lane, Side::Outside);
             }
         }
     }
@@ -405,14 +403,14 @@ impl<'a> Certifier<'a> {
         for lane in 0..self.batch.len() {
             let bound = self.batch.bounds[lane];
             if bound > self.search.wanted() && self.search.spend(bound) {
-                let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
-                self.facet(facet, index, Side::Inside);
+                self.facet(lane, Side::Inside);
             }
         }
     }
 
-    /// Looks at a triangle's meridian and edges.
-    fn facet(&mut self, facet: Facet, index: u32, side: Side) {
+    /// Looks at the meridian and edges of a triangle of the batch.
+    fn facet(&mut self, lane: usize, side: Side) {
+        let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
         self.skew = self.skew.max(facet.skew);
         let edges = facet.edges();
         let courses = facet.meridian().into_iter().chain(edges);

@@ -22,9 +22,9 @@ impl Bounds {
     pub(crate) fn of(places: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
         let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
         for place in places {
-            for axis in 0..3 {
-                bounds.low[axis] = bounds.low[axis].min(place[axis]);
-                bounds.high[axis] = bounds.high[axis].max(place[axis]);
+            for (axis, part) in place.into_iter().enumerate() {
+                bounds.low[axis] = bounds.low[axis].min(part);
+                bounds.high[axis] = bounds.high[axis].max(part);
             }
         }
         bounds
