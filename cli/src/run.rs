@@ -80,7 +80,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     if !json {
-        let proved = if certifier.is_some() { "proved to be at most; " } else { "" };
+        let proved = if certifier.is_some() { "proved; " } else { "" };
         writeln!(out, "    line  points   depth ({})  {proved}by surface", wanted.unit)?;
     }
     let mut probe = Probe::new(&part, tool)
@@ -258,9 +258,10 @@ impl Summary {
             let timing = Timing::of(&mut proved.times);
             let ([low, high], line) = proved.deepest;
             say!(
-                "proved: {} poses in contact, deepest {} to {} at line {line}; {:.2} µs on average, \
+                "proved: {} of {} poses in contact, deepest {} to {} at line {line}; {:.2} µs on average, \
                  {:.2} median, {:.2} p99, {:.2} at most",
                 proved.in_contact,
+                self.poses,
                 figure(low, unit),
                 length(high, unit),
                 timing.avg / 1e3,

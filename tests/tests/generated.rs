@@ -12,7 +12,7 @@ use tool_dsl::{compile, emit};
 /// Methods that generated code may call: none panics, none is a libm function.
 const METHODS: [&str; 4] = ["sqrt", "abs", "of", "take"];
 /// Functions that it may call.
-const FUNCTIONS: [&str; 14] = [
+const FUNCTIONS: [&str; 16] = [
     "Some",
     "Lane::of",
     "Lane::le",
@@ -24,6 +24,8 @@ const FUNCTIONS: [&str; 14] = [
     "L::any",
     "FeltLanes::nothing",
     "Card::new",
+    "Piece::line",
+    "Piece::arc",
     "Region::new",
     "Slab::new",
     "Surface::new",

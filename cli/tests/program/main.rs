@@ -44,6 +44,32 @@ fn a_run_writes_one_object_a_pose() {
 }
 
 #[test]
+fn what_is_proved_stands_in_each_row() {
+    let bench = Bench::new();
+    let run = |tolerance: &str, points: &str| {
+        let more = ["--json", "--certify", tolerance, "--points", points];
+        bench.run("block.stl", "path.csv", "D2Ball", &more)
+    };
+    // Of a cloud of three points none is likely to be near; the triangles are all there.
+    let output = run("1e-9", "3");
+    let found = rows(&output);
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let proved = |row: &Value| [number(&row["deepest"][0]), number(&row["deepest"][1])];
+    let [low, high] = proved(&found[1]);
+    assert!(low <= 0.5 && 0.5 <= high && high - low < 2e-9, "{low} to {high}");
+    assert!(found[1]["triangle"].is_u64() && found[1]["surface"] == "ball", "{}", found[1]);
+    assert!(proved(&found[0])[1] < 1e-9 && found[0]["triangle"].is_null(), "{}", found[0]);
+    assert!(stderr(&output).contains("proved: 1 of 2 poses in contact"), "{}", stderr(&output));
+    let [low, high] = proved(&rows(&run("0", "3"))[1]);
+    assert!(low <= 0.5 && 0.5 <= high && high - low < 1e-10, "{low} to {high}");
+    for wrong in ["-1", "NaN", "deep"] {
+        assert_eq!(run(wrong, "3").status.code(), Some(2), "{wrong}");
+    }
+    let refused = bench.run("block.stl", "path.csv", "Fig73", &["--certify", "1e-6"]);
+    assert!(stderr(&refused).contains("Fig73 has no profile"), "{}", stderr(&refused));
+}
+
+#[test]
 fn a_tool_file_is_felt_like_the_compiled_tool() {
     let bench = Bench::new();
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools/d2_ball.tool");
