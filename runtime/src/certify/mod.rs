@@ -13,6 +13,7 @@
 //! **Rounding.** Every place is known to within a part in 2^46 of the tool's and the part's size, and
 //! answers are widened by that. Thin triangles are known less well: their *skew* is added.
 
+mod answer;
 mod batch;
 mod course;
 mod descent;
@@ -26,6 +27,7 @@ mod section;
 mod shell;
 mod winding;
 
+pub use answer::{Clear, Clearance, Penetration, Uncertified, Witness};
 pub use facets::Facets;
 
 use crate::pose::Pose;
@@ -37,7 +39,7 @@ use descent::Descent;
 use facet::Facet;
 use fearless_simd::Level;
 use hull::Hull;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use section::Section;
 use shell::Shell;
 
@@ -110,75 +112,6 @@ struct Best {
 enum Side {
     Inside,
     Outside,
-}
-
-/// A tool of which nothing can be certified.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Uncertified {
-    /// It has no profile, so that what is the distance to its surface is not known.
-    #[error(
-        "{tool} has no profile, so its distance from a part cannot be certified: draw its \
-         `profile {{ … }}`"
-    )]
-    NoProfile {
-        /// Its name.
-        tool: String,
-    },
-    /// Its profile goes back down somewhere on its way up.
-    #[error(
-        "the profile of {tool} is not a function of z: it overhangs where it goes back toward the \
-         tip; a profile without overhangs can be certified"
-    )]
-    Overhang {
-        /// Its name.
-        tool: String,
-    },
-}
-
-/// The deepest penetration of a part's triangles into a tool.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Penetration {
-    /// Between what the depth lies, in the part's unit. It is 0 where nothing is inside.
-    pub depth: [f64; 2],
-    /// Where it is at least the lower of them; `None` where nothing was found inside.
-    pub witness: Option<Witness>,
-}
-
-/// A place where a tool and a part are at each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Witness {
-    /// Where it is on the part, in the world.
-    pub point: Point3<f64>,
-    /// The triangle it lies on.
-    pub triangle: u32,
-    /// The tool's nearest surface, by its place in the card's list.
-    pub surface: usize,
-}
-
-/// Whether a tool is clear of a part.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Clear {
-    /// No point of the part is inside the tool or on its surface, and the tool is outside the part.
-    Clear,
-    /// No triangle touches the tool, but the part is not closed and oriented, so that whether the tool
-    /// is wholly inside the material cannot be known.
-    Untouched,
-    /// A point of the part is inside the tool.
-    Touching(Witness),
-    /// The tool is wholly inside the material and touches no triangle.
-    Inside,
-    /// What is closest is so near to the surface that rounding decides, or the budget was spent: no
-    /// point of the part is deeper than this, in the part's unit.
-    Undecided(f64),
-}
-
-/// How far a tool is from a part.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clearance {
-    /// Between what the distance lies, in the part's unit; 0 where they touch.
-    pub distance: [f64; 2],
-    /// Where the part is that near.
-    pub witness: Option<Witness>,
 }
 
 impl<'a> Certifier<'a> {
@@ -280,6 +213,7 @@ impl<'a> Certifier<'a> {
             let high = if self.search.best > touch { 0.0 } else { 2.0 * touch + self.skew };
             return Clearance { distance: [0.0, high * self.length], witness: Some(witness) };
         }
+        let unsure = self.search.open();
         // Rounding grows with the distance.
         let far =
             self.view.origin.iter().fold(0.0, |far: f64, part| far.max(f64::from(part.abs())));
@@ -293,9 +227,10 @@ impl<'a> Certifier<'a> {
         self.descend(pose, Side::Outside, margin, f64::INFINITY);
         let more = error + self.skew;
         let low = -self.search.wanted().max(self.search.most) - more;
+        let low = if unsure { 0.0 } else { low.max(0.0) };
         let high = -self.search.best + more;
         Clearance {
-            distance: [low.max(0.0), high].map(|distance| distance * self.length),
+            distance: [low, high].map(|distance| distance * self.length),
             witness: self.witness(pose),
         }
     }
