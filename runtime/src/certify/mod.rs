@@ -56,11 +56,9 @@ use shell::Shell;
 /// touchoff::tool! {
 ///     tool Ball "a ball of 3 mm radius" {
 ///         units mm;
-///         tip z = 0;
 ///         profile {
 ///             start (0, 0);
-///             arc to (3, 3) center (0, 3) as ball cutting;
-///             arc to (0, 6) center (0, 3) as ball;
+///             arc to (0, 6) center (0, 3) as ball cutting;
 ///         }
 ///         niceness cutting: 1;
 ///     }
