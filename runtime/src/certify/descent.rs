@@ -103,6 +103,15 @@ impl Descent {
         } else {
             of_leaf(level, seen, node, wanted, &mut bounds)
         };
+        self.take(facets, node, hits, &bounds);
+    }
+
+    /// Puts all children of a node on the stack, where `f32` cannot hold what is known of them.
+    pub(super) fn open_all(&mut self, facets: &Facets, node: Node) {
+        self.take(facets, node, u32::MAX, &[node.bound; WIDTH]);
+    }
+
+    fn take(&mut self, facets: &Facets, node: Node, hits: u32, bounds: &[f32; WIDTH]) {
         let children = facets.children(node.level as usize, node.index as usize);
         let mut hits = hits & (u32::MAX >> (32 - children));
         let first = self.stack.len();

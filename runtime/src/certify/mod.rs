@@ -216,7 +216,7 @@ impl<'a> Certifier<'a> {
         let far =
             self.view.origin.iter().fold(0.0, |far: f64, part| far.max(f64::from(part.abs())));
         let error = self.error + 64.0 * f64::EPSILON * far;
-        let margin = self.sight.margin + far / f64::from(1 << 20);
+        let margin = self.margin() + far / f64::from(1 << 20);
         let tolerance = (4.0 * error).max(tolerance / self.length);
         self.best = None;
         self.search.begin(f64::NEG_INFINITY, tolerance, self.budget);
@@ -246,7 +246,12 @@ impl<'a> Certifier<'a> {
         // A triangle that was deepest is likely to be deep.
         self.batch.begin(self.facets, pose, &[self.last]);
         self.glance();
-        self.descend(pose, Side::Inside, self.sight.margin, enough);
+        self.descend(pose, Side::Inside, self.margin(), enough);
+    }
+
+    /// How far `f32` can take a bound, in the tool's unit.
+    fn margin(&self) -> f64 {
+        if self.sight.fits { self.sight.margin } else { f64::INFINITY }
     }
 
     /// Searches the tree; what `f32` says errs by no more than a margin.
@@ -283,6 +288,7 @@ impl<'a> Certifier<'a> {
             }
             let descent = &mut self.descent;
             match side {
+                _ if margin > MARGIN => descent.open_all(facets, node),
                 Side::Inside => descent.open(level, (facets, &self.hull, view), node, wanted),
                 Side::Outside => descent.open(level, (facets, &self.shell, view), node, wanted),
             }
@@ -377,6 +383,9 @@ impl<'a> Certifier<'a> {
 
 /// A query that opened more nodes than these has many that are as deep.
 const MANY: usize = 24;
+
+/// With a larger margin `f32` tells nothing, and its squares are too large for it.
+const MARGIN: f64 = 1e9;
 
 /// How often triangles are looked at more closely before their edges are.
 const LOOKS: usize = 2;

@@ -5,8 +5,8 @@ use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, Facets};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Unit};
-use touchoff_tests::oracle::{Nearest, Oracle};
 use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{Nearest, Oracle};
 
 /// Into how many parts the sides of triangles are cut.
 const RASTER: u32 = 20;

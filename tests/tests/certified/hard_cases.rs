@@ -173,3 +173,22 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
     }
     assert!(deeper.is_empty(), "{high}, but {deeper:?}");
 }
+
+#[test]
+fn what_f32_cannot_hold_is_not_lost() {
+    // Rounding is some ten times the tool, so little is known; but that is not wrong.
+    for size in [1e14, 1e20, 1e30] {
+        let mesh = soup(&[
+            [[-size, -size, 0.0], [size, -size, 0.0], [0.0, size, 0.0]],
+            [[0.0, 0.0, 5.0], [size, 1.0, 5.0], [size, 2.0, 5.0]],
+        ]);
+        let ball = pose([0.0, 0.0, -0.5], [0.0, 0.0, 1.0]);
+        let [low, high] = depth(&mesh, "D2Ball", &ball, 1e-6);
+        assert!(low <= 0.5 && 0.5 <= high, "{size:e}: {low:e} to {high:e}");
+        let facets = Facets::new(&plate());
+        let mut certifier = Certifier::new(&facets, tool("D2Ball")).expect("a profile");
+        let far = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
+        let [low, high] = far.distance;
+        assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");
+    }
+}
