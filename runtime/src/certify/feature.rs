@@ -109,7 +109,10 @@ impl Feature {
     #[inline]
     pub(super) fn over_at_most(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
-            Some(circle) if circle.convex => below_tangents(circle, triangle),
+            // Tangents that touch toward the axis bound nothing: the tool goes on there.
+            Some(circle) if circle.convex => {
+                below_tangents(circle, triangle, |[d, z]| [d.max(0.0), z])
+            }
             // Linear, or convex where it is not below 0.
             _ => most(triangle.map(|p| self.over(p))),
         }
@@ -211,7 +214,7 @@ impl Feature {
             None => most(triangle.map(|p| self.away(p))),
             Some(circle) if self.faces(circle, triangle) => {
                 let out = most(triangle.map(|p| norm(minus(p, circle.centre)) - circle.radius));
-                if circle.convex { out.max(below_tangents(circle, triangle)) } else { out }
+                out.max(below_tangents(circle, triangle, |n| n))
             }
             Some(_) => {
                 let [from, to] = self.ends.map(|end| most(triangle.map(|p| norm(minus(p, end)))));
@@ -239,13 +242,13 @@ impl Feature {
 }
 
 /// No less than how far any place of a triangle is inside a circle: no place is deeper than under a
-/// tangent. Taken are those at the feet of the end that is farther inside and of the apex.
+/// tangent. Taken are those at the feet of the end that is farther inside and of the apex, in the directions
+/// that `touching` makes of theirs.
 #[inline]
-fn below_tangents(circle: &Circle, triangle: &Triangle) -> f64 {
+fn below_tangents(circle: &Circle, triangle: &Triangle, touching: impl Fn(Place) -> Place) -> f64 {
     let out = triangle.map(|p| minus(p, circle.centre));
-    let beneath = |[d, z]: Place| {
-        // Those that touch toward the axis bound nothing: the tool goes on there.
-        let n = [d.max(0.0), z];
+    let beneath = |out_of: Place| {
+        let n = touching(out_of);
         let far = norm(n);
         if far > 0.0 { circle.radius - least(out.map(|v| dot(n, v))) / far } else { circle.radius }
     };
