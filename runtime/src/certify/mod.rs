@@ -249,9 +249,10 @@ impl<'a> Certifier<'a> {
         self.descend(pose, Side::Inside, self.margin(), enough);
     }
 
-    /// How far `f32` can take a bound, in the tool's unit.
+    /// How far `f32` can take a bound, in the tool's unit: planes are as steep as 2, so that one errs by
+    /// three times as much as a place, and a few roundings.
     fn margin(&self) -> f64 {
-        if self.sight.fits { self.sight.margin } else { f64::INFINITY }
+        if self.sight.fits { 4.0 * self.sight.margin } else { f64::INFINITY }
     }
 
     /// Searches the tree; what `f32` says errs by no more than a margin.
