@@ -5,14 +5,14 @@ use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
 use crate::{Mesh, Unit};
 
 /// The triangles of a part, arranged for being asked how deep a tool is in them: a 16-wide tree of boxes
-/// like that of a cloud, whose last level has a box for each triangle.
+/// like that of a cloud, whose leaves hold 16 triangles.
 ///
 /// Corners are kept as they were given, in the part's frame and unit. Triangles without area stay: they
 /// are edges, and are as deep as their points.
 #[derive(Clone, Debug)]
 pub struct Facets {
     pub(super) frame: Frame,
-    /// From the root's children down to the triangles' boxes.
+    /// From the root's children down to the leaves' boxes.
     pub(super) levels: Vec<Vec<Boxes>>,
     /// Of each node of a level, and of each leaf behind the last.
     pub(super) planes: Vec<Vec<Plane>>,

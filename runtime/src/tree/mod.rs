@@ -57,7 +57,7 @@ pub(crate) struct Frame {
     pub(crate) origin: Point3<f64>,
     /// The unit of length; a power of two, if the part is in the unit that it came in.
     pub(crate) scale: f64,
-    /// The largest half extent of the whole.
+    /// The largest extent of the whole.
     pub(crate) size: f32,
 }
 
