@@ -39,6 +39,7 @@ extern crate self as touchoff;
 pub mod certify;
 pub mod cloud;
 pub mod mesh;
+mod motion;
 mod part;
 mod pose;
 mod probe;
@@ -52,6 +53,7 @@ mod unit;
 pub use cloud::{Cloud, CloudError};
 pub use fearless_simd::Level;
 pub use mesh::{Mesh, MeshError, StlError, Survey};
+pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
 pub use probe::{

@@ -80,6 +80,11 @@ impl Pose {
         }
     }
 
+    /// Of a rotation, whose spin was chosen.
+    pub(crate) fn turned(rotation: Matrix3<f64>, tip: Point3<f64>) -> Pose {
+        Pose { rotation, tip, full: false }
+    }
+
     /// Whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`]. A
     /// tool's answers do not depend on it; those of a solid without an axis do, so that only a
     /// full pose means something for it.

@@ -25,6 +25,29 @@ pub enum Uncertified {
     },
 }
 
+/// An allowance that means nothing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AllowanceError {
+    /// The tool has no surface of that name.
+    #[error("{tool} has no surface `{surface}`; it has {known}")]
+    NoSurface {
+        /// The tool's name.
+        tool: String,
+        /// The name that was given.
+        surface: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// It is not a length.
+    #[error("an allowance of {allowed} for `{surface}` is no length")]
+    NoLength {
+        /// The surface's name.
+        surface: String,
+        /// What was given.
+        allowed: f64,
+    },
+}
+
 /// The deepest penetration of a part's triangles into a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
@@ -53,12 +76,30 @@ pub enum Clear {
     /// No triangle touches the tool, but the part is not closed and oriented, so that whether the tool
     /// is wholly inside the material cannot be known.
     Untouched,
-    /// A point of the part is inside the tool.
+    /// A point of the part is inside the tool, or deeper than its surface is [allowed](super::Certifier::allow)
+    /// to be, or nearer.
     Touching(Witness),
     /// The tool is wholly inside the material and touches no triangle.
     Inside,
     /// What is closest is so near to the surface that rounding decides, or the budget was spent: no
-    /// point of the part is deeper than this, in the part's unit.
+    /// point of the part is deeper than is allowed by more than this, in the part's unit.
+    Undecided(f64),
+}
+
+/// Whether a tool stays clear of a part on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sweep {
+    /// At no time is a point of the part deeper than is allowed, by more than the tolerance, and the tool is
+    /// outside the part.
+    Clear,
+    /// The same, but the part is not closed and oriented, so that whether the tool is wholly inside the
+    /// material cannot be known.
+    Untouched,
+    /// At this part of the way, from 0 to 1, a point is deeper than is allowed; it may not be the first.
+    Touching(f64, Witness),
+    /// The tool is wholly inside the material and touches no triangle.
+    Inside,
+    /// The budget was spent: until this part of the way it is clear, and what comes then is not known.
     Undecided(f64),
 }
 

@@ -8,14 +8,14 @@ use crate::tree::View;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 /// A coordinate of each.
-type Lanes = [f64; LANES];
+pub(super) type Lanes = [f64; LANES];
 
 /// Up to eight triangles: how deep each is at most, and where it may be so.
 #[derive(Default)]
 pub(super) struct Batch {
-    indices: Vec<u32>,
+    pub(super) indices: Vec<u32>,
     /// First from the tip in the part's frame and unit, then in the tool's.
-    corners: [[Lanes; 3]; 3],
+    pub(super) corners: [[Lanes; 3]; 3],
     pub(super) bounds: Lanes,
     places: [Lanes; 3],
 }
@@ -97,14 +97,14 @@ impl Batch {
     }
 
     #[inline(always)]
-    fn load_corners<S: Simd>(&self, simd: S) -> [[f64x8<S>; 3]; 3] {
+    pub(super) fn load_corners<S: Simd>(&self, simd: S) -> [[f64x8<S>; 3]; 3] {
         let [a, b, c] = &self.corners;
         [load(simd, a), load(simd, b), load(simd, c)]
     }
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, [x, y, z]: &[Lanes; 3]) -> [f64x8<S>; 3] {
+pub(super) fn load<S: Simd>(simd: S, [x, y, z]: &[Lanes; 3]) -> [f64x8<S>; 3] {
     [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
 }
 

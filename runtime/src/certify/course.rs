@@ -6,6 +6,7 @@
 //! where depth is likely to be greatest, until none is.
 
 use super::feature::{Place, Triangle, dot};
+use super::owners::Owners;
 use super::section::{Depth, Section};
 
 /// A straight way, `base + t way`: at `t`, `d² = off² + (start + t slide)²`.
@@ -187,6 +188,11 @@ impl Search {
         true
     }
 
+    /// What is left of the budget.
+    pub(super) fn left(&self) -> u32 {
+        self.budget
+    }
+
     /// Takes a place if it is the deepest so far.
     pub(super) fn take(&mut self, depth: &Depth) -> bool {
         let deeper = depth.value > self.best;
@@ -203,8 +209,12 @@ impl Search {
         }
     }
 
-    /// The deepest place of a course that is deeper than the best, where that is at least 0.
-    pub(super) fn inside(&mut self, section: &Section, course: &Course) -> Option<Found> {
+    /// The place of a course where owners are deepest, if deeper than the best, where that is at least 0.
+    pub(super) fn inside(
+        &mut self,
+        (section, owners): (&Section, &Owners),
+        course: &Course,
+    ) -> Option<Found> {
         let mut found = None;
         for half in course.halves() {
             let [low, high] = half.map(|t| course.height(t));
@@ -214,9 +224,10 @@ impl Search {
                     break;
                 }
                 if let Some([from, to]) = course.within(half, heights) {
-                    let bound =
-                        |triangle: &Triangle, enough| section.at_most(slab, triangle, enough);
-                    let depth = |place| section.depth(slab, place);
+                    let bound = |triangle: &Triangle, enough| {
+                        section.at_most(owners, slab, triangle, enough)
+                    };
+                    let depth = |place| section.depth(owners, slab, place);
                     self.run(course, course.interval(from, to), bound, depth, &mut found);
                 }
             }
@@ -224,16 +235,21 @@ impl Search {
         found
     }
 
-    /// The place of a course that is nearest to the tool, where none is inside and the best is below 0.
-    pub(super) fn outside(&mut self, section: &Section, course: &Course) -> Option<Found> {
+    /// The place of a course that is nearest to the owners, where the best is below 0. If all are, what is
+    /// inside is at 0.
+    pub(super) fn outside(
+        &mut self,
+        (section, owners): (&Section, &Owners),
+        course: &Course,
+    ) -> Option<Found> {
         let mut found = None;
         for [from, to] in course.halves() {
-            let bound = |triangle: &Triangle, best| section.no_nearer(triangle, best);
+            let bound = |triangle: &Triangle, best| section.no_nearer(owners, triangle, best);
             let depth = |place| {
-                if section.contains(place) {
+                if owners.all() && section.contains(place) {
                     Depth { value: 0.0, gradient: [0.0; 2], feature: 0 }
                 } else {
-                    section.distance(place)
+                    section.distance(owners, place)
                 }
             };
             self.run(course, course.interval(from, to), bound, depth, &mut found);

@@ -4,15 +4,15 @@ use super::facets::{Corners, Facets};
 use super::flat::Ring;
 use super::nearest::Space;
 use crate::tool::{LANES, on_vectors};
-use crate::tree::{Boxes, View, WIDTH, load, seen};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
+use crate::tree::{Boxes, View, WIDTH, extent, load, seen};
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
 
 /// A node of the tree, a leaf or a triangle, and how deep the tool can be in it.
 #[derive(Clone, Copy)]
 pub(super) struct Node {
     /// That of its children; leaves are those whose children are triangles.
-    level: u32,
-    index: u32,
+    pub(super) level: u32,
+    pub(super) index: u32,
     pub(super) bound: f32,
 }
 
@@ -20,6 +20,32 @@ impl Node {
     /// What it is within, as `f64` knows it.
     pub(super) fn ring(&self, facets: &Facets, view: &View) -> Option<Ring> {
         facets.ring(self.level as usize, self.index as usize, view)
+    }
+
+    /// A triangle, by its place in the tree's order.
+    pub(super) fn of_triangle(facets: &Facets, index: u32) -> Node {
+        Node { level: facets.levels.len() as u32 + 1, index, bound: f32::INFINITY }
+    }
+
+    /// Half the diagonal of its box, in the tree's unit.
+    pub(super) fn size(&self, facets: &Facets) -> f64 {
+        let Some(level) = self.level.checked_sub(1) else { return f64::INFINITY };
+        let (node, lane) = (self.index as usize / WIDTH, self.index as usize % WIDTH);
+        let half = &facets.levels[level as usize][node].half;
+        half.iter().map(|list| f64::from(list[lane]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Those of its children that a bit says.
+    pub(super) fn children(self, facets: &Facets, hits: u32) -> impl Iterator<Item = Node> + use<> {
+        let children = facets.children(self.level as usize, self.index as usize);
+        let there = (0..children as u32).filter(move |lane| hits >> lane & 1 == 1);
+        let first = self.index * WIDTH as u32;
+        there.map(move |lane| Node { level: self.level + 1, index: first + lane, ..self })
+    }
+
+    /// Whether its children are triangles.
+    pub(super) fn is_leaf(&self, facets: &Facets) -> bool {
+        self.level as usize == facets.levels.len()
     }
 
     pub(super) fn is_triangle(&self, facets: &Facets) -> bool {
@@ -36,11 +62,14 @@ pub(super) struct Descent {
     looked: bool,
 }
 
-/// Something that depth, or a negative distance, is no more than.
-pub(super) trait Bounds {
+/// Something that depth, or a negative distance, is no more than in boxes.
+pub(super) trait BoxBounds {
     /// In 16 boxes; what is not there has NaN.
     fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S>;
+}
 
+/// The same in boxes and triangles.
+pub(super) trait Bounds: BoxBounds {
     /// In 16 triangles in the tool's frame. What is no more than wanted need not be close.
     fn of_triangles<S: Simd>(
         &self,
@@ -50,8 +79,56 @@ pub(super) trait Bounds {
     ) -> f32x16<S>;
 }
 
+/// What boxes are within, as the axis has it: no place is nearer or farther, or beyond these heights.
+pub(super) struct Rings<V> {
+    pub(super) near: V,
+    pub(super) far: V,
+    pub(super) low: V,
+    pub(super) high: V,
+}
+
+/// How far places go, in the tool's frame: straight, and by a turn about y.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Shift {
+    pub(super) straight: [f32; 3],
+    pub(super) turn: f32,
+    /// No place that matters is farther from y.
+    pub(super) reach: f32,
+}
+
+/// The rings of boxes, if so on all their way.
+#[inline(always)]
+pub(super) fn rings<S: Simd>(
+    simd: S,
+    boxes: &Boxes,
+    view: &View,
+    shift: Option<&Shift>,
+) -> Rings<f32x16<S>> {
+    let (centre, half) = (load(simd, &boxes.centre), load(simd, &boxes.half));
+    let [x, y, z] = seen(&centre, &view.rows, view.origin);
+    let zero = f32x16::splat(simd, 0.0);
+    let (x, y) = (x.abs(), y.abs());
+    let rows = &view.rows;
+    let mut wide = [extent(&half, rows[0]), extent(&half, rows[1]), extent(&half, rows[2])];
+    if let Some(&Shift { straight, turn, reach }) = shift {
+        let reach = f32x16::splat(simd, reach);
+        let (far_x, far_z) = (reach.min(x + wide[0]), reach.min(z.abs() + wide[2]));
+        wide[0] = wide[0] + far_z * turn + straight[0];
+        wide[1] = wide[1] + straight[1];
+        wide[2] = wide[2] + far_x * turn + straight[2];
+    }
+    let (near_x, near_y) = ((x - wide[0]).max(zero), (y - wide[1]).max(zero));
+    let (far_x, far_y) = (x + wide[0], y + wide[1]);
+    Rings {
+        near: (near_x * near_x + near_y * near_y).sqrt(),
+        far: (far_x * far_x + far_y * far_y).sqrt(),
+        low: z - wide[2],
+        high: z + wide[2],
+    }
+}
+
 /// A part as a tool sees it.
-type Seen<'a, B> = (&'a Facets, &'a B, &'a View);
+pub(super) type Seen<'a, B> = (&'a Facets, &'a B, &'a View);
 
 impl Descent {
     pub(super) fn clear(&mut self) {
@@ -98,10 +175,10 @@ impl Descent {
     ) {
         let facets = seen.0;
         let mut bounds = [node.bound; WIDTH];
-        let hits = if (node.level as usize) < facets.levels.len() {
-            dispatch!(level, simd => of_boxes(simd, seen, node, wanted, &mut bounds))
-        } else {
+        let hits = if node.is_leaf(facets) {
             of_leaf(level, seen, node, wanted, &mut bounds)
+        } else {
+            of_children(level, seen, node, wanted, &mut bounds)
         };
         self.take(facets, node, hits, &bounds);
     }
@@ -138,8 +215,19 @@ fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
     !bound.simd_le(wanted).to_bitmask() as u32
 }
 
+/// Which children of a node, that are boxes, may be more than wanted.
+pub(super) fn of_children<B: BoxBounds>(
+    level: Level,
+    seen: Seen<'_, B>,
+    node: Node,
+    wanted: f32,
+    bounds: &mut [f32; WIDTH],
+) -> u32 {
+    dispatch!(level, simd => of_boxes(simd, seen, node, wanted, bounds))
+}
+
 #[inline(always)]
-fn of_boxes<S: Simd, B: Bounds>(
+fn of_boxes<S: Simd, B: BoxBounds>(
     simd: S,
     (facets, bounded, view): Seen<'_, B>,
     node: Node,

@@ -68,7 +68,7 @@ impl Facet {
     }
 
     /// The part of the meridian within it.
-    pub(super) fn meridian(&self) -> Option<Course> {
+    fn meridian(&self) -> Option<Course> {
         let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
         for k in 0..3 {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
@@ -87,8 +87,12 @@ impl Facet {
             .then(|| Course::new(self.base, self.way, [from, to]))
     }
 
-    /// Its edges.
-    pub(super) fn edges(&self) -> [Course; 3] {
+    /// Its meridian and its edges.
+    pub(super) fn courses(&self) -> impl Iterator<Item = Course> + use<> {
+        self.meridian().into_iter().chain(self.edges())
+    }
+
+    fn edges(&self) -> [Course; 3] {
         let [a, b, c] = self.corners;
         [[a, b], [b, c], [c, a]].map(|[from, to]| Course::new(from, minus(to, from), [0.0, 1.0]))
     }

@@ -223,21 +223,36 @@ impl Feature {
         }
     }
 
-    /// No more than the distance of any place in a triangle, by the line that parts the feature from
-    /// `seen`, one of its places.
+    /// No more than the distance of any place in a triangle.
     #[inline]
-    pub(super) fn at_least(&self, triangle: &Triangle, seen: Place) -> f64 {
+    pub(super) fn at_least(&self, triangle: &Triangle) -> f64 {
+        let [first, second, middle] = *triangle;
+        // A distance changes by no more than the way.
+        let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
+        let coarse = self.away(middle) - reach;
         if let Some(Circle { centre, radius, convex: false }) = self.circle {
             // From inside the circle; from beyond it only an end is near.
-            return least(triangle.map(|p| radius - norm(minus(p, centre)))).max(0.0);
+            return coarse.max(least(triangle.map(|p| radius - norm(minus(p, centre)))));
         }
-        let foot = self.foot(seen);
-        let way = minus(seen, foot);
+        let nearer = if self.away(first) < self.away(second) { first } else { second };
+        coarse.max(self.parted(triangle, middle)).max(self.parted(triangle, nearer))
+    }
+
+    /// How far a triangle is from the line beyond the feature that is normal to the way from it to `seen`.
+    fn parted(&self, triangle: &Triangle, seen: Place) -> f64 {
+        let way = minus(seen, self.foot(seen));
         let far = norm(way);
         if far == 0.0 {
             return 0.0;
         }
-        (least(triangle.map(|p| dot(way, minus(p, foot)))) / far).max(0.0)
+        let [from, to] = self.ends.map(|end| dot(way, end));
+        let most = match &self.circle {
+            Some(circle) if self.sector(circle, [0, 1].map(|k| circle.centre[k] + way[k])) => {
+                dot(way, circle.centre) + circle.radius * far
+            }
+            _ => from.max(to),
+        };
+        (least(triangle.map(|p| dot(way, p))) - most) / far
     }
 }
 

@@ -1,6 +1,6 @@
 //! How deep a tool is at most in boxes and triangles, side by side.
 
-use super::descent::Bounds;
+use super::descent::{Bounds, BoxBounds, Rings, rings};
 use super::feature::{Feature, Place};
 use super::flat::Ring;
 use super::nearest::{
@@ -8,61 +8,63 @@ use super::nearest::{
     most, under_both,
 };
 use super::section::Section;
-use crate::tree::{Boxes, View, extent, load, seen};
+use crate::tree::{Boxes, View};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
 /// A tool's slabs, for bounds.
 pub(super) struct Hull<R> {
-    slabs: Vec<Slab<R>>,
+    pub(super) slabs: Vec<Slab<R>>,
 }
 
 /// Between two heights depth is no more than each of these says.
-struct Slab<R> {
-    low: R,
-    high: R,
+pub(super) struct Slab<R> {
+    pub(super) low: R,
+    pub(super) high: R,
     /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`.
-    planes: Vec<[R; 3]>,
+    pub(super) planes: Vec<[R; 3]>,
     /// How far it is inside a ball about a place of the axis, as `[z, radius]`.
-    ball: Option<[R; 2]>,
+    pub(super) ball: Option<[R; 2]>,
     /// How far it is from a circle about the axis, as `[d, z]`; and whether the level ring beyond the
     /// circle is the tool's surface too.
-    rings: Vec<([R; 2], bool)>,
+    pub(super) rings: Vec<([R; 2], bool)>,
 }
 
 impl<R: Real> Hull<R> {
-    /// For places inside: none is deeper.
-    ///
-    /// Slabs reach farther by how far heights are known.
-    pub(super) fn new(section: &Section, error: f64) -> Hull<R> {
-        let slabs = section.slabs.iter().enumerate().map(|(index, slab)| {
-            let side = &section.features[slab.side];
-            let [[d0, z0], [d1, z1]] = side.ends;
-            let plane = |n: Place, [d, z]: Place| [n[0], n[1], n[0] * d + n[1] * z].map(R::of);
-            let touching = |line: &Feature| plane([line.along[1], -line.along[0]], line.ends[0]);
-            // How far it is to the surface on the level.
-            let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
-            let slope = (d1 - d0) / (z1 - z0);
-            let convex = side.circle.is_some_and(|circle| circle.convex);
-            let line = side.tangent();
-            if line.as_ref().is_some_and(|line| section.covers(line, index)) {
-                planes.extend(line.as_ref().map(touching));
-            } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
-                planes.push(plane([1.0, -slope], side.ends[0]));
-            }
-            let [low, high] = section.reach();
-            if slab.low - low <= slab.radius {
-                planes.push(plane([0.0, -1.0], [0.0, low]));
-            }
-            if high - slab.high <= slab.radius {
-                planes.push(plane([0.0, 1.0], [0.0, high]));
-            }
-            // Of an arc that does not come to the axis, feet beside it are not on the surface.
-            let to_axis = d0.min(d1) <= 1e-9 * section.size;
-            let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
-            let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
-            let [low, high] = [slab.low - error, slab.high + error].map(R::of);
-            Slab { low, high, planes, ball, rings: rings.collect() }
-        });
+    /// For places inside: none is deeper. Slabs are those between the heights of their zones, and reach
+    /// farther by how far heights are known.
+    pub(super) fn new(section: &Section, zones: &[Option<[f64; 2]>], error: f64) -> Hull<R> {
+        let slabs =
+            section.slabs.iter().enumerate().zip(zones).filter_map(|((index, slab), zone)| {
+                let [from, to] = (*zone)?;
+                let side = &section.features[slab.side];
+                let [[d0, z0], [d1, z1]] = side.ends;
+                let plane = |n: Place, [d, z]: Place| [n[0], n[1], n[0] * d + n[1] * z].map(R::of);
+                let touching =
+                    |line: &Feature| plane([line.along[1], -line.along[0]], line.ends[0]);
+                // How far it is to the surface on the level.
+                let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
+                let slope = (d1 - d0) / (z1 - z0);
+                let convex = side.circle.is_some_and(|circle| circle.convex);
+                let line = side.tangent();
+                if line.as_ref().is_some_and(|line| section.covers(line, index)) {
+                    planes.extend(line.as_ref().map(touching));
+                } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
+                    planes.push(plane([1.0, -slope], side.ends[0]));
+                }
+                let [low, high] = section.reach();
+                if slab.low - low <= slab.radius {
+                    planes.push(plane([0.0, -1.0], [0.0, low]));
+                }
+                if high - slab.high <= slab.radius {
+                    planes.push(plane([0.0, 1.0], [0.0, high]));
+                }
+                // Of an arc that does not come to the axis, feet beside it are not on the surface.
+                let to_axis = d0.min(d1) <= 1e-9 * section.size;
+                let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
+                let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
+                let [low, high] = [from - error, to + error].map(R::of);
+                Some(Slab { low, high, planes, ball, rings: rings.collect() })
+            });
         Hull { slabs: slabs.collect() }
     }
 
@@ -251,22 +253,12 @@ impl Hull<f64> {
     }
 }
 
-impl Bounds for Hull<f32> {
-    /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
-    /// NaN.
+impl Hull<f32> {
+    /// No less than the depth of any place of rings.
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
-        let (centre, half) = (load(simd, &boxes.centre), load(simd, &boxes.half));
-        let [x, y, z] = seen(&centre, &view.rows, view.origin);
+    pub(super) fn of_rings<S: Simd>(&self, simd: S, rings: &Rings<f32x16<S>>) -> f32x16<S> {
+        let Rings { near, far, low, high } = *rings;
         let zero = f32x16::splat(simd, 0.0);
-        let (x, y) = (x.abs(), y.abs());
-        let (wide_x, wide_y) = (extent(&half, view.rows[0]), extent(&half, view.rows[1]));
-        let (near_x, near_y) = ((x - wide_x).max(zero), (y - wide_y).max(zero));
-        let near = (near_x * near_x + near_y * near_y).sqrt();
-        let (far_x, far_y) = (x + wide_x, y + wide_y);
-        let far = (far_x * far_x + far_y * far_y).sqrt();
-        let wide = extent(&half, view.rows[2]);
-        let (low, high) = (z - wide, z + wide);
         let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);
         for slab in &self.slabs {
             let here = low.simd_le(slab.high) & high.simd_ge(slab.low);
@@ -294,7 +286,18 @@ impl Bounds for Hull<f32> {
         }
         bound
     }
+}
 
+impl BoxBounds for Hull<f32> {
+    /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
+    /// NaN.
+    #[inline(always)]
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
+        self.of_rings(simd, &rings(simd, boxes, view, None))
+    }
+}
+
+impl Bounds for Hull<f32> {
     #[inline(always)]
     fn of_triangles<S: Simd>(
         &self,

@@ -23,25 +23,28 @@ mod feature;
 mod flat;
 mod hull;
 mod nearest;
+mod owners;
+mod question;
 mod section;
 mod shell;
+mod swath;
+mod sweep;
+mod swept;
 mod winding;
+mod work;
 
-pub use answer::{Clear, Clearance, Penetration, Uncertified, Witness};
+pub use answer::{AllowanceError, Clear, Clearance, Penetration, Sweep, Uncertified, Witness};
 pub use facets::Facets;
 
+use crate::motion::Motion;
 use crate::pose::Pose;
-use crate::tool::Tool;
-use crate::tree::{Sight, View};
-use batch::Batch;
-use course::Search;
-use descent::Descent;
-use facet::Facet;
+use crate::tool::{Card, Tool};
+use crate::tree::Sight;
 use fearless_simd::Level;
-use hull::Hull;
-use nalgebra::Vector3;
+use question::Question;
 use section::Section;
-use shell::Shell;
+use sweep::{Stop, Sweeper, Task};
+use work::{Goal, Setting, Work};
 
 /// A tool beside a part's triangles, ready to be asked what is proved at one pose after another.
 ///
@@ -75,41 +78,18 @@ use shell::Shell;
 /// # Ok(()) }
 /// ```
 pub struct Certifier<'a> {
-    facets: &'a Facets,
-    section: Section,
-    hull: Hull<f32>,
-    exact: Hull<f64>,
-    shell: Shell,
-    level: Level,
-    sight: Sight,
-    /// The tool's unit of length in the part's.
-    length: f64,
-    /// How far a place is known, in the tool's unit.
-    error: f64,
+    setting: Setting<'a>,
+    card: &'a Card,
+    /// How deep the tool is, whichever surface it is.
+    whole: Question,
+    /// Of each surface, once it was asked for.
+    each: Vec<Option<Question>>,
+    /// Of each surface, how deep it may be in the part's unit, and what to ask for that.
+    allowed: Vec<f64>,
+    rules: Vec<Question>,
     budget: u32,
-    view: View,
-    search: Search,
-    descent: Descent,
-    batch: Batch,
-    best: Option<Best>,
-    /// The most skew of a triangle that was looked at.
-    skew: f64,
-    /// Where the last question ended.
-    last: u32,
-}
-
-/// The deepest place so far, in the tool's frame.
-struct Best {
-    point: [f64; 3],
-    feature: usize,
-    index: u32,
-}
-
-/// Where places are looked for: inside the tool, or outside while none is inside.
-#[derive(Clone, Copy)]
-enum Side {
-    Inside,
-    Outside,
+    work: Work,
+    sweeper: Sweeper,
 }
 
 impl<'a> Certifier<'a> {
@@ -117,7 +97,7 @@ impl<'a> Certifier<'a> {
     ///
     /// # Errors
     /// Where the distance from the tool is not known; see [`Uncertified`].
-    pub fn new(facets: &'a Facets, tool: &dyn Tool) -> Result<Certifier<'a>, Uncertified> {
+    pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Certifier<'a>, Uncertified> {
         let card = tool.card();
         if card.outline.is_empty() {
             return Err(Uncertified::NoProfile { tool: card.name.to_string() });
@@ -128,24 +108,18 @@ impl<'a> Certifier<'a> {
         let error = 64.0 * f64::EPSILON * (card.size() + part);
         let section = Section::new(card, error)
             .ok_or_else(|| Uncertified::Overhang { tool: card.name.to_string() })?;
+        let surfaces = card.surfaces.len();
+        let allowed = vec![0.0; surfaces];
         Ok(Certifier {
-            hull: Hull::new(&section, sight.margin),
-            exact: Hull::new(&section, error),
-            shell: Shell::new(&section),
-            section,
-            level: Level::new(),
-            sight,
-            length,
-            error,
+            whole: Question::new(&section, sight.margin, 0.0, |_| true),
+            each: (0..surfaces).map(|_| None).collect(),
+            rules: Question::all(&section, sight.margin, &allowed),
+            allowed,
             budget: 1 << 20,
-            view: View::default(),
-            search: Search::default(),
-            descent: Descent::default(),
-            batch: Batch::default(),
-            best: None,
-            skew: 0.0,
-            last: 0,
-            facets,
+            work: Work::default(),
+            sweeper: Sweeper::default(),
+            card,
+            setting: Setting { facets, section, sight, level: Level::new(), length, error },
         })
     }
 
@@ -160,44 +134,120 @@ impl<'a> Certifier<'a> {
     /// With another SIMD level than the best of this machine.
     #[must_use]
     pub fn level(mut self, level: Level) -> Certifier<'a> {
-        self.level = level;
+        self.setting.level = level;
         self
+    }
+
+    /// With an allowance for a surface of the tool: how deep it may be in the part, in the part's unit,
+    /// where it is the nearest surface; infinity for as deep as it will. Below 0 it is a margin: how far the
+    /// surface has to keep from all of the part. [`Certifier::clear`] goes by it; no allowance is 0.
+    ///
+    /// # Errors
+    /// If there is no such surface, or the allowance is not a number or keeps infinitely far.
+    pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Certifier<'a>, AllowanceError> {
+        if allowed.is_nan() || allowed == f64::NEG_INFINITY {
+            return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
+        }
+        let surfaces = &self.card.surfaces;
+        let Some(index) = surfaces.iter().position(|known| known.name == surface) else {
+            let known: Vec<String> = surfaces.iter().map(|s| format!("`{}`", s.name)).collect();
+            return Err(AllowanceError::NoSurface {
+                tool: self.card.name.to_string(),
+                surface: surface.to_owned(),
+                known: known.join(", "),
+            });
+        };
+        self.allowed[index] = allowed;
+        let Setting { section, sight, length, .. } = &self.setting;
+        let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
+        self.rules = Question::all(section, sight.margin, &allowed);
+        Ok(self)
     }
 
     /// The deepest penetration of the part's triangles into the tool. The interval is no wider than the
     /// tolerance, in the part's unit, and what rounding adds; a tolerance below that, or 0, is taken as
     /// that. Where triangles are thinner than the tolerance, or the budget is spent, it is wider.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
-        // Written so that what is not a number is no tolerance.
-        let tolerance = (4.0 * self.error).max(tolerance / self.length);
-        self.inside(pose, self.error, tolerance, f64::INFINITY);
-        let more = self.error + self.skew;
-        let (low, high) = match &self.best {
-            Some(_) => (self.search.best - more, self.search.best + tolerance),
-            None => (0.0, self.error),
-        };
-        let high = if self.descent.looked() { high.max(self.search.most) + more } else { 0.0 };
-        Penetration {
-            depth: [low.max(0.0), high].map(|depth| depth * self.length),
-            witness: self.witness(pose),
-        }
+        let Certifier { setting, whole, work, budget, .. } = self;
+        penetration(setting, whole, work, pose, (tolerance, *budget))
     }
 
-    /// Whether the tool is clear of the part. It stops at the first point that is inside.
+    /// The deepest penetration where a surface, by its place in the card's list, is the nearest: the
+    /// same, of that surface alone. Where two are as near, both count.
+    ///
+    /// # Panics
+    /// If there is no such surface.
+    pub fn deepest_on(&mut self, surface: usize, pose: &Pose, tolerance: f64) -> Penetration {
+        let Certifier { setting, each, work, budget, .. } = self;
+        let Setting { section, sight, .. } = &*setting;
+        let question = each[surface].get_or_insert_with(|| {
+            Question::new(section, sight.margin, 0.0, |other| other == surface)
+        });
+        penetration(setting, question, work, pose, (tolerance, *budget))
+    }
+
+    /// Whether the tool is clear of the part, or no deeper in it than is [allowed](Certifier::allow). It
+    /// stops at the first point that is.
     pub fn clear(&mut self, pose: &Pose) -> Clear {
-        let touch = 2.0 * self.error;
-        self.inside(pose, -touch, touch, touch);
-        match self.witness(pose) {
-            Some(witness) if self.search.best > touch + self.skew => Clear::Touching(witness),
-            None if !self.search.open() => match self.within(pose) {
+        let Certifier { setting, rules, work, budget, .. } = self;
+        let touch = 2.0 * setting.error;
+        let mut open: Option<f64> = None;
+        for rule in &*rules {
+            let least = rule.limit - touch;
+            let goal =
+                Goal { least, tolerance: touch, enough: rule.limit + touch, budget: *budget };
+            if rule.limit < 0.0 {
+                setting.look(work, pose);
+                work.outside(setting, rule, pose, goal);
+            } else {
+                work.inside(setting, rule, pose, goal);
+            }
+            if let Some(best) = &work.best
+                && work.search.best > goal.enough + work.skew
+            {
+                return Clear::Touching(setting.witness(best, pose));
+            }
+            if work.best.is_some() || work.search.open() {
+                let high = work.search.most.max(work.search.wanted()) + touch + work.skew;
+                open = Some(open.unwrap_or(0.0).max(high - rule.limit));
+            }
+        }
+        match open {
+            Some(high) => Clear::Undecided(high * setting.length),
+            None => match setting.within(pose) {
                 Some(true) => Clear::Inside,
                 Some(false) => Clear::Clear,
                 None => Clear::Untouched,
             },
-            _ => {
-                let high = self.search.most.max(self.search.wanted()) + touch + self.skew;
-                Clear::Undecided(high * self.length)
+        }
+    }
+
+    /// Whether the tool stays clear of the part all along a motion, or no deeper in it than is
+    /// [allowed](Certifier::allow) by more than a tolerance, in the part's unit; one below what rounding
+    /// adds is taken as that.
+    pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
+        let Certifier { setting, rules, budget, sweeper, .. } = self;
+        // Written so that what is not a number is no tolerance.
+        let tolerance = (16.0 * setting.error).max(tolerance / setting.length);
+        let mut first: Option<Stop> = None;
+        for question in &*rules {
+            let task = Task { setting, question, motion, tolerance };
+            let stop = sweeper.run(&task, *budget);
+            first = match (first, stop) {
+                (Some(first), Some(stop)) if stop.before(&first) => Some(stop),
+                (first, stop) => first.or(stop),
+            };
+        }
+        match first {
+            Some(Stop::Deeper { at, best }) => {
+                Sweep::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
+            Some(Stop::Spent { at }) => Sweep::Undecided(at),
+            None => match setting.within(&motion.pose(0.0)) {
+                Some(true) => Sweep::Inside,
+                Some(false) => Sweep::Clear,
+                None => Sweep::Untouched,
+            },
         }
     }
 
@@ -205,188 +255,54 @@ impl<'a> Certifier<'a> {
     /// part's unit, and what rounding adds; 0 where they touch. A tool wholly inside the material is as
     /// far from its surface.
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
-        let touch = 2.0 * self.error;
-        self.inside(pose, -touch, touch, touch);
-        if let Some(witness) = self.witness(pose) {
-            let high = if self.search.best > touch { 0.0 } else { 2.0 * touch + self.skew };
-            return Clearance { distance: [0.0, high * self.length], witness: Some(witness) };
+        let Certifier { setting, whole, work, budget, .. } = self;
+        let touch = 2.0 * setting.error;
+        let goal = Goal { least: -touch, tolerance: touch, enough: touch, budget: *budget };
+        work.inside(setting, whole, pose, goal);
+        if let Some(best) = &work.best {
+            let witness = setting.witness(best, pose);
+            let high = if work.search.best > touch { 0.0 } else { 2.0 * touch + work.skew };
+            let distance = [0.0, high * setting.length];
+            return Clearance { distance, witness: Some(witness) };
         }
-        let unsure = self.search.open();
+        let unsure = work.search.open();
         // Rounding grows with the distance.
-        let far =
-            self.view.origin.iter().fold(0.0, |far: f64, part| far.max(f64::from(part.abs())));
-        let error = self.error + 64.0 * f64::EPSILON * far;
-        let margin = self.margin() + far / f64::from(1 << 20);
-        let tolerance = (4.0 * error).max(tolerance / self.length);
-        self.best = None;
-        self.search.begin(f64::NEG_INFINITY, tolerance, self.budget);
-        self.batch.begin(self.facets, pose, &[self.last]);
-        self.beside();
-        self.descend(pose, Side::Outside, margin, f64::INFINITY);
-        let more = error + self.skew;
-        let low = -self.search.wanted().max(self.search.most) - more;
+        let error = setting.error + 64.0 * f64::EPSILON * work.far();
+        // Written so that what is not a number is no tolerance.
+        let tolerance = (4.0 * error).max(tolerance / setting.length);
+        let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];
+        work.outside(setting, whole, pose, Goal { least, tolerance, enough, budget: *budget });
+        let more = error + work.skew;
+        let low = -work.search.wanted().max(work.search.most) - more;
         let low = if unsure { 0.0 } else { low.max(0.0) };
-        let high = -self.search.best + more;
+        let high = -work.search.best + more;
         Clearance {
-            distance: [low, high].map(|distance| distance * self.length),
-            witness: self.witness(pose),
+            distance: [low, high].map(|distance| distance * setting.length),
+            witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
         }
-    }
-
-    /// Searches for what is deeper than `least`, to a tolerance, and stops at what is deeper than
-    /// `enough`.
-    fn inside(&mut self, pose: &Pose, least: f64, tolerance: f64, enough: f64) {
-        self.best = None;
-        self.skew = 0.0;
-        self.search.begin(least, tolerance, self.budget);
-        self.descent.clear();
-        if !self.sight.look(&self.facets.frame, pose, &mut self.view) {
-            return;
-        }
-        // A triangle that was deepest is likely to be deep.
-        self.batch.begin(self.facets, pose, &[self.last]);
-        self.glance();
-        self.descend(pose, Side::Inside, self.margin(), enough);
-    }
-
-    /// How far `f32` can take a bound, in the tool's unit: planes are as steep as 2, so that one errs by
-    /// three times as much as a place, and a few roundings.
-    fn margin(&self) -> f64 {
-        if self.sight.fits { 4.0 * self.sight.margin } else { f64::INFINITY }
-    }
-
-    /// Searches the tree; what `f32` says errs by no more than a margin.
-    fn descend(&mut self, pose: &Pose, side: Side, margin: f64, enough: f64) {
-        self.descent.begin();
-        let mut opened = 0;
-        while let Some(node) = self.descent.pop() {
-            if self.search.best > enough {
-                break;
-            }
-            let bound = f64::from(node.bound) + margin;
-            if bound <= self.search.wanted() || !self.search.spend(bound) {
-                continue;
-            }
-            let wanted = (self.search.wanted() - margin) as f32;
-            if node.is_triangle(self.facets) {
-                let some = self.descent.triangles(self.facets, node, wanted);
-                self.batch.begin(self.facets, pose, some);
-                match side {
-                    Side::Inside => self.triangles(),
-                    Side::Outside => self.beside(),
-                }
-                continue;
-            }
-            let (level, facets, view) = (self.level, self.facets, &self.view);
-            // Where `f32` cannot tell, or boxes do not, a plane may.
-            opened += 1;
-            if let Side::Inside = side
-                && (bound - 2.0 * margin <= self.search.wanted() || opened > MANY)
-                && let Some(ring) = node.ring(facets, view)
-                && self.exact.of_ring(&ring) <= self.search.wanted()
-            {
-                continue;
-            }
-            let descent = &mut self.descent;
-            match side {
-                _ if margin > MARGIN => descent.open_all(facets, node),
-                Side::Inside => descent.open(level, (facets, &self.hull, view), node, wanted),
-                Side::Outside => descent.open(level, (facets, &self.shell, view), node, wanted),
-            }
-        }
-        if let Some(best) = &self.best {
-            self.last = best.index;
-        }
-    }
-
-    /// Looks at the triangles of the batch where they may be deepest.
-    fn glance(&mut self) {
-        self.batch.turn(&self.view);
-        self.batch.bound(self.level, &self.exact, self.search.wanted());
-        self.places();
-    }
-
-    /// Looks at the triangles of the batch, which are outside.
-    fn beside(&mut self) {
-        self.batch.turn(&self.view);
-        for lane in 0..self.batch.len() {
-            if self.search.spend(0.0) {
-                self.facet(lane, Side::Outside);
-            }
-        }
-    }
-
-    fn places(&mut self) {
-        for lane in 0..self.batch.len() {
-            if self.batch.bounds[lane] > self.search.wanted() {
-                let (point, index) = (self.batch.place(lane), self.batch.index(lane));
-                let place = [(point[0] * point[0] + point[1] * point[1]).sqrt(), point[2]];
-                if let Some(depth) = self.section.depth_at(place)
-                    && self.search.take(&depth)
-                {
-                    self.best = Some(Best { point, feature: depth.feature, index });
-                }
-            }
-        }
-    }
-
-    /// Looks at the triangles of the batch until none may be deeper.
-    fn triangles(&mut self) {
-        self.glance();
-        for _ in 0..LOOKS {
-            if !self.batch.any_above(self.search.wanted()) {
-                return;
-            }
-            self.batch.closer(self.level, &self.exact, self.search.wanted());
-            self.places();
-        }
-        for lane in 0..self.batch.len() {
-            let bound = self.batch.bounds[lane];
-            if bound > self.search.wanted() && self.search.spend(bound) {
-                self.facet(lane, Side::Inside);
-            }
-        }
-    }
-
-    /// Looks at the meridian and edges of a triangle of the batch.
-    fn facet(&mut self, lane: usize, side: Side) {
-        let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
-        self.skew = self.skew.max(facet.skew);
-        let edges = facet.edges();
-        let courses = facet.meridian().into_iter().chain(edges);
-        for course in courses {
-            let found = match side {
-                Side::Inside => self.search.inside(&self.section, &course),
-                Side::Outside => self.search.outside(&self.section, &course),
-            };
-            if let Some(found) = found {
-                let point = course.point(found.t);
-                self.best = Some(Best { point, feature: found.feature, index });
-            }
-        }
-    }
-
-    /// The best place as people are told it.
-    fn witness(&self, pose: &Pose) -> Option<Witness> {
-        self.best.as_ref().map(|best| Witness {
-            point: pose.tip() + pose.rotation() * Vector3::from(best.point) * self.length,
-            triangle: self.facets.ids[best.index as usize],
-            surface: self.section.features[best.feature].surface,
-        })
-    }
-
-    /// Whether the top of the tool's axis is inside the part, if it has an inside.
-    fn within(&self, pose: &Pose) -> Option<bool> {
-        let top = self.section.reach()[1] * self.length;
-        self.facets.contains(pose.tip() + top * pose.axis())
     }
 }
 
-/// A query that opened more nodes than these has many that are as deep.
-const MANY: usize = 24;
-
-/// With a larger margin `f32` tells nothing, and its squares are too large for it.
-const MARGIN: f64 = 1e9;
-
-/// How often triangles are looked at more closely before their edges are.
-const LOOKS: usize = 2;
+/// The deepest place that owners have.
+fn penetration(
+    setting: &Setting<'_>,
+    question: &Question,
+    work: &mut Work,
+    pose: &Pose,
+    (tolerance, budget): (f64, u32),
+) -> Penetration {
+    // Written so that what is not a number is no tolerance.
+    let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
+    let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget };
+    work.inside(setting, question, pose, goal);
+    let more = setting.error + work.skew;
+    let (low, high) = match work.best {
+        Some(_) => (work.search.best - more, work.search.best + tolerance),
+        None => (0.0, setting.error),
+    };
+    let high = if work.descent.looked() { high.max(work.search.most) + more } else { 0.0 };
+    Penetration {
+        depth: [low.max(0.0), high].map(|depth| depth * setting.length),
+        witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
+    }
+}

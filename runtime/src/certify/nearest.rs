@@ -16,6 +16,9 @@ pub(super) trait Real: Copy + PartialOrd {
     const LEAST: Self;
 
     fn of(value: f64) -> Self;
+
+    /// The length of a vector.
+    fn norm(x: Self, y: Self) -> Self;
 }
 
 impl Real for f32 {
@@ -25,6 +28,10 @@ impl Real for f32 {
     fn of(value: f64) -> f32 {
         value as f32
     }
+
+    fn norm(x: f32, y: f32) -> f32 {
+        (x * x + y * y).sqrt()
+    }
 }
 
 impl Real for f64 {
@@ -33,6 +40,10 @@ impl Real for f64 {
 
     fn of(value: f64) -> f64 {
         value
+    }
+
+    fn norm(x: f64, y: f64) -> f64 {
+        (x * x + y * y).sqrt()
     }
 }
 
@@ -371,7 +382,7 @@ pub(super) fn under_both<S: Simd, V: SimdFloat<S>>(
 }
 
 #[inline(always)]
-fn to_ring<S: Simd, R: Real, V: Many<S, R>>(
+pub(super) fn to_ring<S: Simd, R: Real, V: Many<S, R>>(
     simd: S,
     [out, far, z]: [V; 3],
     [d, height]: [V; 2],

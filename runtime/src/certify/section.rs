@@ -5,6 +5,7 @@
 //! holds what lies between the axis and one piece, its *side*.
 
 use super::feature::{Feature, Place, Triangle, cross, dot, minus, norm, quarters};
+use super::owners::Owners;
 use crate::tool::Card;
 
 /// What lies between two heights.
@@ -138,33 +139,47 @@ impl Section {
     }
 
     /// How deep a place is; below 0 or nothing outside.
-    pub(super) fn depth_at(&self, p: Place) -> Option<Depth> {
+    pub(super) fn depth_at(&self, owners: &Owners, p: Place) -> Option<Depth> {
         let slab = self.from(p[1]).first().filter(|slab| slab.low - self.error <= p[1])?;
-        let depth = self.depth(slab, p);
+        let depth = self.depth(owners, slab, p);
         // What is level belongs to the slabs on both its sides.
         let above = self.from(p[1]).get(1).filter(|above| above.low - self.error <= p[1]);
         match above {
-            Some(above) if depth.value < 0.0 => Some(self.depth(above, p)),
+            Some(above) if depth.value < 0.0 => Some(self.depth(owners, above, p)),
             _ => Some(depth),
         }
     }
 
     /// How deep a place in a slab is.
     #[inline]
-    pub(super) fn depth(&self, slab: &Slab, p: Place) -> Depth {
+    pub(super) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
         let side = &self.features[slab.side];
         let over = side.over(p);
         if over < 0.0 {
             return Depth { value: over, gradient: side.inward(p), feature: slab.side };
         }
-        let (value, feature) = self.nearest(slab.near.iter().copied(), p);
-        Depth { value, gradient: self.features[feature].outward(p), feature }
+        let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
+        let gradient = self.features[feature].outward(p);
+        if !owners.own(feature) {
+            let (other, owner) = self.nearest(self.owned(owners), p);
+            if other > value + owners.slack + self.error {
+                return Depth { value: f64::NEG_INFINITY, gradient, feature };
+            }
+            feature = owner;
+        }
+        Depth { value, gradient, feature }
     }
 
     /// No less than the depth of any place of a slab in a triangle; below 0 if none is inside. What is
     /// not more than `enough` need not be known well.
     #[inline]
-    pub(super) fn at_most(&self, slab: &Slab, triangle: &Triangle, enough: f64) -> f64 {
+    pub(super) fn at_most(
+        &self,
+        owners: &Owners,
+        slab: &Slab,
+        triangle: &Triangle,
+        enough: f64,
+    ) -> f64 {
         let side = &self.features[slab.side];
         let over = side.over_at_most(triangle);
         if over < 0.0 {
@@ -173,19 +188,46 @@ impl Section {
         let mut bound = if side.square(triangle, slab.feet) { over } else { f64::INFINITY };
         for near in &slab.near {
             if bound <= enough {
-                break;
+                return bound;
             }
             bound = bound.min(self.features[*near].at_most(triangle));
+        }
+        if bound > enough && !owners.all() {
+            let apart = bound + owners.slack + 2.0 * self.error;
+            if self.owned(owners).all(|owner| self.features[owner].at_least(triangle) > apart) {
+                return f64::NEG_INFINITY;
+            }
         }
         bound
     }
 
-    /// The distance of a place outside, as a depth: less than 0.
+    /// The distance of a place from the owners, as a depth: less than 0.
     #[inline]
-    pub(super) fn distance(&self, p: Place) -> Depth {
-        let (value, feature) = self.nearest(0..self.features.len(), p);
+    pub(super) fn distance(&self, owners: &Owners, p: Place) -> Depth {
+        let (value, feature) = self.nearest(self.owned(owners), p);
         let gradient = self.features[feature].outward(p).map(|part| -part);
         Depth { value: -value, gradient, feature }
+    }
+
+    /// No less than the negative distance of any place in a triangle from the owners. What is not more
+    /// than `best` need not be known well.
+    #[inline]
+    pub(super) fn no_nearer(&self, owners: &Owners, triangle: &Triangle, best: f64) -> f64 {
+        let [first, second, middle] = *triangle;
+        let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
+        let mut bound = f64::NEG_INFINITY;
+        for owner in self.owned(owners) {
+            let feature = &self.features[owner];
+            // A distance changes by no more than the way.
+            let coarse = reach - feature.away(middle);
+            let near = coarse > best.max(bound);
+            bound = bound.max(if near { -feature.at_least(triangle).max(0.0) } else { coarse });
+        }
+        bound
+    }
+
+    fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
+        (0..self.features.len()).filter(|feature| owners.own(*feature))
     }
 
     fn nearest(&self, features: impl Iterator<Item = usize>, p: Place) -> (f64, usize) {
@@ -193,27 +235,6 @@ impl Section {
             let away = self.features[feature].away(p);
             if away < nearest.0 { (away, feature) } else { nearest }
         })
-    }
-
-    /// No less than the negative distance of any place in a triangle that has none inside. What is
-    /// not more than `best` need not be known well.
-    #[inline]
-    pub(super) fn no_nearer(&self, triangle: &Triangle, best: f64) -> f64 {
-        let [first, second, middle] = *triangle;
-        let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
-        let mut bound = f64::NEG_INFINITY;
-        for feature in &self.features {
-            // A distance changes by no more than the way.
-            let coarse = reach - feature.away(middle);
-            if coarse <= best.max(bound) {
-                bound = bound.max(coarse);
-                continue;
-            }
-            let nearer = if feature.away(first) < feature.away(second) { first } else { second };
-            let least = feature.at_least(triangle, middle).max(feature.at_least(triangle, nearer));
-            bound = bound.max((-least).min(coarse));
-        }
-        bound
     }
 }
 

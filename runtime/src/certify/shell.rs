@@ -1,9 +1,11 @@
 //! How near a tool is to boxes and triangles, 16 at a time, in `f32`.
 
-use super::descent::Bounds;
+use super::descent::{Bounds, BoxBounds, Rings, rings};
+use super::feature::Feature;
 use super::nearest::{Near, Space, across, least, most};
+use super::owners::Owners;
 use super::section::Section;
-use crate::tree::{Boxes, View, extent, load, seen};
+use crate::tree::{Boxes, View};
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 /// What holds a tool: for each slab a cylinder, and a ball where its side is one about the axis.
@@ -20,28 +22,29 @@ struct Slab {
 }
 
 impl Shell {
-    pub(super) fn new(section: &Section) -> Shell {
-        let slabs = section.slabs.iter().map(|slab| {
-            let ball = section.features[slab.side].ball(section.size);
-            Slab {
-                low: slab.low as f32,
-                high: slab.high as f32,
-                radius: slab.radius as f32,
-                ball: ball.map(|ball| ball.map(|part| part as f32)),
-            }
-        });
-        Shell { slabs: slabs.collect() }
+    /// Of the features that are asked about.
+    pub(super) fn new(section: &Section, owners: &Owners) -> Shell {
+        let own = |(index, feature): (usize, &Feature)| {
+            // What is level has no slab, and needs none where all have.
+            let level = !section.slabs.iter().any(|slab| slab.side == index);
+            (owners.own(index) && !(owners.all() && level)).then(|| {
+                let [[d0, z0], [d1, z1]] = feature.ends;
+                let ball = if level { None } else { feature.ball(section.size) };
+                Slab {
+                    low: z0.min(z1) as f32,
+                    high: z0.max(z1) as f32,
+                    radius: d0.max(d1) as f32,
+                    ball: ball.map(|ball| ball.map(|part| part as f32)),
+                }
+            })
+        };
+        Shell { slabs: section.features.iter().enumerate().filter_map(own).collect() }
     }
 
-    /// No less than the negative distance from what is no nearer to the axis and between those heights.
+    /// No less than the negative distance from any place of rings.
     #[inline(always)]
-    fn bound<S: Simd>(
-        &self,
-        simd: S,
-        near: f32x16<S>,
-        low: f32x16<S>,
-        high: f32x16<S>,
-    ) -> f32x16<S> {
+    fn bound<S: Simd>(&self, simd: S, rings: &Rings<f32x16<S>>) -> f32x16<S> {
+        let Rings { near, low, high, .. } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut nearest = f32x16::splat(simd, f32::INFINITY);
         for slab in &self.slabs {
@@ -58,18 +61,14 @@ impl Shell {
     }
 }
 
-impl Bounds for Shell {
+impl BoxBounds for Shell {
     #[inline(always)]
     fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
-        let (centre, half) = (load(simd, &boxes.centre), load(simd, &boxes.half));
-        let [x, y, z] = seen(&centre, &view.rows, view.origin);
-        let zero = f32x16::splat(simd, 0.0);
-        let x = (x.abs() - extent(&half, view.rows[0])).max(zero);
-        let y = (y.abs() - extent(&half, view.rows[1])).max(zero);
-        let wide = extent(&half, view.rows[2]);
-        self.bound(simd, (x * x + y * y).sqrt(), z - wide, z + wide)
+        self.bound(simd, &rings(simd, boxes, view, None))
     }
+}
 
+impl Bounds for Shell {
     #[inline(always)]
     fn of_triangles<S: Simd>(
         &self,
@@ -82,6 +81,6 @@ impl Bounds for Shell {
         let [out_a, out_b, out_c] = across(corners, &near.way);
         let near = least(out_a, out_b, out_c).max(f32x16::splat(simd, 0.0));
         let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
-        self.bound(simd, near, low, high)
+        self.bound(simd, &Rings { near, far: near, low, high })
     }
 }

@@ -18,7 +18,7 @@ pub(crate) struct Sight {
     pub(crate) length: f64,
     /// The tree's unit in the part's, and in the tool's.
     scale: f64,
-    unit: f64,
+    pub(crate) unit: f64,
     pub(super) reach: Reach,
     /// Whether `f32` holds what is seen; if not, no point is ruled out.
     pub(crate) fits: bool,

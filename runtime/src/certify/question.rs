@@ -1,0 +1,54 @@
+//! What is asked of a tool: how deep some of its surfaces are in a part, or how near to it.
+
+use super::hull::Hull;
+use super::owners::Owners;
+use super::section::Section;
+use super::shell::Shell;
+
+/// A question, and what bounds its answer.
+pub(super) struct Question {
+    pub(super) owners: Owners,
+    pub(super) hull: Hull<f32>,
+    pub(super) exact: Hull<f64>,
+    pub(super) shell: Shell,
+    /// How deep the owners may be; below 0, how far they have to keep.
+    pub(super) limit: f64,
+}
+
+impl Question {
+    /// Of the features of some surfaces; `margin` is how far `f32` takes a place.
+    pub(super) fn new(
+        section: &Section,
+        margin: f64,
+        limit: f64,
+        surfaces: impl Fn(usize) -> bool,
+    ) -> Question {
+        let owners = Owners::of(section, surfaces);
+        let zones = owners.zones(section, limit - 8.0 * section.error);
+        Question {
+            hull: Hull::new(section, &zones, margin),
+            exact: Hull::new(section, &zones, section.error),
+            shell: Shell::new(section, &owners),
+            owners,
+            limit,
+        }
+    }
+
+    /// What allowances of surfaces come to, each in its place of the card's list: of all surfaces that
+    /// may be as deep one question, and one of those that have to keep as far.
+    pub(super) fn all(section: &Section, margin: f64, allowed: &[f64]) -> Vec<Question> {
+        let depths =
+            allowed.iter().map(|allowed| allowed.max(0.0)).filter(|depth| depth.is_finite());
+        let gaps = allowed.iter().copied().filter(|allowed| *allowed < 0.0);
+        let mut limits: Vec<f64> = depths.chain(gaps).collect();
+        limits.sort_by(f64::total_cmp);
+        limits.dedup();
+        let question = |limit: f64| {
+            Question::new(section, margin, limit, |surface| {
+                let allowed = allowed[surface];
+                if limit < 0.0 { allowed == limit } else { allowed.max(0.0) == limit }
+            })
+        };
+        limits.into_iter().rev().map(question).collect()
+    }
+}

@@ -1,0 +1,57 @@
+//! Eight triangles on their way past the tool, side by side in `f64`.
+
+use super::batch::{Batch, Lanes, load};
+use super::facets::Facets;
+use super::hull::Hull;
+use super::sweep::Stretch;
+use super::swept::Ends;
+use crate::tool::{LANES, on_vectors};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+/// Up to eight triangles at both ends of a stretch, and as they are in its middle.
+#[derive(Default)]
+pub(super) struct Swath {
+    pub(super) middle: Batch,
+    ends: [[Lanes; 3]; 6],
+    pub(super) bounds: Lanes,
+}
+
+impl Swath {
+    /// Takes triangles by their places in the tree's order.
+    pub(super) fn begin(&mut self, facets: &Facets, stretch: &Stretch, indices: &[u32]) {
+        self.middle.indices.clear();
+        self.middle.indices.extend(indices);
+        for (lane, index) in indices.iter().enumerate() {
+            for (k, corner) in facets.corners[*index as usize].iter().enumerate() {
+                let [first, middle, last] = stretch.seen(corner);
+                for axis in 0..3 {
+                    self.ends[k][axis][lane] = first[axis];
+                    self.middle.corners[k][axis][lane] = middle[axis];
+                    self.ends[3 + k][axis][lane] = last[axis];
+                }
+            }
+        }
+    }
+
+    /// Bounds how deep they come.
+    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, grow: f64, wanted: f64) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, grow, wanted));
+        // Without vectors nothing is known before their edges are looked at.
+        self.bounds = [f64::INFINITY; LANES];
+    }
+
+    #[inline(always)]
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, grow: f64, wanted: f64) {
+        let [a, b, c, d, e, f] = &self.ends;
+        let ends: Ends<f64x8<S>> = [
+            load(simd, a),
+            load(simd, b),
+            load(simd, c),
+            load(simd, d),
+            load(simd, e),
+            load(simd, f),
+        ];
+        let middle = self.middle.load_corners(simd);
+        hull.swept(simd, (&ends, &middle), grow, wanted).store_slice(&mut self.bounds);
+    }
+}

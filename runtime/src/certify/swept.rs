@@ -1,0 +1,177 @@
+//! How deep a tool is at most in triangles on their way past it, side by side.
+//!
+//! In the tool's frame a triangle goes from one place to another, nearly straight: between, it is in the
+//! convex hull of both, but for how far its ways are curved.
+
+use super::hull::{Hull, Slab};
+use super::nearest::{Clip, Many, Near, Real, Space, across, choose, direction, most, to_ring};
+use fearless_simd::{Select, Simd, SimdBase, SimdMask};
+
+/// The corners of a triangle at both ends of its way.
+pub(super) type Ends<V> = [Space<V>; 6];
+
+impl<R: Real> Hull<R> {
+    /// No less than the depth of any place of the hulls of triangles at both ends of their way, or no
+    /// farther from these than `grow`; `middle` is where they are between.
+    #[inline(always)]
+    pub(super) fn swept<S: Simd, V: Many<S, R>>(
+        &self,
+        simd: S,
+        (ends, middle): (&Ends<V>, &[Space<V>; 3]),
+        grow: R,
+        wanted: R,
+    ) -> V {
+        let [a, b, c, d, e, f] = ends;
+        let low = a[2].min(b[2]).min(c[2]).min(d[2].min(e[2]).min(f[2]));
+        let high = most(a[2], b[2], c[2]).max(most(d[2], e[2], f[2]));
+        let near = Near::to_axis(simd, middle);
+        let out = outward(ends, &near.way);
+        let wanted = V::splat(simd, wanted);
+        let grow = V::splat(simd, grow);
+        let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
+        for slab in &self.slabs {
+            let from = V::splat(simd, slab.low) - grow;
+            let to = V::splat(simd, slab.high) + grow;
+            let here = low.simd_le(to) & high.simd_ge(from);
+            let mut depth = slab.under_planes_of(simd, &out, &heights(ends), grow);
+            let open = here & depth.simd_gt(wanted);
+            if open.any_true() {
+                let closer = slab.swept(simd, (ends, middle), &near, (from, to), grow);
+                depth = depth.min(closer);
+            }
+            bound = here.select(bound.max(depth), bound);
+        }
+        bound
+    }
+}
+
+impl<R: Real> Slab<R> {
+    /// The least of the most of what planes say of corners so far out and so high.
+    #[inline(always)]
+    fn under_planes_of<S: Simd, V: Many<S, R>>(
+        &self,
+        simd: S,
+        out: &[V; 6],
+        heights: &[V; 6],
+        grow: V,
+    ) -> V {
+        let mut depth = V::splat(simd, R::of(f64::INFINITY));
+        for &[nd, nz, c] in &self.planes {
+            let steep = V::splat(simd, R::norm(nd, nz));
+            let (nd, nz) = (V::splat(simd, nd), V::splat(simd, nz));
+            let mut least = out[0] * nd + heights[0] * nz;
+            for k in 1..6 {
+                least = least.min(out[k] * nd + heights[k] * nz);
+            }
+            depth = depth.min(V::splat(simd, c) + grow * steep - least);
+        }
+        depth
+    }
+
+    /// The same and more of what is between heights.
+    #[inline(always)]
+    fn swept<S: Simd, V: Many<S, R>>(
+        &self,
+        simd: S,
+        (ends, middle): (&Ends<V>, &[Space<V>; 3]),
+        near: &Near<V>,
+        (from, to): (V, V),
+        grow: V,
+    ) -> V {
+        let zero = V::splat(simd, R::of(0.0));
+        let clip = Clip::new(simd, middle, [self.low, self.high]);
+        let within = |place: Space<V>| {
+            let beyond = place[2].simd_lt(from) | place[2].simd_gt(to);
+            let end = clip.at_end(simd, middle, place[2].simd_gt(to));
+            choose(beyond, &end, &place)
+        };
+        let place = within(near.place);
+        let way = direction(simd, &[place[0], place[1], zero], zero);
+        let out = outward(ends, &way);
+        let heights = heights(ends);
+        // Seen along the way the hull is flat; what is left of it between the heights has its corners
+        // there, or where it is cut.
+        let [at_low, at_high] =
+            [least_at(simd, &out, &heights, from), least_at(simd, &out, &heights, to)];
+        let far = V::splat(simd, R::of(FAR));
+        let (cut_low, cut_high) = (at_low.simd_lt(far), at_high.simd_lt(far));
+        let mut depth = far;
+        for &[nd, nz, c] in &self.planes {
+            let steep = V::splat(simd, R::norm(nd, nz));
+            let (nd, nz) = (V::splat(simd, nd), V::splat(simd, nz));
+            let mut least = cut_low.select(at_low * nd + from * nz, far);
+            least = cut_high.select(least.min(at_high * nd + to * nz), least);
+            for k in 0..6 {
+                let inside = heights[k].simd_ge(from) & heights[k].simd_le(to);
+                least = inside.select(least.min(out[k] * nd + heights[k] * nz), least);
+            }
+            depth = depth.min(V::splat(simd, c) + grow * steep - least);
+        }
+        if let Some([z, radius]) = self.ball {
+            let foot = within(Near::to_place(simd, middle, z).place);
+            let centre = V::splat(simd, z);
+            let way = direction(simd, &foot, centre);
+            let mut beyond = [zero; 6];
+            for k in 0..6 {
+                let [x, y, height] = &ends[k];
+                beyond[k] = *x * way[0] + *y * way[1] + (*height - centre) * way[2];
+            }
+            let mut least =
+                least_at(simd, &beyond, &heights, from).min(least_at(simd, &beyond, &heights, to));
+            for k in 0..6 {
+                let inside = heights[k].simd_ge(from) & heights[k].simd_le(to);
+                least = inside.select(least.min(beyond[k]), least);
+            }
+            depth = depth.min(V::splat(simd, radius) + grow - least);
+        }
+        for &([d, z], level) in &self.rings {
+            let ring = [V::splat(simd, d), V::splat(simd, z)];
+            let mut farthest = zero;
+            for k in 0..6 {
+                let [x, y, height] = &ends[k];
+                let far = (*x * *x + *y * *y).sqrt();
+                farthest = farthest.max(to_ring(simd, [out[k], far, *height], ring, level));
+            }
+            depth = depth.min(farthest + grow);
+        }
+        depth
+    }
+}
+
+#[inline(always)]
+fn heights<S: Simd, V: SimdBase<S>>([a, b, c, d, e, f]: &Ends<V>) -> [V; 6] {
+    [a[2], b[2], c[2], d[2], e[2], f[2]]
+}
+
+/// How far out corners are in a direction across the axis.
+#[inline(always)]
+fn outward<S: Simd, V: SimdBase<S>>(ends: &Ends<V>, way: &Space<V>) -> [V; 6] {
+    let [a, b, c, d, e, f] = *ends;
+    let [first, last] = [across(&[a, b, c], way), across(&[d, e, f], way)];
+    [first[0], first[1], first[2], last[0], last[1], last[2]]
+}
+
+/// Farther than any place that is looked at.
+const FAR: f64 = 1e30;
+
+/// The least of something linear at one height of a hull; `FAR` if it does not come there.
+#[inline(always)]
+fn least_at<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    values: &[V; 6],
+    heights: &[V; 6],
+    at: V,
+) -> V {
+    let mut least = V::splat(simd, R::of(FAR));
+    let zero = V::splat(simd, R::of(0.0));
+    for i in 0..6 {
+        for j in i + 1..6 {
+            let (low, high) = (heights[i] - at, heights[j] - at);
+            let across =
+                (low.simd_lt(zero) & high.simd_gt(zero)) | (low.simd_gt(zero) & high.simd_lt(zero));
+            let value = values[i] - low * ((values[j] - values[i]) / (high - low));
+            least = across.select(least.min(value), least);
+        }
+    }
+    least
+}

@@ -1,0 +1,263 @@
+//! The search of a part's triangles, and what it keeps from question to question.
+
+use super::answer::Witness;
+use super::batch::Batch;
+use super::course::Search;
+use super::descent::Descent;
+use super::facet::Facet;
+use super::facets::Facets;
+use super::question::Question;
+use super::section::Section;
+use crate::pose::Pose;
+use crate::tree::{Sight, View};
+use fearless_simd::Level;
+use nalgebra::Vector3;
+
+/// A tool beside a part: what is the same for all questions. Lengths are in the tool's unit.
+pub(super) struct Setting<'a> {
+    pub(super) facets: &'a Facets,
+    pub(super) section: Section,
+    pub(super) sight: Sight,
+    pub(super) level: Level,
+    /// The tool's unit of length in the part's.
+    pub(super) length: f64,
+    /// How far a place is known.
+    pub(super) error: f64,
+}
+
+impl Setting<'_> {
+    /// Looks at the part from a pose; whether the tool may reach it.
+    pub(super) fn look(&self, work: &mut Work, pose: &Pose) -> bool {
+        self.sight.look(&self.facets.frame, pose, &mut work.view)
+    }
+
+    /// A place as people are told it.
+    pub(super) fn witness(&self, best: &Best, pose: &Pose) -> Witness {
+        Witness {
+            point: pose.tip() + pose.rotation() * Vector3::from(best.point) * self.length,
+            triangle: self.facets.ids[best.index as usize],
+            surface: self.section.features[best.feature].surface,
+        }
+    }
+
+    /// Whether the top of the tool's axis is inside the part, if it has an inside.
+    pub(super) fn within(&self, pose: &Pose) -> Option<bool> {
+        let top = self.section.reach()[1] * self.length;
+        self.facets.contains(pose.tip() + top * pose.axis())
+    }
+
+    /// How far `f32` can take a bound: planes are as steep as 2, so that one errs by three times as much
+    /// as a place, and a few roundings.
+    pub(super) fn margin(&self) -> f64 {
+        if self.sight.fits { 4.0 * self.sight.margin } else { f64::INFINITY }
+    }
+}
+
+/// What a search is at, or has found.
+#[derive(Default)]
+pub(super) struct Work {
+    pub(super) view: View,
+    pub(super) search: Search,
+    pub(super) descent: Descent,
+    batch: Batch,
+    pub(super) best: Option<Best>,
+    /// The most skew of a triangle that was looked at.
+    pub(super) skew: f64,
+    /// Where the last question ended.
+    last: u32,
+}
+
+/// The deepest place so far, in the tool's frame.
+#[derive(Clone, Copy)]
+pub(super) struct Best {
+    pub(super) point: [f64; 3],
+    pub(super) feature: usize,
+    pub(super) index: u32,
+}
+
+/// Where places are looked for: inside the tool, or outside while none is inside.
+#[derive(Clone, Copy)]
+enum Side {
+    Inside,
+    Outside,
+}
+
+/// How a search goes: what is no deeper than `least` is left, it ends within a tolerance of the deepest,
+/// or as soon as something is deeper than `enough`, or with its budget.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    pub(super) least: f64,
+    pub(super) tolerance: f64,
+    pub(super) enough: f64,
+    pub(super) budget: u32,
+}
+
+impl Work {
+    /// Searches for the deepest place.
+    pub(super) fn inside(
+        &mut self,
+        of: &Setting<'_>,
+        question: &Question,
+        pose: &Pose,
+        goal: Goal,
+    ) {
+        self.best = None;
+        self.skew = 0.0;
+        self.search.begin(goal.least, goal.tolerance, goal.budget);
+        self.descent.clear();
+        if !of.look(self, pose) {
+            return;
+        }
+        // A triangle that was deepest is likely to be deep.
+        self.batch.begin(of.facets, pose, &[self.last]);
+        self.glance(of, question);
+        self.descend(of, question, pose, (Side::Inside, of.margin()), goal.enough);
+    }
+
+    /// Searches for the nearest place, if that is outside; the part was looked at.
+    pub(super) fn outside(
+        &mut self,
+        of: &Setting<'_>,
+        question: &Question,
+        pose: &Pose,
+        goal: Goal,
+    ) {
+        let margin = of.margin() + self.far() / f64::from(1 << 20);
+        self.best = None;
+        self.search.begin(goal.least, goal.tolerance, goal.budget);
+        self.batch.begin(of.facets, pose, &[self.last]);
+        self.beside(of, question);
+        self.descend(of, question, pose, (Side::Outside, margin), goal.enough);
+    }
+
+    /// How far the part's middle is at most.
+    pub(super) fn far(&self) -> f64 {
+        self.view.origin.iter().fold(0.0, |far: f64, part| far.max(f64::from(part.abs())))
+    }
+
+    /// Searches the tree; what `f32` says errs by no more than a margin.
+    fn descend(
+        &mut self,
+        of: &Setting<'_>,
+        question: &Question,
+        pose: &Pose,
+        (side, margin): (Side, f64),
+        enough: f64,
+    ) {
+        self.descent.begin();
+        let mut opened = 0;
+        while let Some(node) = self.descent.pop() {
+            if self.search.best > enough {
+                break;
+            }
+            let bound = f64::from(node.bound) + margin;
+            if bound <= self.search.wanted() || !self.search.spend(bound) {
+                continue;
+            }
+            let wanted = (self.search.wanted() - margin) as f32;
+            if node.is_triangle(of.facets) {
+                let some = self.descent.triangles(of.facets, node, wanted);
+                self.batch.begin(of.facets, pose, some);
+                match side {
+                    Side::Inside => self.triangles(of, question),
+                    Side::Outside => self.beside(of, question),
+                }
+                continue;
+            }
+            let (level, facets, view) = (of.level, of.facets, &self.view);
+            // Where `f32` cannot tell, or boxes do not, a plane may.
+            opened += 1;
+            if let Side::Inside = side
+                && (bound - 2.0 * margin <= self.search.wanted() || opened > MANY)
+                && let Some(ring) = node.ring(facets, view)
+                && question.exact.of_ring(&ring) <= self.search.wanted()
+            {
+                continue;
+            }
+            let descent = &mut self.descent;
+            match side {
+                _ if margin > MARGIN => descent.open_all(facets, node),
+                Side::Inside => descent.open(level, (facets, &question.hull, view), node, wanted),
+                Side::Outside => descent.open(level, (facets, &question.shell, view), node, wanted),
+            }
+        }
+        if let Some(best) = &self.best {
+            self.last = best.index;
+        }
+    }
+
+    /// Looks at the triangles of the batch where they may be deepest.
+    fn glance(&mut self, of: &Setting<'_>, question: &Question) {
+        self.batch.turn(&self.view);
+        self.batch.bound(of.level, &question.exact, self.search.wanted());
+        self.places(of, question);
+    }
+
+    /// Looks at the triangles of the batch, which are outside.
+    fn beside(&mut self, of: &Setting<'_>, question: &Question) {
+        self.batch.turn(&self.view);
+        for lane in 0..self.batch.len() {
+            if self.search.spend(0.0) {
+                self.facet(of, question, (lane, Side::Outside));
+            }
+        }
+    }
+
+    fn places(&mut self, of: &Setting<'_>, question: &Question) {
+        for lane in 0..self.batch.len() {
+            if self.batch.bounds[lane] > self.search.wanted() {
+                let (point, index) = (self.batch.place(lane), self.batch.index(lane));
+                let place = [(point[0] * point[0] + point[1] * point[1]).sqrt(), point[2]];
+                if let Some(depth) = of.section.depth_at(&question.owners, place)
+                    && self.search.take(&depth)
+                {
+                    self.best = Some(Best { point, feature: depth.feature, index });
+                }
+            }
+        }
+    }
+
+    /// Looks at the triangles of the batch until none may be deeper.
+    fn triangles(&mut self, of: &Setting<'_>, question: &Question) {
+        self.glance(of, question);
+        for _ in 0..LOOKS {
+            if !self.batch.any_above(self.search.wanted()) {
+                return;
+            }
+            self.batch.closer(of.level, &question.exact, self.search.wanted());
+            self.places(of, question);
+        }
+        for lane in 0..self.batch.len() {
+            let bound = self.batch.bounds[lane];
+            if bound > self.search.wanted() && self.search.spend(bound) {
+                self.facet(of, question, (lane, Side::Inside));
+            }
+        }
+    }
+
+    /// Looks at the meridian and edges of a triangle of the batch.
+    fn facet(&mut self, of: &Setting<'_>, question: &Question, (lane, side): (usize, Side)) {
+        let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
+        self.skew = self.skew.max(facet.skew);
+        let asked = (&of.section, &question.owners);
+        for course in facet.courses() {
+            let found = match side {
+                Side::Inside => self.search.inside(asked, &course),
+                Side::Outside => self.search.outside(asked, &course),
+            };
+            if let Some(found) = found {
+                let point = course.point(found.t);
+                self.best = Some(Best { point, feature: found.feature, index });
+            }
+        }
+    }
+}
+
+/// A query that opened more nodes than these has many that are as deep.
+const MANY: usize = 24;
+
+/// With a larger margin `f32` tells nothing, and its squares are too large for it.
+const MARGIN: f64 = 1e9;
+
+/// How often triangles are looked at more closely before their edges are.
+const LOOKS: usize = 2;

@@ -1,0 +1,71 @@
+//! How a tool goes from one pose to another.
+
+use crate::pose::Pose;
+use nalgebra::{Matrix3, Point3, Rotation3, Unit, Vector3};
+
+/// A tool's way from one pose to another, as a 5-axis program means it: the tip goes straight, the
+/// axis turns about the normal of both axes (spherical interpolation), both evenly. What spin the tool has
+/// is not felt, and is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    tip: Point3<f64>,
+    way: Vector3<f64>,
+    /// The rotation at the start; its second column is what the axis turns about.
+    start: Matrix3<f64>,
+    angle: f64,
+}
+
+/// Two poses between which there is no one way.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum MotionError {
+    /// The axes are opposite, so that the axis may turn any way.
+    #[error("the axis turns to its opposite, so that which way is not said: give a pose between")]
+    Opposite,
+}
+
+/// Axes that are nearer to being opposite turn in a way that rounding decides.
+const OPPOSITE: f64 = 1e-9;
+
+impl Motion {
+    /// The motion from one pose to another.
+    ///
+    /// # Errors
+    /// If the axes are opposite.
+    pub fn new(from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
+        let (first, last) = (from.axis(), to.axis());
+        let (sine, cosine) = (first.cross(&last), first.dot(&last));
+        let size = sine.norm();
+        if size < OPPOSITE && cosine < 0.0 {
+            return Err(MotionError::Opposite);
+        }
+        let way = to.tip() - from.tip();
+        // What does not turn is seen from where it goes.
+        let across = if size > 0.0 { sine } else { first.cross(&way) };
+        let start = match Unit::try_new(across - first * first.dot(&across), 0.0) {
+            Some(second) => Matrix3::from_columns(&[second.cross(&first), *second, first]),
+            None => *from.rotation(),
+        };
+        Ok(Motion { tip: from.tip(), way, start, angle: size.atan2(cosine) })
+    }
+
+    /// The pose at a part of the way, from 0 to 1.
+    pub fn pose(&self, part: f64) -> Pose {
+        let turn = Rotation3::new(part * self.angle * self.about());
+        Pose::turned(turn.matrix() * self.start, self.tip + part * self.way)
+    }
+
+    /// How the tip goes, in the world.
+    pub fn way(&self) -> Vector3<f64> {
+        self.way
+    }
+
+    /// By how much the axis turns, in radians.
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+
+    /// What the axis turns about, in the world and at all times in the tool's frame's second axis.
+    fn about(&self) -> Vector3<f64> {
+        self.start.column(1).into()
+    }
+}
