@@ -7,7 +7,8 @@ use super::nearest::{
     Clip, Many, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least,
     most, under_both,
 };
-use super::section::Section;
+use super::owners::Owners;
+use super::section::{self, Section};
 use crate::tree::{Boxes, View};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
@@ -66,6 +67,28 @@ impl<R: Real> Hull<R> {
                 Some(Slab { low, high, planes, ball, rings: rings.collect() })
             });
         Hull { slabs: slabs.collect() }
+    }
+
+    /// For places no farther from some features than it is made to grow: what of the tool these bound.
+    pub(super) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
+        let side = |slab: &section::Slab| owners.own(slab.side).then_some([slab.low, slab.high]);
+        let zones: Vec<_> = section.slabs.iter().map(side).collect();
+        let mut hull = Hull::new(section, &zones, error);
+        // What is level bounds no slab.
+        let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
+        for (index, feature) in section.features.iter().enumerate() {
+            if owners.own(index) && !sides.contains(&index) {
+                let [[d0, z0], [d1, z1]] = feature.ends;
+                hull.slabs.push(Slab {
+                    low: R::of(z0.min(z1) - error),
+                    high: R::of(z0.max(z1) + error),
+                    planes: vec![[1.0, 0.0, d0.max(d1)].map(R::of)],
+                    ball: None,
+                    rings: Vec::new(),
+                });
+            }
+        }
+        hull
     }
 
     /// No less than the depth of any place of each of some triangles, but for rounding; and where depth

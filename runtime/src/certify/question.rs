@@ -24,10 +24,18 @@ impl Question {
         surfaces: impl Fn(usize) -> bool,
     ) -> Question {
         let owners = Owners::of(section, surfaces);
-        let zones = owners.zones(section, limit - 8.0 * section.error);
+        let (hull, exact) = if limit < 0.0 {
+            (
+                Hull::holding(section, &owners, margin),
+                Hull::holding(section, &owners, section.error),
+            )
+        } else {
+            let zones = owners.zones(section, limit - 8.0 * section.error);
+            (Hull::new(section, &zones, margin), Hull::new(section, &zones, section.error))
+        };
         Question {
-            hull: Hull::new(section, &zones, margin),
-            exact: Hull::new(section, &zones, section.error),
+            hull,
+            exact,
             shell: Shell::new(section, &owners),
             owners,
             limit,
