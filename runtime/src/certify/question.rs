@@ -33,13 +33,7 @@ impl Question {
             let zones = owners.zones(section, limit - 8.0 * section.error);
             (Hull::new(section, &zones, margin), Hull::new(section, &zones, section.error))
         };
-        Question {
-            hull,
-            exact,
-            shell: Shell::new(section, &owners),
-            owners,
-            limit,
-        }
+        Question { hull, exact, shell: Shell::new(section, &owners), owners, limit }
     }
 
     /// What allowances of surfaces come to, each in its place of the card's list: of all surfaces that
