@@ -1,7 +1,7 @@
 //! How a tool goes from one pose to another.
 
 use crate::pose::Pose;
-use nalgebra::{Matrix3, Point3, Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Unit, Vector3};
 
 /// A tool's way from one pose to another, as a 5-axis program means it: the tip goes straight, the
 /// axis turns about the normal of both axes (spherical interpolation), both evenly. What spin the tool has
@@ -10,7 +10,8 @@ use nalgebra::{Matrix3, Point3, Rotation3, Unit, Vector3};
 pub struct Motion {
     tip: Point3<f64>,
     way: Vector3<f64>,
-    /// The rotation at the start; its second column is what the axis turns about.
+    /// The rotation at the start; its second column is what the axis turns about, at all times the tool's
+    /// second axis.
     start: Matrix3<f64>,
     angle: f64,
 }
@@ -50,8 +51,15 @@ impl Motion {
 
     /// The pose at a part of the way, from 0 to 1.
     pub fn pose(&self, part: f64) -> Pose {
-        let turn = Rotation3::new(part * self.angle * self.about());
-        Pose::turned(turn.matrix() * self.start, self.tip + part * self.way)
+        let (sine, cosine) = (part * self.angle).sin_cos();
+        let [x, y, z] = [0, 1, 2].map(|axis| Vector3::from(self.start.column(axis)));
+        let columns = [cosine * x - sine * z, y, cosine * z + sine * x];
+        Pose::turned(Matrix3::from_columns(&columns), self.tip + part * self.way)
+    }
+
+    /// Where the tip begins, in the world.
+    pub fn start(&self) -> Point3<f64> {
+        self.tip
     }
 
     /// How the tip goes, in the world.
@@ -62,10 +70,5 @@ impl Motion {
     /// By how much the axis turns, in radians.
     pub fn angle(&self) -> f64 {
         self.angle
-    }
-
-    /// What the axis turns about, in the world and at all times in the tool's frame's second axis.
-    fn about(&self) -> Vector3<f64> {
-        self.start.column(1).into()
     }
 }

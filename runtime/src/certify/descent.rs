@@ -43,6 +43,27 @@ impl Node {
         there.map(move |lane| Node { level: self.level + 1, index: first + lane, ..self })
     }
 
+    /// The corners of a leaf's triangles in the tool's frame.
+    #[inline(always)]
+    pub(super) fn corners<S: Simd>(
+        &self,
+        simd: S,
+        facets: &Facets,
+        view: &View,
+    ) -> [Space<f32x16<S>>; 3] {
+        let index = self.index as usize;
+        let boxes = &facets.levels[self.level as usize - 1][index / WIDTH];
+        let lane = index % WIDTH;
+        let centre = [boxes.centre[0][lane], boxes.centre[1][lane], boxes.centre[2][lane]];
+        let middle = view.seen(centre);
+        let Corners([a, b, c]) = &facets.leaves[index];
+        [
+            seen(&load(simd, a), &view.rows, middle),
+            seen(&load(simd, b), &view.rows, middle),
+            seen(&load(simd, c), &view.rows, middle),
+        ]
+    }
+
     /// Whether its children are triangles.
     pub(super) fn is_leaf(&self, facets: &Facets) -> bool {
         self.level as usize == facets.levels.len()
@@ -91,9 +112,19 @@ pub(super) struct Rings<V> {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Shift {
     pub(super) straight: [f32; 3],
+    pub(super) length: f32,
     pub(super) turn: f32,
     /// No place that matters is farther from y.
     pub(super) reach: f32,
+}
+
+impl Shift {
+    /// How far the ways are from straight of places that are so far from y.
+    #[inline(always)]
+    pub(super) fn curve<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
+        let reach = f32x16::splat(simd, self.reach).min(far + self.length);
+        (reach * (0.5 * self.turn) + self.length) * self.turn
+    }
 }
 
 /// The rings of boxes, if so on all their way.
@@ -110,12 +141,13 @@ pub(super) fn rings<S: Simd>(
     let (x, y) = (x.abs(), y.abs());
     let rows = &view.rows;
     let mut wide = [extent(&half, rows[0]), extent(&half, rows[1]), extent(&half, rows[2])];
-    if let Some(&Shift { straight, turn, reach }) = shift {
-        let reach = f32x16::splat(simd, reach);
-        let (far_x, far_z) = (reach.min(x + wide[0]), reach.min(z.abs() + wide[2]));
-        wide[0] = wide[0] + far_z * turn + straight[0];
-        wide[1] = wide[1] + straight[1];
-        wide[2] = wide[2] + far_x * turn + straight[2];
+    if let Some(shift) = shift {
+        let reach = f32x16::splat(simd, shift.reach);
+        let (far_x, far_z) = (x + wide[0], z.abs() + wide[2]);
+        let curve = shift.curve(simd, far_x + far_z);
+        wide[0] = wide[0] + reach.min(far_z) * shift.turn + shift.straight[0] + curve;
+        wide[1] = wide[1] + shift.straight[1] + curve;
+        wide[2] = wide[2] + reach.min(far_x) * shift.turn + shift.straight[2] + curve;
     }
     let (near_x, near_y) = ((x - wide[0]).max(zero), (y - wide[1]).max(zero));
     let (far_x, far_y) = (x + wide[0], y + wide[1]);
@@ -211,7 +243,7 @@ impl Descent {
 
 /// Which are more than wanted; what `f32` cannot hold may be.
 #[inline(always)]
-fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
+pub(super) fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
     !bound.simd_le(wanted).to_bitmask() as u32
 }
 
@@ -260,16 +292,7 @@ fn of_leaf_on<S: Simd, B: Bounds>(
     wanted: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    let index = node.index as usize;
-    let boxes = &facets.levels[node.level as usize - 1][index / WIDTH];
-    let centre = [0, 1, 2].map(|axis| boxes.centre[axis][index % WIDTH]);
-    let middle = view.seen(centre);
-    let Corners(corners) = &facets.leaves[index];
-    let corners = [
-        seen(&load(simd, &corners[0]), &view.rows, middle),
-        seen(&load(simd, &corners[1]), &view.rows, middle),
-        seen(&load(simd, &corners[2]), &view.rows, middle),
-    ];
+    let corners = node.corners(simd, facets, view);
     let bound = bounded.of_triangles(simd, &corners, wanted);
     bound.store_slice(bounds);
     above(bound, wanted)

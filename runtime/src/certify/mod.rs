@@ -27,6 +27,7 @@ mod owners;
 mod question;
 mod section;
 mod shell;
+mod stretch;
 mod swath;
 mod sweep;
 mod swept;
@@ -227,11 +228,13 @@ impl<'a> Certifier<'a> {
     /// adds is taken as that.
     pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
         let Certifier { setting, rules, budget, sweeper, .. } = self;
+        // Rounding grows with the way.
+        let error = setting.error + 64.0 * f64::EPSILON * motion.way().norm() / setting.length;
         // Written so that what is not a number is no tolerance.
-        let tolerance = (16.0 * setting.error).max(tolerance / setting.length);
+        let tolerance = (16.0 * error).max(tolerance / setting.length);
         let mut first: Option<Stop> = None;
         for question in &*rules {
-            let task = Task { setting, question, motion, tolerance };
+            let task = Task { setting, question, motion, error, tolerance };
             let stop = sweeper.run(&task, *budget);
             first = match (first, stop) {
                 (Some(first), Some(stop)) if stop.before(&first) => Some(stop),

@@ -3,7 +3,7 @@
 use super::batch::{Batch, Lanes, load};
 use super::facets::Facets;
 use super::hull::Hull;
-use super::sweep::Stretch;
+use super::stretch::{Stretch, about};
 use super::swept::Ends;
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
@@ -13,12 +13,14 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 pub(super) struct Swath {
     pub(super) middle: Batch,
     ends: [[Lanes; 3]; 6],
+    /// How far their ways are from straight, and how far they have to keep.
+    grow: Lanes,
     pub(super) bounds: Lanes,
 }
 
 impl Swath {
     /// Takes triangles by their places in the tree's order.
-    pub(super) fn begin(&mut self, facets: &Facets, stretch: &Stretch, indices: &[u32]) {
+    pub(super) fn begin(&mut self, facets: &Facets, stretch: &Stretch, keep: f64, indices: &[u32]) {
         self.middle.indices.clear();
         self.middle.indices.extend(indices);
         for (lane, index) in indices.iter().enumerate() {
@@ -30,18 +32,19 @@ impl Swath {
                     self.ends[3 + k][axis][lane] = last[axis];
                 }
             }
+            self.grow[lane] = keep + stretch.curve(about(&self.middle.corners(lane)));
         }
     }
 
     /// Bounds how deep they come.
-    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, grow: f64, wanted: f64) {
-        on_vectors!(level, simd => self.bound_on(simd, hull, grow, wanted));
+    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
+        on_vectors!(level, simd => self.bound_on(simd, hull, wanted));
         // Without vectors nothing is known before their edges are looked at.
         self.bounds = [f64::INFINITY; LANES];
     }
 
     #[inline(always)]
-    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, grow: f64, wanted: f64) {
+    fn bound_on<S: Simd>(&mut self, simd: S, hull: &Hull<f64>, wanted: f64) {
         let [a, b, c, d, e, f] = &self.ends;
         let ends: Ends<f64x8<S>> = [
             load(simd, a),
@@ -52,6 +55,7 @@ impl Swath {
             load(simd, f),
         ];
         let middle = self.middle.load_corners(simd);
+        let grow = f64x8::from_slice(simd, &self.grow);
         hull.swept(simd, (&ends, &middle), grow, wanted).store_slice(&mut self.bounds);
     }
 }

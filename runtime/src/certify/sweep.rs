@@ -5,97 +5,26 @@
 //! goes on to both halves. Nodes are opened when they are larger than the way is long.
 
 use super::course::Search;
-use super::descent::{BoxBounds, Node, Shift, of_children, rings};
+use super::descent::{BoxBounds, Node, Seen, Shift, above, of_children, rings};
 use super::facet::Facet;
 use super::hull::Hull;
 use super::owners::Owners;
 use super::question::Question;
+use super::stretch::{Point, Stretch, about};
 use super::swath::Swath;
 use super::work::{Best, Setting};
 use crate::motion::Motion;
-use crate::tool::LANES;
+use crate::tool::{LANES, on_vectors};
 use crate::tree::{Boxes, View, WIDTH};
-use fearless_simd::{Simd, f32x16};
-use nalgebra::{Matrix3, Vector3};
-
-type Point = [f64; 3];
-
-/// A part of a motion, in the tool's frame and unit.
-pub(super) struct Stretch {
-    from: f64,
-    to: f64,
-    start: Vector3<f64>,
-    /// At both ends and, between these, in the middle: how far the tip has come, and the way from the part's
-    /// frame and unit to the tool's.
-    views: [(Vector3<f64>, Matrix3<f64>); 3],
-    /// How far a place goes from where it is in the middle, and how far its way is from straight, at most.
-    pace: Pace,
-}
-
-#[derive(Clone, Copy)]
-struct Pace {
-    straight: [f64; 3],
-    length: f64,
-    turn: f64,
-    reach: f64,
-    curve: f64,
-}
-
-impl Stretch {
-    /// What comes no nearer to the tool than `keep` does not matter.
-    fn new(setting: &Setting<'_>, motion: &Motion, [from, to]: [f64; 2], keep: f64) -> Stretch {
-        let per_length = 1.0 / setting.length;
-        let views = [from, from / 2.0 + to / 2.0, to].map(|part| {
-            let back = motion.pose(part).rotation().transpose() * per_length;
-            (motion.way() * part, back)
-        });
-        let half = 0.5 * (to - from);
-        let straight = views[1].1 * motion.way() * half;
-        let (length, turn) = (straight.norm(), motion.angle() * half);
-        // A place that comes that near is never farther on this stretch. Of a quarter of a circle no place
-        // is farther from the tip than √2 of its ends.
-        let reach = 1.5 * setting.section.size + keep + 2.0 * length;
-        let curve = turn * (length + 0.5 * turn * reach);
-        Stretch {
-            from,
-            to,
-            start: motion.pose(0.0).tip().coords,
-            views,
-            pace: Pace { straight: straight.abs().into(), length, turn, reach, curve },
-        }
-    }
-
-    /// A corner of the part at the beginning, in the middle and at the end.
-    pub(super) fn seen(&self, corner: &Point) -> [Point; 3] {
-        let from_start = Vector3::from(*corner) - self.start;
-        self.views.map(|(way, back)| (back * (from_start - way)).into())
-    }
-
-    fn middle(&self) -> f64 {
-        self.from / 2.0 + self.to / 2.0
-    }
-
-    /// How far a place goes from the middle, that is no farther from what the axis turns about.
-    fn goes(&self, reach: f64) -> f64 {
-        let Pace { length, turn, curve, .. } = self.pace;
-        length + turn * reach.min(self.pace.reach) + curve
-    }
-
-    fn shift(&self, keep: f64) -> Shift {
-        let Pace { straight, turn, reach, curve, .. } = self.pace;
-        let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
-        Shift {
-            straight: straight.map(|part| up(part + curve + keep)),
-            turn: up(turn),
-            reach: up(reach),
-        }
-    }
-}
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
 
 /// A hull past which boxes move.
 struct Moving<'a> {
     hull: &'a Hull<f32>,
     shift: Shift,
+    keep: f32,
+    /// The part at the beginning and at the end.
+    ends: &'a [View; 2],
 }
 
 impl BoxBounds for Moving<'_> {
@@ -103,6 +32,30 @@ impl BoxBounds for Moving<'_> {
     fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
         self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)))
     }
+}
+
+/// Which triangles of a leaf may be more than wanted.
+fn of_leaf(level: Level, seen: Seen<'_, Moving<'_>>, node: Node, wanted: f32) -> u32 {
+    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted));
+    u32::MAX
+}
+
+#[inline(always)]
+fn of_leaf_on<S: Simd>(
+    simd: S,
+    (facets, moving, view): Seen<'_, Moving<'_>>,
+    node: Node,
+    wanted: f32,
+) -> u32 {
+    let [a, b, c] = node.corners(simd, facets, &moving.ends[0]);
+    let [d, e, f] = node.corners(simd, facets, &moving.ends[1]);
+    let middle = node.corners(simd, facets, view);
+    let [p, q, r] = &middle;
+    let far = (p[0] * p[0] + p[2] * p[2]).max(q[0] * q[0] + q[2] * q[2]);
+    let far = far.max(r[0] * r[0] + r[2] * r[2]).sqrt();
+    let grow = moving.shift.curve(simd, far) + moving.keep;
+    let ends = [a, b, c, d, e, f];
+    above(moving.hull.swept(simd, (&ends, &middle), grow, wanted), wanted)
 }
 
 /// How a sweep ends before all of it is proved.
@@ -130,6 +83,8 @@ pub(super) struct Task<'a> {
     pub(super) setting: &'a Setting<'a>,
     pub(super) question: &'a Question,
     pub(super) motion: &'a Motion,
+    /// How far a place is known on this way.
+    pub(super) error: f64,
     /// How much deeper than its limit is not worth telling.
     pub(super) tolerance: f64,
 }
@@ -142,7 +97,7 @@ impl Task<'_> {
 
     /// The same of what has grown by as much as is to be kept.
     fn above(&self) -> f64 {
-        self.wanted() + self.keep() - self.setting.error
+        self.wanted() + self.keep() - self.error
     }
 
     /// How far the owners have to keep.
@@ -166,7 +121,7 @@ impl Task<'_> {
 
     /// Whether a place is deeper than is allowed, whatever was rounded.
     fn too_deep(&self, found: &Found) -> bool {
-        found.depth > self.question.limit + 2.0 * self.setting.error + found.skew
+        found.depth > self.question.limit + 2.0 * self.error + found.skew
     }
 }
 
@@ -189,9 +144,12 @@ impl Found {
 #[derive(Default)]
 pub(super) struct Sweeper {
     view: View,
+    ends: [View; 2],
     /// What may be in the way, of all stretches that are being looked at.
     left: Vec<Node>,
     stack: Vec<Node>,
+    /// Triangles that are yet to be looked at, eight at a time.
+    some: Vec<u32>,
     swath: Swath,
     search: Search,
     owners: Owners,
@@ -238,77 +196,81 @@ impl Sweeper {
         stretch: &Stretch,
         list: std::ops::Range<usize>,
     ) -> Option<Stop> {
-        let Task { setting, question, motion, .. } = *task;
+        let Task { setting, question, .. } = *task;
         let facets = setting.facets;
-        setting.sight.look(&facets.frame, &motion.pose(stretch.middle()), &mut self.view);
-        let moving = Moving { hull: &question.hull, shift: stretch.shift(task.keep()) };
+        let frame = &facets.frame;
+        let [first, middle, last] = &stretch.poses;
+        setting.sight.look(frame, first, &mut self.ends[0]);
+        setting.sight.look(frame, middle, &mut self.view);
+        setting.sight.look(frame, last, &mut self.ends[1]);
         let margin = setting.margin() + stretch.goes(f64::INFINITY) / f64::from(1 << 20);
         let wanted = (task.above() - margin) as f32;
-        let small = f64::from(PART) * stretch.goes(f64::INFINITY);
+        let small = PART * stretch.goes(f64::INFINITY);
         self.stack.clear();
+        self.some.clear();
         for at in list {
             self.stack.push(self.left[at]);
             while let Some(node) = self.stack.pop() {
-                let spent = self.budget == 0;
-                self.budget = self.budget.saturating_sub(1);
-                if spent {
+                if self.budget == 0 {
                     return Some(Stop::Spent { at: stretch.from });
                 }
+                self.budget -= 1;
                 if node.is_triangle(facets) {
-                    let mut some = [node.index; LANES];
-                    let mut count = 1;
-                    while count < LANES
-                        && let Some(next) = self.stack.pop_if(|node| node.is_triangle(facets))
+                    self.some.push(node.index);
+                    if self.some.len() == LANES
+                        && let Some(stop) = self.triangles(task, stretch)
                     {
-                        some[count] = next.index;
-                        count += 1;
-                    }
-                    if let Some(stop) = self.triangles(task, stretch, &some[..count]) {
                         return Some(stop);
                     }
                 } else if node.size(facets) * setting.sight.unit < small {
                     self.left.push(node);
                 } else {
                     let mut bounds = [node.bound; WIDTH];
-                    let hits = if node.is_leaf(facets) || !(margin <= MARGIN) {
+                    let keep = task.keep() as f32;
+                    let shift = stretch.shift(task.keep());
+                    let moving = Moving { hull: &question.hull, shift, keep, ends: &self.ends };
+                    let seen = (facets, &moving, &self.view);
+                    let hits = if margin > MARGIN {
                         u32::MAX
+                    } else if node.is_leaf(facets) {
+                        of_leaf(setting.level, seen, node, wanted)
                     } else {
-                        let seen = (facets, &moving, &self.view);
                         of_children(setting.level, seen, node, wanted, &mut bounds)
                     };
                     self.stack.extend(node.children(facets, hits));
                 }
             }
         }
-        None
+        self.triangles(task, stretch)
     }
 
-    /// Adds to the list which of some triangles are left.
-    fn triangles(&mut self, task: &Task<'_>, stretch: &Stretch, some: &[u32]) -> Option<Stop> {
+    /// Adds to the list which triangles of the batch are left.
+    fn triangles(&mut self, task: &Task<'_>, stretch: &Stretch) -> Option<Stop> {
         let Task { setting, question, .. } = *task;
-        let grow = stretch.pace.curve + task.keep();
         let level = task.setting.level;
-        self.swath.begin(setting.facets, stretch, some);
+        let count = self.some.len();
+        self.swath.begin(setting.facets, stretch, task.keep(), &self.some);
+        self.some.clear();
         let above = task.above();
-        self.swath.bound(level, &question.exact, grow, above);
-        if !self.swath.bounds[..some.len()].iter().any(|bound| !(*bound <= above)) {
+        self.swath.bound(level, &question.exact, above);
+        if !self.swath.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
             return None;
         }
         self.swath.middle.bound(level, &question.exact, f64::NEG_INFINITY);
-        for (lane, index) in some.iter().enumerate() {
+        for lane in 0..count {
+            let index = self.swath.middle.index(lane);
             if self.swath.bounds[lane] <= above {
                 continue;
             }
             let corners = self.swath.middle.corners(lane);
             let point = self.swath.middle.place(lane);
             let at = stretch.middle();
-            let stop = |found: Found| Stop::Deeper { at, best: found.best(*index) };
+            let stop = |found: Found| Stop::Deeper { at, best: found.best(index) };
             let here = task.depth(point);
             if task.too_deep(&here) {
                 return Some(stop(here));
             }
-            let about = |corner: &Point| corner[0].hypot(corner[2]);
-            let goes = stretch.goes(corners.iter().map(about).fold(0.0, f64::max));
+            let goes = stretch.goes(about(&corners));
             let left = here.depth + goes > task.wanted() || {
                 let found = self.nearest(task, corners, goes);
                 if let Some(found) = found
@@ -319,7 +281,7 @@ impl Sweeper {
                 found.is_some() || self.search.open()
             };
             if left {
-                self.left.push(Node::of_triangle(setting.facets, *index));
+                self.left.push(Node::of_triangle(setting.facets, index));
             }
         }
         None
@@ -328,9 +290,9 @@ impl Sweeper {
     /// A place of a triangle that is so deep, or so near, that after going so far it may be too deep.
     fn nearest(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Option<Found> {
         let facet = Facet::new(corners);
-        let goes = goes + facet.skew + task.setting.error;
+        let goes = goes + facet.skew + task.error;
         let least = task.wanted() - goes;
-        self.search.begin(least, task.setting.error, self.budget);
+        self.search.begin(least, task.error, self.budget);
         let section = &task.setting.section;
         let everyone = Owners::default();
         self.owners.slack = 2.0 * goes;
@@ -352,7 +314,7 @@ impl Sweeper {
 }
 
 /// Nodes are opened that are larger than this part of the way.
-const PART: f32 = 0.5;
+const PART: f64 = 0.3;
 
 /// With a larger margin `f32` tells nothing, and its squares are too large for it.
 const MARGIN: f64 = 1e9;

@@ -12,22 +12,23 @@ pub(super) type Ends<V> = [Space<V>; 6];
 
 impl<R: Real> Hull<R> {
     /// No less than the depth of any place of the hulls of triangles at both ends of their way, or no
-    /// farther from these than `grow`; `middle` is where they are between.
+    /// farther from these than they `grow`; `middle` is where they are between.
     #[inline(always)]
     pub(super) fn swept<S: Simd, V: Many<S, R>>(
         &self,
         simd: S,
         (ends, middle): (&Ends<V>, &[Space<V>; 3]),
-        grow: R,
+        grow: V,
         wanted: R,
     ) -> V {
         let [a, b, c, d, e, f] = ends;
         let low = a[2].min(b[2]).min(c[2]).min(d[2].min(e[2]).min(f[2]));
         let high = most(a[2], b[2], c[2]).max(most(d[2], e[2], f[2]));
-        let near = Near::to_axis(simd, middle);
-        let out = outward(ends, &near.way);
+        let zero = V::splat(simd, R::of(0.0));
+        let goes = half_way(simd, ends);
+        let near = slide(simd, &Near::to_axis(simd, middle).place, &goes, None);
+        let out = outward(ends, &direction(simd, &[near[0], near[1], zero], zero));
         let wanted = V::splat(simd, wanted);
-        let grow = V::splat(simd, grow);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
         for slab in &self.slabs {
             let from = V::splat(simd, slab.low) - grow;
@@ -36,7 +37,7 @@ impl<R: Real> Hull<R> {
             let mut depth = slab.under_planes_of(simd, &out, &heights(ends), grow);
             let open = here & depth.simd_gt(wanted);
             if open.any_true() {
-                let closer = slab.swept(simd, (ends, middle), &near, (from, to), grow);
+                let closer = slab.swept(simd, (ends, middle, &goes), &near, (from, to), grow);
                 depth = depth.min(closer);
             }
             bound = here.select(bound.max(depth), bound);
@@ -73,19 +74,14 @@ impl<R: Real> Slab<R> {
     fn swept<S: Simd, V: Many<S, R>>(
         &self,
         simd: S,
-        (ends, middle): (&Ends<V>, &[Space<V>; 3]),
-        near: &Near<V>,
+        (ends, middle, goes): (&Ends<V>, &[Space<V>; 3], &Space<V>),
+        near: &Space<V>,
         (from, to): (V, V),
         grow: V,
     ) -> V {
         let zero = V::splat(simd, R::of(0.0));
         let clip = Clip::new(simd, middle, [self.low, self.high]);
-        let within = |place: Space<V>| {
-            let beyond = place[2].simd_lt(from) | place[2].simd_gt(to);
-            let end = clip.at_end(simd, middle, place[2].simd_gt(to));
-            choose(beyond, &end, &place)
-        };
-        let place = within(near.place);
+        let place = within(simd, &clip, middle, (from, to), near);
         let way = direction(simd, &[place[0], place[1], zero], zero);
         let out = outward(ends, &way);
         let heights = heights(ends);
@@ -108,8 +104,9 @@ impl<R: Real> Slab<R> {
             depth = depth.min(V::splat(simd, c) + grow * steep - least);
         }
         if let Some([z, radius]) = self.ball {
-            let foot = within(Near::to_place(simd, middle, z).place);
             let centre = V::splat(simd, z);
+            let near = slide(simd, &Near::to_place(simd, middle, z).place, goes, Some(centre));
+            let foot = within(simd, &clip, middle, (from, to), &near);
             let way = direction(simd, &foot, centre);
             let mut beyond = [zero; 6];
             for k in 0..6 {
@@ -136,6 +133,51 @@ impl<R: Real> Slab<R> {
         }
         depth
     }
+}
+
+/// How far triangles go from the middle to the end of their way.
+#[inline(always)]
+fn half_way<S: Simd, R: Real, V: Many<S, R>>(simd: S, [a, b, c, d, e, f]: &Ends<V>) -> Space<V> {
+    let sixth = V::splat(simd, R::of(1.0 / 6.0));
+    [
+        (d[0] + e[0] + f[0] - a[0] - b[0] - c[0]) * sixth,
+        (d[1] + e[1] + f[1] - a[1] - b[1] - c[1]) * sixth,
+        (d[2] + e[2] + f[2] - a[2] - b[2] - c[2]) * sixth,
+    ]
+}
+
+/// Where a place comes nearest to the axis, or to a height of it, if it goes so far either way.
+#[inline(always)]
+fn slide<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    place: &Space<V>,
+    goes: &Space<V>,
+    centre: Option<V>,
+) -> Space<V> {
+    let (mut toward, mut square) =
+        (place[0] * goes[0] + place[1] * goes[1], goes[0] * goes[0] + goes[1] * goes[1]);
+    if let Some(centre) = centre {
+        toward += (place[2] - centre) * goes[2];
+        square += goes[2] * goes[2];
+    }
+    let one = V::splat(simd, R::of(1.0));
+    let at = -toward / square.max(V::splat(simd, R::LEAST));
+    let at = at.max(-one).min(one);
+    [place[0] + at * goes[0], place[1] + at * goes[1], place[2] + at * goes[2]]
+}
+
+/// A place, or if it is beyond two heights the place at that end which is nearest to the axis.
+#[inline(always)]
+fn within<S: Simd, R: Real, V: Many<S, R>>(
+    simd: S,
+    clip: &Clip<V, V::Mask>,
+    middle: &[Space<V>; 3],
+    (from, to): (V, V),
+    place: &Space<V>,
+) -> Space<V> {
+    let above = place[2].simd_gt(to);
+    let end = clip.at_end(simd, middle, above);
+    choose(above | place[2].simd_lt(from), &end, place)
 }
 
 #[inline(always)]
