@@ -2,27 +2,16 @@
 
 use nalgebra::Point3;
 
-/// A tool of which nothing can be certified.
+/// A tool of which nothing can be certified: it has no profile that is a function of z, so that its distance
+/// is not known, and of the depth that its file says it is not proved how fast it changes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Uncertified {
-    /// It has no profile, so that what is the distance to its surface is not known.
-    #[error(
-        "{tool} has no profile, so its distance from a part cannot be certified: draw its \
-         `profile {{ … }}`"
-    )]
-    NoProfile {
-        /// Its name.
-        tool: String,
-    },
-    /// Its profile goes back down somewhere on its way up.
-    #[error(
-        "the profile of {tool} is not a function of z: it overhangs where it goes back toward the \
-         tip; a profile without overhangs can be certified"
-    )]
-    Overhang {
-        /// Its name.
-        tool: String,
-    },
+#[error(
+    "{tool} cannot be certified: it has no profile that is a function of z, and how fast its depth changes is \
+     not proved; draw its `profile {{ … }}`, or see what `touchoff check` says of it"
+)]
+pub struct Uncertified {
+    /// Its name.
+    pub tool: String,
 }
 
 /// An allowance that means nothing.
@@ -37,6 +26,15 @@ pub enum AllowanceError {
         surface: String,
         /// Those that there are.
         known: String,
+    },
+    /// It is not known which of its surfaces is the nearest to a place.
+    #[error(
+        "of {tool} it is not known which surface is the nearest to a place, so none can be allowed for: it has no \
+         profile that is a function of z"
+    )]
+    NoOwner {
+        /// The tool's name.
+        tool: String,
     },
     /// It is not a length.
     #[error("an allowance of {allowed} for `{surface}` is no length")]

@@ -143,6 +143,18 @@ pub(super) struct Found {
     pub(super) feature: usize,
 }
 
+/// How a search goes: what is no deeper than `least` is left, it ends within a tolerance of the deepest,
+/// or as soon as something is deeper than `enough`, or with its budget.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    pub(super) least: f64,
+    pub(super) tolerance: f64,
+    pub(super) enough: f64,
+    pub(super) budget: u32,
+    /// What is smaller is not looked at more closely where nothing but its size tells more.
+    pub(super) fine: f64,
+}
+
 /// The search for the deepest place.
 #[derive(Default)]
 pub(super) struct Search {
@@ -150,6 +162,9 @@ pub(super) struct Search {
     pub(super) best: f64,
     /// How much more is not worth looking for.
     tolerance: f64,
+    /// What is deeper than that ends the search.
+    enough: f64,
+    fine: f64,
     /// How deep what was left open may be, where the budget was spent.
     pub(super) most: f64,
     /// Whether anything was found.
@@ -160,12 +175,24 @@ pub(super) struct Search {
 
 impl Search {
     /// Begins to look for what is deeper than that.
-    pub(super) fn begin(&mut self, least: f64, tolerance: f64, budget: u32) {
+    pub(super) fn begin(&mut self, goal: Goal) {
+        let Goal { least, tolerance, enough, budget, fine } = goal;
         self.best = least;
         self.tolerance = tolerance;
+        self.enough = enough;
+        self.fine = fine;
         self.most = f64::NEG_INFINITY;
         self.found = false;
         self.budget = budget;
+    }
+
+    pub(super) fn fine(&self) -> f64 {
+        self.fine
+    }
+
+    /// Whether what was found is deep enough to end.
+    pub(super) fn enough(&self) -> bool {
+        self.best > self.enough
     }
 
     /// What is no deeper is not worth looking for. Whether there is anything is always worth it.
@@ -178,10 +205,15 @@ impl Search {
         self.most > f64::NEG_INFINITY
     }
 
+    /// Leaves open what is no deeper than that, since it cannot be looked at more closely.
+    pub(super) fn leave(&mut self, bound: f64) {
+        self.most = self.most.max(bound);
+    }
+
     /// Spends one of the budget on what is no deeper than that; without any it stays open.
     pub(super) fn spend(&mut self, bound: f64) -> bool {
         if self.budget == 0 {
-            self.most = self.most.max(bound);
+            self.leave(bound);
             return false;
         }
         self.budget -= 1;
@@ -272,6 +304,9 @@ impl Search {
             if bound <= self.wanted() || !self.spend(bound) {
                 continue;
             }
+            if self.enough() {
+                break;
+            }
             let Interval(first, last) = interval;
             let depths = [first, last].map(|end| depth(end.place));
             self.note(first.t, &depths[0], found);
@@ -281,7 +316,7 @@ impl Search {
             }
             let t = cut(&interval, [&depths[0], &depths[1]], course);
             if t <= first.t || t >= last.t {
-                self.most = self.most.max(bound);
+                self.leave(bound);
                 continue;
             }
             let middle = course.end(t, first.t / 2.0 + last.t / 2.0);

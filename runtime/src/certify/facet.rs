@@ -29,7 +29,7 @@ fn norm(a: Point) -> f64 {
 
 /// A triangle in the tool's frame and unit.
 pub(super) struct Facet {
-    corners: [Point; 3],
+    pub(super) corners: [Point; 3],
     normal: Point,
     /// The base of its meridian, and the way along it.
     base: Point,

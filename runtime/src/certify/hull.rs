@@ -9,6 +9,7 @@ use super::nearest::{
 };
 use super::owners::Owners;
 use super::section::{self, Section};
+use crate::tool::Card;
 use crate::tree::{Boxes, View};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
@@ -66,6 +67,25 @@ impl<R: Real> Hull<R> {
                 let [low, high] = [from - error, to + error].map(R::of);
                 Some(Slab { low, high, planes, ball, rings: rings.collect() })
             });
+        Hull { slabs: slabs.collect() }
+    }
+
+    /// Of a tool whose depth changes so fast at most: it is no more than that times the way out of what
+    /// holds the tool.
+    pub(super) fn about(card: &Card, steep: f64, error: f64) -> Hull<R> {
+        let [bottom, top] = card.reach();
+        let plane = |nd: f64, nz: f64, c: f64| [nd, nz, c].map(|part| R::of(steep * part));
+        let slabs = card.envelope.iter().map(|slab| Slab {
+            low: R::of(slab.low - error),
+            high: R::of(slab.high + error),
+            planes: vec![
+                plane(1.0, 0.0, slab.radius),
+                plane(0.0, -1.0, -bottom),
+                plane(0.0, 1.0, top),
+            ],
+            ball: None,
+            rings: Vec::new(),
+        });
         Hull { slabs: slabs.collect() }
     }
 

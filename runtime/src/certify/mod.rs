@@ -15,11 +15,13 @@
 
 mod answer;
 mod batch;
+mod body;
 mod course;
 mod descent;
 mod facet;
 mod facets;
 mod feature;
+mod field;
 mod flat;
 mod hull;
 mod nearest;
@@ -39,13 +41,16 @@ pub use facets::Facets;
 
 use crate::motion::Motion;
 use crate::pose::Pose;
-use crate::tool::{Card, Tool};
+use crate::tool::{Card, Shape, Tool};
 use crate::tree::Sight;
+use body::Body;
+use course::Goal;
 use fearless_simd::Level;
+use field::Field;
 use question::Question;
 use section::Section;
 use sweep::{Stop, Sweeper, Task};
-use work::{Goal, Setting, Work};
+use work::{Setting, Work};
 
 /// A tool beside a part's triangles, ready to be asked what is proved at one pose after another.
 ///
@@ -97,30 +102,48 @@ impl<'a> Certifier<'a> {
     /// A certifier of a tool beside a part.
     ///
     /// # Errors
-    /// Where the distance from the tool is not known; see [`Uncertified`].
+    /// Where neither the distance from the tool is known nor how fast its depth changes; see
+    /// [`Uncertified`].
     pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Certifier<'a>, Uncertified> {
-        let card = tool.card();
-        if card.outline.is_empty() {
-            return Err(Uncertified::NoProfile { tool: card.name.to_string() });
-        }
+        let (card, level) = (tool.card(), Level::new());
         let length = card.unit.to(facets.unit());
         let sight = Sight::new(&facets.frame, card, length);
         let part = f64::from(facets.frame.size) * facets.frame.scale / length;
         let error = 64.0 * f64::EPSILON * (card.size() + part);
-        let section = Section::new(card, error)
-            .ok_or_else(|| Uncertified::Overhang { tool: card.name.to_string() })?;
+        let (body, error) = match Section::new(card, error) {
+            Some(section) => (Body::Profile(section), error),
+            None => match Field::new(tool, level) {
+                Some(field) => {
+                    let error = field.error + field.steep * error;
+                    (Body::Field(field), error)
+                }
+                None => return Err(Uncertified { tool: card.name.to_string() }),
+            },
+        };
         let surfaces = card.surfaces.len();
         let allowed = vec![0.0; surfaces];
+        let margins = [sight.margin, error];
+        let (whole, rules) = match &body {
+            Body::Profile(section) => (
+                Question::new(section, margins[0], 0.0, |_| true),
+                Question::all(section, margins[0], &allowed),
+            ),
+            Body::Field(field) => {
+                let question = || Question::of_field(card, field.steep, margins);
+                (question(), vec![question()])
+            }
+        };
+        let (size, top, exact) = (card.size(), card.reach()[1], card.exact());
         Ok(Certifier {
-            whole: Question::new(&section, sight.margin, 0.0, |_| true),
+            whole,
             each: (0..surfaces).map(|_| None).collect(),
-            rules: Question::all(&section, sight.margin, &allowed),
+            rules,
             allowed,
             budget: 1 << 20,
             work: Work::default(),
             sweeper: Sweeper::default(),
             card,
-            setting: Setting { facets, section, sight, level: Level::new(), length, error },
+            setting: Setting { facets, body, size, top, exact, sight, level, length, error },
         })
     }
 
@@ -136,6 +159,9 @@ impl<'a> Certifier<'a> {
     #[must_use]
     pub fn level(mut self, level: Level) -> Certifier<'a> {
         self.setting.level = level;
+        if let Body::Field(field) = &mut self.setting.body {
+            field.level = level;
+        }
         self
     }
 
@@ -144,7 +170,8 @@ impl<'a> Certifier<'a> {
     /// surface has to keep from all of the part. [`Certifier::clear`] goes by it; no allowance is 0.
     ///
     /// # Errors
-    /// If there is no such surface, or the allowance is not a number or keeps infinitely far.
+    /// If there is no such surface, or the allowance is not a number or keeps infinitely far, or it is not
+    /// known which surface of the tool is the nearest, since it has no profile or that overhangs.
     pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Certifier<'a>, AllowanceError> {
         if allowed.is_nan() || allowed == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
@@ -158,8 +185,11 @@ impl<'a> Certifier<'a> {
                 known: known.join(", "),
             });
         };
+        let Setting { body, sight, length, .. } = &self.setting;
+        let Body::Profile(section) = body else {
+            return Err(AllowanceError::NoOwner { tool: self.card.name.to_string() });
+        };
         self.allowed[index] = allowed;
-        let Setting { section, sight, length, .. } = &self.setting;
         let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
         self.rules = Question::all(section, sight.margin, &allowed);
         Ok(self)
@@ -174,17 +204,25 @@ impl<'a> Certifier<'a> {
     }
 
     /// The deepest penetration where a surface, by its place in the card's list, is the nearest: the
-    /// same, of that surface alone. Where two are as near, both count.
+    /// same, of that surface alone. Where two are as near, both count. Where it is not known which surface
+    /// is the nearest (see [`Certifier::allow`]), it is that of the tool if its place is the surface's, and
+    /// else no more than that.
     ///
     /// # Panics
     /// If there is no such surface.
     pub fn deepest_on(&mut self, surface: usize, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, each, work, budget, .. } = self;
-        let Setting { section, sight, .. } = &*setting;
-        let question = each[surface].get_or_insert_with(|| {
-            Question::new(section, sight.margin, 0.0, |other| other == surface)
-        });
-        penetration(setting, question, work, pose, (tolerance, *budget))
+        if let Body::Profile(section) = &setting.body {
+            let question = each[surface].get_or_insert_with(|| {
+                Question::new(section, setting.sight.margin, 0.0, |other| other == surface)
+            });
+            return penetration(setting, question, work, pose, (tolerance, *budget));
+        }
+        let found = self.deepest(pose, tolerance);
+        match found.witness {
+            Some(witness) if witness.surface == surface => found,
+            _ => Penetration { depth: [0.0, found.depth[1]], witness: None },
+        }
     }
 
     /// Whether the tool is clear of the part, or no deeper in it than is [allowed](Certifier::allow). It
@@ -195,8 +233,8 @@ impl<'a> Certifier<'a> {
         let mut open: Option<f64> = None;
         for rule in &*rules {
             let least = rule.limit - touch;
-            let goal =
-                Goal { least, tolerance: touch, enough: rule.limit + touch, budget: *budget };
+            let enough = rule.limit + touch;
+            let goal = Goal { least, tolerance: touch, enough, budget: *budget, fine: 0.0 };
             if rule.limit < 0.0 {
                 setting.look(work, pose);
                 work.outside(setting, rule, pose, goal);
@@ -226,7 +264,12 @@ impl<'a> Certifier<'a> {
     /// Whether the tool stays clear of the part all along a motion, or no deeper in it than is
     /// [allowed](Certifier::allow) by more than a tolerance, in the part's unit; one below what rounding
     /// adds is taken as that.
+    ///
+    /// A motion says nothing of spin, so that of a solid without an axis all is undecided.
     pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
+        if self.card.shape != Shape::Revolved {
+            return Sweep::Undecided(0.0);
+        }
         let Certifier { setting, rules, budget, sweeper, .. } = self;
         // Rounding grows with the way.
         let error = setting.error + 64.0 * f64::EPSILON * motion.way().norm() / setting.length;
@@ -260,7 +303,8 @@ impl<'a> Certifier<'a> {
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
         let Certifier { setting, whole, work, budget, .. } = self;
         let touch = 2.0 * setting.error;
-        let goal = Goal { least: -touch, tolerance: touch, enough: touch, budget: *budget };
+        let goal =
+            Goal { least: -touch, tolerance: touch, enough: touch, budget: *budget, fine: 0.0 };
         work.inside(setting, whole, pose, goal);
         if let Some(best) = &work.best {
             let witness = setting.witness(best, pose);
@@ -274,11 +318,17 @@ impl<'a> Certifier<'a> {
         // Written so that what is not a number is no tolerance.
         let tolerance = (4.0 * error).max(tolerance / setting.length);
         let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];
-        work.outside(setting, whole, pose, Goal { least, tolerance, enough, budget: *budget });
+        work.outside(
+            setting,
+            whole,
+            pose,
+            Goal { least, tolerance, enough, budget: *budget, fine: 0.0 },
+        );
         let more = error + work.skew;
         let low = -work.search.wanted().max(work.search.most) - more;
         let low = if unsure { 0.0 } else { low.max(0.0) };
-        let high = -work.search.best + more;
+        // What a field says of places outside is no more than the distance.
+        let high = if setting.exact { -work.search.best + more } else { f64::INFINITY };
         Clearance {
             distance: [low, high].map(|distance| distance * setting.length),
             witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
@@ -296,7 +346,7 @@ fn penetration(
 ) -> Penetration {
     // Written so that what is not a number is no tolerance.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
-    let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget };
+    let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget, fine: 0.0 };
     work.inside(setting, question, pose, goal);
     let more = setting.error + work.skew;
     let (low, high) = match work.best {

@@ -4,6 +4,7 @@ use super::hull::Hull;
 use super::owners::Owners;
 use super::section::Section;
 use super::shell::Shell;
+use crate::tool::Card;
 
 /// A question, and what bounds its answer.
 pub(super) struct Question {
@@ -34,6 +35,17 @@ impl Question {
             (Hull::new(section, &zones, margin), Hull::new(section, &zones, section.error))
         };
         Question { hull, exact, shell: Shell::new(section, &owners), owners, limit }
+    }
+
+    /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.
+    pub(super) fn of_field(card: &Card, steep: f64, errors: [f64; 2]) -> Question {
+        Question {
+            owners: Owners::default(),
+            hull: Hull::about(card, steep, errors[0]),
+            exact: Hull::about(card, steep, errors[1]),
+            shell: Shell::about(card),
+            limit: 0.0,
+        }
     }
 
     /// What allowances of surfaces come to, each in its place of the card's list: of all surfaces that

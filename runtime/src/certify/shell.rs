@@ -5,6 +5,7 @@ use super::feature::Feature;
 use super::nearest::{Near, Space, across, least, most};
 use super::owners::Owners;
 use super::section::Section;
+use crate::tool::Card;
 use crate::tree::{Boxes, View};
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
@@ -22,6 +23,17 @@ struct Slab {
 }
 
 impl Shell {
+    /// Of a tool that is known by its field.
+    pub(super) fn about(card: &Card) -> Shell {
+        let slabs = card.envelope.iter().map(|slab| Slab {
+            low: slab.low as f32,
+            high: slab.high as f32,
+            radius: slab.radius as f32,
+            ball: None,
+        });
+        Shell { slabs: slabs.collect() }
+    }
+
     /// Of the features that are asked about.
     pub(super) fn new(section: &Section, owners: &Owners) -> Shell {
         let own = |(index, feature): (usize, &Feature)| {

@@ -4,9 +4,10 @@
 //! far the part goes in the tool's frame and in which direction. What they rule out is gone; what they leave
 //! goes on to both halves. Nodes are opened when they are larger than the way is long.
 
-use super::course::Search;
+use super::course::{Goal, Search};
 use super::descent::{BoxBounds, Node, Seen, Shift, above, of_children, rings};
 use super::facet::Facet;
+use super::field::Scratch;
 use super::hull::Hull;
 use super::owners::Owners;
 use super::question::Question;
@@ -106,35 +107,33 @@ impl Task<'_> {
     }
 
     /// How deep a place is, or how near, as depth less than 0.
-    fn depth(&self, point: Point) -> Found {
-        let [x, y, z] = point;
-        let (section, owners) = (&self.setting.section, &self.question.owners);
-        let place = [(x * x + y * y).sqrt(), z];
+    fn depth(&self, scratch: &mut Scratch, point: Point) -> Place {
+        let (body, owners) = (&self.setting.body, &self.question.owners);
         let inside = if self.question.limit < 0.0 {
-            Some(section.distance(owners, place))
+            Some(body.distance(scratch, owners, point))
         } else {
-            section.depth_at(owners, place).filter(|depth| depth.value >= 0.0)
+            body.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
         };
-        let depth = inside.unwrap_or_else(|| section.distance(&Owners::default(), place));
-        Found { point, depth: depth.value, feature: depth.feature, skew: 0.0 }
+        let depth = inside.unwrap_or_else(|| body.distance(scratch, &Owners::default(), point));
+        Place { point, depth: depth.value, feature: depth.feature, skew: 0.0 }
     }
 
     /// Whether a place is deeper than is allowed, whatever was rounded.
-    fn too_deep(&self, found: &Found) -> bool {
+    fn too_deep(&self, found: &Place) -> bool {
         found.depth > self.question.limit + 2.0 * self.error + found.skew
     }
 }
 
 /// A place in the tool's frame, and how deep it is.
 #[derive(Clone, Copy)]
-struct Found {
+struct Place {
     point: Point,
     depth: f64,
     feature: usize,
     skew: f64,
 }
 
-impl Found {
+impl Place {
     fn best(&self, index: u32) -> Best {
         Best { point: self.point, feature: self.feature, index }
     }
@@ -152,6 +151,7 @@ pub(super) struct Sweeper {
     some: Vec<u32>,
     swath: Swath,
     search: Search,
+    scratch: Scratch,
     owners: Owners,
     budget: u32,
 }
@@ -265,13 +265,14 @@ impl Sweeper {
             let corners = self.swath.middle.corners(lane);
             let point = self.swath.middle.place(lane);
             let at = stretch.middle();
-            let stop = |found: Found| Stop::Deeper { at, best: found.best(index) };
-            let here = task.depth(point);
+            let stop = |found: Place| Stop::Deeper { at, best: found.best(index) };
+            let here = task.depth(&mut self.scratch, point);
             if task.too_deep(&here) {
                 return Some(stop(here));
             }
             let goes = stretch.goes(about(&corners));
-            let left = here.depth + goes > task.wanted() || {
+            let steep = setting.body.steep();
+            let left = here.depth + steep * goes > task.wanted() || {
                 let found = self.nearest(task, corners, goes);
                 if let Some(found) = found
                     && task.too_deep(&found)
@@ -288,28 +289,28 @@ impl Sweeper {
     }
 
     /// A place of a triangle that is so deep, or so near, that after going so far it may be too deep.
-    fn nearest(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Option<Found> {
+    fn nearest(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Option<Place> {
         let facet = Facet::new(corners);
         let goes = goes + facet.skew + task.error;
-        let least = task.wanted() - goes;
-        self.search.begin(least, task.error, self.budget);
-        let section = &task.setting.section;
-        let everyone = Owners::default();
-        self.owners.slack = 2.0 * goes;
-        let mut best = None;
-        for course in facet.courses() {
-            let found = if task.question.limit < 0.0 {
-                self.search.outside((section, &task.question.owners), &course)
-            } else if least < 0.0 {
-                self.search.outside((section, &everyone), &course)
-            } else {
-                self.search.inside((section, &self.owners), &course)
-            };
-            best = found.map(|found| course.point(found.t)).or(best);
-        }
+        let body = &task.setting.body;
+        let least = task.wanted() - body.steep() * goes;
+        // Outside depth is how near it is.
+        let least = if least < 0.0 { least / body.steep() } else { least };
+        let enough = f64::INFINITY;
+        let (tolerance, budget, fine) = (task.error, self.budget, goes / 8.0);
+        self.search.begin(Goal { least, tolerance, enough, budget, fine });
+        let search = (&mut self.search, &mut self.scratch);
+        let found = if task.question.limit < 0.0 {
+            body.outside(search, &task.question.owners, &facet)
+        } else if least < 0.0 {
+            body.outside(search, &Owners::default(), &facet)
+        } else {
+            self.owners.slack = 2.0 * goes;
+            body.inside(search, &self.owners, &facet)
+        };
         self.budget = self.search.left();
-        let found = task.depth(best?);
-        Some(Found { skew: facet.skew, ..found })
+        let found = task.depth(&mut self.scratch, found?.point);
+        Some(Place { skew: facet.skew, ..found })
     }
 }
 

@@ -2,12 +2,13 @@
 
 use super::answer::Witness;
 use super::batch::Batch;
-use super::course::Search;
+use super::body::{Body, Found};
+use super::course::{Goal, Search};
 use super::descent::Descent;
 use super::facet::Facet;
 use super::facets::Facets;
+use super::field::Scratch;
 use super::question::Question;
-use super::section::Section;
 use crate::pose::Pose;
 use crate::tree::{Sight, View};
 use fearless_simd::Level;
@@ -16,7 +17,12 @@ use nalgebra::Vector3;
 /// A tool beside a part: what is the same for all questions. Lengths are in the tool's unit.
 pub(super) struct Setting<'a> {
     pub(super) facets: &'a Facets,
-    pub(super) section: Section,
+    pub(super) body: Body<'a>,
+    /// How far it reaches from its tip, and its highest place.
+    pub(super) size: f64,
+    pub(super) top: f64,
+    /// Whether what is said of places outside is their distance.
+    pub(super) exact: bool,
     pub(super) sight: Sight,
     pub(super) level: Level,
     /// The tool's unit of length in the part's.
@@ -36,20 +42,19 @@ impl Setting<'_> {
         Witness {
             point: pose.tip() + pose.rotation() * Vector3::from(best.point) * self.length,
             triangle: self.facets.ids[best.index as usize],
-            surface: self.section.features[best.feature].surface,
+            surface: self.body.surface(best.feature),
         }
     }
 
     /// Whether the top of the tool's axis is inside the part, if it has an inside.
     pub(super) fn within(&self, pose: &Pose) -> Option<bool> {
-        let top = self.section.reach()[1] * self.length;
-        self.facets.contains(pose.tip() + top * pose.axis())
+        self.facets.contains(pose.tip() + self.top * self.length * pose.axis())
     }
 
     /// How far `f32` can take a bound: planes are as steep as 2, so that one errs by three times as much
     /// as a place, and a few roundings.
     pub(super) fn margin(&self) -> f64 {
-        if self.sight.fits { 4.0 * self.sight.margin } else { f64::INFINITY }
+        if self.sight.fits { 4.0 * self.body.steep() * self.sight.margin } else { f64::INFINITY }
     }
 }
 
@@ -60,6 +65,7 @@ pub(super) struct Work {
     pub(super) search: Search,
     pub(super) descent: Descent,
     batch: Batch,
+    scratch: Scratch,
     pub(super) best: Option<Best>,
     /// The most skew of a triangle that was looked at.
     pub(super) skew: f64,
@@ -82,16 +88,6 @@ enum Side {
     Outside,
 }
 
-/// How a search goes: what is no deeper than `least` is left, it ends within a tolerance of the deepest,
-/// or as soon as something is deeper than `enough`, or with its budget.
-#[derive(Clone, Copy)]
-pub(super) struct Goal {
-    pub(super) least: f64,
-    pub(super) tolerance: f64,
-    pub(super) enough: f64,
-    pub(super) budget: u32,
-}
-
 impl Work {
     /// Searches for the deepest place.
     pub(super) fn inside(
@@ -103,7 +99,7 @@ impl Work {
     ) {
         self.best = None;
         self.skew = 0.0;
-        self.search.begin(goal.least, goal.tolerance, goal.budget);
+        self.search.begin(goal);
         self.descent.clear();
         if !of.look(self, pose) {
             return;
@@ -111,7 +107,7 @@ impl Work {
         // A triangle that was deepest is likely to be deep.
         self.batch.begin(of.facets, pose, &[self.last]);
         self.glance(of, question);
-        self.descend(of, question, pose, (Side::Inside, of.margin()), goal.enough);
+        self.descend(of, question, pose, Side::Inside, of.margin());
     }
 
     /// Searches for the nearest place, if that is outside; the part was looked at.
@@ -124,10 +120,10 @@ impl Work {
     ) {
         let margin = of.margin() + self.far() / f64::from(1 << 20);
         self.best = None;
-        self.search.begin(goal.least, goal.tolerance, goal.budget);
+        self.search.begin(goal);
         self.batch.begin(of.facets, pose, &[self.last]);
         self.beside(of, question);
-        self.descend(of, question, pose, (Side::Outside, margin), goal.enough);
+        self.descend(of, question, pose, Side::Outside, margin);
     }
 
     /// How far the part's middle is at most.
@@ -141,13 +137,14 @@ impl Work {
         of: &Setting<'_>,
         question: &Question,
         pose: &Pose,
-        (side, margin): (Side, f64),
-        enough: f64,
+        side: Side,
+        margin: f64,
     ) {
         self.descent.begin();
+        self.scratch.clear();
         let mut opened = 0;
         while let Some(node) = self.descent.pop() {
-            if self.search.best > enough {
+            if self.search.enough() {
                 break;
             }
             let bound = f64::from(node.bound) + margin;
@@ -181,6 +178,13 @@ impl Work {
                 Side::Outside => descent.open(level, (facets, &question.shell, view), node, wanted),
             }
         }
+        if let Body::Field(field) = &of.body {
+            let outside = matches!(side, Side::Outside);
+            let found = field.look(&mut self.search, &mut self.scratch, outside);
+            if let Some((Found { point, feature }, index)) = found {
+                self.best = Some(Best { point, feature, index });
+            }
+        }
         if let Some(best) = &self.best {
             self.last = best.index;
         }
@@ -207,8 +211,7 @@ impl Work {
         for lane in 0..self.batch.len() {
             if self.batch.bounds[lane] > self.search.wanted() {
                 let (point, index) = (self.batch.place(lane), self.batch.index(lane));
-                let place = [(point[0] * point[0] + point[1] * point[1]).sqrt(), point[2]];
-                if let Some(depth) = of.section.depth_at(&question.owners, place)
+                if let Some(depth) = of.body.depth(&mut self.scratch, &question.owners, point)
                     && self.search.take(&depth)
                 {
                     self.best = Some(Best { point, feature: depth.feature, index });
@@ -235,20 +238,22 @@ impl Work {
         }
     }
 
-    /// Looks at the meridian and edges of a triangle of the batch.
+    /// Looks at a triangle of the batch by itself; in a field that is done for all triangles together.
     fn facet(&mut self, of: &Setting<'_>, question: &Question, (lane, side): (usize, Side)) {
-        let (facet, index) = (Facet::new(self.batch.corners(lane)), self.batch.index(lane));
+        let (corners, index) = (self.batch.corners(lane), self.batch.index(lane));
+        if let Body::Field(_) = of.body {
+            self.scratch.hold(corners, index, f64::INFINITY);
+            return;
+        }
+        let facet = Facet::new(corners);
         self.skew = self.skew.max(facet.skew);
-        let asked = (&of.section, &question.owners);
-        for course in facet.courses() {
-            let found = match side {
-                Side::Inside => self.search.inside(asked, &course),
-                Side::Outside => self.search.outside(asked, &course),
-            };
-            if let Some(found) = found {
-                let point = course.point(found.t);
-                self.best = Some(Best { point, feature: found.feature, index });
-            }
+        let search = (&mut self.search, &mut self.scratch);
+        let found = match side {
+            Side::Inside => of.body.inside(search, &question.owners, &facet),
+            Side::Outside => of.body.outside(search, &question.owners, &facet),
+        };
+        if let Some(Found { point, feature }) = found {
+            self.best = Some(Best { point, feature, index });
         }
     }
 }

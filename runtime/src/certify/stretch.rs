@@ -1,0 +1,103 @@
+//! A part of a motion: where it takes the part in the tool's frame, and how straight.
+
+use super::descent::Shift;
+use super::work::Setting;
+use crate::motion::Motion;
+use crate::pose::Pose;
+use nalgebra::{Matrix3, Point3, Vector3};
+
+pub(super) type Point = [f64; 3];
+
+/// A part of a motion, in the tool's frame and unit.
+pub(super) struct Stretch {
+    pub(super) from: f64,
+    to: f64,
+    start: Point3<f64>,
+    pub(super) poses: [Pose; 3],
+    /// At both ends and, between these, in the middle: how far the tip has come, and the way from the part's
+    /// frame and unit to the tool's.
+    views: [(Vector3<f64>, Matrix3<f64>); 3],
+    /// How far a place goes from where it is in the middle, and how far its way is from straight, at most.
+    pace: Pace,
+}
+
+#[derive(Clone, Copy)]
+struct Pace {
+    straight: [f64; 3],
+    length: f64,
+    turn: f64,
+    /// No place that matters is farther from what the axis turns about.
+    reach: f64,
+}
+
+impl Stretch {
+    /// What comes no nearer to the tool than `keep` does not matter.
+    pub(super) fn new(
+        setting: &Setting<'_>,
+        motion: &Motion,
+        [from, to]: [f64; 2],
+        keep: f64,
+    ) -> Stretch {
+        let per_length = 1.0 / setting.length;
+        let parts = [from, from / 2.0 + to / 2.0, to];
+        let poses = parts.map(|part| motion.pose(part));
+        let view =
+            |k: usize| (motion.way() * parts[k], poses[k].rotation().transpose() * per_length);
+        let views = [view(0), view(1), view(2)];
+        let half = 0.5 * (to - from);
+        let straight = views[1].1 * motion.way() * half;
+        let (length, turn) = (straight.norm(), motion.angle() * half);
+        // A place that comes that near is never farther on this stretch. Of a quarter of a circle no place
+        // is farther from the tip than √2 of its ends.
+        let reach = 1.5 * setting.size + keep + 2.0 * length;
+        Stretch {
+            from,
+            to,
+            start: motion.start(),
+            poses,
+            views,
+            pace: Pace { straight: straight.abs().into(), length, turn, reach },
+        }
+    }
+
+    /// A corner of the part at the beginning, in the middle and at the end.
+    pub(super) fn seen(&self, corner: &Point) -> [Point; 3] {
+        let from_start = Point3::from(*corner) - self.start;
+        let [first, middle, last] = &self.views;
+        let seen = |(way, back): &(Vector3<f64>, Matrix3<f64>)| (back * (from_start - way)).into();
+        [seen(first), seen(middle), seen(last)]
+    }
+
+    pub(super) fn middle(&self) -> f64 {
+        self.from / 2.0 + self.to / 2.0
+    }
+
+    /// How far the way is from straight, of a place that is in the middle no farther than that from what
+    /// the axis turns about.
+    pub(super) fn curve(&self, reach: f64) -> f64 {
+        let Pace { length, turn, .. } = self.pace;
+        turn * (length + 0.5 * turn * self.pace.reach.min(reach + length))
+    }
+
+    /// How far such a place goes from the middle.
+    pub(super) fn goes(&self, reach: f64) -> f64 {
+        let Pace { length, turn, .. } = self.pace;
+        length + turn * reach.min(self.pace.reach) + self.curve(reach)
+    }
+
+    pub(super) fn shift(&self, keep: f64) -> Shift {
+        let Pace { straight, length, turn, reach } = self.pace;
+        let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
+        Shift {
+            straight: straight.map(|part| up(part + keep)),
+            length: up(length),
+            turn: up(turn),
+            reach: up(reach),
+        }
+    }
+}
+
+/// How far corners are from y at most.
+pub(super) fn about(corners: &[Point; 3]) -> f64 {
+    corners.iter().map(|[x, _, z]| x * x + z * z).fold(0.0, f64::max).sqrt()
+}
