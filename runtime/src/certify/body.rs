@@ -1,7 +1,5 @@
 //! What is known of a tool: its profile, or how deep places are and how fast that changes.
 
-use super::course::{self, Course, Search};
-use super::facet::Facet;
 use super::feature::Place;
 use super::field::{Field, Scratch};
 use super::owners::Owners;
@@ -15,13 +13,6 @@ pub(super) enum Body<'a> {
     Profile(Section),
     /// Depth is what its file says.
     Field(Field<'a>),
-}
-
-/// Where a triangle is deepest, or nearest.
-#[derive(Clone, Copy)]
-pub(super) struct Found {
-    pub(super) point: Point,
-    pub(super) feature: usize,
 }
 
 impl Body<'_> {
@@ -65,60 +56,33 @@ impl Body<'_> {
         }
     }
 
-    /// The place of a triangle where owners are deepest, if deeper than the best, where that is at least 0.
-    pub(super) fn inside(
+    /// Whether no place of the tool no farther than `goes` from a place is inside, deeper than `limit`
+    /// and owned; or, if the limit is below 0, nearer to the owners than that.
+    pub(super) fn clears(
         &self,
-        (search, scratch): (&mut Search, &mut Scratch),
+        scratch: &mut Scratch,
         owners: &Owners,
-        facet: &Facet,
-    ) -> Option<Found> {
-        match self {
-            Body::Profile(section) => {
-                along(facet, |course| search.inside((section, owners), course))
+        point: Point,
+        (goes, limit): (f64, f64),
+    ) -> bool {
+        let steep = self.steep();
+        let depth = match self {
+            Body::Profile(section) if limit < 0.0 => {
+                return section.distance(owners, place(point)).value + goes < limit;
             }
-            Body::Field(field) => alone(field, (search, scratch), facet, false),
+            Body::Profile(section) => section.signed(place(point)),
+            Body::Field(field) => field.depth(scratch, point).value,
+        };
+        if depth + goes < 0.0 || depth + steep * goes <= limit {
+            return true;
+        }
+        match self {
+            Body::Profile(section) => section.far_from(owners, place(point), depth, goes),
+            Body::Field(_) => false,
         }
     }
-
-    /// The place of a triangle that is nearest to the owners, where the best is below 0. If all are, what
-    /// is inside is at 0.
-    pub(super) fn outside(
-        &self,
-        (search, scratch): (&mut Search, &mut Scratch),
-        owners: &Owners,
-        facet: &Facet,
-    ) -> Option<Found> {
-        match self {
-            Body::Profile(section) => {
-                along(facet, |course| search.outside((section, owners), course))
-            }
-            Body::Field(field) => alone(field, (search, scratch), facet, true),
-        }
-    }
-}
-
-fn alone(
-    field: &Field<'_>,
-    (search, scratch): (&mut Search, &mut Scratch),
-    facet: &Facet,
-    outside: bool,
-) -> Option<Found> {
-    scratch.clear();
-    scratch.hold(facet.corners, 0, f64::INFINITY);
-    field.look(search, scratch, outside).map(|(found, _)| found)
 }
 
 fn place([x, y, z]: Point) -> Place {
     [(x * x + y * y).sqrt(), z]
-}
-
-/// The last place that is found along the courses of a triangle.
-fn along(facet: &Facet, mut found: impl FnMut(&Course) -> Option<course::Found>) -> Option<Found> {
-    let mut best = None;
-    for course in facet.courses() {
-        if let Some(course::Found { t, feature }) = found(&course) {
-            best = Some(Found { point: course.point(t), feature });
-        }
-    }
-    best
 }

@@ -151,8 +151,6 @@ pub(super) struct Goal {
     pub(super) tolerance: f64,
     pub(super) enough: f64,
     pub(super) budget: u32,
-    /// What is smaller is not looked at more closely where nothing but its size tells more.
-    pub(super) fine: f64,
 }
 
 /// The search for the deepest place.
@@ -164,7 +162,6 @@ pub(super) struct Search {
     tolerance: f64,
     /// What is deeper than that ends the search.
     enough: f64,
-    fine: f64,
     /// How deep what was left open may be, where the budget was spent.
     pub(super) most: f64,
     /// Whether anything was found.
@@ -176,18 +173,13 @@ pub(super) struct Search {
 impl Search {
     /// Begins to look for what is deeper than that.
     pub(super) fn begin(&mut self, goal: Goal) {
-        let Goal { least, tolerance, enough, budget, fine } = goal;
+        let Goal { least, tolerance, enough, budget } = goal;
         self.best = least;
         self.tolerance = tolerance;
         self.enough = enough;
-        self.fine = fine;
         self.most = f64::NEG_INFINITY;
         self.found = false;
         self.budget = budget;
-    }
-
-    pub(super) fn fine(&self) -> f64 {
-        self.fine
     }
 
     /// Whether what was found is deep enough to end.
@@ -218,11 +210,6 @@ impl Search {
         }
         self.budget -= 1;
         true
-    }
-
-    /// What is left of the budget.
-    pub(super) fn left(&self) -> u32 {
-        self.budget
     }
 
     /// Takes a place if it is the deepest so far.

@@ -87,6 +87,21 @@ impl Facet {
             .then(|| Course::new(self.base, self.way, [from, to]))
     }
 
+    /// What it has at a height, if not an edge alone.
+    pub(super) fn level(&self, z: f64) -> Option<Course> {
+        let mut ends = [None, None];
+        for k in 0..3 {
+            let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
+            if (a[2] <= z) != (b[2] <= z) {
+                let part = (z - a[2]) / (b[2] - a[2]);
+                let at = [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]));
+                ends[usize::from(ends[0].is_some())] = Some([at[0], at[1], z]);
+            }
+        }
+        let [from, to] = [ends[0]?, ends[1]?];
+        Some(Course::new(from, minus(to, from), [0.0, 1.0]))
+    }
+
     /// Its meridian and its edges.
     pub(super) fn courses(&self) -> impl Iterator<Item = Course> + use<> {
         self.meridian().into_iter().chain(self.edges())

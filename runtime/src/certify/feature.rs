@@ -127,6 +127,26 @@ impl Feature {
         if circle.convex { first >= 0.0 && last >= 0.0 } else { first <= 0.0 && last <= 0.0 }
     }
 
+    /// Which end is the nearest point of all places of a set of corners, if one surely is.
+    pub(super) fn ends_at(&self, corners: &[Place]) -> Option<usize> {
+        let at = |end: usize| {
+            let way = if end == 0 { -1.0 } else { 1.0 };
+            let other = self.ends[1 - end];
+            corners.iter().all(|p| match &self.circle {
+                None => way * dot(self.along, minus(*p, self.ends[end])) > 0.0,
+                Some(Circle { centre, convex, .. }) => {
+                    // Beyond the end as seen from the centre, and on its side of the chord's middle.
+                    let [radius, out] = [self.ends[end], *p].map(|q| minus(q, *centre));
+                    let sense = if *convex { way } else { -way };
+                    let middle = [0, 1].map(|k| f64::midpoint(self.ends[end][k], other[k]));
+                    sense * cross(radius, out) > 0.0
+                        && way * dot(self.along, minus(*p, middle)) > 0.0
+                }
+            })
+        };
+        [0, 1].into_iter().find(|end| at(*end))
+    }
+
     fn faces(&self, circle: &Circle, triangle: &Triangle) -> bool {
         triangle.iter().all(|p| self.sector(circle, *p))
     }

@@ -3,15 +3,14 @@
 //! Depth changes by no more than `L` times the way, and so bounds what is near a place. A triangle is halved,
 //! longest side first, until nothing of it can be deeper than what was found.
 
-use super::body::Found;
 use super::course::Search;
+use super::piece::{Piece, Point};
 use super::section::Depth;
+use super::work::Best;
 use crate::tool::{Ask, Felt, LANES, Points, Tool};
 use fearless_simd::Level;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-
-type Point = [f64; 3];
 
 /// What is known of such a tool.
 pub(super) struct Field<'a> {
@@ -25,8 +24,8 @@ pub(super) struct Field<'a> {
 
 /// A part of a triangle, and how deep it is at most.
 #[derive(Clone, Copy, Default)]
-struct Piece {
-    corners: [Point; 3],
+struct Held {
+    piece: Piece,
     /// Which triangle it is of.
     index: u32,
     bound: f64,
@@ -36,79 +35,41 @@ struct Piece {
 #[derive(Default)]
 pub(super) struct Scratch {
     /// The deepest on top.
-    pieces: BinaryHeap<Piece>,
+    pieces: BinaryHeap<Held>,
     points: Points,
     felt: Felt,
 }
 
-impl Ord for Piece {
-    fn cmp(&self, other: &Piece) -> Ordering {
+impl Ord for Held {
+    fn cmp(&self, other: &Held) -> Ordering {
         self.bound.total_cmp(&other.bound)
     }
 }
 
-impl PartialOrd for Piece {
-    fn partial_cmp(&self, other: &Piece) -> Option<Ordering> {
+impl PartialOrd for Held {
+    fn partial_cmp(&self, other: &Held) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Piece {
-    fn eq(&self, other: &Piece) -> bool {
+impl PartialEq for Held {
+    fn eq(&self, other: &Held) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Piece {}
-
-fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn middle(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|axis| f64::midpoint(a[axis], b[axis]))
-}
-
-fn square(a: Point) -> f64 {
-    a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
-}
+impl Eq for Held {}
 
 impl Scratch {
     /// Holds a triangle that is to be looked at.
-    pub(super) fn hold(&mut self, corners: [Point; 3], index: u32, bound: f64) {
-        self.pieces.push(Piece { corners, index, bound });
+    pub(super) fn hold(&mut self, corners: [Point; 3], index: u32) {
+        let bound = f64::INFINITY;
+        self.pieces.push(Held { piece: Piece::new(corners), index, bound });
     }
 
     /// Lets go of all that is held.
     pub(super) fn clear(&mut self) {
         self.pieces.clear();
-    }
-}
-
-impl Piece {
-    /// Its corners, so that the longest side is from the first to the second.
-    fn turned(self) -> [Point; 3] {
-        let [a, b, c] = self.corners;
-        let [ab, bc, ca] = [minus(b, a), minus(c, b), minus(a, c)].map(square);
-        if ab >= bc && ab >= ca {
-            [a, b, c]
-        } else if bc >= ca {
-            [b, c, a]
-        } else {
-            [c, a, b]
-        }
-    }
-
-    /// A place of it, and how far it reaches from there.
-    fn ball(&self) -> (Point, f64) {
-        let [a, b, c] = self.turned();
-        let half = middle(a, b);
-        let mean = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
-        let [half, mean] = [half, mean].map(|centre| {
-            let far = [a, b, c].map(|corner| square(minus(corner, centre)));
-            (centre, far[0].max(far[1]).max(far[2]).sqrt())
-        });
-        if half.1 < mean.1 { half } else { mean }
     }
 }
 
@@ -155,7 +116,7 @@ impl<'a> Field<'a> {
         search: &mut Search,
         scratch: &mut Scratch,
         outside: bool,
-    ) -> Option<(Found, u32)> {
+    ) -> Option<Best> {
         let value = |depth: f64| match (outside, depth < 0.0) {
             (true, _) => depth.min(0.0),
             (false, true) => self.steep * depth,
@@ -163,19 +124,19 @@ impl<'a> Field<'a> {
         };
         let mut best = None;
         loop {
-            let mut some = [Piece::default(); LANES];
+            let mut some = [Held::default(); LANES];
             let (mut reach, mut count) = ([0.0; LANES], 0);
             scratch.points.clear();
             while count < LANES
-                && let Some(piece) = scratch.pieces.pop()
+                && let Some(held) = scratch.pieces.pop()
             {
-                if piece.bound <= search.wanted() || search.enough() || !search.spend(piece.bound) {
+                if held.bound <= search.wanted() || search.enough() || !search.spend(held.bound) {
                     scratch.pieces.clear();
                     break;
                 }
-                let (centre, far) = piece.ball();
+                let (centre, far) = held.piece.ball();
                 scratch.points.push(centre);
-                (some[count], reach[count]) = (piece, far);
+                (some[count], reach[count]) = (held, far);
                 count += 1;
             }
             if count == 0 {
@@ -187,24 +148,26 @@ impl<'a> Field<'a> {
                 if search.take(depth) {
                     let lists = scratch.points.lists();
                     let point = [0, 1, 2].map(|axis| lists[axis][lane]);
-                    best = Some((Found { point, feature: depth.feature }, some[lane].index));
+                    let (feature, index) = (depth.feature, some[lane].index);
+                    best = Some(Best { point, feature, index });
                 }
             }
             for lane in 0..count {
-                let piece = some[lane];
+                let held = some[lane];
                 let bound = depths[lane].value + self.steep * reach[lane] + self.error;
-                let bound = piece.bound.min(bound);
+                let bound = held.bound.min(bound);
                 if bound <= search.wanted() {
                     continue;
                 }
-                let [a, b, c] = piece.turned();
-                let half = middle(a, b);
-                if reach[lane] < search.fine() || half == a || half == b {
+                let before = scratch.pieces.len();
+                scratch.pieces.extend(held.piece.halves().map(|piece| Held {
+                    piece,
+                    bound,
+                    ..held
+                }));
+                if scratch.pieces.len() == before {
                     search.leave(bound);
-                    continue;
                 }
-                scratch.pieces.push(Piece { corners: [a, half, c], bound, ..piece });
-                scratch.pieces.push(Piece { corners: [half, b, c], bound, ..piece });
             }
         }
         best

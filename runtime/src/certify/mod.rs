@@ -26,6 +26,7 @@ mod flat;
 mod hull;
 mod nearest;
 mod owners;
+mod piece;
 mod question;
 mod section;
 mod shell;
@@ -129,11 +130,11 @@ impl<'a> Certifier<'a> {
                 Question::all(section, margins[0], &allowed),
             ),
             Body::Field(field) => {
-                let question = || Question::of_field(card, field.steep, margins);
+                let question = || Question::of_field(card, field, margins);
                 (question(), vec![question()])
             }
         };
-        let (size, top, exact) = (card.size(), card.reach()[1], card.exact());
+        let (size, exact) = (card.size(), card.exact());
         Ok(Certifier {
             whole,
             each: (0..surfaces).map(|_| None).collect(),
@@ -143,7 +144,7 @@ impl<'a> Certifier<'a> {
             work: Work::default(),
             sweeper: Sweeper::default(),
             card,
-            setting: Setting { facets, body, size, top, exact, sight, level, length, error },
+            setting: Setting { facets, body, size, exact, sight, level, length, error },
         })
     }
 
@@ -234,7 +235,7 @@ impl<'a> Certifier<'a> {
         for rule in &*rules {
             let least = rule.limit - touch;
             let enough = rule.limit + touch;
-            let goal = Goal { least, tolerance: touch, enough, budget: *budget, fine: 0.0 };
+            let goal = Goal { least, tolerance: touch, enough, budget: *budget };
             if rule.limit < 0.0 {
                 setting.look(work, pose);
                 work.outside(setting, rule, pose, goal);
@@ -253,7 +254,7 @@ impl<'a> Certifier<'a> {
         }
         match open {
             Some(high) => Clear::Undecided(high * setting.length),
-            None => match setting.within(pose) {
+            None => match setting.within(rules, pose, 2.0 * touch) {
                 Some(true) => Clear::Inside,
                 Some(false) => Clear::Clear,
                 None => Clear::Untouched,
@@ -289,7 +290,7 @@ impl<'a> Certifier<'a> {
                 Sweep::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
             Some(Stop::Spent { at }) => Sweep::Undecided(at),
-            None => match setting.within(&motion.pose(0.0)) {
+            None => match setting.within(rules, &motion.pose(0.0), tolerance) {
                 Some(true) => Sweep::Inside,
                 Some(false) => Sweep::Clear,
                 None => Sweep::Untouched,
@@ -303,8 +304,7 @@ impl<'a> Certifier<'a> {
     pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
         let Certifier { setting, whole, work, budget, .. } = self;
         let touch = 2.0 * setting.error;
-        let goal =
-            Goal { least: -touch, tolerance: touch, enough: touch, budget: *budget, fine: 0.0 };
+        let goal = Goal { least: -touch, tolerance: touch, enough: touch, budget: *budget };
         work.inside(setting, whole, pose, goal);
         if let Some(best) = &work.best {
             let witness = setting.witness(best, pose);
@@ -318,12 +318,7 @@ impl<'a> Certifier<'a> {
         // Written so that what is not a number is no tolerance.
         let tolerance = (4.0 * error).max(tolerance / setting.length);
         let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];
-        work.outside(
-            setting,
-            whole,
-            pose,
-            Goal { least, tolerance, enough, budget: *budget, fine: 0.0 },
-        );
+        work.outside(setting, whole, pose, Goal { least, tolerance, enough, budget: *budget });
         let more = error + work.skew;
         let low = -work.search.wanted().max(work.search.most) - more;
         let low = if unsure { 0.0 } else { low.max(0.0) };
@@ -346,7 +341,7 @@ fn penetration(
 ) -> Penetration {
     // Written so that what is not a number is no tolerance.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
-    let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget, fine: 0.0 };
+    let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget };
     work.inside(setting, question, pose, goal);
     let more = setting.error + work.skew;
     let (low, high) = match work.best {

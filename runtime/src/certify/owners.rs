@@ -1,6 +1,6 @@
 //! Which of a tool's features are asked about: those that own a place are the nearest to it.
 
-use super::feature::Place;
+use super::feature::{Place, minus, norm};
 use super::section::{Section, Slab};
 
 /// Features, by their places in the section's list.
@@ -8,8 +8,8 @@ use super::section::{Section, Slab};
 pub(super) struct Owners {
     /// `None` for all of them.
     some: Option<Vec<bool>>,
-    /// How much farther than the nearest feature an owner may be.
-    pub(super) slack: f64,
+    /// Heights at which they own places that are deeper than all others about them that they own.
+    pub(super) peaks: Vec<f64>,
 }
 
 impl Owners {
@@ -17,7 +17,15 @@ impl Owners {
     pub(super) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let some: Vec<bool> = section.features.iter().map(|f| surfaces(f.surface)).collect();
         let some = some.contains(&false).then_some(some);
-        Owners { some, slack: 0.0 }
+        let mut owners = Owners { some, peaks: Vec::new() };
+        if !owners.all() {
+            match owners.find_peaks(section) {
+                Some(peaks) => owners.peaks = peaks,
+                // No profile that is meant is like this; the whole tool is no less deep.
+                None => owners.some = None,
+            }
+        }
+        owners
     }
 
     /// Whether these are all features.
@@ -53,12 +61,17 @@ impl Owners {
             let wide = [0, 1].map(|k| high[k] - low[k]);
             let reach = 0.5 * wide[0].hypot(wide[1]);
             let (mut owner, mut other) = (f64::INFINITY, f64::INFINITY);
+            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
             for (index, feature) in section.features.iter().enumerate() {
-                let least = if self.own(index) { &mut owner } else { &mut other };
+                let own = self.own(index);
+                if own && section.behind(self, index, &corners) {
+                    continue;
+                }
+                let least = if own { &mut owner } else { &mut other };
                 *least = least.min(feature.away(middle));
             }
             // A distance changes by no more than the way.
-            let apart = self.slack + 2.0 * reach + section.error;
+            let apart = 2.0 * reach + section.error;
             if owner > other + apart || owner.min(other) + reach <= deeper {
                 continue;
             }
@@ -78,5 +91,66 @@ impl Owners {
     }
 }
 
+impl Owners {
+    /// Where depth is restricted to what these own, it can be greatest at a place that is as far from three
+    /// features, at different points of them; there are a few such places. Elsewhere it grows some way that
+    /// they own, or away from the axis nowhere does.
+    ///
+    /// They are found by rectangles that are halved, to a part of what rounding makes of a place; `None` if
+    /// there are too many.
+    fn find_peaks(&self, section: &Section) -> Option<Vec<f64>> {
+        let small = section.error / 32.0;
+        let mut peaks: Vec<f64> = Vec::new();
+        let mut looks = 0;
+        let mut stack: Vec<(Place, Place)> =
+            section.slabs.iter().map(|slab| ([0.0, slab.low], [slab.radius, slab.high])).collect();
+        while let Some((low, high)) = stack.pop() {
+            looks += 1;
+            if looks > LOOKS {
+                return None;
+            }
+            let middle: Place = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
+            let wide = [0, 1].map(|k| high[k] - low[k]);
+            let reach = 0.5 * wide[0].hypot(wide[1]);
+            if !self.may_peak(section, middle, reach) {
+                continue;
+            }
+            if reach <= small {
+                if peaks.iter().all(|peak| (peak - middle[1]).abs() > 8.0 * small) {
+                    peaks.push(middle[1]);
+                }
+                continue;
+            }
+            let longer = usize::from(wide[1] > wide[0]);
+            let (mut first, mut second) = ((low, high), (low, high));
+            first.1[longer] = middle[longer];
+            second.0[longer] = middle[longer];
+            stack.extend([first, second]);
+        }
+        Some(peaks)
+    }
+
+    /// Whether a place no farther than that from another may be as far from three features, of which some
+    /// are these and some are not.
+    fn may_peak(&self, section: &Section, middle: Place, reach: f64) -> bool {
+        let away: Vec<f64> = section.features.iter().map(|f| f.away(middle)).collect();
+        let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
+        let near = |index: &usize| away[*index] <= nearest + 2.0 * reach + section.error / 64.0;
+        let mut feet: Vec<Place> = Vec::new();
+        let (mut own, mut other) = (false, false);
+        for index in (0..away.len()).filter(near) {
+            let foot = section.features[index].foot(middle);
+            *(if self.own(index) { &mut own } else { &mut other }) = true;
+            if feet.iter().all(|known| norm(minus(*known, foot)) > 1e-9 * section.size) {
+                feet.push(foot);
+            }
+        }
+        own && other && feet.len() > 2
+    }
+}
+
 /// Zones are found to this part of the tool's size.
 const FINE: u32 = 1 << 11;
+
+/// How many rectangles are looked at for peaks.
+const LOOKS: u32 = 1 << 17;

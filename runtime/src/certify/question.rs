@@ -1,10 +1,12 @@
 //! What is asked of a tool: how deep some of its surfaces are in a part, or how near to it.
 
+use super::field::{Field, Scratch};
 use super::hull::Hull;
 use super::owners::Owners;
+use super::piece::Point;
 use super::section::Section;
 use super::shell::Shell;
-use crate::tool::Card;
+use crate::tool::{Card, Shape};
 
 /// A question, and what bounds its answer.
 pub(super) struct Question {
@@ -14,6 +16,28 @@ pub(super) struct Question {
     pub(super) shell: Shell,
     /// How deep the owners may be; below 0, how far they have to keep.
     pub(super) limit: f64,
+    /// Places that may not be in the part either, and how deep they are: one of each stretch of the axis
+    /// that the owners have.
+    pub(super) cores: Vec<(Point, f64)>,
+}
+
+/// Of how many places of the axis cores are chosen.
+const PLACES: u32 = 1024;
+
+/// The highest places of each run of owned ones that are at least half as deep as its deepest.
+fn cores(places: impl Iterator<Item = (Point, Option<f64>)>, limit: f64) -> Vec<(Point, f64)> {
+    let mut runs: Vec<Vec<(Point, f64)>> = vec![Vec::new()];
+    for (point, depth) in places {
+        match depth.filter(|depth| *depth > limit.max(0.0)) {
+            Some(depth) => runs.last_mut().expect("one at least").push((point, depth)),
+            None => runs.push(Vec::new()),
+        }
+    }
+    let core = |run: Vec<(Point, f64)>| {
+        let most = run.iter().map(|(_, depth)| *depth).fold(0.0, f64::max);
+        run.into_iter().rev().find(|(_, depth)| *depth >= 0.5 * most)
+    };
+    runs.into_iter().filter_map(core).collect()
 }
 
 impl Question {
@@ -38,13 +62,38 @@ impl Question {
     }
 
     /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.
-    pub(super) fn of_field(card: &Card, steep: f64, errors: [f64; 2]) -> Question {
+    pub(super) fn of_field(card: &Card, field: &Field<'_>, errors: [f64; 2]) -> Question {
+        let [low, high] = card.reach();
+        // A solid need not have the axis in it.
+        let across = match card.shape {
+            Shape::Revolved => [[0.0; 2]; 2],
+            Shape::Solid { across } => across,
+        };
+        let steps = if card.shape == Shape::Revolved { [1, 1, PLACES] } else { [16; 3] };
+        let mut scratch = Scratch::default();
+        let mut best = Vec::new();
+        for x in 1..=steps[0] {
+            for y in 1..=steps[1] {
+                let places = (1..steps[2]).map(|k| {
+                    let at = |[from, to]: [f64; 2], k, n| {
+                        from + (to - from) * f64::from(k) / f64::from(n)
+                    };
+                    let [x, y] = [at(across[0], x, steps[0] + 1), at(across[1], y, steps[1] + 1)];
+                    let point = [x, y, at([low, high], k, steps[2])];
+                    (point, Some(field.depth(&mut scratch, point).value))
+                });
+                best.extend(cores(places, 0.0));
+            }
+        }
+        best.sort_by(|(_, depth), (_, other)| other.total_cmp(depth));
+        best.truncate(1);
         Question {
             owners: Owners::default(),
-            hull: Hull::about(card, steep, errors[0]),
-            exact: Hull::about(card, steep, errors[1]),
+            hull: Hull::about(card, field.steep, errors[0]),
+            exact: Hull::about(card, field.steep, errors[1]),
             shell: Shell::about(card),
             limit: 0.0,
+            cores: best,
         }
     }
 

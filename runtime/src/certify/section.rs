@@ -150,6 +150,23 @@ impl Section {
         }
     }
 
+    /// How deep a place is; outside, the negative of its distance.
+    pub(super) fn signed(&self, p: Place) -> f64 {
+        let (value, _) = self.nearest(0..self.features.len(), p);
+        if self.contains(p) { value } else { -value }
+    }
+
+    /// Whether owners own no place that is no farther than `goes` from one that is so deep.
+    pub(super) fn far_from(&self, owners: &Owners, p: Place, depth: f64, goes: f64) -> bool {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|way| [0, 1].map(|k| p[k] + goes * way[k]));
+        !owners.all()
+            && self.owned(owners).all(|owner| {
+                self.features[owner].away(p) > depth + 2.0 * goes
+                    || self.behind(owners, owner, &corners)
+            })
+    }
+
     /// How deep a place in a slab is.
     #[inline]
     pub(super) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
@@ -161,8 +178,9 @@ impl Section {
         let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
         let gradient = self.features[feature].outward(p);
         if !owners.own(feature) {
-            let (other, owner) = self.nearest(self.owned(owners), p);
-            if other > value + owners.slack + self.error {
+            let owned = self.owned(owners).filter(|owner| !self.behind(owners, *owner, &[p]));
+            let (other, owner) = self.nearest(owned, p);
+            if other > value + self.error {
                 return Depth { value: f64::NEG_INFINITY, gradient, feature };
             }
             feature = owner;
@@ -193,8 +211,12 @@ impl Section {
             bound = bound.min(self.features[*near].at_most(triangle));
         }
         if bound > enough && !owners.all() {
-            let apart = bound + owners.slack + 2.0 * self.error;
-            if self.owned(owners).all(|owner| self.features[owner].at_least(triangle) > apart) {
+            let apart = bound + 2.0 * self.error;
+            let none = |owner: usize| {
+                self.behind(owners, owner, triangle)
+                    || self.features[owner].at_least(triangle) > apart
+            };
+            if self.owned(owners).all(none) {
                 return f64::NEG_INFINITY;
             }
         }
@@ -226,7 +248,21 @@ impl Section {
         bound
     }
 
-    fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
+    /// Whether another feature than an owner, beside it, is nearer to all places of a set of corners: the
+    /// owner's nearest point is the end that they share, and along the other it is yet nearer.
+    pub(super) fn behind(&self, owners: &Owners, owner: usize, corners: &[Place]) -> bool {
+        let feature = &self.features[owner];
+        let Some(end) = feature.ends_at(corners) else { return false };
+        let beside = if end == 0 { owner.checked_sub(1) } else { Some(owner + 1) };
+        let Some(other) = beside.and_then(|beside| self.features.get(beside)) else { return false };
+        if beside.is_some_and(|beside| owners.own(beside)) {
+            return false;
+        }
+        let way = if end == 0 { other.heading(1).map(|part| -part) } else { other.heading(0) };
+        corners.iter().all(|p| dot(way, minus(*p, feature.ends[end])) > 0.0)
+    }
+
+    pub(super) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
         (0..self.features.len()).filter(|feature| owners.own(*feature))
     }
 

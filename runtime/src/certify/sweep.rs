@@ -4,12 +4,11 @@
 //! far the part goes in the tool's frame and in which direction. What they rule out is gone; what they leave
 //! goes on to both halves. Nodes are opened when they are larger than the way is long.
 
-use super::course::{Goal, Search};
 use super::descent::{BoxBounds, Node, Seen, Shift, above, of_children, rings};
-use super::facet::Facet;
 use super::field::Scratch;
 use super::hull::Hull;
 use super::owners::Owners;
+use super::piece::Piece;
 use super::question::Question;
 use super::stretch::{Point, Stretch, about};
 use super::swath::Swath;
@@ -115,12 +114,12 @@ impl Task<'_> {
             body.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
         };
         let depth = inside.unwrap_or_else(|| body.distance(scratch, &Owners::default(), point));
-        Place { point, depth: depth.value, feature: depth.feature, skew: 0.0 }
+        Place { point, depth: depth.value, feature: depth.feature }
     }
 
     /// Whether a place is deeper than is allowed, whatever was rounded.
     fn too_deep(&self, found: &Place) -> bool {
-        found.depth > self.question.limit + 2.0 * self.error + found.skew
+        found.depth > self.question.limit + 2.0 * self.error
     }
 }
 
@@ -130,7 +129,6 @@ struct Place {
     point: Point,
     depth: f64,
     feature: usize,
-    skew: f64,
 }
 
 impl Place {
@@ -150,9 +148,8 @@ pub(super) struct Sweeper {
     /// Triangles that are yet to be looked at, eight at a time.
     some: Vec<u32>,
     swath: Swath,
-    search: Search,
     scratch: Scratch,
-    owners: Owners,
+    pieces: Vec<Piece>,
     budget: u32,
 }
 
@@ -162,7 +159,6 @@ impl Sweeper {
         self.left.clear();
         self.left.push(Node { level: 0, index: 0, bound: f32::INFINITY });
         self.budget = budget;
-        self.owners.clone_from(&task.question.owners);
         self.stretch(task, [0.0, 1.0], 0)
     }
 
@@ -272,15 +268,12 @@ impl Sweeper {
             }
             let goes = stretch.goes(about(&corners));
             let steep = setting.body.steep();
-            let left = here.depth + steep * goes > task.wanted() || {
-                let found = self.nearest(task, corners, goes);
-                if let Some(found) = found
-                    && task.too_deep(&found)
-                {
-                    return Some(stop(found));
-                }
-                found.is_some() || self.search.open()
-            };
+            let left = here.depth + steep * goes > task.wanted()
+                || match self.passes(task, corners, goes) {
+                    Passes::Too(deep) => return Some(stop(deep)),
+                    Passes::Yes => false,
+                    Passes::Open => true,
+                };
             if left {
                 self.left.push(Node::of_triangle(setting.facets, index));
             }
@@ -288,31 +281,45 @@ impl Sweeper {
         None
     }
 
-    /// A place of a triangle that is so deep, or so near, that after going so far it may be too deep.
-    fn nearest(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Option<Place> {
-        let facet = Facet::new(corners);
-        let goes = goes + facet.skew + task.error;
-        let body = &task.setting.body;
-        let least = task.wanted() - body.steep() * goes;
-        // Outside depth is how near it is.
-        let least = if least < 0.0 { least / body.steep() } else { least };
-        let enough = f64::INFINITY;
-        let (tolerance, budget, fine) = (task.error, self.budget, goes / 8.0);
-        self.search.begin(Goal { least, tolerance, enough, budget, fine });
-        let search = (&mut self.search, &mut self.scratch);
-        let found = if task.question.limit < 0.0 {
-            body.outside(search, &task.question.owners, &facet)
-        } else if least < 0.0 {
-            body.outside(search, &Owners::default(), &facet)
-        } else {
-            self.owners.slack = 2.0 * goes;
-            body.inside(search, &self.owners, &facet)
-        };
-        self.budget = self.search.left();
-        let found = task.depth(&mut self.scratch, found?.point);
-        Some(Place { skew: facet.skew, ..found })
+    /// Whether no place of a triangle is so deep, or so near, that after going so far it may be too deep.
+    /// It is halved until all of it passes, or what does not is small beside the way.
+    fn passes(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
+        let (body, owners) = (&task.setting.body, &task.question.owners);
+        self.pieces.clear();
+        self.pieces.push(Piece::new(corners));
+        while let Some(piece) = self.pieces.pop() {
+            if self.budget == 0 {
+                return Passes::Open;
+            }
+            self.budget -= 1;
+            let (centre, reach) = piece.ball();
+            let far = goes + reach + task.error;
+            if body.clears(&mut self.scratch, owners, centre, (far, task.wanted())) {
+                continue;
+            }
+            let here = task.depth(&mut self.scratch, centre);
+            if task.too_deep(&here) {
+                return Passes::Too(here);
+            }
+            if reach < SMALL * goes {
+                return Passes::Open;
+            }
+            self.pieces.extend(piece.halves());
+        }
+        Passes::Yes
     }
 }
+
+/// What is said of a triangle.
+enum Passes {
+    Yes,
+    /// It is too deep there.
+    Too(Place),
+    Open,
+}
+
+/// A piece of a triangle that is smaller than this part of its way is not halved.
+const SMALL: f64 = 0.125;
 
 /// Nodes are opened that are larger than this part of the way.
 const PART: f64 = 0.3;

@@ -2,8 +2,8 @@
 
 use super::answer::Witness;
 use super::batch::Batch;
-use super::body::{Body, Found};
-use super::course::{Goal, Search};
+use super::body::Body;
+use super::course::{Found, Goal, Search};
 use super::descent::Descent;
 use super::facet::Facet;
 use super::facets::Facets;
@@ -18,9 +18,8 @@ use nalgebra::Vector3;
 pub(super) struct Setting<'a> {
     pub(super) facets: &'a Facets,
     pub(super) body: Body<'a>,
-    /// How far it reaches from its tip, and its highest place.
+    /// How far it reaches from its tip.
     pub(super) size: f64,
-    pub(super) top: f64,
     /// Whether what is said of places outside is their distance.
     pub(super) exact: bool,
     pub(super) sight: Sight,
@@ -46,15 +45,18 @@ impl Setting<'_> {
         }
     }
 
-    /// Whether the top of the tool's axis is inside the part, if it has an inside.
-    pub(super) fn within(&self, pose: &Pose) -> Option<bool> {
-        self.facets.contains(pose.tip() + self.top * self.length * pose.axis())
-    }
-
-    /// How far `f32` can take a bound: planes are as steep as 2, so that one errs by three times as much
-    /// as a place, and a few roundings.
-    pub(super) fn margin(&self) -> f64 {
-        if self.sight.fits { 4.0 * self.body.steep() * self.sight.margin } else { f64::INFINITY }
+    /// Whether what of the tool may not be deeper than its limit and a tolerance is wholly inside the part, if
+    /// that has an inside; no triangle is so deep.
+    pub(super) fn within(&self, rules: &[Question], pose: &Pose, tolerance: f64) -> Option<bool> {
+        for rule in rules {
+            for (core, depth) in &rule.cores {
+                let place = pose.tip() + pose.rotation() * Vector3::from(*core) * self.length;
+                if *depth > rule.limit + tolerance && self.facets.contains(place)? {
+                    return Some(true);
+                }
+            }
+        }
+        Some(false)
     }
 }
 
@@ -69,8 +71,8 @@ pub(super) struct Work {
     pub(super) best: Option<Best>,
     /// The most skew of a triangle that was looked at.
     pub(super) skew: f64,
-    /// Where the last question ended.
-    last: u32,
+    /// Where the last question ended, if anywhere.
+    last: Option<u32>,
 }
 
 /// The deepest place so far, in the tool's frame.
@@ -105,8 +107,10 @@ impl Work {
             return;
         }
         // A triangle that was deepest is likely to be deep.
-        self.batch.begin(of.facets, pose, &[self.last]);
-        self.glance(of, question);
+        if let Some(last) = self.last {
+            self.batch.begin(of.facets, pose, &[last]);
+            self.glance(of, question);
+        }
         self.descend(of, question, pose, Side::Inside, of.margin());
     }
 
@@ -121,8 +125,10 @@ impl Work {
         let margin = of.margin() + self.far() / f64::from(1 << 20);
         self.best = None;
         self.search.begin(goal);
-        self.batch.begin(of.facets, pose, &[self.last]);
-        self.beside(of, question);
+        if let Some(last) = self.last {
+            self.batch.begin(of.facets, pose, &[last]);
+            self.beside(of, question);
+        }
         self.descend(of, question, pose, Side::Outside, margin);
     }
 
@@ -181,13 +187,9 @@ impl Work {
         if let Body::Field(field) = &of.body {
             let outside = matches!(side, Side::Outside);
             let found = field.look(&mut self.search, &mut self.scratch, outside);
-            if let Some((Found { point, feature }, index)) = found {
-                self.best = Some(Best { point, feature, index });
-            }
+            self.best = found.or(self.best);
         }
-        if let Some(best) = &self.best {
-            self.last = best.index;
-        }
+        self.last = self.best.map(|best| best.index);
     }
 
     /// Looks at the triangles of the batch where they may be deepest.
@@ -241,19 +243,22 @@ impl Work {
     /// Looks at a triangle of the batch by itself; in a field that is done for all triangles together.
     fn facet(&mut self, of: &Setting<'_>, question: &Question, (lane, side): (usize, Side)) {
         let (corners, index) = (self.batch.corners(lane), self.batch.index(lane));
-        if let Body::Field(_) = of.body {
-            self.scratch.hold(corners, index, f64::INFINITY);
-            return;
-        }
+        let section = match &of.body {
+            Body::Profile(section) => section,
+            Body::Field(_) => return self.scratch.hold(corners, index),
+        };
         let facet = Facet::new(corners);
         self.skew = self.skew.max(facet.skew);
-        let search = (&mut self.search, &mut self.scratch);
-        let found = match side {
-            Side::Inside => of.body.inside(search, &question.owners, &facet),
-            Side::Outside => of.body.outside(search, &question.owners, &facet),
-        };
-        if let Some(Found { point, feature }) = found {
-            self.best = Some(Best { point, feature, index });
+        let asked = (section, &question.owners);
+        let peaks = question.owners.peaks.iter().filter_map(|peak| facet.level(*peak));
+        for course in facet.courses().chain(peaks) {
+            let found = match side {
+                Side::Inside => self.search.inside(asked, &course),
+                Side::Outside => self.search.outside(asked, &course),
+            };
+            if let Some(Found { t, feature }) = found {
+                self.best = Some(Best { point: course.point(t), feature, index });
+            }
         }
     }
 }

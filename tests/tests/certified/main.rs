@@ -4,10 +4,11 @@
 
 mod apart;
 mod closed_forms;
+mod fields;
 mod hard_cases;
 
 use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, Facets, Uncertified};
+use touchoff::certify::Facets;
 use touchoff::{Mesh, Pose, Tool, Unit};
 use touchoff_tests::measure::certified::{Pair, poses};
 use touchoff_tests::oracle::Nearest;
@@ -64,21 +65,4 @@ fn brute_force_finds_nothing_outside_the_intervals() {
 fn brute_force_finds_nothing_outside_on_a_neck() {
     let violations = violations(&["Lollipop"], 4 * POSES, 2);
     assert!(violations.is_empty(), "{violations:#?}");
-}
-
-#[test]
-fn tools_without_a_profile_are_refused_and_so_are_overhangs() {
-    let facets = Facets::new(&plate());
-    let (mut profiles, mut overhangs) = (Vec::new(), Vec::new());
-    for tool in tools_library::TOOLS {
-        match Certifier::new(&facets, *tool).err() {
-            Some(Uncertified::NoProfile { tool }) => profiles.push(tool),
-            Some(Uncertified::Overhang { tool }) => overhangs.push(tool),
-            None => (),
-        }
-    }
-    profiles.sort();
-    overhangs.sort();
-    assert_eq!(profiles, ["Block", "Cylinder", "Fig73", "LBracket", "UnitSphere"]);
-    assert_eq!(overhangs, ["BoringBar", "FaceMill"]);
 }

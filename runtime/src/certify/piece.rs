@@ -1,0 +1,55 @@
+//! Triangles that are halved.
+
+pub(super) type Point = [f64; 3];
+
+/// A triangle, or a part of one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Piece {
+    /// The longest side is from the first to the second.
+    corners: [Point; 3],
+}
+
+fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn middle(a: Point, b: Point) -> Point {
+    [0, 1, 2].map(|axis| f64::midpoint(a[axis], b[axis]))
+}
+
+fn square(a: Point) -> f64 {
+    a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
+}
+
+impl Piece {
+    pub(super) fn new([a, b, c]: [Point; 3]) -> Piece {
+        let [ab, bc, ca] = [minus(b, a), minus(c, b), minus(a, c)].map(square);
+        let corners = if ab >= bc && ab >= ca {
+            [a, b, c]
+        } else if bc >= ca {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        };
+        Piece { corners }
+    }
+
+    /// A place of it, and how far it reaches from there.
+    pub(super) fn ball(&self) -> (Point, f64) {
+        let [a, b, c] = self.corners;
+        let mean = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
+        let [half, mean] = [middle(a, b), mean].map(|centre| {
+            let far = [a, b, c].map(|corner| square(minus(corner, centre)));
+            (centre, far[0].max(far[1]).max(far[2]).sqrt())
+        });
+        if half.1 < mean.1 { half } else { mean }
+    }
+
+    /// Both halves of its longest side; none if that is too short to be halved.
+    pub(super) fn halves(&self) -> impl Iterator<Item = Piece> + use<> {
+        let [a, b, c] = self.corners;
+        let half = middle(a, b);
+        let halves = [Piece::new([a, half, c]), Piece::new([half, b, c])];
+        halves.into_iter().filter(move |_| half != a && half != b)
+    }
+}

@@ -1,0 +1,135 @@
+//! Tools that are known by their depth and by how fast that changes.
+
+use nalgebra::{Point3, Vector3};
+use tool_dsl::source::Source;
+use touchoff::certify::{AllowanceError, Certifier, Clear, Facets, Sweep};
+use touchoff::mesh::shapes;
+use touchoff::tool::Interpreted;
+use touchoff::{Mesh, Motion, Pose, Unit};
+use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Nearest, Oracle, UnitSphere};
+
+/// Every tool of the library that has no profile, or one that overhangs, and what is true of it.
+fn all() -> Vec<(&'static str, Box<dyn Oracle>)> {
+    vec![
+        ("Fig73", Box::new(Fig73::default())),
+        ("Cylinder", Box::new(Cylinder)),
+        ("UnitSphere", Box::new(UnitSphere)),
+        ("Block", Box::new(Block)),
+        ("LBracket", Box::new(LBracket)),
+        ("BoringBar", Box::new(Nearest::of("BoringBar"))),
+        ("FaceMill", Box::new(Nearest::of("FaceMill"))),
+    ]
+}
+
+/// A pose about a sphere of that radius, turned anyhow.
+fn about(radius: f64, draw: &mut Draw) -> Pose {
+    let mut turn = [0; 4].map(|_| draw.between(-1.0, 1.0));
+    let size = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
+    turn.iter_mut().for_each(|part| *part /= size);
+    let out = Vector3::from(draw.direction()) * radius * draw.between(0.7, 1.3);
+    Pose::from_quaternion(Point3::from(out), turn).expect("a quaternion")
+}
+
+fn seen(pose: &Pose, length: f64, point: Point3<f64>) -> [f64; 3] {
+    (pose.rotation().transpose() * (point - pose.tip()) / length).into()
+}
+
+/// The deepest of some places of each triangle.
+fn sampled(mesh: &Mesh, oracle: &dyn Oracle, pose: &Pose, length: f64, draw: &mut Draw) -> f64 {
+    let mut deepest: f64 = 0.0;
+    for id in 0..mesh.triangles().len() as u32 {
+        let [a, b, c] = mesh.triangle(id);
+        for _ in 0..8 {
+            let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
+            let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
+            let point = a + v * (b - a) + w * (c - a);
+            if let Some(sense) = oracle.sense(seen(pose, length, point)) {
+                deepest = deepest.max(sense.depth * length);
+            }
+        }
+    }
+    deepest
+}
+
+#[test]
+fn what_a_field_says_is_within_the_interval() {
+    const TOLERANCE: f64 = 2e-2;
+    let mut draw = Draw::new(5);
+    for (name, oracle) in all() {
+        let tool = super::tool(name);
+        let length = tool.card().unit.to(Unit::Millimetre);
+        let size = length * tool.card().radius().max(tool.card().reach()[1]);
+        let mesh = shapes::sphere(0.5 * size, 3, Unit::Millimetre).expect("a sphere");
+        let facets = Facets::new(&mesh);
+        let mut certifier = Certifier::new(&facets, tool).expect("a tool that is proved");
+        let (mut touching, mut decided) = (0, 0);
+        for _ in 0..12 {
+            let pose = about(0.5 * size, &mut draw);
+            let found = certifier.deepest(&pose, TOLERANCE * size);
+            let [low, high] = found.depth;
+            let brute = sampled(&mesh, &*oracle, &pose, length, &mut draw);
+            assert!(brute <= high + 1e-9, "{name} {pose:?}: {brute} in {:?}", found.depth);
+            if let Some(witness) = found.witness {
+                touching += 1;
+                let depth = oracle.sense(seen(&pose, length, witness.point)).expect("inside").depth;
+                assert!(low <= depth * length + 1e-9, "{name} {pose:?}: {depth} in {low}..{high}");
+            }
+            decided += usize::from(high - low <= 1.01 * TOLERANCE * size);
+            let clear = certifier.clear(&pose);
+            match clear {
+                Clear::Touching(_) => assert!(high > 0.0, "{name} {pose:?}"),
+                Clear::Undecided(most) => assert!(brute <= most + 1e-9, "{name} {pose:?}"),
+                _ => assert!(brute == 0.0, "{name} {pose:?}: {clear:?} at {brute}"),
+            }
+            let [near, far] = certifier.clearance(&pose, TOLERANCE * size).distance;
+            assert!(near <= far && (brute == 0.0 || near == 0.0), "{name} {pose:?}: {near}..{far}");
+        }
+        assert!(touching > 3 && decided > 8, "{name}: {touching} and {decided} of 12");
+    }
+}
+
+#[test]
+fn a_tool_by_its_field_is_swept() {
+    let plate = super::plate();
+    let facets = Facets::new(&plate);
+    let mut certifier = Certifier::new(&facets, super::tool("Fig73")).expect("proved");
+    let at = |x: f64, z: f64| super::pose([x, 0.0, z], [0.0, 0.0, 1.0]);
+    let motion = |from: [f64; 2], to: [f64; 2]| {
+        Motion::new(&at(from[0], from[1]), &at(to[0], to[1])).expect("upright")
+    };
+    assert_eq!(certifier.sweep_clear(&motion([-8.0, 0.2], [8.0, 0.3]), 1e-3), Sweep::Clear);
+    let dive = certifier.sweep_clear(&motion([-8.0, 1.0], [8.0, -1.0]), 1e-3);
+    assert!(matches!(dive, Sweep::Touching(at, _) if at >= 0.5), "{dive:?}");
+    let refused = certifier.allow("nose", 0.1).err();
+    assert!(matches!(refused, Some(AllowanceError::NoOwner { .. })), "{refused:?}");
+}
+
+#[test]
+fn a_solid_is_not_swept_since_its_spin_is_not_said() {
+    let plate = super::plate();
+    let facets = Facets::new(&plate);
+    let mut certifier = Certifier::new(&facets, super::tool("Block")).expect("proved");
+    let pose = super::pose([0.0, 0.0, 50.0], [0.0, 0.0, 1.0]);
+    let motion = Motion::new(&pose, &pose).expect("at rest");
+    assert_eq!(certifier.sweep_clear(&motion, 1e-3), Sweep::Undecided(0.0));
+}
+
+#[test]
+fn every_tool_of_the_library_is_certified() {
+    let facets = Facets::new(&super::plate());
+    for tool in tools_library::TOOLS {
+        assert!(Certifier::new(&facets, *tool).is_ok(), "{}", tool.card().name);
+    }
+}
+
+#[test]
+fn a_tool_whose_depth_is_too_steep_is_refused() {
+    let text =
+        "tool Steep { units mm; tip z = -1; region all as body cutting where hypot(d, z) <= 1 {
+        depth: sqrt(1 - hypot(d, z)); } niceness cutting: 1; }";
+    let tool = Interpreted::parse(&Source::new("steep.tool", text)).expect("a tool");
+    let facets = Facets::new(&super::plate());
+    let refused = Certifier::new(&facets, &tool).err().expect("a refusal").to_string();
+    assert!(refused.contains("Steep") && refused.contains("profile"), "{refused}");
+}
