@@ -5,6 +5,7 @@
 mod apart;
 mod closed_forms;
 mod hard_cases;
+mod sweeps;
 
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, Facets, Uncertified};
