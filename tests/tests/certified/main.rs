@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release -p touchoff-tests --bin certified` asks about 100,000 poses.
 
+mod allowances;
 mod apart;
 mod closed_forms;
 mod hard_cases;

@@ -6,6 +6,7 @@
 
 pub mod approach;
 pub mod brute;
+pub mod owned;
 pub mod poses;
 pub mod sweeps;
 pub mod ways;
