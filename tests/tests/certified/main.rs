@@ -5,7 +5,9 @@
 mod allowances;
 mod apart;
 mod closed_forms;
+mod end_in_part;
 mod hard_cases;
+mod ring_of_ties;
 mod sweeps;
 
 use nalgebra::{Point3, Vector3};
