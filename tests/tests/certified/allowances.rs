@@ -269,11 +269,14 @@ fn a_flute_cuts_along_a_wall() {
     }
 }
 
+/// A part that is so far from the nut.
+type Case = (&'static str, fn(f64) -> Mesh);
+
 #[test]
 fn a_nut_keeps_its_margin_from_all_sides() {
     // The nut's ring is at 30, its cone from 12.9 to 14, its side at 14 until 47.5.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
-    let cases: [(&str, fn(f64) -> Mesh); 4] = [
+    let cases: [Case; 4] = [
         ("ring", |gap| block([7.0, -1.0, 20.0], [9.0, 1.0, 30.0 - gap])),
         ("side", |gap| block([14.0 + gap, -9.0, 35.0], [30.0, 9.0, 40.0])),
         ("end", |gap| block([-9.0, -9.0, 47.5 + gap], [9.0, 9.0, 60.0])),
