@@ -58,7 +58,14 @@ impl Question {
             let zones = owners.zones(section, limit - 8.0 * section.error);
             (Hull::new(section, &zones, margin), Hull::new(section, &zones, section.error))
         };
-        Question { hull, exact, shell: Shell::new(section, &owners), owners, limit }
+        let [low, high] = section.reach();
+        let places = (1..PLACES).map(|k| {
+            let z = low + (high - low) * f64::from(k) / f64::from(PLACES);
+            let depth = section.depth_at(&owners, [0.0, z]);
+            ([0.0, 0.0, z], depth.map(|depth| depth.value))
+        });
+        let cores = if limit < 0.0 { Vec::new() } else { cores(places, limit) };
+        Question { cores, hull, exact, shell: Shell::new(section, &owners), owners, limit }
     }
 
     /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.

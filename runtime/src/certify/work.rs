@@ -45,6 +45,12 @@ impl Setting<'_> {
         }
     }
 
+    /// How far `f32` can take a bound: planes are as steep as 2, so that one errs by three times as much
+    /// as a place, and a few roundings.
+    pub(super) fn margin(&self) -> f64 {
+        if self.sight.fits { 4.0 * self.body.steep() * self.sight.margin } else { f64::INFINITY }
+    }
+
     /// Whether what of the tool may not be deeper than its limit and a tolerance is wholly inside the part, if
     /// that has an inside; no triangle is so deep.
     pub(super) fn within(&self, rules: &[Question], pose: &Pose, tolerance: f64) -> Option<bool> {

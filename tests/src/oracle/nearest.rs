@@ -71,6 +71,17 @@ impl Nearest {
         self.regions.iter().map(|region| (region.surface, region.cutting))
     }
 
+    /// The distance to the pieces of a surface, from either side.
+    pub fn away(&self, surface: &str, p: [f64; 3]) -> f64 {
+        let at = Meridian::of(p).dz;
+        let owned = self.profile.owners().iter().zip(&self.regions);
+        let pieces = owned.filter_map(|(feature, region)| match feature {
+            Feature::Piece(piece) if region.surface == surface => Some(*piece),
+            _ => None,
+        });
+        pieces.map(|piece| self.profile.away(piece, at)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Points at which the nearest feature changes, found by halving stretches; a list for each pair of owners.
     fn found(&self) -> Vec<Points> {
         const STRETCHES: usize = 4_000;

@@ -138,6 +138,11 @@ impl Profile {
         best
     }
 
+    /// The distance to a piece, its ends included, from either side.
+    pub fn away(&self, piece: usize, p: P2) -> f64 {
+        self.pieces[piece].clamped(p)
+    }
+
     /// Whether `p` is in the solid or on its surface.
     pub fn contains(&self, p: P2) -> bool {
         self.encloses(p) || self.nearest(p).distance == 0.0

@@ -2,10 +2,14 @@
 //!
 //! `cargo run --release -p touchoff-tests --bin certified` asks about 100,000 poses.
 
+mod allowances;
 mod apart;
 mod closed_forms;
+mod end_in_part;
 mod fields;
 mod hard_cases;
+mod ring_of_ties;
+mod sweeps;
 
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::Facets;

@@ -6,7 +6,7 @@
 
 use crate::oracle::draw::Draw;
 use crate::oracle::{Meridian, Nearest, Oracle};
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use touchoff::{Mesh, Pose};
 
 /// A point or vector in the tool's frame and unit.
@@ -25,15 +25,20 @@ const STEPS: usize = 500;
 
 /// A part's triangles and a tool.
 pub struct Brute<'a> {
-    mesh: &'a Mesh,
-    oracle: &'a Nearest,
+    pub(super) mesh: &'a Mesh,
+    pub(super) oracle: &'a Nearest,
     /// The tool's unit of length in the part's.
     pub length: f64,
     /// The tool's and the part's size and how far that is from the origin, in the part's unit.
     pub size: f64,
     /// The middle of each triangle, and how far it reaches from there.
-    balls: Vec<(Point3<f64>, f64)>,
+    pub(super) balls: Vec<(Point3<f64>, f64)>,
+    /// The same of some triangles together, in their order.
+    pub(super) groups: Vec<(Point3<f64>, f64)>,
 }
+
+/// How many triangles are in a group.
+pub(super) const GROUP: usize = 32;
 
 /// A pose, as brute force sees it: its tip, and the tool's axes in the world.
 pub struct Seen {
@@ -86,6 +91,14 @@ pub fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
     edges.into_iter().min_by(|e, f| distance(p, *e).total_cmp(&distance(p, *f))).unwrap_or(a)
 }
 
+/// A ball around some.
+fn around(balls: &[(Point3<f64>, f64)]) -> (Point3<f64>, f64) {
+    let all = balls.iter().map(|(middle, _)| middle.coords);
+    let middle = Point3::from(all.sum::<Vector3<f64>>() / balls.len() as f64);
+    let reach = balls.iter().map(|(other, reach)| (other - middle).norm() + reach);
+    (middle, reach.fold(0.0, f64::max) * (1.0 + 1e-12))
+}
+
 impl<'a> Brute<'a> {
     /// The triangles of a mesh, and a tool whose unit of length is so many of the mesh's.
     pub fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> Brute<'a> {
@@ -100,10 +113,12 @@ impl<'a> Brute<'a> {
             let reach = corners.map(|corner| (corner - middle).norm());
             (middle, reach[0].max(reach[1]).max(reach[2]))
         });
+        let balls: Vec<_> = balls.collect();
         Brute {
             length,
+            groups: balls.chunks(GROUP).map(around).collect(),
             size: (high - low).norm() + far + (radius + height) * length,
-            balls: balls.collect(),
+            balls,
             mesh,
             oracle,
         }
@@ -118,7 +133,7 @@ impl<'a> Brute<'a> {
         }
     }
 
-    fn to_tool(&self, seen: &Seen, point: Point3<f64>) -> Point {
+    pub(super) fn to_tool(&self, seen: &Seen, point: Point3<f64>) -> Point {
         let off = point - seen.tip;
         seen.axes.map(|axis| dot(axis, [off.x, off.y, off.z]) / self.length)
     }

@@ -4,8 +4,12 @@
 //! restatement, samples triangles and climbs from the deepest samples. Whatever it finds has to be below
 //! the upper bound; the lower bound is proved by the witness, whose depth is asked of the same oracle.
 
+pub mod approach;
 pub mod brute;
+pub mod owned;
 pub mod poses;
+pub mod sweeps;
+pub mod ways;
 
 use crate::oracle::Nearest;
 use crate::oracle::draw::Draw;
