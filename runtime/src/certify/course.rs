@@ -212,6 +212,11 @@ impl Search {
         true
     }
 
+    /// What is left of the budget.
+    pub(super) fn left(&self) -> u32 {
+        self.budget
+    }
+
     /// Takes a place if it is the deepest so far.
     pub(super) fn take(&mut self, depth: &Depth) -> bool {
         let deeper = depth.value > self.best;

@@ -22,11 +22,6 @@ impl Node {
         facets.ring(self.level as usize, self.index as usize, view)
     }
 
-    /// A triangle, by its place in the tree's order.
-    pub(super) fn of_triangle(facets: &Facets, index: u32) -> Node {
-        Node { level: facets.levels.len() as u32 + 1, index, bound: f32::INFINITY }
-    }
-
     /// Half the diagonal of its box, in the tree's unit.
     pub(super) fn size(&self, facets: &Facets) -> f64 {
         let Some(level) = self.level.checked_sub(1) else { return f64::INFINITY };

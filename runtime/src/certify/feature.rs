@@ -127,24 +127,36 @@ impl Feature {
         if circle.convex { first >= 0.0 && last >= 0.0 } else { first <= 0.0 && last <= 0.0 }
     }
 
-    /// Which end is the nearest point of all places of a set of corners, if one surely is.
-    pub(super) fn ends_at(&self, corners: &[Place]) -> Option<usize> {
-        let at = |end: usize| {
-            let way = if end == 0 { -1.0 } else { 1.0 };
-            let other = self.ends[1 - end];
-            corners.iter().all(|p| match &self.circle {
-                None => way * dot(self.along, minus(*p, self.ends[end])) > 0.0,
-                Some(Circle { centre, convex, .. }) => {
-                    // Beyond the end as seen from the centre, and on its side of the chord's middle.
-                    let [radius, out] = [self.ends[end], *p].map(|q| minus(q, *centre));
-                    let sense = if *convex { way } else { -way };
-                    let middle = [0, 1].map(|k| f64::midpoint(self.ends[end][k], other[k]));
-                    sense * cross(radius, out) > 0.0
-                        && way * dot(self.along, minus(*p, middle)) > 0.0
-                }
-            })
+    /// At which ends the nearest point of places of a triangle, a rectangle or the like may be: `None` unless
+    /// it surely is at one of them.
+    pub(super) fn at_ends(&self, corners: &[Place]) -> Option<[bool; 2]> {
+        let [first, last] = self.ends;
+        let middle = [0, 1].map(|k| f64::midpoint(first[k], last[k]));
+        let all = |beyond: &dyn Fn(Place) -> f64| corners.iter().all(|p| beyond(*p) > 0.0);
+        let beyond = match &self.circle {
+            None => [
+                all(&|p| -dot(self.along, minus(p, first))),
+                all(&|p| dot(self.along, minus(p, last))),
+            ],
+            // As seen from the centre.
+            Some(Circle { centre, convex, .. }) => {
+                let sense = if *convex { 1.0 } else { -1.0 };
+                let out = |from: Place, p: Place| cross(minus(from, *centre), minus(p, *centre));
+                [all(&|p| -sense * out(first, p)), all(&|p| sense * out(last, p))]
+            }
         };
-        [0, 1].into_iter().find(|end| at(*end))
+        if beyond == [false, false] {
+            return None;
+        }
+        let nearer = [
+            all(&|p| -dot(self.along, minus(p, middle))),
+            all(&|p| dot(self.along, minus(p, middle))),
+        ];
+        match nearer {
+            [true, _] => Some([true, false]),
+            [_, true] => Some([false, true]),
+            _ => Some([true, true]),
+        }
     }
 
     fn faces(&self, circle: &Circle, triangle: &Triangle) -> bool {

@@ -63,11 +63,10 @@ impl Owners {
             let (mut owner, mut other) = (f64::INFINITY, f64::INFINITY);
             let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
             for (index, feature) in section.features.iter().enumerate() {
-                let own = self.own(index);
-                if own && section.behind(self, index, &corners) {
+                if section.behind(index, &corners) {
                     continue;
                 }
-                let least = if own { &mut owner } else { &mut other };
+                let least = if self.own(index) { &mut owner } else { &mut other };
                 *least = least.min(feature.away(middle));
             }
             // A distance changes by no more than the way.
@@ -93,14 +92,16 @@ impl Owners {
 
 impl Owners {
     /// Where depth is restricted to what these own, it can be greatest at a place that is as far from three
-    /// features, at different points of them; there are a few such places. Elsewhere it grows some way that
+    /// features; there are a few such places. Elsewhere it grows some way that
     /// they own, or away from the axis nowhere does.
     ///
     /// They are found by rectangles that are halved, to a part of what rounding makes of a place; `None` if
     /// there are too many.
     fn find_peaks(&self, section: &Section) -> Option<Vec<f64>> {
         let small = section.error / 32.0;
-        let mut peaks: Vec<f64> = Vec::new();
+        // At the centre of an arc all of it is as far.
+        let centres = section.features.iter().filter_map(|feature| feature.circle);
+        let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
         let mut looks = 0;
         let mut stack: Vec<(Place, Place)> =
             section.slabs.iter().map(|slab| ([0.0, slab.low], [slab.radius, slab.high])).collect();
@@ -112,7 +113,8 @@ impl Owners {
             let middle: Place = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
             let wide = [0, 1].map(|k| high[k] - low[k]);
             let reach = 0.5 * wide[0].hypot(wide[1]);
-            if !self.may_peak(section, middle, reach) {
+            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+            if !self.may_peak(section, (middle, reach), &corners) {
                 continue;
             }
             if reach <= small {
@@ -132,20 +134,34 @@ impl Owners {
 
     /// Whether a place no farther than that from another may be as far from three features, of which some
     /// are these and some are not.
-    fn may_peak(&self, section: &Section, middle: Place, reach: f64) -> bool {
+    fn may_peak(
+        &self,
+        section: &Section,
+        (middle, reach): (Place, f64),
+        corners: &[Place],
+    ) -> bool {
         let away: Vec<f64> = section.features.iter().map(|f| f.away(middle)).collect();
         let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
         let near = |index: &usize| away[*index] <= nearest + 2.0 * reach + section.error / 64.0;
-        let mut feet: Vec<Place> = Vec::new();
-        let (mut own, mut other) = (false, false);
+        let mut nearby: Vec<(usize, Place)> = Vec::new();
+        let mut both = [false; 2];
         for index in (0..away.len()).filter(near) {
+            if section.behind(index, corners) {
+                continue;
+            }
+            both[usize::from(self.own(index))] = true;
             let foot = section.features[index].foot(middle);
-            *(if self.own(index) { &mut own } else { &mut other }) = true;
-            if feet.iter().all(|known| norm(minus(*known, foot)) > 1e-9 * section.size) {
-                feet.push(foot);
+            // Both sides of a reflex corner are as near where that is nearest; of a smooth joint one is
+            // nearer on either side.
+            let known = |(other, known): &(usize, Place)| {
+                let same = norm(minus(*known, foot)) <= 1e-9 * section.size;
+                same && (self.own(index) == self.own(*other) || !section.smooth(*other, index))
+            };
+            if !nearby.iter().any(known) {
+                nearby.push((index, foot));
             }
         }
-        own && other && feet.len() > 2
+        nearby.len() > 2 && both == [true, true]
     }
 }
 

@@ -34,6 +34,15 @@ impl Piece {
         Piece { corners }
     }
 
+    pub(super) fn corners(&self) -> &[Point; 3] {
+        &self.corners
+    }
+
+    /// Its longest side.
+    pub(super) fn longest(&self) -> f64 {
+        square(minus(self.corners[1], self.corners[0])).sqrt()
+    }
+
     /// A place of it, and how far it reaches from there.
     pub(super) fn ball(&self) -> (Point, f64) {
         let [a, b, c] = self.corners;

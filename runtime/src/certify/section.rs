@@ -162,8 +162,7 @@ impl Section {
             .map(|way| [0, 1].map(|k| p[k] + goes * way[k]));
         !owners.all()
             && self.owned(owners).all(|owner| {
-                self.features[owner].away(p) > depth + 2.0 * goes
-                    || self.behind(owners, owner, &corners)
+                self.features[owner].away(p) > depth + 2.0 * goes || self.behind(owner, &corners)
             })
     }
 
@@ -178,7 +177,7 @@ impl Section {
         let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
         let gradient = self.features[feature].outward(p);
         if !owners.own(feature) {
-            let owned = self.owned(owners).filter(|owner| !self.behind(owners, *owner, &[p]));
+            let owned = self.owned(owners).filter(|owner| !self.behind(*owner, &[p]));
             let (other, owner) = self.nearest(owned, p);
             if other > value + self.error {
                 return Depth { value: f64::NEG_INFINITY, gradient, feature };
@@ -213,8 +212,7 @@ impl Section {
         if bound > enough && !owners.all() {
             let apart = bound + 2.0 * self.error;
             let none = |owner: usize| {
-                self.behind(owners, owner, triangle)
-                    || self.features[owner].at_least(triangle) > apart
+                self.behind(owner, triangle) || self.features[owner].at_least(triangle) > apart
             };
             if self.owned(owners).all(none) {
                 return f64::NEG_INFINITY;
@@ -248,18 +246,29 @@ impl Section {
         bound
     }
 
-    /// Whether another feature than an owner, beside it, is nearer to all places of a set of corners: the
-    /// owner's nearest point is the end that they share, and along the other it is yet nearer.
-    pub(super) fn behind(&self, owners: &Owners, owner: usize, corners: &[Place]) -> bool {
-        let feature = &self.features[owner];
-        let Some(end) = feature.ends_at(corners) else { return false };
-        let beside = if end == 0 { owner.checked_sub(1) } else { Some(owner + 1) };
-        let Some(other) = beside.and_then(|beside| self.features.get(beside)) else { return false };
-        if beside.is_some_and(|beside| owners.own(beside)) {
-            return false;
-        }
-        let way = if end == 0 { other.heading(1).map(|part| -part) } else { other.heading(0) };
-        corners.iter().all(|p| dot(way, minus(*p, feature.ends[end])) > 0.0)
+    /// Whether features beside another are nearer to all places of a triangle, a rectangle or the like: its
+    /// nearest point is an end that it shares, and along the feature beside it is yet nearer.
+    pub(super) fn behind(&self, feature: usize, corners: &[Place]) -> bool {
+        let Some(ends) = self.features[feature].at_ends(corners) else { return false };
+        let nearer = |end: usize| {
+            let beside = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
+            beside.and_then(|beside| self.features.get(beside)).is_some_and(|other| {
+                let heading = other.heading(1 - end);
+                let way = if end == 0 { heading.map(|part| -part) } else { heading };
+                let from = self.features[feature].ends[end];
+                corners.iter().all(|p| dot(way, minus(*p, from)) > 0.0)
+            })
+        };
+        [0, 1].into_iter().all(|end| !ends[end] || nearer(end))
+    }
+
+    /// Whether one feature goes on straight into another.
+    pub(super) fn smooth(&self, feature: usize, next: usize) -> bool {
+        let joint = |a: usize, b: usize| {
+            a + 1 == b
+                && cross(self.features[a].heading(1), self.features[b].heading(0)).abs() < 1e-9
+        };
+        joint(feature, next) || joint(next, feature)
     }
 
     pub(super) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {

@@ -68,6 +68,11 @@ impl Stretch {
         [seen(first), seen(middle), seen(last)]
     }
 
+    /// Whether the axis turns.
+    pub(super) fn turns(&self) -> bool {
+        self.pace.turn > 0.0
+    }
+
     pub(super) fn middle(&self) -> f64 {
         self.from / 2.0 + self.to / 2.0
     }

@@ -1,9 +1,9 @@
 //! Eight triangles on their way past the tool, side by side in `f64`.
 
 use super::batch::{Batch, Lanes, load};
-use super::facets::Facets;
 use super::hull::Hull;
 use super::stretch::{Stretch, about};
+use super::sweep::Part;
 use super::swept::Ends;
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
@@ -19,12 +19,12 @@ pub(super) struct Swath {
 }
 
 impl Swath {
-    /// Takes triangles by their places in the tree's order.
-    pub(super) fn begin(&mut self, facets: &Facets, stretch: &Stretch, keep: f64, indices: &[u32]) {
+    /// Takes triangles that have to keep so far.
+    pub(super) fn begin(&mut self, stretch: &Stretch, keep: f64, parts: &[Part]) {
         self.middle.indices.clear();
-        self.middle.indices.extend(indices);
-        for (lane, index) in indices.iter().enumerate() {
-            for (k, corner) in facets.corners[*index as usize].iter().enumerate() {
+        self.middle.indices.extend(parts.iter().map(|part| part.index));
+        for (lane, part) in parts.iter().enumerate() {
+            for (k, corner) in part.piece.corners().iter().enumerate() {
                 let [first, middle, last] = stretch.seen(corner);
                 for axis in 0..3 {
                     self.ends[k][axis][lane] = first[axis];

@@ -4,12 +4,16 @@
 //! far the part goes in the tool's frame and in which direction. What they rule out is gone; what they leave
 //! goes on to both halves. Nodes are opened when they are larger than the way is long.
 
+use super::body::Body;
+use super::course::{Goal, Search};
 use super::descent::{BoxBounds, Node, Seen, Shift, above, of_children, rings};
+use super::facet::Facet;
 use super::field::Scratch;
 use super::hull::Hull;
 use super::owners::Owners;
 use super::piece::Piece;
 use super::question::Question;
+use super::section::Section;
 use super::stretch::{Point, Stretch, about};
 use super::swath::Swath;
 use super::work::{Best, Setting};
@@ -137,17 +141,32 @@ impl Place {
     }
 }
 
+/// Something that may be in the way.
+#[derive(Clone, Copy)]
+enum Left {
+    Node(Node),
+    Part(Part),
+}
+
+/// A triangle, or a part of one, in the part's frame and unit.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub(super) index: u32,
+    pub(super) piece: Piece,
+}
+
 /// The search for what is in the way.
 #[derive(Default)]
 pub(super) struct Sweeper {
     view: View,
     ends: [View; 2],
     /// What may be in the way, of all stretches that are being looked at.
-    left: Vec<Node>,
+    left: Vec<Left>,
     stack: Vec<Node>,
     /// Triangles that are yet to be looked at, eight at a time.
-    some: Vec<u32>,
+    some: Vec<Part>,
     swath: Swath,
+    search: Search,
     scratch: Scratch,
     pieces: Vec<Piece>,
     budget: u32,
@@ -157,7 +176,7 @@ impl Sweeper {
     /// Looks at a whole motion; `None` if nothing is deeper on the way.
     pub(super) fn run(&mut self, task: &Task<'_>, budget: u32) -> Option<Stop> {
         self.left.clear();
-        self.left.push(Node { level: 0, index: 0, bound: f32::INFINITY });
+        self.left.push(Left::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
         self.stretch(task, [0.0, 1.0], 0)
     }
@@ -205,21 +224,27 @@ impl Sweeper {
         self.stack.clear();
         self.some.clear();
         for at in list {
-            self.stack.push(self.left[at]);
+            match self.left[at] {
+                Left::Node(node) => self.stack.push(node),
+                Left::Part(part) => {
+                    if let Some(stop) = self.add(task, stretch, part) {
+                        return Some(stop);
+                    }
+                }
+            }
             while let Some(node) = self.stack.pop() {
                 if self.budget == 0 {
                     return Some(Stop::Spent { at: stretch.from });
                 }
                 self.budget -= 1;
                 if node.is_triangle(facets) {
-                    self.some.push(node.index);
-                    if self.some.len() == LANES
-                        && let Some(stop) = self.triangles(task, stretch)
-                    {
+                    let piece = Piece::new(facets.corners[node.index as usize]);
+                    let part = Part { index: node.index, piece };
+                    if let Some(stop) = self.add(task, stretch, part) {
                         return Some(stop);
                     }
                 } else if node.size(facets) * setting.sight.unit < small {
-                    self.left.push(node);
+                    self.left.push(Left::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
                     let keep = task.keep() as f32;
@@ -240,16 +265,31 @@ impl Sweeper {
         self.triangles(task, stretch)
     }
 
+    /// Adds a part of a triangle to the batch. Of one that is large beside the tool the way is far from
+    /// straight, so that it is halved.
+    fn add(&mut self, task: &Task<'_>, stretch: &Stretch, part: Part) -> Option<Stop> {
+        if stretch.turns() && part.piece.longest() > 4.0 * task.setting.size * task.setting.length {
+            for piece in part.piece.halves() {
+                if let Some(stop) = self.add(task, stretch, Part { piece, ..part }) {
+                    return Some(stop);
+                }
+            }
+            return None;
+        }
+        self.some.push(part);
+        if self.some.len() == LANES { self.triangles(task, stretch) } else { None }
+    }
+
     /// Adds to the list which triangles of the batch are left.
     fn triangles(&mut self, task: &Task<'_>, stretch: &Stretch) -> Option<Stop> {
         let Task { setting, question, .. } = *task;
         let level = task.setting.level;
         let count = self.some.len();
-        self.swath.begin(setting.facets, stretch, task.keep(), &self.some);
-        self.some.clear();
+        self.swath.begin(stretch, task.keep(), &self.some);
         let above = task.above();
         self.swath.bound(level, &question.exact, above);
         if !self.swath.bounds[..count].iter().any(|bound| *bound > above || bound.is_nan()) {
+            self.some.clear();
             return None;
         }
         self.swath.middle.bound(level, &question.exact, f64::NEG_INFINITY);
@@ -275,20 +315,58 @@ impl Sweeper {
                     Passes::Open => true,
                 };
             if left {
-                self.left.push(Node::of_triangle(setting.facets, index));
+                self.left.push(Left::Part(self.some[lane]));
             }
         }
+        self.some.clear();
         None
     }
 
     /// Whether no place of a triangle is so deep, or so near, that after going so far it may be too deep.
-    /// It is halved until all of it passes, or what does not is small beside the way.
     fn passes(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
+        let Task { setting, question, .. } = *task;
+        match &setting.body {
+            Body::Profile(section) if question.owners.all() || question.limit < 0.0 => {
+                self.along(task, section, &Facet::new(corners), goes)
+            }
+            _ => self.halved(task, corners, goes),
+        }
+    }
+
+    /// The same by the ways of a triangle on which it is deepest, or nearest.
+    fn along(&mut self, task: &Task<'_>, section: &Section, facet: &Facet, goes: f64) -> Passes {
+        let goes = goes + facet.skew + task.error;
+        let least = task.wanted() - goes;
+        let (tolerance, enough, budget) = (0.25 * goes, f64::INFINITY, self.budget);
+        self.search.begin(Goal { least, tolerance, enough, budget });
+        let asked = (section, &task.question.owners);
+        let mut found = None;
+        for course in facet.courses() {
+            let deepest = if least < 0.0 {
+                self.search.outside(asked, &course)
+            } else {
+                self.search.inside(asked, &course)
+            };
+            found = deepest.map(|deepest| course.point(deepest.t)).or(found);
+        }
+        self.budget = self.search.left();
+        let Some(point) = found else {
+            return if self.search.open() { Passes::Open } else { Passes::Yes };
+        };
+        let here = task.depth(&mut self.scratch, point);
+        if task.too_deep(&here) { Passes::Too(here) } else { Passes::Open }
+    }
+
+    /// The same by its parts: it is halved until all of it passes, or what does not is small beside the
+    /// way.
+    fn halved(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
         let (body, owners) = (&task.setting.body, &task.question.owners);
         self.pieces.clear();
         self.pieces.push(Piece::new(corners));
+        let mut looks = 0;
         while let Some(piece) = self.pieces.pop() {
-            if self.budget == 0 {
+            looks += 1;
+            if self.budget == 0 || looks > LOOKS {
                 return Passes::Open;
             }
             self.budget -= 1;
@@ -317,6 +395,9 @@ enum Passes {
     Too(Place),
     Open,
 }
+
+/// How many pieces of a triangle are looked at before time is halved instead.
+const LOOKS: u32 = 1 << 12;
 
 /// A piece of a triangle that is smaller than this part of its way is not halved.
 const SMALL: f64 = 0.125;

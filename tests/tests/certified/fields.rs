@@ -124,12 +124,13 @@ fn every_tool_of_the_library_is_certified() {
 }
 
 #[test]
-fn a_tool_whose_depth_is_too_steep_is_refused() {
-    let text =
-        "tool Steep { units mm; tip z = -1; region all as body cutting where hypot(d, z) <= 1 {
-        depth: sqrt(1 - hypot(d, z)); } niceness cutting: 1; }";
-    let tool = Interpreted::parse(&Source::new("steep.tool", text)).expect("a tool");
+fn a_tool_whose_depth_jumps_is_refused() {
+    let text = "tool Jump { units mm;
+        region low as body cutting where d <= 2, 0 <= z, z <= 1 { depth: min(z, 2 - d); }
+        region high as body cutting where d <= 2, 1 <= z, z <= 3 { depth: min(3 - z, 2 - d); }
+        niceness cutting: 1; }";
+    let tool = Interpreted::parse(&Source::new("jump.tool", text)).expect("a tool");
     let facets = Facets::new(&super::plate());
     let refused = Certifier::new(&facets, &tool).err().expect("a refusal").to_string();
-    assert!(refused.contains("Steep") && refused.contains("profile"), "{refused}");
+    assert!(refused.contains("Jump") && refused.contains("profile"), "{refused}");
 }
