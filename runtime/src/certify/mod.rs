@@ -14,43 +14,28 @@
 //! answers are widened by that. Thin triangles are known less well: their *skew* is added.
 
 mod answer;
-mod batch;
 mod body;
-mod course;
-mod descent;
-mod facet;
-mod facets;
-mod feature;
-mod field;
-mod flat;
-mod hull;
-mod nearest;
-mod owners;
-mod piece;
+mod bounds;
+mod part;
 mod question;
-mod section;
-mod shell;
-mod stretch;
-mod swath;
 mod sweep;
-mod swept;
-mod winding;
+mod triangle;
 mod work;
 
 pub use answer::{AllowanceError, Clear, Clearance, Penetration, Sweep, Uncertified, Witness};
-pub use facets::Facets;
+pub use part::Facets;
 
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tool::{Card, Shape, Tool};
 use crate::tree::Sight;
 use body::Body;
-use course::Goal;
+use body::field::Field;
+use body::section::Section;
 use fearless_simd::Level;
-use field::Field;
 use question::Question;
-use section::Section;
 use sweep::{Stop, Sweeper, Task};
+use triangle::course::Goal;
 use work::{Setting, Work};
 
 /// A tool beside a part's triangles, ready to be asked what is proved at one pose after another.

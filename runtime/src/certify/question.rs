@@ -1,24 +1,24 @@
 //! What is asked of a tool: how deep some of its surfaces are in a part, or how near to it.
 
-use super::field::{Field, Scratch};
-use super::hull::Hull;
-use super::owners::Owners;
-use super::piece::Point;
-use super::section::Section;
-use super::shell::Shell;
+use crate::certify::body::field::{Field, Scratch};
+use crate::certify::body::owners::Owners;
+use crate::certify::body::section::Section;
+use crate::certify::bounds::hull::Hull;
+use crate::certify::bounds::shell::Shell;
+use crate::certify::triangle::piece::Point;
 use crate::tool::{Card, Shape};
 
 /// A question, and what bounds its answer.
-pub(super) struct Question {
-    pub(super) owners: Owners,
-    pub(super) hull: Hull<f32>,
-    pub(super) exact: Hull<f64>,
-    pub(super) shell: Shell,
+pub(crate) struct Question {
+    pub(crate) owners: Owners,
+    pub(crate) hull: Hull<f32>,
+    pub(crate) exact: Hull<f64>,
+    pub(crate) shell: Shell,
     /// How deep the owners may be; below 0, how far they have to keep.
-    pub(super) limit: f64,
+    pub(crate) limit: f64,
     /// Places that may not be in the part either, and how deep they are: one of each stretch of the axis
     /// that the owners have.
-    pub(super) cores: Vec<(Point, f64)>,
+    pub(crate) cores: Vec<(Point, f64)>,
 }
 
 /// Of how many places of the axis cores are chosen.
@@ -42,7 +42,7 @@ fn cores(places: impl Iterator<Item = (Point, Option<f64>)>, limit: f64) -> Vec<
 
 impl Question {
     /// Of the features of some surfaces; `margin` is how far `f32` takes a place.
-    pub(super) fn new(
+    pub(crate) fn new(
         section: &Section,
         margin: f64,
         limit: f64,
@@ -69,7 +69,7 @@ impl Question {
     }
 
     /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.
-    pub(super) fn of_field(card: &Card, field: &Field<'_>, errors: [f64; 2]) -> Question {
+    pub(crate) fn of_field(card: &Card, field: &Field<'_>, errors: [f64; 2]) -> Question {
         let [low, high] = card.reach();
         // A solid need not have the axis in it.
         let across = match card.shape {
@@ -106,7 +106,7 @@ impl Question {
 
     /// What allowances of surfaces come to, each in its place of the card's list: of all surfaces that
     /// may be as deep one question, and one of those that have to keep as far.
-    pub(super) fn all(section: &Section, margin: f64, allowed: &[f64]) -> Vec<Question> {
+    pub(crate) fn all(section: &Section, margin: f64, allowed: &[f64]) -> Vec<Question> {
         let depths =
             allowed.iter().map(|allowed| allowed.max(0.0)).filter(|depth| depth.is_finite());
         let gaps = allowed.iter().copied().filter(|allowed| *allowed < 0.0);

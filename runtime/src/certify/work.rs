@@ -1,43 +1,43 @@
 //! The search of a part's triangles, and what it keeps from question to question.
 
-use super::answer::Witness;
-use super::batch::Batch;
-use super::body::Body;
-use super::course::{Found, Goal, Search};
-use super::descent::Descent;
-use super::facet::Facet;
-use super::facets::Facets;
-use super::field::Scratch;
-use super::question::Question;
+use crate::certify::answer::Witness;
+use crate::certify::body::Body;
+use crate::certify::body::field::Scratch;
+use crate::certify::bounds::batch::Batch;
+use crate::certify::bounds::descent::Descent;
+use crate::certify::part::Facets;
+use crate::certify::question::Question;
+use crate::certify::triangle::course::{Found, Goal, Search};
+use crate::certify::triangle::facet::Facet;
 use crate::pose::Pose;
 use crate::tree::{Sight, View};
 use fearless_simd::Level;
 use nalgebra::Vector3;
 
 /// A tool beside a part: what is the same for all questions. Lengths are in the tool's unit.
-pub(super) struct Setting<'a> {
-    pub(super) facets: &'a Facets,
-    pub(super) body: Body<'a>,
+pub(crate) struct Setting<'a> {
+    pub(crate) facets: &'a Facets,
+    pub(crate) body: Body<'a>,
     /// How far it reaches from its tip.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Whether what is said of places outside is their distance.
-    pub(super) exact: bool,
-    pub(super) sight: Sight,
-    pub(super) level: Level,
+    pub(crate) exact: bool,
+    pub(crate) sight: Sight,
+    pub(crate) level: Level,
     /// The tool's unit of length in the part's.
-    pub(super) length: f64,
+    pub(crate) length: f64,
     /// How far a place is known.
-    pub(super) error: f64,
+    pub(crate) error: f64,
 }
 
 impl Setting<'_> {
     /// Looks at the part from a pose; whether the tool may reach it.
-    pub(super) fn look(&self, work: &mut Work, pose: &Pose) -> bool {
+    pub(crate) fn look(&self, work: &mut Work, pose: &Pose) -> bool {
         self.sight.look(&self.facets.frame, pose, &mut work.view)
     }
 
     /// A place as people are told it.
-    pub(super) fn witness(&self, best: &Best, pose: &Pose) -> Witness {
+    pub(crate) fn witness(&self, best: &Best, pose: &Pose) -> Witness {
         Witness {
             point: pose.tip() + pose.rotation() * Vector3::from(best.point) * self.length,
             triangle: self.facets.ids[best.index as usize],
@@ -47,13 +47,13 @@ impl Setting<'_> {
 
     /// How far `f32` can take a bound: planes are as steep as 2, so that one errs by three times as much
     /// as a place, and a few roundings.
-    pub(super) fn margin(&self) -> f64 {
+    pub(crate) fn margin(&self) -> f64 {
         if self.sight.fits { 4.0 * self.body.steep() * self.sight.margin } else { f64::INFINITY }
     }
 
     /// Whether what of the tool may not be deeper than its limit and a tolerance is wholly inside the part, if
     /// that has an inside; no triangle is so deep.
-    pub(super) fn within(&self, rules: &[Question], pose: &Pose, tolerance: f64) -> Option<bool> {
+    pub(crate) fn within(&self, rules: &[Question], pose: &Pose, tolerance: f64) -> Option<bool> {
         for rule in rules {
             for (core, depth) in &rule.cores {
                 let place = pose.tip() + pose.rotation() * Vector3::from(*core) * self.length;
@@ -68,25 +68,25 @@ impl Setting<'_> {
 
 /// What a search is at, or has found.
 #[derive(Default)]
-pub(super) struct Work {
-    pub(super) view: View,
-    pub(super) search: Search,
-    pub(super) descent: Descent,
+pub(crate) struct Work {
+    pub(crate) view: View,
+    pub(crate) search: Search,
+    pub(crate) descent: Descent,
     batch: Batch,
     scratch: Scratch,
-    pub(super) best: Option<Best>,
+    pub(crate) best: Option<Best>,
     /// The most skew of a triangle that was looked at.
-    pub(super) skew: f64,
+    pub(crate) skew: f64,
     /// Where the last question ended, if anywhere.
     last: Option<u32>,
 }
 
 /// The deepest place so far, in the tool's frame.
 #[derive(Clone, Copy)]
-pub(super) struct Best {
-    pub(super) point: [f64; 3],
-    pub(super) feature: usize,
-    pub(super) index: u32,
+pub(crate) struct Best {
+    pub(crate) point: [f64; 3],
+    pub(crate) feature: usize,
+    pub(crate) index: u32,
 }
 
 /// Where places are looked for: inside the tool, or outside while none is inside.
@@ -98,7 +98,7 @@ enum Side {
 
 impl Work {
     /// Searches for the deepest place.
-    pub(super) fn inside(
+    pub(crate) fn inside(
         &mut self,
         of: &Setting<'_>,
         question: &Question,
@@ -121,7 +121,7 @@ impl Work {
     }
 
     /// Searches for the nearest place, if that is outside; the part was looked at.
-    pub(super) fn outside(
+    pub(crate) fn outside(
         &mut self,
         of: &Setting<'_>,
         question: &Question,
@@ -139,7 +139,7 @@ impl Work {
     }
 
     /// How far the part's middle is at most.
-    pub(super) fn far(&self) -> f64 {
+    pub(crate) fn far(&self) -> f64 {
         self.view.origin.iter().fold(0.0, |far: f64, part| far.max(f64::from(part.abs())))
     }
 

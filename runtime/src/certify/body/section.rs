@@ -4,49 +4,49 @@
 //! Places are `[d, z]` in the tool's frame and unit. The profile is a function of z, so that a slab
 //! holds what lies between the axis and one piece, its *side*.
 
-use super::feature::{Feature, Place, Triangle, cross, dot, minus, norm, quarters};
-use super::owners::Owners;
+use crate::certify::body::feature::{Feature, Place, Triangle, cross, dot, minus, norm, quarters};
+use crate::certify::body::owners::Owners;
 use crate::tool::Card;
 
 /// What lies between two heights.
 #[derive(Clone, Debug)]
-pub(super) struct Slab {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(crate) struct Slab {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
     /// The feature that bounds it away from the axis.
-    pub(super) side: usize,
+    pub(crate) side: usize,
     /// The features that can be the nearest to a place in it.
     near: Vec<usize>,
     /// The largest radius.
-    pub(super) radius: f64,
+    pub(crate) radius: f64,
     /// From where to where along the line of its side a foot is on the surface or outside the tool,
     /// so that depth is no more than the distance from that line.
-    pub(super) feet: [f64; 2],
+    pub(crate) feet: [f64; 2],
 }
 
 /// The profile of a tool.
 #[derive(Clone, Debug)]
-pub(super) struct Section {
-    pub(super) features: Vec<Feature>,
-    pub(super) slabs: Vec<Slab>,
+pub(crate) struct Section {
+    pub(crate) features: Vec<Feature>,
+    pub(crate) slabs: Vec<Slab>,
     /// How far it reaches from the tip.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// How far heights are known: slabs are taken to reach that much farther.
-    pub(super) error: f64,
+    pub(crate) error: f64,
 }
 
 /// How deep a place is, and how that changes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Depth {
+pub(crate) struct Depth {
     /// The depth; outside, something less than 0.
-    pub(super) value: f64,
-    pub(super) gradient: Place,
-    pub(super) feature: usize,
+    pub(crate) value: f64,
+    pub(crate) gradient: Place,
+    pub(crate) feature: usize,
 }
 
 impl Section {
     /// The section of a tool with a profile; `None` where that is not a function of z.
-    pub(super) fn new(card: &Card, error: f64) -> Option<Section> {
+    pub(crate) fn new(card: &Card, error: f64) -> Option<Section> {
         let features: Vec<Feature> = card.outline.iter().flat_map(quarters).collect();
         let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
         let level = 4.0 * f64::EPSILON * size;
@@ -95,7 +95,7 @@ impl Section {
 
     /// Whether no place of a slab is deeper than its distance from a line that touches the slab's side:
     /// the feet of all are on the surface or outside.
-    pub(super) fn covers(&self, line: &Feature, slab: usize) -> bool {
+    pub(crate) fn covers(&self, line: &Feature, slab: usize) -> bool {
         let Slab { low, high, side, .. } = self.slabs[slab];
         let [from, to] = self.feet(line, slab);
         let ends = self.features[side].ends;
@@ -107,13 +107,13 @@ impl Section {
     }
 
     /// The lowest and the highest place's height.
-    pub(super) fn reach(&self) -> [f64; 2] {
+    pub(crate) fn reach(&self) -> [f64; 2] {
         [self.slabs[0].low, self.slabs[self.slabs.len() - 1].high]
     }
 
     /// The reflex corners that can be the nearest to places of a slab, and whether a level piece goes out
     /// from each.
-    pub(super) fn reflex(&self, slab: &Slab) -> impl Iterator<Item = (Place, bool)> {
+    pub(crate) fn reflex(&self, slab: &Slab) -> impl Iterator<Item = (Place, bool)> {
         let pairs = self.features.windows(2).filter(|pair| {
             let [before, after] = [pair[0].heading(1), pair[1].heading(0)];
             cross(before, after) < -1e-9
@@ -126,12 +126,12 @@ impl Section {
     }
 
     /// The slabs from the first that reaches a height.
-    pub(super) fn from(&self, z: f64) -> &[Slab] {
+    pub(crate) fn from(&self, z: f64) -> &[Slab] {
         &self.slabs[self.slabs.partition_point(|slab| slab.high + self.error < z)..]
     }
 
     /// Whether a place is inside or on the surface.
-    pub(super) fn contains(&self, p: Place) -> bool {
+    pub(crate) fn contains(&self, p: Place) -> bool {
         let inside = |slab: &Slab| {
             (slab.low..=slab.high).contains(&p[1]) && self.features[slab.side].over(p) >= 0.0
         };
@@ -139,7 +139,7 @@ impl Section {
     }
 
     /// How deep a place is; below 0 or nothing outside.
-    pub(super) fn depth_at(&self, owners: &Owners, p: Place) -> Option<Depth> {
+    pub(crate) fn depth_at(&self, owners: &Owners, p: Place) -> Option<Depth> {
         let slab = self.from(p[1]).first().filter(|slab| slab.low - self.error <= p[1])?;
         let depth = self.depth(owners, slab, p);
         // What is level belongs to the slabs on both its sides.
@@ -151,13 +151,13 @@ impl Section {
     }
 
     /// How deep a place is; outside, the negative of its distance.
-    pub(super) fn signed(&self, p: Place) -> f64 {
+    pub(crate) fn signed(&self, p: Place) -> f64 {
         let (value, _) = self.nearest(0..self.features.len(), p);
         if self.contains(p) { value } else { -value }
     }
 
     /// Whether owners own no place that is no farther than `goes` from one that is so deep.
-    pub(super) fn far_from(&self, owners: &Owners, p: Place, depth: f64, goes: f64) -> bool {
+    pub(crate) fn far_from(&self, owners: &Owners, p: Place, depth: f64, goes: f64) -> bool {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
             .map(|way| [0, 1].map(|k| p[k] + goes * way[k]));
         !owners.all()
@@ -168,7 +168,7 @@ impl Section {
 
     /// How deep a place in a slab is.
     #[inline]
-    pub(super) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
+    pub(crate) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
         let side = &self.features[slab.side];
         let over = side.over(p);
         if over < 0.0 {
@@ -190,7 +190,7 @@ impl Section {
     /// No less than the depth of any place of a slab in a triangle; below 0 if none is inside. What is
     /// not more than `enough` need not be known well.
     #[inline]
-    pub(super) fn at_most(
+    pub(crate) fn at_most(
         &self,
         owners: &Owners,
         slab: &Slab,
@@ -223,7 +223,7 @@ impl Section {
 
     /// The distance of a place from the owners, as a depth: less than 0.
     #[inline]
-    pub(super) fn distance(&self, owners: &Owners, p: Place) -> Depth {
+    pub(crate) fn distance(&self, owners: &Owners, p: Place) -> Depth {
         let (value, feature) = self.nearest(self.owned(owners), p);
         let gradient = self.features[feature].outward(p).map(|part| -part);
         Depth { value: -value, gradient, feature }
@@ -232,7 +232,7 @@ impl Section {
     /// No less than the negative distance of any place in a triangle from the owners. What is not more
     /// than `best` need not be known well.
     #[inline]
-    pub(super) fn no_nearer(&self, owners: &Owners, triangle: &Triangle, best: f64) -> f64 {
+    pub(crate) fn no_nearer(&self, owners: &Owners, triangle: &Triangle, best: f64) -> f64 {
         let [first, second, middle] = *triangle;
         let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
         let mut bound = f64::NEG_INFINITY;
@@ -248,7 +248,7 @@ impl Section {
 
     /// Whether features beside another are nearer to all places of a triangle, a rectangle or the like: its
     /// nearest point is an end that it shares, and along the feature beside it is yet nearer.
-    pub(super) fn behind(&self, feature: usize, corners: &[Place]) -> bool {
+    pub(crate) fn behind(&self, feature: usize, corners: &[Place]) -> bool {
         let Some(ends) = self.features[feature].at_ends(corners) else { return false };
         let nearer = |end: usize| {
             let beside = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
@@ -263,7 +263,7 @@ impl Section {
     }
 
     /// Whether one feature goes on straight into another.
-    pub(super) fn smooth(&self, feature: usize, next: usize) -> bool {
+    pub(crate) fn smooth(&self, feature: usize, next: usize) -> bool {
         let joint = |a: usize, b: usize| {
             a + 1 == b
                 && cross(self.features[a].heading(1), self.features[b].heading(0)).abs() < 1e-9
@@ -271,7 +271,7 @@ impl Section {
         joint(feature, next) || joint(next, feature)
     }
 
-    pub(super) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
+    pub(crate) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
         (0..self.features.len()).filter(|feature| owners.own(*feature))
     }
 

@@ -1,20 +1,20 @@
 //! Which of a tool's features are asked about: those that own a place are the nearest to it.
 
-use super::feature::{Place, minus, norm};
-use super::section::{Section, Slab};
+use crate::certify::body::feature::{Place, minus, norm};
+use crate::certify::body::section::{Section, Slab};
 
 /// Features, by their places in the section's list.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Owners {
+pub(crate) struct Owners {
     /// `None` for all of them.
     some: Option<Vec<bool>>,
     /// Heights at which they own places that are deeper than all others about them that they own.
-    pub(super) peaks: Vec<f64>,
+    pub(crate) peaks: Vec<f64>,
 }
 
 impl Owners {
     /// The features of some surfaces.
-    pub(super) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
+    pub(crate) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let some: Vec<bool> = section.features.iter().map(|f| surfaces(f.surface)).collect();
         let some = some.contains(&false).then_some(some);
         let mut owners = Owners { some, peaks: Vec::new() };
@@ -30,18 +30,18 @@ impl Owners {
 
     /// Whether these are all features.
     #[inline]
-    pub(super) fn all(&self) -> bool {
+    pub(crate) fn all(&self) -> bool {
         self.some.is_none()
     }
 
     /// Whether a feature is one of them.
     #[inline]
-    pub(super) fn own(&self, feature: usize) -> bool {
+    pub(crate) fn own(&self, feature: usize) -> bool {
         self.some.as_ref().is_none_or(|some| some[feature])
     }
 
     /// Of each slab, between which heights these can own a place that is deeper than that.
-    pub(super) fn zones(&self, section: &Section, deeper: f64) -> Vec<Option<[f64; 2]>> {
+    pub(crate) fn zones(&self, section: &Section, deeper: f64) -> Vec<Option<[f64; 2]>> {
         let whole = |slab: &Slab| Some([slab.low, slab.high]);
         let zone = |slab| if self.all() { whole(slab) } else { self.zone(section, slab, deeper) };
         section.slabs.iter().map(zone).collect()

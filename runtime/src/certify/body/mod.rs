@@ -1,14 +1,19 @@
 //! What is known of a tool: its profile, or how deep places are and how fast that changes.
 
-use super::feature::Place;
-use super::field::{Field, Scratch};
-use super::owners::Owners;
-use super::section::{Depth, Section};
+pub(crate) mod feature;
+pub(crate) mod field;
+pub(crate) mod owners;
+pub(crate) mod section;
+
+use crate::certify::body::feature::Place;
+use crate::certify::body::field::{Field, Scratch};
+use crate::certify::body::owners::Owners;
+use crate::certify::body::section::{Depth, Section};
 
 type Point = [f64; 3];
 
 /// A tool, as its depth is known.
-pub(super) enum Body<'a> {
+pub(crate) enum Body<'a> {
     /// Depth is the distance from its profile.
     Profile(Section),
     /// Depth is what its file says.
@@ -17,7 +22,7 @@ pub(super) enum Body<'a> {
 
 impl Body<'_> {
     /// How fast depth changes at most.
-    pub(super) fn steep(&self) -> f64 {
+    pub(crate) fn steep(&self) -> f64 {
         match self {
             Body::Profile(_) => 1.0,
             Body::Field(field) => field.steep,
@@ -25,7 +30,7 @@ impl Body<'_> {
     }
 
     /// The surface that a feature is of.
-    pub(super) fn surface(&self, feature: usize) -> usize {
+    pub(crate) fn surface(&self, feature: usize) -> usize {
         match self {
             Body::Profile(section) => section.features[feature].surface,
             Body::Field(_) => feature,
@@ -33,7 +38,7 @@ impl Body<'_> {
     }
 
     /// How deep owners are at a place, or less than 0.
-    pub(super) fn depth(
+    pub(crate) fn depth(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,
@@ -46,7 +51,7 @@ impl Body<'_> {
     }
 
     /// How near owners are to a place outside, as depth: no more than 0.
-    pub(super) fn distance(&self, scratch: &mut Scratch, owners: &Owners, point: Point) -> Depth {
+    pub(crate) fn distance(&self, scratch: &mut Scratch, owners: &Owners, point: Point) -> Depth {
         match self {
             Body::Profile(section) => section.distance(owners, place(point)),
             Body::Field(field) => {
@@ -58,7 +63,7 @@ impl Body<'_> {
 
     /// Whether no place of the tool no farther than `goes` from a place is inside, deeper than `limit`
     /// and owned; or, if the limit is below 0, nearer to the owners than that.
-    pub(super) fn clears(
+    pub(crate) fn clears(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,

@@ -3,35 +3,35 @@
 use crate::tool::{Circle, Piece};
 
 /// A place in the half plane, `[d, z]`.
-pub(super) type Place = [f64; 2];
+pub(crate) type Place = [f64; 2];
 
 /// Three places. Of those that bound what lies between two ends, the third is the apex.
-pub(super) type Triangle = [Place; 3];
+pub(crate) type Triangle = [Place; 3];
 
 /// A piece, an arc no more than a quarter of its circle, so that it is monotone.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Feature {
-    pub(super) ends: [Place; 2],
+pub(crate) struct Feature {
+    pub(crate) ends: [Place; 2],
     /// From end to end: a unit vector.
-    pub(super) along: Place,
-    pub(super) length: f64,
-    pub(super) circle: Option<Circle>,
-    pub(super) surface: usize,
+    pub(crate) along: Place,
+    pub(crate) length: f64,
+    pub(crate) circle: Option<Circle>,
+    pub(crate) surface: usize,
 }
 
-pub(super) fn minus(a: Place, b: Place) -> Place {
+pub(crate) fn minus(a: Place, b: Place) -> Place {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-pub(super) fn dot(a: Place, b: Place) -> f64 {
+pub(crate) fn dot(a: Place, b: Place) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-pub(super) fn cross(a: Place, b: Place) -> f64 {
+pub(crate) fn cross(a: Place, b: Place) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-pub(super) fn norm(a: Place) -> f64 {
+pub(crate) fn norm(a: Place) -> f64 {
     dot(a, a).sqrt()
 }
 
@@ -52,14 +52,14 @@ impl Feature {
     }
 
     /// The direction of travel at its beginning or end.
-    pub(super) fn heading(&self, end: usize) -> Place {
+    pub(crate) fn heading(&self, end: usize) -> Place {
         let Some(Circle { centre, radius, convex }) = self.circle else { return self.along };
         let [d, z] = minus(self.ends[end], centre).map(|part| part / radius);
         if convex { [-z, d] } else { [z, -d] }
     }
 
     /// The line itself, or one that touches a convex arc at its middle.
-    pub(super) fn tangent(&self) -> Option<Feature> {
+    pub(crate) fn tangent(&self) -> Option<Feature> {
         match self.circle {
             None => Some(*self),
             Some(Circle { centre, radius, convex: true }) => {
@@ -72,7 +72,7 @@ impl Feature {
     }
 
     /// Height of the centre and radius of a convex arc about the axis, in a tool of that size.
-    pub(super) fn ball(&self, size: f64) -> Option<[f64; 2]> {
+    pub(crate) fn ball(&self, size: f64) -> Option<[f64; 2]> {
         let about_axis = |circle: &Circle| circle.convex && circle.centre[0].abs() <= 1e-9 * size;
         self.circle.filter(about_axis).map(|circle| [circle.centre[1], circle.radius])
     }
@@ -80,7 +80,7 @@ impl Feature {
     /// How far a place is on the tool's side of this, of the places of its heights: at least 0 just
     /// inside. A convex arc is taken to go on level toward the axis, a hollow one away from it.
     #[inline]
-    pub(super) fn over(&self, p: Place) -> f64 {
+    pub(crate) fn over(&self, p: Place) -> f64 {
         let Some(Circle { centre, radius, convex }) = self.circle else {
             return cross(self.along, minus(p, self.ends[0]));
         };
@@ -95,7 +95,7 @@ impl Feature {
     }
 
     /// The gradient of [`Feature::over`].
-    pub(super) fn inward(&self, p: Place) -> Place {
+    pub(crate) fn inward(&self, p: Place) -> Place {
         let Some(Circle { centre, convex, .. }) = self.circle else {
             return [-self.along[1], self.along[0]];
         };
@@ -107,7 +107,7 @@ impl Feature {
 
     /// No less than [`Feature::over`] at any place in a triangle.
     #[inline]
-    pub(super) fn over_at_most(&self, triangle: &Triangle) -> f64 {
+    pub(crate) fn over_at_most(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
             // Tangents that touch toward the axis bound nothing: the tool goes on there.
             Some(circle) if circle.convex => {
@@ -129,7 +129,7 @@ impl Feature {
 
     /// At which ends the nearest point of places of a triangle, a rectangle or the like may be: `None` unless
     /// it surely is at one of them.
-    pub(super) fn at_ends(&self, corners: &[Place]) -> Option<[bool; 2]> {
+    pub(crate) fn at_ends(&self, corners: &[Place]) -> Option<[bool; 2]> {
         let [first, last] = self.ends;
         let middle = [0, 1].map(|k| f64::midpoint(first[k], last[k]));
         let all = |beyond: &dyn Fn(Place) -> f64| corners.iter().all(|p| beyond(*p) > 0.0);
@@ -166,7 +166,7 @@ impl Feature {
     /// Whether [`Feature::over`] is the distance from the feature, below 0 beyond it, at all places of a
     /// triangle: their feet are `from` one place `to` another of a line, or on the arc.
     #[inline]
-    pub(super) fn square(&self, triangle: &Triangle, [from, to]: [f64; 2]) -> bool {
+    pub(crate) fn square(&self, triangle: &Triangle, [from, to]: [f64; 2]) -> bool {
         match &self.circle {
             None => triangle.iter().all(|p| {
                 let at = dot(self.along, minus(*p, self.ends[0]));
@@ -178,7 +178,7 @@ impl Feature {
 
     /// The nearest point.
     #[inline]
-    pub(super) fn foot(&self, p: Place) -> Place {
+    pub(crate) fn foot(&self, p: Place) -> Place {
         match &self.circle {
             None => {
                 let at = dot(self.along, minus(p, self.ends[0]));
@@ -208,7 +208,7 @@ impl Feature {
 
     /// The distance.
     #[inline]
-    pub(super) fn away(&self, p: Place) -> f64 {
+    pub(crate) fn away(&self, p: Place) -> f64 {
         match &self.circle {
             None => {
                 let off = minus(p, self.ends[0]);
@@ -232,7 +232,7 @@ impl Feature {
     }
 
     /// The gradient of [`Feature::away`].
-    pub(super) fn outward(&self, p: Place) -> Place {
+    pub(crate) fn outward(&self, p: Place) -> Place {
         let way = minus(p, self.foot(p));
         let far = norm(way);
         if far > 0.0 { way.map(|part| part / far) } else { self.inward(p) }
@@ -240,7 +240,7 @@ impl Feature {
 
     /// No less than the distance of any place in a triangle.
     #[inline]
-    pub(super) fn at_most(&self, triangle: &Triangle) -> f64 {
+    pub(crate) fn at_most(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
             // The distance from a convex set is convex.
             None => most(triangle.map(|p| self.away(p))),
@@ -257,7 +257,7 @@ impl Feature {
 
     /// No more than the distance of any place in a triangle.
     #[inline]
-    pub(super) fn at_least(&self, triangle: &Triangle) -> f64 {
+    pub(crate) fn at_least(&self, triangle: &Triangle) -> f64 {
         let [first, second, middle] = *triangle;
         // A distance changes by no more than the way.
         let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
@@ -304,7 +304,7 @@ fn below_tangents(circle: &Circle, triangle: &Triangle, touching: impl Fn(Place)
 }
 
 /// The features of a piece: an arc is cut where it is level or upright.
-pub(super) fn quarters(piece: &Piece) -> Vec<Feature> {
+pub(crate) fn quarters(piece: &Piece) -> Vec<Feature> {
     let Some(circle) = piece.circle else {
         return vec![Feature::new([piece.from, piece.to], None, piece.surface)];
     };

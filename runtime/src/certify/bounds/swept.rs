@@ -3,18 +3,20 @@
 //! In the tool's frame a triangle goes from one place to another, nearly straight: between, it is in the
 //! convex hull of both, but for how far its ways are curved.
 
-use super::hull::{Hull, Slab};
-use super::nearest::{Clip, Many, Near, Real, Space, across, choose, direction, most, to_ring};
+use crate::certify::bounds::hull::{Hull, Slab};
+use crate::certify::bounds::nearest::{
+    Clip, Many, Near, Real, Space, across, choose, direction, most, to_ring,
+};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask};
 
 /// The corners of a triangle at both ends of its way.
-pub(super) type Ends<V> = [Space<V>; 6];
+pub(crate) type Ends<V> = [Space<V>; 6];
 
 impl<R: Real> Hull<R> {
     /// No less than the depth of any place of the hulls of triangles at both ends of their way, or no
     /// farther from these than they `grow`; `middle` is where they are between.
     #[inline(always)]
-    pub(super) fn swept<S: Simd, V: Many<S, R>>(
+    pub(crate) fn swept<S: Simd, V: Many<S, R>>(
         &self,
         simd: S,
         (ends, middle): (&Ends<V>, &[Space<V>; 3]),

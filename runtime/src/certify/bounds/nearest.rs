@@ -6,10 +6,10 @@
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 /// Points side by side.
-pub(super) type Space<V> = [V; 3];
+pub(crate) type Space<V> = [V; 3];
 
 /// What there are vectors of.
-pub(super) trait Real: Copy + PartialOrd {
+pub(crate) trait Real: Copy + PartialOrd {
     /// A unit vector is made that long, so that rounding makes it no longer than 1.
     const SHORT: Self;
     /// The least number to divide by.
@@ -48,29 +48,29 @@ impl Real for f64 {
 }
 
 /// A vector of them.
-pub(super) trait Many<S: Simd, R>: SimdFloat<S, Element = R> {}
+pub(crate) trait Many<S: Simd, R>: SimdFloat<S, Element = R> {}
 impl<S: Simd, R, V: SimdFloat<S, Element = R>> Many<S, R> for V {}
 
 /// Where a triangle is nearest to the axis or a place on it.
-pub(super) struct Near<V> {
-    pub(super) place: Space<V>,
+pub(crate) struct Near<V> {
+    pub(crate) place: Space<V>,
     /// A direction away from the axis or the place, no longer than 1; 0 where it is on the triangle.
-    pub(super) way: Space<V>,
+    pub(crate) way: Space<V>,
 }
 
 #[inline(always)]
-pub(super) fn least<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
+pub(crate) fn least<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
     a.min(b).min(c)
 }
 
 #[inline(always)]
-pub(super) fn most<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
+pub(crate) fn most<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
     a.max(b).max(c)
 }
 
 /// The first where a mask says so.
 #[inline(always)]
-pub(super) fn choose<S: Simd, V: SimdBase<S>>(
+pub(crate) fn choose<S: Simd, V: SimdBase<S>>(
     mask: V::Mask,
     a: &Space<V>,
     b: &Space<V>,
@@ -135,7 +135,7 @@ fn on_edges<S: Simd, R: Real, V: Many<S, R>>(
 impl<V: Copy> Near<V> {
     /// Where triangles are nearest to the axis.
     #[inline(always)]
-    pub(super) fn to_axis<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3]) -> Near<V>
+    pub(crate) fn to_axis<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3]) -> Near<V>
     where
         V: Many<S, R>,
     {
@@ -154,7 +154,7 @@ impl<V: Copy> Near<V> {
 
     /// Where triangles are nearest to a place on the axis.
     #[inline(always)]
-    pub(super) fn to_place<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3], z: R) -> Near<V>
+    pub(crate) fn to_place<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3], z: R) -> Near<V>
     where
         V: Many<S, R>,
     {
@@ -189,7 +189,7 @@ impl<V: Copy> Near<V> {
 
 /// What triangles have between two heights: polygons, by which corners they keep and where their sides are
 /// cut. Cut at a height, what is below and what is above share the places of the cut.
-pub(super) struct Clip<V, M> {
+pub(crate) struct Clip<V, M> {
     kept: [M; 3],
     /// Of each side: where it is cut at the lower and at the upper height, and whether.
     cuts: [[(V, M); 2]; 3],
@@ -197,7 +197,7 @@ pub(super) struct Clip<V, M> {
 
 impl<V: Copy, M: Copy> Clip<V, M> {
     #[inline(always)]
-    pub(super) fn new<S: Simd, R: Real>(
+    pub(crate) fn new<S: Simd, R: Real>(
         simd: S,
         [a, b, c]: &[Space<V>; 3],
         [low, high]: [R; 2],
@@ -223,7 +223,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
 
     /// The most of something that is linear between corners.
     #[inline(always)]
-    pub(super) fn most<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
+    pub(crate) fn most<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
     where
         V: Many<S, R> + SimdBase<S, Mask = M>,
         M: SimdMask<S> + Select<V>,
@@ -243,7 +243,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
     /// The place at the lower height, or at the upper one where a mask says so, that is nearest to the
     /// axis.
     #[inline(always)]
-    pub(super) fn at_end<S: Simd, R: Real>(
+    pub(crate) fn at_end<S: Simd, R: Real>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
@@ -286,7 +286,7 @@ fn cut<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, at: V) -> (V, V::Mask)
 
 /// The direction of a place from one of the axis, no longer than 1.
 #[inline(always)]
-pub(super) fn direction<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn direction<S: Simd, R: Real, V: Many<S, R>>(
     simd: S,
     place: &Space<V>,
     z: V,
@@ -300,13 +300,13 @@ pub(super) fn direction<S: Simd, R: Real, V: Many<S, R>>(
 
 /// How far out corners are in a direction across the axis.
 #[inline(always)]
-pub(super) fn across<S: Simd, V: SimdBase<S>>([a, b, c]: &[Space<V>; 3], way: &Space<V>) -> [V; 3] {
+pub(crate) fn across<S: Simd, V: SimdBase<S>>([a, b, c]: &[Space<V>; 3], way: &Space<V>) -> [V; 3] {
     [a[0] * way[0] + a[1] * way[1], b[0] * way[0] + b[1] * way[1], c[0] * way[0] + c[1] * way[1]]
 }
 
 /// How far out corners are in a direction from a place of the axis.
 #[inline(always)]
-pub(super) fn beyond<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn beyond<S: Simd, R: Real, V: Many<S, R>>(
     simd: S,
     corners: &[Space<V>; 3],
     way: &Space<V>,
@@ -324,7 +324,7 @@ pub(super) fn beyond<S: Simd, R: Real, V: Many<S, R>>(
 
 /// How far corners are from the axis.
 #[inline(always)]
-pub(super) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> [V; 3] {
+pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> [V; 3] {
     [
         (a[0] * a[0] + a[1] * a[1]).sqrt(),
         (b[0] * b[0] + b[1] * b[1]).sqrt(),
@@ -336,7 +336,7 @@ pub(super) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> 
 /// between them it is no more than linear: `out` is no more, `far` no less than how far they are from the
 /// axis.
 #[inline(always)]
-pub(super) fn from_ring<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn from_ring<S: Simd, R: Real, V: Many<S, R>>(
     simd: S,
     [a, b, c]: &[Space<V>; 3],
     (out, far): (&[V; 3], &[V; 3]),
@@ -352,7 +352,7 @@ pub(super) fn from_ring<S: Simd, R: Real, V: Many<S, R>>(
 
 /// The most that is under two bounds at once, which are linear between corners, and where.
 #[inline(always)]
-pub(super) fn under_both<S: Simd, V: SimdFloat<S>>(
+pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     zero: V,
     corners: &[Space<V>; 3],
     first: &[V; 3],
@@ -382,7 +382,7 @@ pub(super) fn under_both<S: Simd, V: SimdFloat<S>>(
 }
 
 #[inline(always)]
-pub(super) fn to_ring<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn to_ring<S: Simd, R: Real, V: Many<S, R>>(
     simd: S,
     [out, far, z]: [V; 3],
     [d, height]: [V; 2],

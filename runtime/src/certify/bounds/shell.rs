@@ -1,16 +1,16 @@
 //! How near a tool is to boxes and triangles, 16 at a time, in `f32`.
 
-use super::descent::{Bounds, BoxBounds, Rings, rings};
-use super::feature::Feature;
-use super::nearest::{Near, Space, across, least, most};
-use super::owners::Owners;
-use super::section::Section;
+use crate::certify::body::feature::Feature;
+use crate::certify::body::owners::Owners;
+use crate::certify::body::section::Section;
+use crate::certify::bounds::descent::{Bounds, BoxBounds, Rings, rings};
+use crate::certify::bounds::nearest::{Near, Space, across, least, most};
 use crate::tool::Card;
 use crate::tree::{Boxes, View};
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 /// What holds a tool: for each slab a cylinder, and a ball where its side is one about the axis.
-pub(super) struct Shell {
+pub(crate) struct Shell {
     slabs: Vec<Slab>,
 }
 
@@ -24,7 +24,7 @@ struct Slab {
 
 impl Shell {
     /// Of a tool that is known by its field.
-    pub(super) fn about(card: &Card) -> Shell {
+    pub(crate) fn about(card: &Card) -> Shell {
         let slabs = card.envelope.iter().map(|slab| Slab {
             low: slab.low as f32,
             high: slab.high as f32,
@@ -35,7 +35,7 @@ impl Shell {
     }
 
     /// Of the features that are asked about.
-    pub(super) fn new(section: &Section, owners: &Owners) -> Shell {
+    pub(crate) fn new(section: &Section, owners: &Owners) -> Shell {
         let own = |(index, feature): (usize, &Feature)| {
             // What is level has no slab, and needs none where all have.
             let level = !section.slabs.iter().any(|slab| slab.side == index);

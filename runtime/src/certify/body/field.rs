@@ -3,23 +3,23 @@
 //! Depth changes by no more than `L` times the way, and so bounds what is near a place. A triangle is halved,
 //! longest side first, until nothing of it can be deeper than what was found.
 
-use super::course::Search;
-use super::piece::{Piece, Point};
-use super::section::Depth;
-use super::work::Best;
+use crate::certify::body::section::Depth;
+use crate::certify::triangle::course::Search;
+use crate::certify::triangle::piece::{Piece, Point};
+use crate::certify::work::Best;
 use crate::tool::{Ask, Felt, LANES, Points, Tool};
 use fearless_simd::Level;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// What is known of such a tool.
-pub(super) struct Field<'a> {
+pub(crate) struct Field<'a> {
     tool: &'a dyn Tool,
     /// `L`, at least 1.
-    pub(super) steep: f64,
+    pub(crate) steep: f64,
     /// How far a depth is known.
-    pub(super) error: f64,
-    pub(super) level: Level,
+    pub(crate) error: f64,
+    pub(crate) level: Level,
 }
 
 /// A part of a triangle, and how deep it is at most.
@@ -33,7 +33,7 @@ struct Held {
 
 /// What a search keeps from triangle to triangle.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(crate) struct Scratch {
     /// The deepest on top.
     pieces: BinaryHeap<Held>,
     points: Points,
@@ -62,20 +62,20 @@ impl Eq for Held {}
 
 impl Scratch {
     /// Holds a triangle that is to be looked at.
-    pub(super) fn hold(&mut self, corners: [Point; 3], index: u32) {
+    pub(crate) fn hold(&mut self, corners: [Point; 3], index: u32) {
         let bound = f64::INFINITY;
         self.pieces.push(Held { piece: Piece::new(corners), index, bound });
     }
 
     /// Lets go of all that is held.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.pieces.clear();
     }
 }
 
 impl<'a> Field<'a> {
     /// The field of a tool, if it is known how fast its depth changes.
-    pub(super) fn new(tool: &'a dyn Tool, level: Level) -> Option<Field<'a>> {
+    pub(crate) fn new(tool: &'a dyn Tool, level: Level) -> Option<Field<'a>> {
         let card = tool.card();
         let steep = card.depth.lipschitz?.max(1.0);
         let error = card.depth.rounding + 8.0 * f64::EPSILON * steep * card.size();
@@ -103,7 +103,7 @@ impl<'a> Field<'a> {
     }
 
     /// How deep a place is.
-    pub(super) fn depth(&self, scratch: &mut Scratch, point: Point) -> Depth {
+    pub(crate) fn depth(&self, scratch: &mut Scratch, point: Point) -> Depth {
         scratch.points.clear();
         scratch.points.push(point);
         self.depths(scratch, 1)[0]
@@ -111,7 +111,7 @@ impl<'a> Field<'a> {
 
     /// Looks at the pieces that are held, the deepest first: the deepest place that is deeper than the
     /// best, or outside, where the best is below 0, the nearest to the tool; then what is inside is at 0.
-    pub(super) fn look(
+    pub(crate) fn look(
         &self,
         search: &mut Search,
         scratch: &mut Scratch,

@@ -11,26 +11,26 @@ use crate::{Mesh, Unit};
 /// are edges, and are as deep as their points.
 #[derive(Clone, Debug)]
 pub struct Facets {
-    pub(super) frame: Frame,
+    pub(crate) frame: Frame,
     /// From the root's children down to the leaves' boxes.
-    pub(super) levels: Vec<Vec<Boxes>>,
+    pub(crate) levels: Vec<Vec<Boxes>>,
     /// Of each node of a level, and of each leaf behind the last.
-    pub(super) planes: Vec<Vec<Plane>>,
+    pub(crate) planes: Vec<Vec<Plane>>,
     /// The corners of 16 triangles.
-    pub(super) leaves: Vec<Corners>,
+    pub(crate) leaves: Vec<Corners>,
     /// Of each triangle, in the tree's order.
-    pub(super) corners: Vec<[[f64; 3]; 3]>,
+    pub(crate) corners: Vec<[[f64; 3]; 3]>,
     /// Their ids in the mesh.
-    pub(super) ids: Vec<u32>,
+    pub(crate) ids: Vec<u32>,
     unit: Unit,
     /// Whether it can be known what is inside.
-    pub(super) solid: bool,
+    pub(crate) solid: bool,
 }
 
 /// The first, second and third corners of 16 triangles from the middle of their box, coordinate by
 /// coordinate; what is not there is NaN.
 #[derive(Clone, Debug)]
-pub(super) struct Corners(pub(super) [[[f32; WIDTH]; 3]; 3]);
+pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
 
 impl Facets {
     /// The triangles of a mesh.
@@ -104,7 +104,7 @@ impl Facets {
     }
 
     /// How many children a node of a level has; behind the last level are leaves.
-    pub(super) fn children(&self, level: usize, node: usize) -> usize {
+    pub(crate) fn children(&self, level: usize, node: usize) -> usize {
         let below = match self.levels.len() - level.min(self.levels.len()) {
             0 => self.len(),
             1 => self.leaves.len(),

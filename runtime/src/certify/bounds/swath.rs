@@ -1,26 +1,26 @@
 //! Eight triangles on their way past the tool, side by side in `f64`.
 
-use super::batch::{Batch, Lanes, load};
-use super::hull::Hull;
-use super::stretch::{Stretch, about};
-use super::sweep::Part;
-use super::swept::Ends;
+use crate::certify::bounds::batch::{Batch, Lanes, load};
+use crate::certify::bounds::hull::Hull;
+use crate::certify::bounds::swept::Ends;
+use crate::certify::sweep::Part;
+use crate::certify::sweep::stretch::{Stretch, about};
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 /// Up to eight triangles at both ends of a stretch, and as they are in its middle.
 #[derive(Default)]
-pub(super) struct Swath {
-    pub(super) middle: Batch,
+pub(crate) struct Swath {
+    pub(crate) middle: Batch,
     ends: [[Lanes; 3]; 6],
     /// How far their ways are from straight, and how far they have to keep.
     grow: Lanes,
-    pub(super) bounds: Lanes,
+    pub(crate) bounds: Lanes,
 }
 
 impl Swath {
     /// Takes triangles that have to keep so far.
-    pub(super) fn begin(&mut self, stretch: &Stretch, keep: f64, parts: &[Part]) {
+    pub(crate) fn begin(&mut self, stretch: &Stretch, keep: f64, parts: &[Part]) {
         self.middle.indices.clear();
         self.middle.indices.extend(parts.iter().map(|part| part.index));
         for (lane, part) in parts.iter().enumerate() {
@@ -37,7 +37,7 @@ impl Swath {
     }
 
     /// Bounds how deep they come.
-    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
+    pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
         on_vectors!(level, simd => self.bound_on(simd, hull, wanted));
         // Without vectors nothing is known before their edges are looked at.
         self.bounds = [f64::INFINITY; LANES];

@@ -4,66 +4,28 @@
 //! far the part goes in the tool's frame and in which direction. What they rule out is gone; what they leave
 //! goes on to both halves. Nodes are opened when they are larger than the way is long.
 
-use super::body::Body;
-use super::course::{Goal, Search};
-use super::descent::{BoxBounds, Node, Seen, Shift, above, of_children, rings};
-use super::facet::Facet;
-use super::field::Scratch;
-use super::hull::Hull;
-use super::owners::Owners;
-use super::piece::Piece;
-use super::question::Question;
-use super::section::Section;
-use super::stretch::{Point, Stretch, about};
-use super::swath::Swath;
-use super::work::{Best, Setting};
-use crate::motion::Motion;
-use crate::tool::{LANES, on_vectors};
-use crate::tree::{Boxes, View, WIDTH};
-use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
+mod moving;
+pub(crate) mod stretch;
+mod task;
 
-/// A hull past which boxes move.
-struct Moving<'a> {
-    hull: &'a Hull<f32>,
-    shift: Shift,
-    keep: f32,
-    /// The part at the beginning and at the end.
-    ends: &'a [View; 2],
-}
-
-impl BoxBounds for Moving<'_> {
-    #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
-        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)))
-    }
-}
-
-/// Which triangles of a leaf may be more than wanted.
-fn of_leaf(level: Level, seen: Seen<'_, Moving<'_>>, node: Node, wanted: f32) -> u32 {
-    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted));
-    u32::MAX
-}
-
-#[inline(always)]
-fn of_leaf_on<S: Simd>(
-    simd: S,
-    (facets, moving, view): Seen<'_, Moving<'_>>,
-    node: Node,
-    wanted: f32,
-) -> u32 {
-    let [a, b, c] = node.corners(simd, facets, &moving.ends[0]);
-    let [d, e, f] = node.corners(simd, facets, &moving.ends[1]);
-    let middle = node.corners(simd, facets, view);
-    let [p, q, r] = &middle;
-    let far = (p[0] * p[0] + p[2] * p[2]).max(q[0] * q[0] + q[2] * q[2]);
-    let far = far.max(r[0] * r[0] + r[2] * r[2]).sqrt();
-    let grow = moving.shift.curve(simd, far) + moving.keep;
-    let ends = [a, b, c, d, e, f];
-    above(moving.hull.swept(simd, (&ends, &middle), grow, wanted), wanted)
-}
+use crate::certify::body::Body;
+use crate::certify::body::field::Scratch;
+use crate::certify::body::section::Section;
+use crate::certify::bounds::descent::{Node, of_children};
+use crate::certify::bounds::swath::Swath;
+use crate::certify::sweep::stretch::{Point, Stretch, about};
+use crate::certify::triangle::course::{Goal, Search};
+use crate::certify::triangle::facet::Facet;
+use crate::certify::triangle::piece::Piece;
+use crate::certify::work::Best;
+use crate::tool::LANES;
+use crate::tree::{View, WIDTH};
+use moving::{Moving, of_leaf};
+use task::Place;
+pub(crate) use task::Task;
 
 /// How a sweep ends before all of it is proved.
-pub(super) enum Stop {
+pub(crate) enum Stop {
     /// Something is deeper than is allowed at this part of the way.
     Deeper { at: f64, best: Best },
     /// The budget was spent there.
@@ -72,72 +34,13 @@ pub(super) enum Stop {
 
 impl Stop {
     /// Whether it says something worse: what is too deep, or what comes first.
-    pub(super) fn before(&self, other: &Stop) -> bool {
+    pub(crate) fn before(&self, other: &Stop) -> bool {
         match (self, other) {
             (Stop::Deeper { .. }, Stop::Spent { .. }) => true,
             (Stop::Spent { .. }, Stop::Deeper { .. }) => false,
             (Stop::Deeper { at, .. }, Stop::Deeper { at: other, .. })
             | (Stop::Spent { at }, Stop::Spent { at: other }) => at < other,
         }
-    }
-}
-
-/// What a sweep is about.
-pub(super) struct Task<'a> {
-    pub(super) setting: &'a Setting<'a>,
-    pub(super) question: &'a Question,
-    pub(super) motion: &'a Motion,
-    /// How far a place is known on this way.
-    pub(super) error: f64,
-    /// How much deeper than its limit is not worth telling.
-    pub(super) tolerance: f64,
-}
-
-impl Task<'_> {
-    /// What is no deeper need not be looked at.
-    fn wanted(&self) -> f64 {
-        self.question.limit + self.tolerance
-    }
-
-    /// The same of what has grown by as much as is to be kept.
-    fn above(&self) -> f64 {
-        self.wanted() + self.keep() - self.error
-    }
-
-    /// How far the owners have to keep.
-    fn keep(&self) -> f64 {
-        (-self.question.limit).max(0.0)
-    }
-
-    /// How deep a place is, or how near, as depth less than 0.
-    fn depth(&self, scratch: &mut Scratch, point: Point) -> Place {
-        let (body, owners) = (&self.setting.body, &self.question.owners);
-        let inside = if self.question.limit < 0.0 {
-            Some(body.distance(scratch, owners, point))
-        } else {
-            body.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
-        };
-        let depth = inside.unwrap_or_else(|| body.distance(scratch, &Owners::default(), point));
-        Place { point, depth: depth.value, feature: depth.feature }
-    }
-
-    /// Whether a place is deeper than is allowed, whatever was rounded.
-    fn too_deep(&self, found: &Place) -> bool {
-        found.depth > self.question.limit + 2.0 * self.error
-    }
-}
-
-/// A place in the tool's frame, and how deep it is.
-#[derive(Clone, Copy)]
-struct Place {
-    point: Point,
-    depth: f64,
-    feature: usize,
-}
-
-impl Place {
-    fn best(&self, index: u32) -> Best {
-        Best { point: self.point, feature: self.feature, index }
     }
 }
 
@@ -150,14 +53,14 @@ enum Left {
 
 /// A triangle, or a part of one, in the part's frame and unit.
 #[derive(Clone, Copy)]
-pub(super) struct Part {
-    pub(super) index: u32,
-    pub(super) piece: Piece,
+pub(crate) struct Part {
+    pub(crate) index: u32,
+    pub(crate) piece: Piece,
 }
 
 /// The search for what is in the way.
 #[derive(Default)]
-pub(super) struct Sweeper {
+pub(crate) struct Sweeper {
     view: View,
     ends: [View; 2],
     /// What may be in the way, of all stretches that are being looked at.
@@ -174,7 +77,7 @@ pub(super) struct Sweeper {
 
 impl Sweeper {
     /// Looks at a whole motion; `None` if nothing is deeper on the way.
-    pub(super) fn run(&mut self, task: &Task<'_>, budget: u32) -> Option<Stop> {
+    pub(crate) fn run(&mut self, task: &Task<'_>, budget: u32) -> Option<Stop> {
         self.left.clear();
         self.left.push(Left::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;

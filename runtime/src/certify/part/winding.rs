@@ -1,6 +1,6 @@
 //! Whether a point is inside a part: how often its surface goes around the point, by what a ray crosses.
 
-use super::facets::Facets;
+use super::Facets;
 use crate::tree::WIDTH;
 use nalgebra::{Point3, Vector3};
 
@@ -17,7 +17,7 @@ const WAYS: [[f64; 3]; 6] = [
 impl Facets {
     /// Whether a point of the world, in the part's unit, is inside the part: `None` if the part has no
     /// inside, or the point is so near to its surface that rounding would decide.
-    pub(super) fn contains(&self, point: Point3<f64>) -> Option<bool> {
+    pub(crate) fn contains(&self, point: Point3<f64>) -> Option<bool> {
         if !self.solid {
             return None;
         }

@@ -7,7 +7,7 @@
 //! meets that plane. A level triangle meets it everywhere: its depth depends on d alone, and any line
 //! through the axis has all values that the edges do not have.
 
-use super::course::Course;
+use crate::certify::triangle::course::Course;
 
 type Point = [f64; 3];
 
@@ -28,18 +28,18 @@ fn norm(a: Point) -> f64 {
 }
 
 /// A triangle in the tool's frame and unit.
-pub(super) struct Facet {
-    pub(super) corners: [Point; 3],
+pub(crate) struct Facet {
+    pub(crate) corners: [Point; 3],
     normal: Point,
     /// The base of its meridian, and the way along it.
     base: Point,
     way: Point,
     /// How far the computed meridian can be from the true one.
-    pub(super) skew: f64,
+    pub(crate) skew: f64,
 }
 
 impl Facet {
-    pub(super) fn new(corners: [Point; 3]) -> Facet {
+    pub(crate) fn new(corners: [Point; 3]) -> Facet {
         let [a, b, c] = corners;
         let edges = [minus(b, a), minus(c, b), minus(a, c)];
         let lengths = edges.map(norm);
@@ -88,7 +88,7 @@ impl Facet {
     }
 
     /// What it has at a height, if not an edge alone.
-    pub(super) fn level(&self, z: f64) -> Option<Course> {
+    pub(crate) fn level(&self, z: f64) -> Option<Course> {
         let mut ends = [None, None];
         for k in 0..3 {
             let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
@@ -103,7 +103,7 @@ impl Facet {
     }
 
     /// Its meridian and its edges.
-    pub(super) fn courses(&self) -> impl Iterator<Item = Course> + use<> {
+    pub(crate) fn courses(&self) -> impl Iterator<Item = Course> + use<> {
         self.meridian().into_iter().chain(self.edges())
     }
 

@@ -1,28 +1,28 @@
 //! Eight triangles in the tool's frame, side by side in `f64`.
 
-use super::facets::Facets;
-use super::hull::Hull;
+use crate::certify::bounds::hull::Hull;
+use crate::certify::part::Facets;
 use crate::pose::Pose;
 use crate::tool::{LANES, on_vectors};
 use crate::tree::View;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 /// A coordinate of each.
-pub(super) type Lanes = [f64; LANES];
+pub(crate) type Lanes = [f64; LANES];
 
 /// Up to eight triangles: how deep each is at most, and where it may be so.
 #[derive(Default)]
-pub(super) struct Batch {
-    pub(super) indices: Vec<u32>,
+pub(crate) struct Batch {
+    pub(crate) indices: Vec<u32>,
     /// First from the tip in the part's frame and unit, then in the tool's.
-    pub(super) corners: [[Lanes; 3]; 3],
-    pub(super) bounds: Lanes,
+    pub(crate) corners: [[Lanes; 3]; 3],
+    pub(crate) bounds: Lanes,
     places: [Lanes; 3],
 }
 
 impl Batch {
     /// Takes triangles by their places in the tree's order.
-    pub(super) fn begin(&mut self, facets: &Facets, pose: &Pose, indices: &[u32]) {
+    pub(crate) fn begin(&mut self, facets: &Facets, pose: &Pose, indices: &[u32]) {
         self.indices.clear();
         self.indices.extend(indices);
         let tip = pose.tip();
@@ -35,28 +35,28 @@ impl Batch {
         }
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.indices.len()
     }
 
-    pub(super) fn index(&self, lane: usize) -> u32 {
+    pub(crate) fn index(&self, lane: usize) -> u32 {
         self.indices[lane]
     }
 
-    pub(super) fn place(&self, lane: usize) -> [f64; 3] {
+    pub(crate) fn place(&self, lane: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.places[axis][lane])
     }
 
-    pub(super) fn corners(&self, lane: usize) -> [[f64; 3]; 3] {
+    pub(crate) fn corners(&self, lane: usize) -> [[f64; 3]; 3] {
         [0, 1, 2].map(|k| [0, 1, 2].map(|axis| self.corners[k][axis][lane]))
     }
 
-    pub(super) fn any_above(&self, depth: f64) -> bool {
+    pub(crate) fn any_above(&self, depth: f64) -> bool {
         self.bounds[..self.len()].iter().any(|bound| *bound > depth)
     }
 
     /// Turns them to the tool's frame.
-    pub(super) fn turn(&mut self, view: &View) {
+    pub(crate) fn turn(&mut self, view: &View) {
         for corner in &mut self.corners {
             let p = *corner;
             for lane in 0..LANES {
@@ -69,7 +69,7 @@ impl Batch {
     }
 
     /// Bounds how deep they are.
-    pub(super) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
+    pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
         on_vectors!(level, simd => self.bound_on(simd, hull, wanted));
         // Without vectors nothing is known before their edges are looked at.
         self.bounds = [f64::INFINITY; LANES];
@@ -84,7 +84,7 @@ impl Batch {
     }
 
     /// Bounds them again, as seen from where they may be deepest.
-    pub(super) fn closer(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
+    pub(crate) fn closer(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
         on_vectors!(level, simd => self.closer_on(simd, hull, wanted));
     }
 
@@ -97,14 +97,14 @@ impl Batch {
     }
 
     #[inline(always)]
-    pub(super) fn load_corners<S: Simd>(&self, simd: S) -> [[f64x8<S>; 3]; 3] {
+    pub(crate) fn load_corners<S: Simd>(&self, simd: S) -> [[f64x8<S>; 3]; 3] {
         let [a, b, c] = &self.corners;
         [load(simd, a), load(simd, b), load(simd, c)]
     }
 }
 
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, [x, y, z]: &[Lanes; 3]) -> [f64x8<S>; 3] {
+pub(crate) fn load<S: Simd>(simd: S, [x, y, z]: &[Lanes; 3]) -> [f64x8<S>; 3] {
     [f64x8::from_slice(simd, x), f64x8::from_slice(simd, y), f64x8::from_slice(simd, z)]
 }
 

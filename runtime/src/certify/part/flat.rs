@@ -3,23 +3,23 @@
 //! A flat end on a plate is as deep in all of its triangles, and `f32` cannot tell one from another. What
 //! a node's triangles have along a normal can.
 
-use super::facets::Facets;
+use super::Facets;
 use crate::tree::{View, WIDTH};
 
 type Point = [f64; 3];
 
 /// Between which heights along a normal the corners of a node's triangles lie, in the tree's frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
+pub(crate) struct Plane {
     normal: Point,
     ends: [f64; 2],
 }
 
 /// What a node has in the tool's frame: no place of it is nearer to the axis or beyond these heights.
-pub(super) struct Ring {
-    pub(super) near: f64,
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(crate) struct Ring {
+    pub(crate) near: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
 }
 
 fn dot(a: Point, b: Point) -> f64 {
@@ -28,7 +28,7 @@ fn dot(a: Point, b: Point) -> f64 {
 
 impl Plane {
     /// Of triangles, given by their corners in the tree's frame: along the mean of their normals.
-    pub(super) fn of(triangles: &[[Point; 3]]) -> Plane {
+    pub(crate) fn of(triangles: &[[Point; 3]]) -> Plane {
         let mut sum = [0.0; 3];
         for [a, b, c] in triangles {
             let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
@@ -50,7 +50,7 @@ impl Plane {
 impl Facets {
     /// The ring about the tool's axis that a node is within, by its box and its plane; the whole part has
     /// no box.
-    pub(super) fn ring(&self, level: usize, index: usize, view: &View) -> Option<Ring> {
+    pub(crate) fn ring(&self, level: usize, index: usize, view: &View) -> Option<Ring> {
         let boxes = &self.levels[level.checked_sub(1)?][index / WIDTH];
         let lane = index % WIDTH;
         let centre = [0, 1, 2].map(|axis| f64::from(boxes.centre[axis][lane]));

@@ -1,10 +1,10 @@
 //! Triangles that are halved.
 
-pub(super) type Point = [f64; 3];
+pub(crate) type Point = [f64; 3];
 
 /// A triangle, or a part of one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// The longest side is from the first to the second.
     corners: [Point; 3],
 }
@@ -22,7 +22,7 @@ fn square(a: Point) -> f64 {
 }
 
 impl Piece {
-    pub(super) fn new([a, b, c]: [Point; 3]) -> Piece {
+    pub(crate) fn new([a, b, c]: [Point; 3]) -> Piece {
         let [ab, bc, ca] = [minus(b, a), minus(c, b), minus(a, c)].map(square);
         let corners = if ab >= bc && ab >= ca {
             [a, b, c]
@@ -34,17 +34,17 @@ impl Piece {
         Piece { corners }
     }
 
-    pub(super) fn corners(&self) -> &[Point; 3] {
+    pub(crate) fn corners(&self) -> &[Point; 3] {
         &self.corners
     }
 
     /// Its longest side.
-    pub(super) fn longest(&self) -> f64 {
+    pub(crate) fn longest(&self) -> f64 {
         square(minus(self.corners[1], self.corners[0])).sqrt()
     }
 
     /// A place of it, and how far it reaches from there.
-    pub(super) fn ball(&self) -> (Point, f64) {
+    pub(crate) fn ball(&self) -> (Point, f64) {
         let [a, b, c] = self.corners;
         let mean = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
         let [half, mean] = [middle(a, b), mean].map(|centre| {
@@ -55,7 +55,7 @@ impl Piece {
     }
 
     /// Both halves of its longest side; none if that is too short to be halved.
-    pub(super) fn halves(&self) -> impl Iterator<Item = Piece> + use<> {
+    pub(crate) fn halves(&self) -> impl Iterator<Item = Piece> + use<> {
         let [a, b, c] = self.corners;
         let half = middle(a, b);
         let halves = [Piece::new([a, half, c]), Piece::new([half, b, c])];

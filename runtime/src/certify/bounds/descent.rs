@@ -1,29 +1,29 @@
 //! The way down a tree of triangles, the deepest first.
 
-use super::facets::{Corners, Facets};
-use super::flat::Ring;
-use super::nearest::Space;
+use crate::certify::bounds::nearest::Space;
+use crate::certify::part::Ring;
+use crate::certify::part::{Corners, Facets};
 use crate::tool::{LANES, on_vectors};
 use crate::tree::{Boxes, View, WIDTH, extent, load, seen};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
 
 /// A node of the tree, a leaf or a triangle, and how deep the tool can be in it.
 #[derive(Clone, Copy)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// That of its children; leaves are those whose children are triangles.
-    pub(super) level: u32,
-    pub(super) index: u32,
-    pub(super) bound: f32,
+    pub(crate) level: u32,
+    pub(crate) index: u32,
+    pub(crate) bound: f32,
 }
 
 impl Node {
     /// What it is within, as `f64` knows it.
-    pub(super) fn ring(&self, facets: &Facets, view: &View) -> Option<Ring> {
+    pub(crate) fn ring(&self, facets: &Facets, view: &View) -> Option<Ring> {
         facets.ring(self.level as usize, self.index as usize, view)
     }
 
     /// Half the diagonal of its box, in the tree's unit.
-    pub(super) fn size(&self, facets: &Facets) -> f64 {
+    pub(crate) fn size(&self, facets: &Facets) -> f64 {
         let Some(level) = self.level.checked_sub(1) else { return f64::INFINITY };
         let (node, lane) = (self.index as usize / WIDTH, self.index as usize % WIDTH);
         let half = &facets.levels[level as usize][node].half;
@@ -31,7 +31,7 @@ impl Node {
     }
 
     /// Those of its children that a bit says.
-    pub(super) fn children(self, facets: &Facets, hits: u32) -> impl Iterator<Item = Node> + use<> {
+    pub(crate) fn children(self, facets: &Facets, hits: u32) -> impl Iterator<Item = Node> + use<> {
         let children = facets.children(self.level as usize, self.index as usize);
         let there = (0..children as u32).filter(move |lane| hits >> lane & 1 == 1);
         let first = self.index * WIDTH as u32;
@@ -40,7 +40,7 @@ impl Node {
 
     /// The corners of a leaf's triangles in the tool's frame.
     #[inline(always)]
-    pub(super) fn corners<S: Simd>(
+    pub(crate) fn corners<S: Simd>(
         &self,
         simd: S,
         facets: &Facets,
@@ -60,18 +60,18 @@ impl Node {
     }
 
     /// Whether its children are triangles.
-    pub(super) fn is_leaf(&self, facets: &Facets) -> bool {
+    pub(crate) fn is_leaf(&self, facets: &Facets) -> bool {
         self.level as usize == facets.levels.len()
     }
 
-    pub(super) fn is_triangle(&self, facets: &Facets) -> bool {
+    pub(crate) fn is_triangle(&self, facets: &Facets) -> bool {
         self.level as usize > facets.levels.len()
     }
 }
 
 /// What is yet to be looked at, the deepest of the last opened on top.
 #[derive(Default)]
-pub(super) struct Descent {
+pub(crate) struct Descent {
     stack: Vec<Node>,
     some: Vec<u32>,
     /// Whether anything was.
@@ -79,13 +79,13 @@ pub(super) struct Descent {
 }
 
 /// Something that depth, or a negative distance, is no more than in boxes.
-pub(super) trait BoxBounds {
+pub(crate) trait BoxBounds {
     /// In 16 boxes; what is not there has NaN.
     fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S>;
 }
 
 /// The same in boxes and triangles.
-pub(super) trait Bounds: BoxBounds {
+pub(crate) trait Bounds: BoxBounds {
     /// In 16 triangles in the tool's frame. What is no more than wanted need not be close.
     fn of_triangles<S: Simd>(
         &self,
@@ -96,27 +96,27 @@ pub(super) trait Bounds: BoxBounds {
 }
 
 /// What boxes are within, as the axis has it: no place is nearer or farther, or beyond these heights.
-pub(super) struct Rings<V> {
-    pub(super) near: V,
-    pub(super) far: V,
-    pub(super) low: V,
-    pub(super) high: V,
+pub(crate) struct Rings<V> {
+    pub(crate) near: V,
+    pub(crate) far: V,
+    pub(crate) low: V,
+    pub(crate) high: V,
 }
 
 /// How far places go, in the tool's frame: straight, and by a turn about y.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Shift {
-    pub(super) straight: [f32; 3],
-    pub(super) length: f32,
-    pub(super) turn: f32,
+pub(crate) struct Shift {
+    pub(crate) straight: [f32; 3],
+    pub(crate) length: f32,
+    pub(crate) turn: f32,
     /// No place that matters is farther from y.
-    pub(super) reach: f32,
+    pub(crate) reach: f32,
 }
 
 impl Shift {
     /// How far the ways are from straight of places that are so far from y.
     #[inline(always)]
-    pub(super) fn curve<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
+    pub(crate) fn curve<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
         let reach = f32x16::splat(simd, self.reach).min(far + self.length);
         (reach * (0.5 * self.turn) + self.length) * self.turn
     }
@@ -124,7 +124,7 @@ impl Shift {
 
 /// The rings of boxes, if so on all their way.
 #[inline(always)]
-pub(super) fn rings<S: Simd>(
+pub(crate) fn rings<S: Simd>(
     simd: S,
     boxes: &Boxes,
     view: &View,
@@ -155,31 +155,31 @@ pub(super) fn rings<S: Simd>(
 }
 
 /// A part as a tool sees it.
-pub(super) type Seen<'a, B> = (&'a Facets, &'a B, &'a View);
+pub(crate) type Seen<'a, B> = (&'a Facets, &'a B, &'a View);
 
 impl Descent {
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.stack.clear();
         self.looked = false;
     }
 
     /// Begins at the root.
-    pub(super) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         self.stack.push(Node { level: 0, index: 0, bound: f32::INFINITY });
         self.looked = true;
     }
 
     /// Whether it began.
-    pub(super) fn looked(&self) -> bool {
+    pub(crate) fn looked(&self) -> bool {
         self.looked
     }
 
-    pub(super) fn pop(&mut self) -> Option<Node> {
+    pub(crate) fn pop(&mut self) -> Option<Node> {
         self.stack.pop()
     }
 
     /// A triangle, and those that lie on the stack behind it: up to eight that may be deeper than that.
-    pub(super) fn triangles(&mut self, facets: &Facets, first: Node, wanted: f32) -> &[u32] {
+    pub(crate) fn triangles(&mut self, facets: &Facets, first: Node, wanted: f32) -> &[u32] {
         self.some.clear();
         self.some.push(first.index);
         while self.some.len() < LANES
@@ -193,7 +193,7 @@ impl Descent {
     }
 
     /// Puts the children of a node on the stack that may be deeper than that.
-    pub(super) fn open<B: Bounds>(
+    pub(crate) fn open<B: Bounds>(
         &mut self,
         level: Level,
         seen: Seen<'_, B>,
@@ -211,7 +211,7 @@ impl Descent {
     }
 
     /// Puts all children of a node on the stack, where `f32` cannot hold what is known of them.
-    pub(super) fn open_all(&mut self, facets: &Facets, node: Node) {
+    pub(crate) fn open_all(&mut self, facets: &Facets, node: Node) {
         self.take(facets, node, u32::MAX, &[node.bound; WIDTH]);
     }
 
@@ -238,12 +238,12 @@ impl Descent {
 
 /// Which are more than wanted; what `f32` cannot hold may be.
 #[inline(always)]
-pub(super) fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
+pub(crate) fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
     !bound.simd_le(wanted).to_bitmask() as u32
 }
 
 /// Which children of a node, that are boxes, may be more than wanted.
-pub(super) fn of_children<B: BoxBounds>(
+pub(crate) fn of_children<B: BoxBounds>(
     level: Level,
     seen: Seen<'_, B>,
     node: Node,

@@ -1,40 +1,40 @@
 //! How deep a tool is at most in boxes and triangles, side by side.
 
-use super::descent::{Bounds, BoxBounds, Rings, rings};
-use super::feature::{Feature, Place};
-use super::flat::Ring;
-use super::nearest::{
+use crate::certify::body::feature::{Feature, Place};
+use crate::certify::body::owners::Owners;
+use crate::certify::body::section::{self, Section};
+use crate::certify::bounds::descent::{Bounds, BoxBounds, Rings, rings};
+use crate::certify::bounds::nearest::{
     Clip, Many, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least,
     most, under_both,
 };
-use super::owners::Owners;
-use super::section::{self, Section};
+use crate::certify::part::Ring;
 use crate::tool::Card;
 use crate::tree::{Boxes, View};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
 /// A tool's slabs, for bounds.
-pub(super) struct Hull<R> {
-    pub(super) slabs: Vec<Slab<R>>,
+pub(crate) struct Hull<R> {
+    pub(crate) slabs: Vec<Slab<R>>,
 }
 
 /// Between two heights depth is no more than each of these says.
-pub(super) struct Slab<R> {
-    pub(super) low: R,
-    pub(super) high: R,
+pub(crate) struct Slab<R> {
+    pub(crate) low: R,
+    pub(crate) high: R,
     /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`.
-    pub(super) planes: Vec<[R; 3]>,
+    pub(crate) planes: Vec<[R; 3]>,
     /// How far it is inside a ball about a place of the axis, as `[z, radius]`.
-    pub(super) ball: Option<[R; 2]>,
+    pub(crate) ball: Option<[R; 2]>,
     /// How far it is from a circle about the axis, as `[d, z]`; and whether the level ring beyond the
     /// circle is the tool's surface too.
-    pub(super) rings: Vec<([R; 2], bool)>,
+    pub(crate) rings: Vec<([R; 2], bool)>,
 }
 
 impl<R: Real> Hull<R> {
     /// For places inside: none is deeper. Slabs are those between the heights of their zones, and reach
     /// farther by how far heights are known.
-    pub(super) fn new(section: &Section, zones: &[Option<[f64; 2]>], error: f64) -> Hull<R> {
+    pub(crate) fn new(section: &Section, zones: &[Option<[f64; 2]>], error: f64) -> Hull<R> {
         let slabs =
             section.slabs.iter().enumerate().zip(zones).filter_map(|((index, slab), zone)| {
                 let [from, to] = (*zone)?;
@@ -72,7 +72,7 @@ impl<R: Real> Hull<R> {
 
     /// Of a tool whose depth changes so fast at most: it is no more than that times the way out of what
     /// holds the tool.
-    pub(super) fn about(card: &Card, steep: f64, error: f64) -> Hull<R> {
+    pub(crate) fn about(card: &Card, steep: f64, error: f64) -> Hull<R> {
         let [bottom, top] = card.reach();
         let plane = |nd: f64, nz: f64, c: f64| [nd, nz, c].map(|part| R::of(steep * part));
         let slabs = card.envelope.iter().map(|slab| Slab {
@@ -90,7 +90,7 @@ impl<R: Real> Hull<R> {
     }
 
     /// For places no farther from some features than it is made to grow: what of the tool these bound.
-    pub(super) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
+    pub(crate) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
         let side = |slab: &section::Slab| owners.own(slab.side).then_some([slab.low, slab.high]);
         let zones: Vec<_> = section.slabs.iter().map(side).collect();
         let mut hull = Hull::new(section, &zones, error);
@@ -115,7 +115,7 @@ impl<R: Real> Hull<R> {
     /// may be greatest. What is not there has NaN. What is no more than wanted need not be close. Given
     /// such places, it looks closer from there.
     #[inline(always)]
-    pub(super) fn triangles<S: Simd, V: Many<S, R>>(
+    pub(crate) fn triangles<S: Simd, V: Many<S, R>>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
@@ -279,7 +279,7 @@ fn under_plane<S: Simd, R: Real, V: Many<S, R>>(
 
 impl Hull<f64> {
     /// No less than the depth of any place of a ring.
-    pub(super) fn of_ring(&self, ring: &Ring) -> f64 {
+    pub(crate) fn of_ring(&self, ring: &Ring) -> f64 {
         let here = self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
         let depths = here.map(|slab| {
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
@@ -299,7 +299,7 @@ impl Hull<f64> {
 impl Hull<f32> {
     /// No less than the depth of any place of rings.
     #[inline(always)]
-    pub(super) fn of_rings<S: Simd>(&self, simd: S, rings: &Rings<f32x16<S>>) -> f32x16<S> {
+    pub(crate) fn of_rings<S: Simd>(&self, simd: S, rings: &Rings<f32x16<S>>) -> f32x16<S> {
         let Rings { near, far, low, high } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);

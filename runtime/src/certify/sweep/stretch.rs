@@ -1,19 +1,19 @@
 //! A part of a motion: where it takes the part in the tool's frame, and how straight.
 
-use super::descent::Shift;
-use super::work::Setting;
+use crate::certify::bounds::descent::Shift;
+use crate::certify::work::Setting;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use nalgebra::{Matrix3, Point3, Vector3};
 
-pub(super) type Point = [f64; 3];
+pub(crate) type Point = [f64; 3];
 
 /// A part of a motion, in the tool's frame and unit.
-pub(super) struct Stretch {
-    pub(super) from: f64,
+pub(crate) struct Stretch {
+    pub(crate) from: f64,
     to: f64,
     start: Point3<f64>,
-    pub(super) poses: [Pose; 3],
+    pub(crate) poses: [Pose; 3],
     /// At both ends and, between these, in the middle: how far the tip has come, and the way from the part's
     /// frame and unit to the tool's.
     views: [(Vector3<f64>, Matrix3<f64>); 3],
@@ -32,7 +32,7 @@ struct Pace {
 
 impl Stretch {
     /// What comes no nearer to the tool than `keep` does not matter.
-    pub(super) fn new(
+    pub(crate) fn new(
         setting: &Setting<'_>,
         motion: &Motion,
         [from, to]: [f64; 2],
@@ -61,7 +61,7 @@ impl Stretch {
     }
 
     /// A corner of the part at the beginning, in the middle and at the end.
-    pub(super) fn seen(&self, corner: &Point) -> [Point; 3] {
+    pub(crate) fn seen(&self, corner: &Point) -> [Point; 3] {
         let from_start = Point3::from(*corner) - self.start;
         let [first, middle, last] = &self.views;
         let seen = |(way, back): &(Vector3<f64>, Matrix3<f64>)| (back * (from_start - way)).into();
@@ -69,28 +69,28 @@ impl Stretch {
     }
 
     /// Whether the axis turns.
-    pub(super) fn turns(&self) -> bool {
+    pub(crate) fn turns(&self) -> bool {
         self.pace.turn > 0.0
     }
 
-    pub(super) fn middle(&self) -> f64 {
+    pub(crate) fn middle(&self) -> f64 {
         self.from / 2.0 + self.to / 2.0
     }
 
     /// How far the way is from straight, of a place that is in the middle no farther than that from what
     /// the axis turns about.
-    pub(super) fn curve(&self, reach: f64) -> f64 {
+    pub(crate) fn curve(&self, reach: f64) -> f64 {
         let Pace { length, turn, .. } = self.pace;
         turn * (length + 0.5 * turn * self.pace.reach.min(reach + length))
     }
 
     /// How far such a place goes from the middle.
-    pub(super) fn goes(&self, reach: f64) -> f64 {
+    pub(crate) fn goes(&self, reach: f64) -> f64 {
         let Pace { length, turn, .. } = self.pace;
         length + turn * reach.min(self.pace.reach) + self.curve(reach)
     }
 
-    pub(super) fn shift(&self, keep: f64) -> Shift {
+    pub(crate) fn shift(&self, keep: f64) -> Shift {
         let Pace { straight, length, turn, reach } = self.pace;
         let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
         Shift {
@@ -103,6 +103,6 @@ impl Stretch {
 }
 
 /// How far corners are from y at most.
-pub(super) fn about(corners: &[Point; 3]) -> f64 {
+pub(crate) fn about(corners: &[Point; 3]) -> f64 {
     corners.iter().map(|[x, _, z]| x * x + z * z).fold(0.0, f64::max).sqrt()
 }

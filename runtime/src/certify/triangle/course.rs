@@ -5,13 +5,13 @@
 //! depth in the triangle bounds it on the way. An interval whose bound is above what was found is cut
 //! where depth is likely to be greatest, until none is.
 
-use super::feature::{Place, Triangle, dot};
-use super::owners::Owners;
-use super::section::{Depth, Section};
+use crate::certify::body::feature::{Place, Triangle, dot};
+use crate::certify::body::owners::Owners;
+use crate::certify::body::section::{Depth, Section};
 
 /// A straight way, `base + t way`: at `t`, `d² = off² + (start + t slide)²`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
+pub(crate) struct Course {
     base: [f64; 3],
     way: [f64; 3],
     off: f64,
@@ -34,7 +34,7 @@ struct Interval(End, End);
 
 impl Course {
     /// A part of a line.
-    pub(super) fn new(base: [f64; 3], way: [f64; 3], span: [f64; 2]) -> Course {
+    pub(crate) fn new(base: [f64; 3], way: [f64; 3], span: [f64; 2]) -> Course {
         let slide = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let (start, off) = if slide > 0.0 {
             let level = [way[0] / slide, way[1] / slide];
@@ -45,7 +45,7 @@ impl Course {
         Course { base, way, off, start, slide, span }
     }
 
-    pub(super) fn point(&self, t: f64) -> [f64; 3] {
+    pub(crate) fn point(&self, t: f64) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.base[axis] + t * self.way[axis])
     }
 
@@ -138,32 +138,32 @@ fn cut(Interval(first, last): &Interval, depths: [&Depth; 2], course: &Course) -
 
 /// The deepest place that was found.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    pub(super) t: f64,
-    pub(super) feature: usize,
+pub(crate) struct Found {
+    pub(crate) t: f64,
+    pub(crate) feature: usize,
 }
 
 /// How a search goes: what is no deeper than `least` is left, it ends within a tolerance of the deepest,
 /// or as soon as something is deeper than `enough`, or with its budget.
 #[derive(Clone, Copy)]
-pub(super) struct Goal {
-    pub(super) least: f64,
-    pub(super) tolerance: f64,
-    pub(super) enough: f64,
-    pub(super) budget: u32,
+pub(crate) struct Goal {
+    pub(crate) least: f64,
+    pub(crate) tolerance: f64,
+    pub(crate) enough: f64,
+    pub(crate) budget: u32,
 }
 
 /// The search for the deepest place.
 #[derive(Default)]
-pub(super) struct Search {
+pub(crate) struct Search {
     /// The greatest depth found.
-    pub(super) best: f64,
+    pub(crate) best: f64,
     /// How much more is not worth looking for.
     tolerance: f64,
     /// What is deeper than that ends the search.
     enough: f64,
     /// How deep what was left open may be, where the budget was spent.
-    pub(super) most: f64,
+    pub(crate) most: f64,
     /// Whether anything was found.
     found: bool,
     budget: u32,
@@ -172,7 +172,7 @@ pub(super) struct Search {
 
 impl Search {
     /// Begins to look for what is deeper than that.
-    pub(super) fn begin(&mut self, goal: Goal) {
+    pub(crate) fn begin(&mut self, goal: Goal) {
         let Goal { least, tolerance, enough, budget } = goal;
         self.best = least;
         self.tolerance = tolerance;
@@ -183,27 +183,27 @@ impl Search {
     }
 
     /// Whether what was found is deep enough to end.
-    pub(super) fn enough(&self) -> bool {
+    pub(crate) fn enough(&self) -> bool {
         self.best > self.enough
     }
 
     /// What is no deeper is not worth looking for. Whether there is anything is always worth it.
-    pub(super) fn wanted(&self) -> f64 {
+    pub(crate) fn wanted(&self) -> f64 {
         if self.found { self.best + self.tolerance } else { self.best }
     }
 
     /// Whether something was left open because the budget was spent.
-    pub(super) fn open(&self) -> bool {
+    pub(crate) fn open(&self) -> bool {
         self.most > f64::NEG_INFINITY
     }
 
     /// Leaves open what is no deeper than that, since it cannot be looked at more closely.
-    pub(super) fn leave(&mut self, bound: f64) {
+    pub(crate) fn leave(&mut self, bound: f64) {
         self.most = self.most.max(bound);
     }
 
     /// Spends one of the budget on what is no deeper than that; without any it stays open.
-    pub(super) fn spend(&mut self, bound: f64) -> bool {
+    pub(crate) fn spend(&mut self, bound: f64) -> bool {
         if self.budget == 0 {
             self.leave(bound);
             return false;
@@ -213,12 +213,12 @@ impl Search {
     }
 
     /// What is left of the budget.
-    pub(super) fn left(&self) -> u32 {
+    pub(crate) fn left(&self) -> u32 {
         self.budget
     }
 
     /// Takes a place if it is the deepest so far.
-    pub(super) fn take(&mut self, depth: &Depth) -> bool {
+    pub(crate) fn take(&mut self, depth: &Depth) -> bool {
         let deeper = depth.value > self.best;
         if deeper {
             self.best = depth.value;
@@ -234,7 +234,7 @@ impl Search {
     }
 
     /// The place of a course where owners are deepest, if deeper than the best, where that is at least 0.
-    pub(super) fn inside(
+    pub(crate) fn inside(
         &mut self,
         (section, owners): (&Section, &Owners),
         course: &Course,
@@ -261,7 +261,7 @@ impl Search {
 
     /// The place of a course that is nearest to the owners, where the best is below 0. If all are, what is
     /// inside is at 0.
-    pub(super) fn outside(
+    pub(crate) fn outside(
         &mut self,
         (section, owners): (&Section, &Owners),
         course: &Course,

@@ -1,0 +1,47 @@
+//! Boxes and triangles on their way past a hull, 16 at a time in `f32`.
+
+use crate::certify::bounds::descent::{BoxBounds, Node, Seen, Shift, above, rings};
+use crate::certify::bounds::hull::Hull;
+use crate::tool::on_vectors;
+use crate::tree::{Boxes, View};
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
+
+/// A hull past which boxes move.
+pub(super) struct Moving<'a> {
+    pub(super) hull: &'a Hull<f32>,
+    pub(super) shift: Shift,
+    pub(super) keep: f32,
+    /// The part at the beginning and at the end.
+    pub(super) ends: &'a [View; 2],
+}
+
+impl BoxBounds for Moving<'_> {
+    #[inline(always)]
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
+        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)))
+    }
+}
+
+/// Which triangles of a leaf may be more than wanted.
+pub(super) fn of_leaf(level: Level, seen: Seen<'_, Moving<'_>>, node: Node, wanted: f32) -> u32 {
+    on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted));
+    u32::MAX
+}
+
+#[inline(always)]
+fn of_leaf_on<S: Simd>(
+    simd: S,
+    (facets, moving, view): Seen<'_, Moving<'_>>,
+    node: Node,
+    wanted: f32,
+) -> u32 {
+    let [a, b, c] = node.corners(simd, facets, &moving.ends[0]);
+    let [d, e, f] = node.corners(simd, facets, &moving.ends[1]);
+    let middle = node.corners(simd, facets, view);
+    let [p, q, r] = &middle;
+    let far = (p[0] * p[0] + p[2] * p[2]).max(q[0] * q[0] + q[2] * q[2]);
+    let far = far.max(r[0] * r[0] + r[2] * r[2]).sqrt();
+    let grow = moving.shift.curve(simd, far) + moving.keep;
+    let ends = [a, b, c, d, e, f];
+    above(moving.hull.swept(simd, (&ends, &middle), grow, wanted), wanted)
+}
