@@ -5,11 +5,12 @@ use crate::certify::body::Body;
 use crate::certify::body::field::Scratch;
 use crate::certify::bounds::batch::Batch;
 use crate::certify::bounds::descent::Descent;
-use crate::certify::part::Facets;
+use crate::certify::part::{Facets, flat};
 use crate::certify::question::Question;
 use crate::certify::triangle::course::{Found, Goal, Search};
 use crate::certify::triangle::facet::Facet;
 use crate::pose::Pose;
+use crate::tool::LANES;
 use crate::tree::{Sight, View};
 use fearless_simd::Level;
 use nalgebra::Vector3;
@@ -73,12 +74,67 @@ pub(crate) struct Work {
     pub(crate) search: Search,
     pub(crate) descent: Descent,
     batch: Batch,
+    faces: Faces,
     scratch: Scratch,
     pub(crate) best: Option<Best>,
     /// The most skew of a triangle that was looked at.
     pub(crate) skew: f64,
     /// Where the last question ended, if anywhere.
     last: Option<u32>,
+}
+
+/// How deep the flat faces of a part are at most, of those that were asked for.
+#[derive(Default)]
+struct Faces {
+    batch: Batch,
+    /// Which question this is, and of each face the last that asked for it, and the answer.
+    question: u32,
+    known: Vec<(u32, f64)>,
+}
+
+impl Faces {
+    fn begin(&mut self, facets: &Facets) {
+        self.question = self.question.wrapping_add(1);
+        if self.question == 0 || self.known.len() != facets.flats.faces.len() {
+            self.question = 1;
+            self.known.clear();
+            self.known.resize(facets.flats.faces.len(), (0, 0.0));
+        }
+    }
+
+    /// How deep any of some faces is at most.
+    fn depth(
+        &mut self,
+        of: &Setting<'_>,
+        question: &Question,
+        (pose, view): (&Pose, &View),
+        faces: &[u32],
+    ) -> f64 {
+        let more = flat(&of.facets.frame) / of.length;
+        let mut most = f64::NEG_INFINITY;
+        for some in faces.chunks(LANES / 2) {
+            self.batch.clear();
+            for face in some {
+                let (asked, depth) = self.known[*face as usize];
+                if asked == self.question {
+                    most = most.max(depth);
+                } else {
+                    self.batch.rectangle(&of.facets.flats.faces[*face as usize], (pose, *face));
+                }
+            }
+            if self.batch.len() == 0 {
+                continue;
+            }
+            self.batch.turn(view);
+            self.batch.bound(of.level, &question.exact, f64::NEG_INFINITY);
+            for half in (0..self.batch.len()).step_by(2) {
+                let depth = self.batch.bounds[half].max(self.batch.bounds[half + 1]) + more;
+                self.known[self.batch.index(half) as usize] = (self.question, depth);
+                most = most.max(depth);
+            }
+        }
+        most
+    }
 }
 
 /// The deepest place so far, in the tool's frame.
@@ -153,6 +209,7 @@ impl Work {
         margin: f64,
     ) {
         self.descent.begin();
+        self.faces.begin(of.facets);
         self.scratch.clear();
         let mut opened = 0;
         while let Some(node) = self.descent.pop() {
@@ -166,6 +223,19 @@ impl Work {
             let wanted = (self.search.wanted() - margin) as f32;
             if node.is_triangle(of.facets) {
                 let some = self.descent.triangles(of.facets, node, wanted);
+                if let Side::Inside = side
+                    && opened > TIED
+                {
+                    some.retain(|index| {
+                        of.facets.flats.of_triangle(*index).is_none_or(|face| {
+                            let view = (pose, &self.view);
+                            self.faces.depth(of, question, view, &[face]) > self.search.wanted()
+                        })
+                    });
+                }
+                if some.is_empty() {
+                    continue;
+                }
                 self.batch.begin(of.facets, pose, some);
                 match side {
                     Side::Inside => self.triangles(of, question),
@@ -176,6 +246,13 @@ impl Work {
             let (level, facets, view) = (of.level, of.facets, &self.view);
             // Where `f32` cannot tell, or boxes do not, a plane may.
             opened += 1;
+            if let Side::Inside = side
+                && opened > TIED
+                && let Some(faces) = node.faces(facets)
+                && self.faces.depth(of, question, (pose, &self.view), faces) <= self.search.wanted()
+            {
+                continue;
+            }
             if let Side::Inside = side
                 && (bound - 2.0 * margin <= self.search.wanted() || opened > MANY)
                 && let Some(ring) = node.ring(facets, view)
@@ -271,6 +348,9 @@ impl Work {
 
 /// A query that opened more nodes than these has many that are as deep.
 const MANY: usize = 24;
+
+/// One that opened more nodes than these is likely to be as deep along faces.
+const TIED: usize = 128;
 
 /// With a larger margin `f32` tells nothing, and its squares are too large for it.
 const MARGIN: f64 = 1e9;

@@ -1,7 +1,7 @@
 //! Eight triangles in the tool's frame, side by side in `f64`.
 
 use crate::certify::bounds::hull::Hull;
-use crate::certify::part::Facets;
+use crate::certify::part::{Face, Facets};
 use crate::pose::Pose;
 use crate::tool::{LANES, on_vectors};
 use crate::tree::View;
@@ -30,6 +30,24 @@ impl Batch {
             for (list, corner) in self.corners.iter_mut().zip(&facets.corners[*index as usize]) {
                 for axis in 0..3 {
                     list[axis][lane] = corner[axis] - tip[axis];
+                }
+            }
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.indices.clear();
+    }
+
+    /// Takes both halves of a face's rectangle besides, by the face's place in the list.
+    pub(crate) fn rectangle(&mut self, face: &Face, (pose, index): (&Pose, u32)) {
+        let [a, b, c, d] = face.corners;
+        for half in [[a, b, c], [a, c, d]] {
+            let lane = self.indices.len();
+            self.indices.push(index);
+            for (list, corner) in self.corners.iter_mut().zip(half) {
+                for axis in 0..3 {
+                    list[axis][lane] = (face.from[axis] - pose.tip()[axis]) + corner[axis];
                 }
             }
         }

@@ -22,6 +22,11 @@ impl Node {
         facets.ring(self.level as usize, self.index as usize, view)
     }
 
+    /// The flat faces that all its triangles are of, if these are few.
+    pub(crate) fn faces<'a>(&self, facets: &'a Facets) -> Option<&'a [u32]> {
+        facets.flats.of_node(self.level as usize, self.index as usize)
+    }
+
     /// Half the diagonal of its box, in the tree's unit.
     pub(crate) fn size(&self, facets: &Facets) -> f64 {
         let Some(level) = self.level.checked_sub(1) else { return f64::INFINITY };
@@ -179,7 +184,7 @@ impl Descent {
     }
 
     /// A triangle, and those that lie on the stack behind it: up to eight that may be deeper than that.
-    pub(crate) fn triangles(&mut self, facets: &Facets, first: Node, wanted: f32) -> &[u32] {
+    pub(crate) fn triangles(&mut self, facets: &Facets, first: Node, wanted: f32) -> &mut Vec<u32> {
         self.some.clear();
         self.some.push(first.index);
         while self.some.len() < LANES
@@ -189,7 +194,7 @@ impl Descent {
                 self.some.push(next.index);
             }
         }
-        &self.some
+        &mut self.some
     }
 
     /// Puts the children of a node on the stack that may be deeper than that.

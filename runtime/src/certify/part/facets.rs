@@ -1,6 +1,7 @@
 //! A part's triangles in a tree.
 
 use super::flat::Plane;
+use super::flats::Flats;
 use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
 use crate::{Mesh, Unit};
 
@@ -16,6 +17,7 @@ pub struct Facets {
     pub(crate) levels: Vec<Vec<Boxes>>,
     /// Of each node of a level, and of each leaf behind the last.
     pub(crate) planes: Vec<Vec<Plane>>,
+    pub(crate) flats: Flats,
     /// The corners of 16 triangles.
     pub(crate) leaves: Vec<Corners>,
     /// Of each triangle, in the tree's order.
@@ -31,6 +33,11 @@ pub struct Facets {
 /// coordinate; what is not there is NaN.
 #[derive(Clone, Debug)]
 pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
+
+/// What is no farther from a plane is in it, in the part's unit: a part of what rounding makes of a place.
+pub(crate) fn flat(frame: &Frame) -> f64 {
+    16.0 * f64::EPSILON * f64::from(frame.size) * frame.scale
+}
 
 impl Facets {
     /// The triangles of a mesh.
@@ -76,12 +83,14 @@ impl Facets {
             let below = WIDTH.pow(depth + 1 - level);
             inside.chunks(below).map(Plane::of).collect()
         });
+        let ids: Vec<u32> = items.iter().map(|item| item.index).collect();
         Facets {
+            flats: Flats::new(mesh, &ids, &corners, flat(&frame)),
             planes: planes.collect(),
             leaves: leaves.collect(),
             levels,
             corners,
-            ids: items.iter().map(|item| item.index).collect(),
+            ids,
             frame,
             unit: mesh.unit(),
             solid: mesh.survey().solid(),

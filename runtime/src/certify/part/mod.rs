@@ -2,8 +2,10 @@
 
 mod facets;
 mod flat;
+mod flats;
 mod winding;
 
-pub(crate) use facets::Corners;
 pub use facets::Facets;
+pub(crate) use facets::{Corners, flat};
 pub(crate) use flat::Ring;
+pub(crate) use flats::Face;
