@@ -7,15 +7,18 @@ use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use std::f64::consts::PI;
 use tools_library::{Fig73Exact, Flat};
-use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::certify::{Certifier, Clear, Facets, Sweep};
 use touchoff::mesh::shapes;
-use touchoff::scenes::{HEIGHT, INNER, POSES, Path, apart};
-use touchoff::{Cloud, Mesh, Part, Pose, Tool, Unit};
+use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, Path, apart};
+use touchoff::{Cloud, Mesh, Motion, Part, Pose, Tool, Unit};
 
 /// How closely depth is proved, mm.
 const TOLERANCE: f64 = 1e-9;
 /// How deep tools are in the scenes where many triangles are as deep, mm.
 const TIED: f64 = 0.1;
+
+/// Methods that say no depth.
+const YES_OR_NO: [&str; 2] = ["touchoff clear", "touchoff sweep"];
 
 /// A scene of triangles.
 #[derive(Clone, Copy)]
@@ -148,6 +151,30 @@ impl Contender for Cleared<'_> {
     }
 }
 
+/// Whether it stays clear on a way of a tool's radius: along the wall, in half of the poses swung by a
+/// tenth of a radian the while.
+struct Swept<'a>(Certifier<'a>);
+
+impl Contender for Swept<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff sweep"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let centre = pose.tip() + BALL * pose.axis();
+        let out = Vector3::new(centre.x, centre.y, 0.0).normalize();
+        let (up, along) = (Vector3::z(), Vector3::z().cross(&out));
+        let turn = 34.0 * centre.z;
+        let way = BALL * (turn.cos() * up + turn.sin() * along);
+        let swing = if (7.0 * turn).sin() > 0.0 { 0.1 } else { 0.0 };
+        let axis = (pose.axis() + swing * way.normalize()).normalize();
+        let to = Pose::from_axis(centre + way - BALL * axis, axis).expect("a unit vector");
+        let motion = Motion::new(pose, &to).expect("axes that are not opposite");
+        let clear = matches!(self.0.sweep_clear(&motion, TOLERANCE), Sweep::Clear);
+        Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
+    }
+}
+
 /// Times all scenes on meshes of these sizes.
 pub(crate) fn measure(sizes: &[usize], seconds: f64, json: bool) {
     let mut rows = Vec::new();
@@ -155,13 +182,15 @@ pub(crate) fn measure(sizes: &[usize], seconds: f64, json: bool) {
         for scene in Scene::ALL {
             let mesh = scene.mesh(size);
             let facets = Facets::new(&mesh);
-            let certifier = || {
-                Certifier::new(&facets, scene.tool()).expect("a profile that is a function of z")
-            };
+            let certifier =
+                || Certifier::new(&facets, scene.tool()).expect("a tool with a profile");
             let cloud = Cloud::random(&mesh, 1, 1).expect("the mesh has a surface");
             let piece = Workpiece { part: Part::from_cloud(&cloud), mesh: mesh.clone(), cloud };
             let mut methods: Vec<Box<dyn Contender>> =
                 vec![Box::new(Certified(certifier())), Box::new(Cleared(certifier()))];
+            if let Scene::Apart(_) = scene {
+                methods.push(Box::new(Swept(certifier())));
+            }
             if let Scene::Along(_) | Scene::Apart(_) = scene {
                 methods.push(Box::new(ParryContact::new(&piece)));
             }
@@ -184,7 +213,7 @@ pub(crate) fn measure(sizes: &[usize], seconds: f64, json: bool) {
 
 /// How far a method's depths are from proved ones at most.
 fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pose]) -> f64 {
-    if method.name() == "touchoff clear" {
+    if YES_OR_NO.contains(&method.name()) {
         return 0.0;
     }
     let some = poses.iter().step_by(poses.len() / 50);
@@ -219,7 +248,8 @@ fn markdown(rows: &[Row]) {
 
 How deep the part's triangles are in the tool. `touchoff` proves it to {TOLERANCE:e} mm (`Certifier::deepest`), with the tool of
 fig. 7.3 as its profile has it on `outside`, `inside`, `hold` and `apart`, where its ball is that many mm off; `touchoff clear`
-only asks whether anything touches. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED} mm deep with its end or
+only asks whether anything touches; `touchoff sweep` whether it stays clear on a way of 1 mm, the ball's radius, along the wall, in
+half of the poses swung by 0.1 rad the while. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED} mm deep with its end or
 its side in a plate, or in a bore, where a great many triangles are as deep. **In contact** is at which part of the poses
 something is inside, **error** how far a depth is from the proved one at most, in mm, and of the proved one how wide its interval is.
 
@@ -240,7 +270,7 @@ something is inside, **error** how far a depth is from the proved one at most, i
             time(row.ns_max),
             row.cpu_avg / 1e3,
             row.in_contact,
-            if row.method == "touchoff clear" {
+            if YES_OR_NO.contains(&row.method) {
                 "-".into()
             } else {
                 format!("{:.0e}", row.err_depth)
