@@ -252,6 +252,38 @@ impl<'a> Certifier<'a> {
     /// adds is taken as that.
     ///
     /// A motion says nothing of spin, so that of a solid without an axis all is undecided.
+    ///
+    /// ```
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::certify::{Certifier, Facets, Sweep};
+    /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
+    /// touchoff::tool! {
+    ///     tool EndMill "12 mm across, 20 mm of it cut" {
+    ///         units mm;
+    ///         profile {
+    ///             start (0, 0);
+    ///             line to (6, 0) as face cutting;
+    ///             line to (6, 20) as flute cutting;
+    ///             line to (6, 60), (0, 60) as shank;
+    ///         }
+    ///         niceness cutting: 1;
+    ///     }
+    /// }
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let (low, high) = (Point3::new(0., -30., 0.), Point3::new(40., 30., 25.));
+    /// let wall = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    /// let pose = |y: f64, z: f64| Pose::from_axis(Point3::new(-4.0, y, z), Vector3::z());
+    /// let mut certifier = Certifier::new(&wall, &EndMill)?
+    ///     .allow("face", f64::INFINITY)?
+    ///     .allow("flute", f64::INFINITY)?;
+    /// // The flute cuts 2 mm into the wall, as high as that is; lower, the shank would rub.
+    /// let cut = Motion::new(&pose(-20.0, 6.0)?, &pose(20.0, 6.0)?)?;
+    /// assert_eq!(certifier.sweep_clear(&cut, 1e-6), Sweep::Clear);
+    /// let lower = Motion::new(&pose(-20.0, 6.0)?, &pose(20.0, 4.0)?)?;
+    /// assert!(matches!(certifier.sweep_clear(&lower, 1e-6), Sweep::Touching(at, _) if at >= 0.5));
+    /// # Ok(()) }
+    /// ```
     pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
         if self.card.shape != Shape::Revolved {
             return Sweep::Undecided(0.0);

@@ -1,6 +1,6 @@
 //! Tools that the macros compile.
 
-use super::{Ask, Card, Felt, LANES, Lane, Points, Senses, Tool, Wanted, present};
+use super::{Ask, Card, Felt, LANES, Lane, Points, Senses, Tool, Wanted, on_vectors, present};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
@@ -71,8 +71,6 @@ impl<L: Lane> FeltLanes<L> {
         self.region = L::select(lanes, region, self.region);
     }
 }
-
-use super::on_vectors;
 
 impl<T: Evaluators> Tool for T {
     fn card(&self) -> &Card {

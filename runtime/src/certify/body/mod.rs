@@ -61,13 +61,13 @@ impl Body<'_> {
         }
     }
 
-    /// Whether no place of the tool no farther than `goes` from a place is inside, deeper than `limit`
-    /// and owned; or, if the limit is below 0, nearer to the owners than that.
+    /// Whether no place of a rectangle of the half plane, no farther than `goes` from a place, is inside,
+    /// deeper than `limit` and owned; or, if the limit is below 0, nearer to the owners than that.
     pub(crate) fn clears(
         &self,
         scratch: &mut Scratch,
         owners: &Owners,
-        point: Point,
+        (point, rectangle): (Point, &[Place; 4]),
         (goes, limit): (f64, f64),
     ) -> bool {
         let steep = self.steep();
@@ -82,7 +82,9 @@ impl Body<'_> {
             return true;
         }
         match self {
-            Body::Profile(section) => section.far_from(owners, place(point), depth, goes),
+            Body::Profile(section) => {
+                section.far_from(owners, rectangle, (place(point), depth, goes))
+            }
             Body::Field(_) => false,
         }
     }

@@ -156,13 +156,16 @@ impl Section {
         if self.contains(p) { value } else { -value }
     }
 
-    /// Whether owners own no place that is no farther than `goes` from one that is so deep.
-    pub(crate) fn far_from(&self, owners: &Owners, p: Place, depth: f64, goes: f64) -> bool {
-        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|way| [0, 1].map(|k| p[k] + goes * way[k]));
+    /// Whether owners own no place of a rectangle that is no farther than `goes` from one so deep.
+    pub(crate) fn far_from(
+        &self,
+        owners: &Owners,
+        rectangle: &[Place; 4],
+        (p, depth, goes): (Place, f64, f64),
+    ) -> bool {
         !owners.all()
             && self.owned(owners).all(|owner| {
-                self.features[owner].away(p) > depth + 2.0 * goes || self.behind(owner, &corners)
+                self.features[owner].away(p) > depth + 2.0 * goes || self.behind(owner, rectangle)
             })
     }
 

@@ -190,7 +190,7 @@ impl Descent {
         while self.some.len() < LANES
             && let Some(next) = self.stack.pop_if(|node| node.is_triangle(facets))
         {
-            if next.bound > wanted {
+            if next.bound > wanted || next.bound.is_nan() {
                 self.some.push(next.index);
             }
         }

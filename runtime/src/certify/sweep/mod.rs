@@ -275,7 +275,9 @@ impl Sweeper {
             self.budget -= 1;
             let (centre, reach) = piece.ball();
             let far = goes + reach + task.error;
-            if body.clears(&mut self.scratch, owners, centre, (far, task.wanted())) {
+            let rectangle = piece.rectangle(goes + task.error);
+            let place = (centre, &rectangle);
+            if body.clears(&mut self.scratch, owners, place, (far, task.wanted())) {
                 continue;
             }
             let here = task.depth(&mut self.scratch, centre);

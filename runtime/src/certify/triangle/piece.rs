@@ -54,6 +54,17 @@ impl Piece {
         if half.1 < mean.1 { half } else { mean }
     }
 
+    /// The corners of a rectangle of the half plane that what is no farther from it than `goes` is in.
+    pub(crate) fn rectangle(&self, goes: f64) -> [[f64; 2]; 4] {
+        let (mut far, mut low, mut high) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
+        for [x, y, z] in self.corners {
+            far = far.max((x * x + y * y).sqrt());
+            (low, high) = (low.min(z), high.max(z));
+        }
+        let (low, high, far) = (low - goes, high + goes, far + goes);
+        [[0.0, low], [far, low], [far, high], [0.0, high]]
+    }
+
     /// Both halves of its longest side; none if that is too short to be halved.
     pub(crate) fn halves(&self) -> impl Iterator<Item = Piece> + use<> {
         let [a, b, c] = self.corners;
