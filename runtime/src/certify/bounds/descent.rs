@@ -85,8 +85,8 @@ pub(crate) struct Descent {
 
 /// Something that depth, or a negative distance, is no more than in boxes.
 pub(crate) trait BoxBounds {
-    /// In 16 boxes; what is not there has NaN.
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S>;
+    /// In 16 boxes; what is not there has NaN. What is no more than wanted need not be close.
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, wanted: f32) -> f32x16<S>;
 }
 
 /// The same in boxes and triangles.
@@ -267,7 +267,7 @@ fn of_boxes<S: Simd, B: BoxBounds>(
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
     let boxes = &facets.levels[node.level as usize][node.index as usize];
-    let bound = bounded.of_boxes(simd, boxes, view);
+    let bound = bounded.of_boxes(simd, boxes, view, wanted);
     bound.store_slice(bounds);
     above(bound, wanted)
 }

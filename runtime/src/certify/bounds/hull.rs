@@ -22,7 +22,8 @@ pub(crate) struct Hull<R> {
 pub(crate) struct Slab<R> {
     pub(crate) low: R,
     pub(crate) high: R,
-    /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`.
+    /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`. The first
+    /// is upright.
     pub(crate) planes: Vec<[R; 3]>,
     /// How far it is inside a ball about a place of the axis, as `[z, radius]`.
     pub(crate) ball: Option<[R; 2]>,
@@ -125,14 +126,22 @@ impl<R: Real> Hull<R> {
         let [a, b, c] = corners;
         let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
         let near = Near::to_axis(simd, corners);
+        // No corner is nearer to the axis than it is out in that direction.
+        let out = across(corners, &near.way);
         let wanted = V::splat(simd, wanted);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
         let mut place = near.place;
         for slab in &self.slabs {
             let (from, to) = (V::splat(simd, slab.low), V::splat(simd, slab.high));
             let here = low.simd_le(to) & high.simd_ge(from);
-            // No corner is nearer to the axis than it is out in that direction.
-            let depth = slab.under_planes(simd, corners, &across(corners, &near.way), &None);
+            // Most slabs are out of reach, by how far out triangles are.
+            let [p, q, r] = under_plane(simd, corners, &out, slab.planes[0]);
+            let outside = most(p, q, r);
+            if !(here & !outside.simd_le(wanted)).any_true() {
+                bound = here.select(bound.max(outside), bound);
+                continue;
+            }
+            let depth = slab.under_planes(simd, corners, &out, &None);
             let open = here & depth.simd_gt(wanted);
             let (depth, deepest) = if open.any_true() {
                 slab.triangles(simd, corners, &near, open, again)
@@ -297,9 +306,14 @@ impl Hull<f64> {
 }
 
 impl Hull<f32> {
-    /// No less than the depth of any place of rings.
+    /// No less than the depth of any place of rings. What is no more than wanted need not be close.
     #[inline(always)]
-    pub(crate) fn of_rings<S: Simd>(&self, simd: S, rings: &Rings<f32x16<S>>) -> f32x16<S> {
+    pub(crate) fn of_rings<S: Simd>(
+        &self,
+        simd: S,
+        rings: &Rings<f32x16<S>>,
+        wanted: f32,
+    ) -> f32x16<S> {
         let Rings { near, far, low, high } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);
@@ -307,8 +321,14 @@ impl Hull<f32> {
             let here = low.simd_le(slab.high) & high.simd_ge(slab.low);
             let low = low.max(f32x16::splat(simd, slab.low));
             let high = high.min(f32x16::splat(simd, slab.high));
-            let mut depth = f32x16::splat(simd, f32::INFINITY);
-            for &[nd, nz, most] in &slab.planes {
+            // Most slabs are out of reach of all rings, by how far out they are.
+            let [nd, _, most] = slab.planes[0];
+            let mut depth = f32x16::splat(simd, most) - near * nd;
+            if !(here & !depth.simd_le(wanted)).any_true() {
+                bound = here.select(bound.max(depth), bound);
+                continue;
+            }
+            for &[nd, nz, most] in &slab.planes[1..] {
                 let z = if nz > 0.0 { low } else { high };
                 depth = depth.min(f32x16::splat(simd, most) - near * nd - z * nz);
             }
@@ -335,8 +355,8 @@ impl BoxBounds for Hull<f32> {
     /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
     /// NaN.
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
-        self.of_rings(simd, &rings(simd, boxes, view, None))
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, wanted: f32) -> f32x16<S> {
+        self.of_rings(simd, &rings(simd, boxes, view, None), wanted)
     }
 }
 

@@ -75,7 +75,7 @@ impl Shell {
 
 impl BoxBounds for Shell {
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, _wanted: f32) -> f32x16<S> {
         self.bound(simd, &rings(simd, boxes, view, None))
     }
 }

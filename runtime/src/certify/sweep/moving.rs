@@ -17,8 +17,8 @@ pub(super) struct Moving<'a> {
 
 impl BoxBounds for Moving<'_> {
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View) -> f32x16<S> {
-        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)))
+    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, wanted: f32) -> f32x16<S> {
+        self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), wanted)
     }
 }
 
