@@ -41,7 +41,7 @@ impl Motion {
         }
         let way = to.tip() - from.tip();
         // What does not turn is seen from where it goes.
-        let across = if size > 0.0 { sine } else { first.cross(&way) };
+        let across = if size > f64::MIN_POSITIVE.sqrt() { sine } else { first.cross(&way) };
         let start = match Unit::try_new(across - first * first.dot(&across), 0.0) {
             Some(second) => Matrix3::from_columns(&[second.cross(&first), *second, first]),
             None => *from.rotation(),

@@ -65,8 +65,9 @@ fn what_is_proved_stands_in_each_row() {
     for wrong in ["-1", "NaN", "deep"] {
         assert_eq!(run(wrong, "3").status.code(), Some(2), "{wrong}");
     }
-    let refused = bench.run("block.stl", "path.csv", "Fig73", &["--certify", "1e-6"]);
-    assert!(stderr(&refused).contains("Fig73 has no profile"), "{}", stderr(&refused));
+    // Without a profile, by how fast its depth changes.
+    let field = bench.run("block.stl", "path.csv", "Fig73", &["--certify", "1e-2"]);
+    assert!(stderr(&field).contains("proved: 1 of 2 poses in contact"), "{}", stderr(&field));
 }
 
 #[test]

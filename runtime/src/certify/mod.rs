@@ -159,7 +159,7 @@ impl<'a> Certifier<'a> {
     /// If there is no such surface, or the allowance is not a number or keeps infinitely far, or it is not
     /// known which surface of the tool is the nearest, since it has no profile or that overhangs.
     pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Certifier<'a>, AllowanceError> {
-        if allowed.is_nan() || allowed == f64::NEG_INFINITY {
+        if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
         }
         let surfaces = &self.card.surfaces;
@@ -294,7 +294,10 @@ impl<'a> Certifier<'a> {
         // Written so that what is not a number is no tolerance.
         let tolerance = (16.0 * error).max(tolerance / setting.length);
         let mut first: Option<Stop> = None;
-        for question in &*rules {
+        // A margin that is no more than the tolerance asks for nothing.
+        for question in
+            rules.iter().filter(|rule| rule.limit >= 0.0 || rule.limit + tolerance < 0.0)
+        {
             let task = Task { setting, question, motion, error, tolerance };
             let stop = sweeper.run(&task, *budget);
             first = match (first, stop) {

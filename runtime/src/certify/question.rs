@@ -21,23 +21,21 @@ pub(crate) struct Question {
     pub(crate) cores: Vec<(Point, f64)>,
 }
 
-/// Of how many places of the axis cores are chosen.
-const PLACES: u32 = 1024;
+/// Of how many places of the axis between two heights cores are chosen.
+const PLACES: u32 = 64;
 
-/// The highest places of each run of owned ones that are at least half as deep as its deepest.
+/// The deepest place of each run of owned ones that are deeper than a limit.
 fn cores(places: impl Iterator<Item = (Point, Option<f64>)>, limit: f64) -> Vec<(Point, f64)> {
-    let mut runs: Vec<Vec<(Point, f64)>> = vec![Vec::new()];
+    let mut runs: Vec<Option<(Point, f64)>> = vec![None];
     for (point, depth) in places {
+        let run = runs.last_mut().expect("one at least");
         match depth.filter(|depth| *depth > limit.max(0.0)) {
-            Some(depth) => runs.last_mut().expect("one at least").push((point, depth)),
-            None => runs.push(Vec::new()),
+            Some(depth) if run.is_none_or(|(_, most)| depth > most) => *run = Some((point, depth)),
+            Some(_) => (),
+            None => runs.push(None),
         }
     }
-    let core = |run: Vec<(Point, f64)>| {
-        let most = run.iter().map(|(_, depth)| *depth).fold(0.0, f64::max);
-        run.into_iter().rev().find(|(_, depth)| *depth >= 0.5 * most)
-    };
-    runs.into_iter().filter_map(core).collect()
+    runs.into_iter().flatten().collect()
 }
 
 impl Question {
@@ -48,7 +46,11 @@ impl Question {
         limit: f64,
         surfaces: impl Fn(usize) -> bool,
     ) -> Question {
-        let owners = Owners::of(section, surfaces);
+        let owners = if limit < 0.0 {
+            Owners::near(section, surfaces)
+        } else {
+            Owners::of(section, surfaces)
+        };
         let (hull, exact) = if limit < 0.0 {
             (
                 Hull::holding(section, &owners, margin),
@@ -58,13 +60,21 @@ impl Question {
             let zones = owners.zones(section, limit - 8.0 * section.error);
             (Hull::new(section, &zones, margin), Hull::new(section, &zones, section.error))
         };
-        let [low, high] = section.reach();
-        let places = (1..PLACES).map(|k| {
-            let z = low + (high - low) * f64::from(k) / f64::from(PLACES);
-            let depth = section.depth_at(&owners, [0.0, z]);
-            ([0.0, 0.0, z], depth.map(|depth| depth.value))
-        });
-        let cores = if limit < 0.0 { Vec::new() } else { cores(places, limit) };
+        let part = |k: u32, n: u32| f64::from(k) / f64::from(n);
+        let along = |d: f64| {
+            let heights = section.slabs.iter().flat_map(|slab| {
+                (0..PLACES).map(|k| slab.low + (slab.high - slab.low) * part(2 * k + 1, 2 * PLACES))
+            });
+            let places = heights.map(|z| {
+                let depth = section.depth_at(&owners, [d, z]);
+                ([d, 0.0, z], depth.map(|depth| depth.value))
+            });
+            cores(places, limit)
+        };
+        // What owns none of the axis may own places about it.
+        let mut ways = (0..16).map(|k| along(section.size * part(k, 16)));
+        let cores = if limit < 0.0 { None } else { ways.find(|cores| !cores.is_empty()) };
+        let cores = cores.unwrap_or_default();
         Question { cores, hull, exact, shell: Shell::new(section, &owners), owners, limit }
     }
 
@@ -76,7 +86,7 @@ impl Question {
             Shape::Revolved => [[0.0; 2]; 2],
             Shape::Solid { across } => across,
         };
-        let steps = if card.shape == Shape::Revolved { [1, 1, PLACES] } else { [16; 3] };
+        let steps = if card.shape == Shape::Revolved { [1, 1, 16 * PLACES] } else { [16; 3] };
         let mut scratch = Scratch::default();
         let mut best = Vec::new();
         for x in 1..=steps[0] {

@@ -53,7 +53,7 @@ impl Setting<'_> {
     }
 
     /// Whether what of the tool may not be deeper than its limit and a tolerance is wholly inside the part, if
-    /// that has an inside; no triangle is so deep.
+    /// that has an inside; no triangle is so deep. What has no core is nowhere so deep.
     pub(crate) fn within(&self, rules: &[Question], pose: &Pose, tolerance: f64) -> Option<bool> {
         for rule in rules {
             for (core, depth) in &rule.cores {
@@ -110,7 +110,7 @@ impl Faces {
         (pose, view): (&Pose, &View),
         faces: &[u32],
     ) -> f64 {
-        let more = flat(&of.facets.frame) / of.length;
+        let more = of.body.steep() * flat(&of.facets.frame) / of.length;
         let mut most = f64::NEG_INFINITY;
         for some in faces.chunks(LANES / 2) {
             self.batch.clear();

@@ -2,8 +2,10 @@
 //! is a ring, and a triangle that the ring passes through may be deepest there: neither on an edge nor on its meridian.
 
 use crate::{pose, soup, tool};
+use tool_dsl::source::Source;
 use touchoff::certify::{Certifier, Clear, Facets, Sweep};
-use touchoff::{Mesh, Motion, Pose};
+use touchoff::tool::Interpreted;
+use touchoff::{Mesh, Motion, Pose, Tool};
 
 /// A wall at y = 3 that is larger than the tool.
 fn wall() -> Mesh {
@@ -47,4 +49,40 @@ fn a_corner_is_deepest_at_its_centre() {
     let mut certifier = Certifier::new(&facets, tool("BullNose")).expect("a profile");
     let [low, high] = certifier.deepest_on(1, &upright(), 1e-9).depth;
     assert!(low <= 2.0 && 2.0 <= high, "{low} to {high}");
+}
+
+fn interpreted(profile: &str) -> Interpreted {
+    let text = format!(
+        "tool Made {{ units mm; profile {{ start (0, 0); {profile} }} niceness cutting: 1; }}"
+    );
+    Interpreted::parse(&Source::new("made.tool", text)).expect("a tool")
+}
+
+/// Beside a wall at y = 2.
+fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
+    let mesh = soup(&[[[-100.0, 2.0, -50.0], [100.0, 2.0, -50.0], [0.0, 2.0, 150.0]]]);
+    let facets = Facets::new(&mesh);
+    let mut certifier = Certifier::new(&facets, tool).expect("a profile");
+    let known = tool.card().surfaces.iter().position(|known| known.name == surface);
+    certifier.deepest_on(known.expect("a surface"), &upright(), 1e-9).depth
+}
+
+#[test]
+fn a_seam_between_ties_belongs_to_both_its_sides() {
+    // The wall meets the circle (2, 2) where the flute's upper end is as far as the face.
+    let tool = interpreted(
+        "line to (5, 0) as face; line to (5, 2) as flute cutting; line to (5, 50), (0, 50) as shank;",
+    );
+    let [low, high] = deepest_on(&tool, "flute");
+    assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{low} to {high}");
+}
+
+#[test]
+fn a_reflex_corner_owns_as_far_as_what_it_ties_with() {
+    // Near (3, 2) the back owns by its corner, as far as the face is.
+    let tool = interpreted(
+        "line to (20, 0) as face; line to (20, 2) as rim cutting; line to (5, 2) as back; line to (5, 50), (0, 50) as neck;",
+    );
+    let [low, high] = deepest_on(&tool, "back");
+    assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{low} to {high}");
 }

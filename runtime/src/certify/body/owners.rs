@@ -1,6 +1,6 @@
 //! Which of a tool's features are asked about: those that own a place are the nearest to it.
 
-use crate::certify::body::feature::{Place, minus, norm};
+use crate::certify::body::feature::{Feature, Place, minus, norm};
 use crate::certify::body::section::{Section, Slab};
 
 /// Features, by their places in the section's list.
@@ -26,6 +26,16 @@ impl Owners {
             }
         }
         owners
+    }
+
+    /// The same, to be asked how near they are: where all of one is within a triangle's distances and heights,
+    /// it is at its ends that the triangle comes to it.
+    pub(crate) fn near(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
+        let own = |feature: &&Feature| surfaces(feature.surface);
+        let ends = section.features.iter().filter(own).flat_map(|feature| feature.ends);
+        let peaks = ends.map(|end| end[1]).collect();
+        let some = section.features.iter().map(|f| surfaces(f.surface)).collect();
+        Owners { some: Some(some), peaks }
     }
 
     /// Whether these are all features.
@@ -118,7 +128,7 @@ impl Owners {
                 continue;
             }
             if reach <= small {
-                if peaks.iter().all(|peak| (peak - middle[1]).abs() > 8.0 * small) {
+                if peaks.iter().all(|peak| (peak - middle[1]).abs() > 2.0 * small) {
                     peaks.push(middle[1]);
                 }
                 continue;
@@ -129,7 +139,9 @@ impl Owners {
             second.0[longer] = middle[longer];
             stack.extend([first, second]);
         }
-        Some(peaks)
+        // Just below and just above: of a seam either side owns only what is on its side.
+        let beside = 0.25 * section.error;
+        Some(peaks.into_iter().flat_map(|peak| [peak - beside, peak + beside]).collect())
     }
 
     /// Whether a place no farther than that from another may be as far from three features, of which some
@@ -151,11 +163,13 @@ impl Owners {
             }
             both[usize::from(self.own(index))] = true;
             let foot = section.features[index].foot(middle);
-            // Both sides of a reflex corner are as near where that is nearest; of a smooth joint one is
-            // nearer on either side.
+            // Both sides of a reflex corner are as near to what that is nearest to; elsewhere one of two that
+            // meet is nearer on either side of a line.
+            let of_corner = |feature: usize| section.features[feature].at_ends(corners).is_some();
             let known = |(other, known): &(usize, Place)| {
                 let same = norm(minus(*known, foot)) <= 1e-9 * section.size;
-                same && (self.own(index) == self.own(*other) || !section.smooth(*other, index))
+                let owner = self.own(index) == self.own(*other);
+                same && (owner || (of_corner(index) && of_corner(*other)))
             };
             if !nearby.iter().any(known) {
                 nearby.push((index, foot));

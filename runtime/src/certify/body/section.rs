@@ -265,15 +265,6 @@ impl Section {
         [0, 1].into_iter().all(|end| !ends[end] || nearer(end))
     }
 
-    /// Whether one feature goes on straight into another.
-    pub(crate) fn smooth(&self, feature: usize, next: usize) -> bool {
-        let joint = |a: usize, b: usize| {
-            a + 1 == b
-                && cross(self.features[a].heading(1), self.features[b].heading(0)).abs() < 1e-9
-        };
-        joint(feature, next) || joint(next, feature)
-    }
-
     pub(crate) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
         (0..self.features.len()).filter(|feature| owners.own(*feature))
     }

@@ -71,6 +71,9 @@ impl Flats {
             let lies = |k: u32| {
                 corners[k as usize].iter().all(|p| dot(normal, minus(*p, a)).abs() <= flat)
             };
+            if !lies(seed as u32) {
+                continue;
+            }
             face.clear();
             face.push(seed as u32);
             taken[seed] = true;
@@ -156,7 +159,8 @@ impl Face {
         let [a, b, c] = corners[face[0] as usize];
         let places = || face.iter().flat_map(|k| corners[*k as usize]).map(|p| minus(p, a));
         let along = |side: Point| {
-            let u = unit(side)?;
+            let out = dot(side, normal);
+            let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
             let v = unit(cross(normal, u))?;
             let ends = |way: Point| {
                 places()

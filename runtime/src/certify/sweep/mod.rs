@@ -51,7 +51,7 @@ enum Left {
     Part(Part),
 }
 
-/// A triangle, or a part of one, in the part's frame and unit.
+/// A triangle, or a part of one, from the part's middle in its unit.
 #[derive(Clone, Copy)]
 pub(crate) struct Part {
     pub(crate) index: u32,
@@ -95,7 +95,7 @@ impl Sweeper {
             return None;
         }
         let middle = stretch.middle();
-        if middle <= from || middle >= to {
+        if middle <= from || middle >= to || to - from < FINEST {
             return Some(Stop::Spent { at: from });
         }
         for half in [[from, middle], [middle, to]] {
@@ -121,7 +121,8 @@ impl Sweeper {
         setting.sight.look(frame, first, &mut self.ends[0]);
         setting.sight.look(frame, middle, &mut self.view);
         setting.sight.look(frame, last, &mut self.ends[1]);
-        let margin = setting.margin() + stretch.goes(f64::INFINITY) / f64::from(1 << 20);
+        let margin =
+            setting.margin() + (stretch.goes(f64::INFINITY) + task.keep()) / f64::from(1 << 18);
         let wanted = (task.above() - margin) as f32;
         let small = PART * stretch.goes(f64::INFINITY);
         self.stack.clear();
@@ -141,7 +142,9 @@ impl Sweeper {
                 }
                 self.budget -= 1;
                 if node.is_triangle(facets) {
-                    let piece = Piece::new(facets.corners[node.index as usize]);
+                    let origin = facets.frame.origin;
+                    let corners = facets.corners[node.index as usize];
+                    let piece = Piece::new(corners.map(|p| [0, 1, 2].map(|k| p[k] - origin[k])));
                     let part = Part { index: node.index, piece };
                     if let Some(stop) = self.add(task, stretch, part) {
                         return Some(stop);
@@ -171,13 +174,20 @@ impl Sweeper {
     /// Adds a part of a triangle to the batch. Of one that is large beside the tool the way is far from
     /// straight, so that it is halved.
     fn add(&mut self, task: &Task<'_>, stretch: &Stretch, part: Part) -> Option<Stop> {
+        if self.budget == 0 {
+            return Some(Stop::Spent { at: stretch.from });
+        }
+        self.budget -= 1;
         if stretch.turns() && part.piece.longest() > 4.0 * task.setting.size * task.setting.length {
-            for piece in part.piece.halves() {
-                if let Some(stop) = self.add(task, stretch, Part { piece, ..part }) {
-                    return Some(stop);
+            let mut halves = part.piece.halves().peekable();
+            if halves.peek().is_some() {
+                for piece in halves.filter(|piece| stretch.reaches(piece, task.setting.length)) {
+                    if let Some(stop) = self.add(task, stretch, Part { piece, ..part }) {
+                        return Some(stop);
+                    }
                 }
+                return None;
             }
-            return None;
         }
         self.some.push(part);
         if self.some.len() == LANES { self.triangles(task, stretch) } else { None }
@@ -244,7 +254,8 @@ impl Sweeper {
         self.search.begin(Goal { least, tolerance, enough, budget });
         let asked = (section, &task.question.owners);
         let mut found = None;
-        for course in facet.courses() {
+        let peaks = task.question.owners.peaks.iter().filter_map(|peak| facet.level(*peak));
+        for course in facet.courses().chain(peaks) {
             let deepest = if least < 0.0 {
                 self.search.outside(asked, &course)
             } else {
@@ -306,6 +317,9 @@ const LOOKS: u32 = 1 << 12;
 
 /// A piece of a triangle that is smaller than this part of its way is not halved.
 const SMALL: f64 = 0.125;
+
+/// A shorter stretch than this part of the motion is not halved.
+const FINEST: f64 = f64::EPSILON;
 
 /// Nodes are opened that are larger than this part of the way.
 const PART: f64 = 0.3;

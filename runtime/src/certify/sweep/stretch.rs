@@ -4,15 +4,17 @@ use crate::certify::bounds::descent::Shift;
 use crate::certify::work::Setting;
 use crate::motion::Motion;
 use crate::pose::Pose;
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-pub(crate) type Point = [f64; 3];
+use crate::certify::triangle::piece::Piece;
+pub(crate) use crate::certify::triangle::piece::Point;
 
 /// A part of a motion, in the tool's frame and unit.
 pub(crate) struct Stretch {
     pub(crate) from: f64,
     to: f64,
-    start: Point3<f64>,
+    /// The tip's place at the beginning of the motion from the part's middle.
+    start: Vector3<f64>,
     pub(crate) poses: [Pose; 3],
     /// At both ends and, between these, in the middle: how far the tip has come, and the way from the part's
     /// frame and unit to the tool's.
@@ -53,19 +55,27 @@ impl Stretch {
         Stretch {
             from,
             to,
-            start: motion.start(),
+            start: motion.start() - setting.facets.frame.origin,
             poses,
             views,
             pace: Pace { straight: straight.abs().into(), length, turn, reach },
         }
     }
 
-    /// A corner of the part at the beginning, in the middle and at the end.
+    /// A corner of the part, given from its middle, at the beginning, in the middle and at the end.
     pub(crate) fn seen(&self, corner: &Point) -> [Point; 3] {
-        let from_start = Point3::from(*corner) - self.start;
+        let from_start = Vector3::from(*corner) - self.start;
         let [first, middle, last] = &self.views;
         let seen = |(way, back): &(Vector3<f64>, Matrix3<f64>)| (back * (from_start - way)).into();
         [seen(first), seen(middle), seen(last)]
+    }
+
+    /// Whether a piece comes so near that it matters.
+    pub(crate) fn reaches(&self, piece: &Piece, length: f64) -> bool {
+        let (centre, reach) = piece.ball();
+        let [_, (way, _), _] = &self.views;
+        let far = (Vector3::from(centre) - self.start - way).norm();
+        far - reach <= length * self.pace.reach
     }
 
     /// Whether the axis turns.

@@ -29,9 +29,9 @@ impl Task<'_> {
         self.wanted() + self.keep() - self.error
     }
 
-    /// How far the owners have to keep.
+    /// How far the owners have to keep at least.
     pub(super) fn keep(&self) -> f64 {
-        (-self.question.limit).max(0.0)
+        (-self.wanted()).max(0.0)
     }
 
     /// How deep a place is, or how near, as depth less than 0.
