@@ -97,7 +97,8 @@ pub enum Sweep {
     Touching(f64, Witness),
     /// The tool is wholly inside the material and touches no triangle.
     Inside,
-    /// The budget was spent: until this part of the way it is clear, and what comes then is not known.
+    /// The budget was spent, or rounding decides: until this part of the way it is clear, and what comes then is
+    /// not known.
     Undecided(f64),
 }
 
