@@ -18,6 +18,7 @@ mod body;
 mod bounds;
 mod part;
 mod question;
+mod space;
 mod sweep;
 mod triangle;
 mod work;
@@ -34,6 +35,7 @@ use body::field::Field;
 use body::section::Section;
 use fearless_simd::Level;
 use question::Question;
+use std::slice;
 use sweep::{Stop, Sweeper, Task};
 use triangle::course::Goal;
 use work::{Setting, Work};
@@ -76,9 +78,10 @@ pub struct Certifier<'a> {
     whole: Question,
     /// Of each surface, once it was asked for.
     each: Vec<Option<Question>>,
-    /// Of each surface, how deep it may be in the part's unit, and what to ask for that.
+    /// Of each surface, how deep it may be in the part's unit, and what to ask for that, if anything was
+    /// allowed.
     allowed: Vec<f64>,
-    rules: Vec<Question>,
+    rules: Option<Vec<Question>>,
     budget: u32,
     work: Work,
     sweeper: Sweeper,
@@ -107,24 +110,16 @@ impl<'a> Certifier<'a> {
             },
         };
         let surfaces = card.surfaces.len();
-        let allowed = vec![0.0; surfaces];
-        let margins = [sight.margin, error];
-        let (whole, rules) = match &body {
-            Body::Profile(section) => (
-                Question::new(section, margins[0], 0.0, |_| true),
-                Question::all(section, margins[0], &allowed),
-            ),
-            Body::Field(field) => {
-                let question = || Question::of_field(card, field, margins);
-                (question(), vec![question()])
-            }
+        let whole = match &body {
+            Body::Profile(section) => Question::new(section, sight.margin, 0.0, |_| true),
+            Body::Field(field) => Question::of_field(card, field, [sight.margin, error]),
         };
         let (size, exact) = (card.size(), card.exact());
         Ok(Certifier {
             whole,
             each: (0..surfaces).map(|_| None).collect(),
-            rules,
-            allowed,
+            allowed: vec![0.0; surfaces],
+            rules: None,
             budget: 1 << 20,
             work: Work::default(),
             sweeper: Sweeper::default(),
@@ -177,7 +172,7 @@ impl<'a> Certifier<'a> {
         };
         self.allowed[index] = allowed;
         let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
-        self.rules = Question::all(section, sight.margin, &allowed);
+        self.rules = Some(Question::all(section, sight.margin, &allowed));
         Ok(self)
     }
 
@@ -214,10 +209,11 @@ impl<'a> Certifier<'a> {
     /// Whether the tool is clear of the part, or no deeper in it than is [allowed](Certifier::allow). It
     /// stops at the first point that is.
     pub fn clear(&mut self, pose: &Pose) -> Clear {
-        let Certifier { setting, rules, work, budget, .. } = self;
+        let Certifier { setting, whole, rules, work, budget, .. } = self;
+        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
         let touch = 2.0 * setting.error;
         let mut open: Option<f64> = None;
-        for rule in &*rules {
+        for rule in rules {
             let least = rule.limit - touch;
             let enough = rule.limit + touch;
             let goal = Goal { least, tolerance: touch, enough, budget: *budget };
@@ -288,7 +284,8 @@ impl<'a> Certifier<'a> {
         if self.card.shape != Shape::Revolved {
             return Sweep::Undecided(0.0);
         }
-        let Certifier { setting, rules, budget, sweeper, .. } = self;
+        let Certifier { setting, whole, rules, budget, sweeper, .. } = self;
+        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
         // Rounding grows with the way.
         let error = setting.error + 64.0 * f64::EPSILON * motion.way().norm() / setting.length;
         // Written so that what is not a number is no tolerance.

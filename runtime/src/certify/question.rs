@@ -5,7 +5,7 @@ use crate::certify::body::owners::Owners;
 use crate::certify::body::section::Section;
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::shell::Shell;
-use crate::certify::triangle::piece::Point;
+use crate::certify::space::Point;
 use crate::tool::{Card, Shape};
 
 /// A question, and what bounds its answer.
@@ -46,20 +46,19 @@ impl Question {
         limit: f64,
         surfaces: impl Fn(usize) -> bool,
     ) -> Question {
-        let owners = if limit < 0.0 {
-            Owners::near(section, surfaces)
-        } else {
-            Owners::of(section, surfaces)
-        };
-        let (hull, exact) = if limit < 0.0 {
-            (
-                Hull::holding(section, &owners, margin),
-                Hull::holding(section, &owners, section.error),
-            )
-        } else {
-            let zones = owners.zones(section, limit - 8.0 * section.error);
-            (Hull::new(section, &zones, margin), Hull::new(section, &zones, section.error))
-        };
+        if limit < 0.0 {
+            let owners = Owners::near(section, surfaces);
+            return Question {
+                hull: Hull::holding(section, &owners, margin),
+                exact: Hull::holding(section, &owners, section.error),
+                shell: Shell::new(section, &owners),
+                owners,
+                limit,
+                cores: Vec::new(),
+            };
+        }
+        let owners = Owners::of(section, surfaces);
+        let zones = owners.zones(section, limit - 8.0 * section.error);
         let part = |k: u32, n: u32| f64::from(k) / f64::from(n);
         let along = |d: f64| {
             let heights = section.slabs.iter().flat_map(|slab| {
@@ -73,9 +72,15 @@ impl Question {
         };
         // What owns none of the axis may own places about it.
         let mut ways = (0..16).map(|k| along(section.size * part(k, 16)));
-        let cores = if limit < 0.0 { None } else { ways.find(|cores| !cores.is_empty()) };
-        let cores = cores.unwrap_or_default();
-        Question { cores, hull, exact, shell: Shell::new(section, &owners), owners, limit }
+        let cores = ways.find(|cores| !cores.is_empty()).unwrap_or_default();
+        Question {
+            hull: Hull::new(section, &zones, margin),
+            exact: Hull::new(section, &zones, section.error),
+            shell: Shell::new(section, &owners),
+            owners,
+            limit,
+            cores,
+        }
     }
 
     /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.

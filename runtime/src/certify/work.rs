@@ -7,7 +7,7 @@ use crate::certify::bounds::batch::Batch;
 use crate::certify::bounds::descent::Descent;
 use crate::certify::part::{Facets, flat};
 use crate::certify::question::Question;
-use crate::certify::triangle::course::{Found, Goal, Search};
+use crate::certify::triangle::course::{Best, Found, Goal, Search};
 use crate::certify::triangle::facet::Facet;
 use crate::pose::Pose;
 use crate::tool::LANES;
@@ -135,14 +135,6 @@ impl Faces {
         }
         most
     }
-}
-
-/// The deepest place so far, in the tool's frame.
-#[derive(Clone, Copy)]
-pub(crate) struct Best {
-    pub(crate) point: [f64; 3],
-    pub(crate) feature: usize,
-    pub(crate) index: u32,
 }
 
 /// Where places are looked for: inside the tool, or outside while none is inside.
@@ -353,7 +345,7 @@ const MANY: usize = 24;
 const TIED: usize = 128;
 
 /// With a larger margin `f32` tells nothing, and its squares are too large for it.
-const MARGIN: f64 = 1e9;
+pub(crate) const MARGIN: f64 = 1e9;
 
 /// How often triangles are looked at more closely before their edges are.
 const LOOKS: usize = 2;

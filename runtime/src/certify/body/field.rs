@@ -4,9 +4,9 @@
 //! longest side first, until nothing of it can be deeper than what was found.
 
 use crate::certify::body::section::Depth;
-use crate::certify::triangle::course::Search;
-use crate::certify::triangle::piece::{Piece, Point};
-use crate::certify::work::Best;
+use crate::certify::space::Point;
+use crate::certify::triangle::course::{Best, Search};
+use crate::certify::triangle::piece::Piece;
 use crate::tool::{Ask, Felt, LANES, Points, Tool};
 use fearless_simd::Level;
 use std::cmp::Ordering;

@@ -9,8 +9,7 @@ use crate::certify::body::feature::Place;
 use crate::certify::body::field::{Field, Scratch};
 use crate::certify::body::owners::Owners;
 use crate::certify::body::section::{Depth, Section};
-
-type Point = [f64; 3];
+use crate::certify::space::Point;
 
 /// A tool, as its depth is known.
 pub(crate) enum Body<'a> {

@@ -12,6 +12,45 @@ pub(crate) struct Owners {
     pub(crate) peaks: Vec<f64>,
 }
 
+/// Places of the half plane.
+#[derive(Clone, Copy)]
+struct Rectangle {
+    low: Place,
+    high: Place,
+}
+
+impl Rectangle {
+    /// All between a slab's heights that may be inside.
+    fn of(slab: &Slab) -> Rectangle {
+        Rectangle { low: [0.0, slab.low], high: [slab.radius, slab.high] }
+    }
+
+    fn corners(&self) -> [Place; 4] {
+        let Rectangle { low, high } = *self;
+        [low, [high[0], low[1]], high, [low[0], high[1]]]
+    }
+
+    fn wide(&self) -> Place {
+        minus(self.high, self.low)
+    }
+
+    /// Its middle, and how far it reaches from there.
+    fn ball(&self) -> (Place, f64) {
+        let [across, up] = self.wide();
+        ([0, 1].map(|k| f64::midpoint(self.low[k], self.high[k])), 0.5 * across.hypot(up))
+    }
+
+    /// Both halves of its longer side.
+    fn halves(&self) -> [Rectangle; 2] {
+        let ([across, up], (middle, _)) = (self.wide(), self.ball());
+        let longer = usize::from(up > across);
+        let (mut first, mut second) = (*self, *self);
+        first.high[longer] = middle[longer];
+        second.low[longer] = middle[longer];
+        [first, second]
+    }
+}
+
 impl Owners {
     /// The features of some surfaces.
     pub(crate) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
@@ -62,16 +101,15 @@ impl Owners {
     fn zone(&self, section: &Section, slab: &Slab, deeper: f64) -> Option<[f64; 2]> {
         let small = section.size / f64::from(FINE);
         let mut zone: Option<[f64; 2]> = None;
-        let mut stack = vec![([0.0, slab.low], [slab.radius, slab.high])];
-        while let Some((low, high)) = stack.pop() {
+        let mut stack = vec![Rectangle::of(slab)];
+        while let Some(rectangle) = stack.pop() {
+            let Rectangle { low, high } = rectangle;
             if zone.is_some_and(|[from, to]| from <= low[1] && high[1] <= to) {
                 continue;
             }
-            let middle: Place = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
-            let wide = [0, 1].map(|k| high[k] - low[k]);
-            let reach = 0.5 * wide[0].hypot(wide[1]);
+            let (middle, reach) = rectangle.ball();
             let (mut owner, mut other) = (f64::INFINITY, f64::INFINITY);
-            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+            let corners = rectangle.corners();
             for (index, feature) in section.features.iter().enumerate() {
                 if section.behind(index, &corners) {
                     continue;
@@ -90,20 +128,14 @@ impl Owners {
                 zone = Some([from.min(low[1]), to.max(high[1])]);
                 continue;
             }
-            let longer = usize::from(wide[1] > wide[0]);
-            let (mut first, mut second) = ((low, high), (low, high));
-            first.1[longer] = middle[longer];
-            second.0[longer] = middle[longer];
-            stack.extend([first, second]);
+            stack.extend(rectangle.halves());
         }
         zone
     }
-}
 
-impl Owners {
     /// Where depth is restricted to what these own, it can be greatest at a place that is as far from three
-    /// features; there are a few such places. Elsewhere it grows some way that
-    /// they own, or away from the axis nowhere does.
+    /// features; there are a few such places. Elsewhere it grows some way that they own, or away from the
+    /// axis nowhere does.
     ///
     /// They are found by rectangles that are halved, to a part of what rounding makes of a place; `None` if
     /// there are too many.
@@ -113,17 +145,14 @@ impl Owners {
         let centres = section.features.iter().filter_map(|feature| feature.circle);
         let mut peaks: Vec<f64> = centres.map(|circle| circle.centre[1]).collect();
         let mut looks = 0;
-        let mut stack: Vec<(Place, Place)> =
-            section.slabs.iter().map(|slab| ([0.0, slab.low], [slab.radius, slab.high])).collect();
-        while let Some((low, high)) = stack.pop() {
+        let mut stack: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
+        while let Some(rectangle) = stack.pop() {
             looks += 1;
             if looks > LOOKS {
                 return None;
             }
-            let middle: Place = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
-            let wide = [0, 1].map(|k| high[k] - low[k]);
-            let reach = 0.5 * wide[0].hypot(wide[1]);
-            let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+            let (middle, reach) = rectangle.ball();
+            let corners = rectangle.corners();
             if !self.may_peak(section, (middle, reach), &corners) {
                 continue;
             }
@@ -133,11 +162,7 @@ impl Owners {
                 }
                 continue;
             }
-            let longer = usize::from(wide[1] > wide[0]);
-            let (mut first, mut second) = ((low, high), (low, high));
-            first.1[longer] = middle[longer];
-            second.0[longer] = middle[longer];
-            stack.extend([first, second]);
+            stack.extend(rectangle.halves());
         }
         // Just below and just above: of a seam either side owns only what is on its side.
         let beside = 0.25 * section.error;

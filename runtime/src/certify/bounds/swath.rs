@@ -3,8 +3,8 @@
 use crate::certify::bounds::batch::{Batch, Lanes, load};
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::swept::Ends;
-use crate::certify::sweep::Part;
 use crate::certify::sweep::stretch::{Stretch, about};
+use crate::certify::triangle::piece::Part;
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 

@@ -4,9 +4,8 @@
 //! a node's triangles have along a normal can.
 
 use super::Facets;
+use crate::certify::space::{Point, dot};
 use crate::tree::{View, WIDTH};
-
-type Point = [f64; 3];
 
 /// Between which heights along a normal the corners of a node's triangles lie, in the tree's frame.
 #[derive(Clone, Copy, Debug)]
@@ -20,10 +19,6 @@ pub(crate) struct Ring {
     pub(crate) near: f64,
     pub(crate) low: f64,
     pub(crate) high: f64,
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Plane {

@@ -5,9 +5,8 @@
 //! triangles.
 
 use crate::Mesh;
+use crate::certify::space::{Point, cross, dot, minus, norm};
 use crate::tree::WIDTH;
-
-type Point = [f64; 3];
 
 /// Fewer triangles are no face.
 const FEW: usize = 8;
@@ -37,20 +36,8 @@ pub(crate) struct Face {
     pub(crate) corners: [Point; 4],
 }
 
-fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
 fn unit(a: Point) -> Option<Point> {
-    let size = dot(a, a).sqrt();
+    let size = norm(a);
     (size > 0.0).then(|| a.map(|part| part / size))
 }
 

@@ -13,11 +13,12 @@ use crate::certify::body::field::Scratch;
 use crate::certify::body::section::Section;
 use crate::certify::bounds::descent::{Node, of_children};
 use crate::certify::bounds::swath::Swath;
-use crate::certify::sweep::stretch::{Point, Stretch, about};
-use crate::certify::triangle::course::{Goal, Search};
+use crate::certify::space::Point;
+use crate::certify::sweep::stretch::{Stretch, about};
+use crate::certify::triangle::course::{Best, Goal, Search};
 use crate::certify::triangle::facet::Facet;
-use crate::certify::triangle::piece::Piece;
-use crate::certify::work::Best;
+use crate::certify::triangle::piece::{Part, Piece};
+use crate::certify::work::MARGIN;
 use crate::tool::LANES;
 use crate::tree::{View, WIDTH};
 use moving::{Moving, of_leaf};
@@ -49,13 +50,6 @@ impl Stop {
 enum Left {
     Node(Node),
     Part(Part),
-}
-
-/// A triangle, or a part of one, from the part's middle in its unit.
-#[derive(Clone, Copy)]
-pub(crate) struct Part {
-    pub(crate) index: u32,
-    pub(crate) piece: Piece,
 }
 
 /// The search for what is in the way.
@@ -124,6 +118,7 @@ impl Sweeper {
         let margin =
             setting.margin() + (stretch.goes(f64::INFINITY) + task.keep()) / f64::from(1 << 18);
         let wanted = (task.above() - margin) as f32;
+        let (keep, shift) = (task.keep() as f32, stretch.shift(task.keep()));
         let small = PART * stretch.goes(f64::INFINITY);
         self.stack.clear();
         self.some.clear();
@@ -153,8 +148,6 @@ impl Sweeper {
                     self.left.push(Left::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
-                    let keep = task.keep() as f32;
-                    let shift = stretch.shift(task.keep());
                     let moving = Moving { hull: &question.hull, shift, keep, ends: &self.ends };
                     let seen = (facets, &moving, &self.view);
                     let hits = if margin > MARGIN {
@@ -323,6 +316,3 @@ const FINEST: f64 = f64::EPSILON;
 
 /// Nodes are opened that are larger than this part of the way.
 const PART: f64 = 0.3;
-
-/// With a larger margin `f32` tells nothing, and its squares are too large for it.
-const MARGIN: f64 = 1e9;

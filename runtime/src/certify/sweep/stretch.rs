@@ -1,13 +1,12 @@
 //! A part of a motion: where it takes the part in the tool's frame, and how straight.
 
 use crate::certify::bounds::descent::Shift;
+use crate::certify::space::Point;
+use crate::certify::triangle::piece::Piece;
 use crate::certify::work::Setting;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
-
-use crate::certify::triangle::piece::Piece;
-pub(crate) use crate::certify::triangle::piece::Point;
 
 /// A part of a motion, in the tool's frame and unit.
 pub(crate) struct Stretch {

@@ -3,8 +3,9 @@
 use crate::certify::body::field::Scratch;
 use crate::certify::body::owners::Owners;
 use crate::certify::question::Question;
-use crate::certify::triangle::piece::Point;
-use crate::certify::work::{Best, Setting};
+use crate::certify::space::Point;
+use crate::certify::triangle::course::Best;
+use crate::certify::work::Setting;
 use crate::motion::Motion;
 
 /// What a sweep is about.

@@ -153,6 +153,14 @@ pub(crate) struct Goal {
     pub(crate) budget: u32,
 }
 
+/// The deepest place of all triangles so far, in the tool's frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Best {
+    pub(crate) point: [f64; 3],
+    pub(crate) feature: usize,
+    pub(crate) index: u32,
+}
+
 /// The search for the deepest place.
 #[derive(Default)]
 pub(crate) struct Search {

@@ -7,25 +7,8 @@
 //! meets that plane. A level triangle meets it everywhere: its depth depends on d alone, and any line
 //! through the axis has all values that the edges do not have.
 
+use crate::certify::space::{Point, cross, dot, minus, norm};
 use crate::certify::triangle::course::Course;
-
-type Point = [f64; 3];
-
-fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
-}
 
 /// A triangle in the tool's frame and unit.
 pub(crate) struct Facet {

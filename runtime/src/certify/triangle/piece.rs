@@ -1,6 +1,6 @@
 //! Triangles that are halved.
 
-pub(crate) type Point = [f64; 3];
+use crate::certify::space::{Point, dot, minus};
 
 /// A triangle, or a part of one.
 #[derive(Clone, Copy, Debug, Default)]
@@ -9,16 +9,19 @@ pub(crate) struct Piece {
     corners: [Point; 3],
 }
 
-fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
 fn middle(a: Point, b: Point) -> Point {
     [0, 1, 2].map(|axis| f64::midpoint(a[axis], b[axis]))
 }
 
 fn square(a: Point) -> f64 {
-    a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
+    dot(a, a)
+}
+
+/// A triangle of a part, or a part of one, from the part's middle in its unit.
+#[derive(Clone, Copy)]
+pub(crate) struct Part {
+    pub(crate) index: u32,
+    pub(crate) piece: Piece,
 }
 
 impl Piece {
