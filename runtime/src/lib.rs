@@ -38,6 +38,7 @@ extern crate self as touchoff;
 
 pub mod certify;
 pub mod cloud;
+mod cores;
 pub mod mesh;
 mod motion;
 mod part;
@@ -50,7 +51,7 @@ pub mod tool;
 mod tree;
 mod unit;
 
-pub use cloud::{Cloud, CloudError};
+pub use cloud::{Cloud, CloudError, Cover};
 pub use fearless_simd::Level;
 pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};
