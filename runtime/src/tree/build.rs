@@ -78,6 +78,7 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         skins: items.chunks(WIDTH).map(|items| skin(items, cloud, weight)).collect(),
         weight,
         triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
+        cover: cloud.cover(),
     }
 }
 
