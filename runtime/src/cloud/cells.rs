@@ -14,6 +14,7 @@ use super::near::Near;
 use crate::cores;
 use crate::mesh::{Mesh, Sum, area_and_normal};
 use nalgebra::{Point3, Vector3};
+use std::ops::Range;
 
 /// Triangles are cut until about as many points have a cell in each.
 const MET: f64 = 64.0;
@@ -29,14 +30,16 @@ const ROUNDED: f64 = 1e-12;
 /// Triangles in handy pieces.
 pub(super) struct Surface {
     pieces: Vec<Piece>,
+    corners: Vec<Point3<f64>>,
     /// The root of a point's share of the area.
     spacing: f64,
     size: f64,
 }
 
+/// A convex part of a triangle.
 struct Piece {
     triangle: u32,
-    corners: [Point3<f64>; 3],
+    corners: Range<usize>,
     normal: Vector3<f64>,
     area: f64,
 }
@@ -114,16 +117,58 @@ impl Surface {
     /// Of a mesh that is to have so many points.
     pub(super) fn new(mesh: &Mesh, area: f64, count: usize) -> Surface {
         let spacing = (area / count as f64).sqrt();
-        let mut pieces = Vec::new();
-        for (triangle, corners) in (0..).zip(mesh.corners()) {
-            if let Some((area, normal)) = area_and_normal(&corners) {
-                let whole = Piece { triangle, corners, normal, area };
-                whole.divide(spacing, &mut pieces);
-            }
-        }
         let [low, high] = mesh.bounds();
         let size = low.coords.amax().max(high.coords.amax());
-        Surface { pieces, spacing, size }
+        let mut surface = Surface { pieces: vec![], corners: vec![], spacing, size };
+        for (triangle, corners) in (0..).zip(mesh.corners()) {
+            if let Some((area, normal)) = area_and_normal(&corners) {
+                let [a, b, c] = corners;
+                let longest = [b - a, c - b, a - c]
+                    .into_iter()
+                    .max_by(|x, y| x.norm_squared().total_cmp(&y.norm_squared()));
+                let along = longest.unwrap_or_default().normalize();
+                let axes = [along, normal.cross(&along)];
+                let whole = corners.map(|corner| (corner - a, EDGE)).to_vec();
+                surface.add((triangle, a, normal), axes, whole, area);
+            }
+        }
+        surface
+    }
+
+    /// Adds a part of a triangle, cut across where it is longer until few points have a cell in each.
+    fn add(
+        &mut self,
+        (triangle, from, normal): (u32, Point3<f64>, Vector3<f64>),
+        axes: [Vector3<f64>; 2],
+        part: Vec<Corner>,
+        area: f64,
+    ) {
+        let ends = axes.map(|axis| {
+            let along = || part.iter().map(|(v, _)| v.dot(&axis));
+            [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)]
+        });
+        let [long, wide] = ends.map(|[low, high]| high - low);
+        if (long / self.spacing + 1.0) * (wide / self.spacing + 1.0) <= MET {
+            let start = self.corners.len();
+            self.corners.extend(part.iter().map(|(corner, _)| from + corner));
+            let corners = start..self.corners.len();
+            self.pieces.push(Piece { triangle, corners, normal, area });
+            return;
+        }
+        let across = usize::from(wide > long);
+        let ([low, high], axis) = (ends[across], axes[across]);
+        let middle = low / 2.0 + high / 2.0;
+        let (mut one, mut cut) = (part.clone(), vec![]);
+        let mut other = part;
+        clip(&mut one, &mut cut, axis, middle, EDGE);
+        clip(&mut other, &mut cut, -axis, -middle, EDGE);
+        let sizes = [&one, &other].map(|part| self::area(part, &normal));
+        let share = area / (sizes[0] + sizes[1]);
+        for (part, size) in [one, other].into_iter().zip(sizes) {
+            if size > 0.0 {
+                self.add((triangle, from, normal), axes, part, share * size);
+            }
+        }
     }
 
     /// Divides the surface.
@@ -242,7 +287,7 @@ impl Surface {
             next += 1;
             let (at, mine) = (sites.points[site as usize], apart(site));
             cell.clear();
-            cell.extend(piece.corners.map(|corner| (corner - at, EDGE)));
+            cell.extend(self.corners(piece).iter().map(|corner| (corner - at, EDGE)));
             let mut reach = reach_of(cell, mine);
             let mut list =
                 &sites.beside[sites.starts[site as usize]..sites.starts[site as usize + 1]];
@@ -285,6 +330,10 @@ impl Surface {
         }
     }
 
+    fn corners(&self, piece: &Piece) -> &[Point3<f64>] {
+        &self.corners[piece.corners.clone()]
+    }
+
     /// The point whose cell has a piece's middle.
     fn first(
         &self,
@@ -293,8 +342,9 @@ impl Surface {
         apart: impl Fn(u32) -> f64,
         found: &mut Vec<(f64, u32)>,
     ) -> u32 {
-        let [a, b, c] = piece.corners;
-        let middle = a + ((b - a) + (c - a)) / 3.0;
+        let corners = self.corners(piece);
+        let sum: Vector3<f64> = corners.iter().map(|corner| corner - corners[0]).sum();
+        let middle = corners[0] + sum / corners.len() as f64;
         let mut within = self.spacing;
         loop {
             sites.near.within(middle.into(), within, found);
@@ -306,26 +356,6 @@ impl Surface {
                 return site;
             }
             within *= 2.0;
-        }
-    }
-}
-
-impl Piece {
-    /// Cut across the longest edge until few points have a cell in each.
-    fn divide(self, spacing: f64, pieces: &mut Vec<Piece>) {
-        let [a, b, c] = self.corners;
-        let edges = [[a, b, c], [b, c, a], [c, a, b]];
-        let length = |[a, b, _]: &[Point3<f64>; 3]| (b - a).norm();
-        let longest = edges.iter().map(length).fold(0.0, f64::max);
-        let met = (longest / spacing + 1.0) * (2.0 * self.area / longest / spacing + 1.0);
-        match edges.into_iter().find(|edge| length(edge) >= longest) {
-            Some([a, b, c]) if met > MET => {
-                let middle = nalgebra::center(&a, &b);
-                for corners in [[a, middle, c], [middle, b, c]] {
-                    Piece { corners, area: self.area / 2.0, ..self }.divide(spacing, pieces);
-                }
-            }
-            _ => pieces.push(self),
         }
     }
 }
