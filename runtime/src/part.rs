@@ -41,8 +41,12 @@ impl Part {
     /// A part from a mesh: `points` points spread evenly over the surface ([`Cloud::blue`]), the
     /// same for the same `seed`.
     pub fn from_mesh(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
-        let cloud = Cloud::blue(mesh, points, seed)?;
-        Ok(Part { survey: Some(mesh.survey()), ..Part::from_cloud(&cloud) })
+        Ok(Part::new(&Cloud::blue(mesh, points, seed)?, mesh.survey()))
+    }
+
+    /// A part from a cloud on a mesh, and what was found out about that.
+    pub fn new(cloud: &Cloud, survey: Survey) -> Part {
+        Part { survey: Some(survey), ..Part::from_cloud(cloud) }
     }
 
     /// A part from a cloud.

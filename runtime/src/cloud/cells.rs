@@ -70,9 +70,9 @@ pub(super) struct Cells {
 }
 
 /// A corner of a cell from its point, and which point's line goes on from there.
-type Corner = (Vector3<f64>, u32);
+pub(super) type Corner = (Vector3<f64>, u32);
 /// No point's: an edge of the piece.
-const EDGE: u32 = u32::MAX;
+pub(super) const EDGE: u32 = u32::MAX;
 
 /// Room to divide a piece.
 #[derive(Default)]
@@ -367,7 +367,7 @@ fn reach_of(cell: &[Corner], mine: f64) -> f64 {
 }
 
 /// Cuts away what is beyond `v · toward = half`; whether there was any.
-fn clip(
+pub(super) fn clip(
     cell: &mut Vec<Corner>,
     cut: &mut Vec<Corner>,
     toward: Vector3<f64>,
@@ -397,7 +397,7 @@ fn clip(
 }
 
 /// The area of a cell.
-fn area(cell: &[Corner], normal: &Vector3<f64>) -> f64 {
+pub(super) fn area(cell: &[Corner], normal: &Vector3<f64>) -> f64 {
     let Some((first, rest)) = cell.split_first() else { return 0.0 };
     let fan = rest.windows(2).map(|pair| (pair[0].0 - first.0).cross(&(pair[1].0 - first.0)));
     (fan.map(|cross| cross.dot(normal)).sum::<f64>() / 2.0).max(0.0)

@@ -4,11 +4,13 @@
 mod blue;
 mod cells;
 mod draw;
+mod guess;
 mod near;
 mod thin;
 
 use crate::Unit;
-use crate::mesh::{LARGEST_COORDINATE, Mesh, area_and_normal, coordinate_holds};
+use crate::mesh::{LARGEST_COORDINATE, Mesh, Points, area_and_normal, coordinate_holds};
+use crate::words::words;
 use cells::{Cells, Sites, Surface};
 use draw::Facets;
 use nalgebra::{Point3, Vector3};
@@ -32,6 +34,21 @@ pub struct Cloud {
     cover: Option<Cover>,
 }
 
+/// How points are spread over a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Sampling {
+    /// Evenly: [`Cloud::blue`].
+    #[default]
+    Blue,
+    /// Each for itself: [`Cloud::random`], weighed by the area of their cells.
+    Random,
+}
+
+words!(Sampling, "blue, random", Blue "blue", Random "random");
+
+/// The most points that [`Cloud::covering`] takes: they want some 8 GiB while they are spread.
+pub const MOST_COVERING: usize = 20_000_000;
+
 /// How far a surface gets from the points of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cover {
@@ -52,6 +69,26 @@ pub enum CloudError {
     TooMany {
         /// How many were asked for.
         count: usize,
+    },
+    /// A covering radius that is no length.
+    #[error("{radius} is no covering radius: give a finite length above 0")]
+    Radius {
+        /// What was asked for.
+        radius: f64,
+    },
+    /// A covering radius that wants too many points.
+    #[error(
+        "a covering radius of {radius} wants about {needed:.1e} points, more than {MOST_COVERING}, \
+         which would have one of about {instead:.3}: ask for that, or ask the triangles \
+         (`certify`), between which nothing lies"
+    )]
+    TooFine {
+        /// What was asked for.
+        radius: f64,
+        /// About how many points it wants.
+        needed: f64,
+        /// About what so many points as there can be have.
+        instead: f64,
     },
     /// The lists do not belong together.
     #[error(
@@ -132,6 +169,81 @@ impl Cloud {
         check_count(count.saturating_mul(blue::CANDIDATES))?;
         let cloud = blue::blue(mesh, &Facets::of(mesh), count, seed);
         Ok(cloud.weighed(mesh))
+    }
+
+    /// `count` points spread as is said, weighed, their cover known.
+    ///
+    /// # Errors
+    /// A count of 0, or beyond 32 bits.
+    pub fn sample(
+        mesh: &Mesh,
+        sampling: Sampling,
+        count: usize,
+        seed: u64,
+    ) -> Result<Cloud, CloudError> {
+        match sampling {
+            Sampling::Blue => Cloud::blue(mesh, count, seed),
+            Sampling::Random => Ok(Cloud::random(mesh, count, seed)?.weighed(mesh)),
+        }
+    }
+
+    /// As many points as it takes for no place of the surface to be farther than `radius` from all
+    /// of them: about `0.8 · area / radius²` of [`Sampling::Blue`].
+    ///
+    /// # Errors
+    /// A radius that is no length, or that wants more than [`MOST_COVERING`] points.
+    pub fn covering(
+        mesh: &Mesh,
+        radius: f64,
+        sampling: Sampling,
+        seed: u64,
+    ) -> Result<Cloud, CloudError> {
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(CloudError::Radius { radius });
+        }
+        let area = Facets::of(mesh).area();
+        // The covering radius in roots of a point's share, as it usually is.
+        let mut usual = match sampling {
+            Sampling::Blue => 0.91,
+            Sampling::Random => 2.1,
+        };
+        loop {
+            let needed = area * (usual / radius).powi(2);
+            if needed > MOST_COVERING as f64 {
+                let instead = usual * (area / MOST_COVERING as f64).sqrt();
+                return Err(CloudError::TooFine { radius, needed, instead });
+            }
+            let count = (needed.ceil() as usize).max(1);
+            let cloud = Cloud::sample(mesh, sampling, count, seed)?;
+            match cloud.cover {
+                Some(cover) if cover.radius > radius => {
+                    let here = cover.radius * (count as f64 / area).sqrt();
+                    usual = (1.005 * usual).max(1.005 * here);
+                }
+                _ => return Ok(cloud),
+            }
+        }
+    }
+
+    /// Points of a surface that is not known as a mesh, with unit normals out of the material. Where no
+    /// areas are given they are estimated from how close neighbours are, and so is the
+    /// [cover](Cloud::cover). Where no faces are given each point is its own.
+    ///
+    /// # Errors
+    /// See [`Cloud::new`].
+    pub fn from_points(points: Points, unit: Unit) -> Result<Cloud, CloudError> {
+        let Points { places, normals, faces, areas } = points;
+        let count = places.len() as u32;
+        let weights = vec![0.0; places.len()];
+        let faces = faces.unwrap_or_else(|| (0..count).collect());
+        let mut cloud = Cloud::new(places, normals, faces, weights, unit)?;
+        let guess = guess::guess(&cloud.points, &cloud.normals);
+        cloud.cover = Some(Cover { radius: guess.radius, proved: false });
+        cloud.weights = areas.unwrap_or(guess.areas);
+        match cloud.weights.iter().position(|weight| !(weight.is_finite() && *weight >= 0.0)) {
+            Some(point) => Err(CloudError::Weight { point, weight: cloud.weights[point] }),
+            None => Ok(cloud),
+        }
     }
 
     /// The same points, each with the area of its cell on the mesh that they were taken from: the

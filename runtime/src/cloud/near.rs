@@ -42,17 +42,7 @@ impl Near {
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
-    /// The squared distance of the nearest point.
-    pub(super) fn nearest(&self, at: [f64; 3]) -> f64 {
-        let mut nearest = f64::INFINITY;
-        self.visit(at, nearest, self.levels.len() - 1, 0, &mut |items| {
-            nearest = items.iter().map(|item| away(item.at, at)).fold(nearest, f64::min);
-            nearest
-        });
-        nearest
-    }
-
-    /// The squared distance beyond which `count - 1` other points are nearer.
+    /// The squared distance of the `count`-th nearest point, of as many at least.
     pub(super) fn nearest_of(&self, at: [f64; 3], count: usize) -> f64 {
         let mut best = vec![f64::INFINITY; count];
         self.visit(at, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {

@@ -73,8 +73,8 @@ impl Crowd {
     fn new(points: &[Point3<f64>], normals: &[Vector3<f64>], area: f64, count: usize) -> Crowd {
         // The radius of discs that would cover that area, packed as closely as can be.
         let largest = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
-        let share = 1.0 - (count as f64 / points.len() as f64).powf(1.5);
-        let least = (0.65 * share) as f32;
+        let share = count as f64 / points.len() as f64;
+        let least = (0.65 * (1.0 - share * share.sqrt())) as f32;
         let (mut low, mut high) = (points[0], points[0]);
         for point in points {
             (low, high) = (low.inf(point), high.sup(point));
