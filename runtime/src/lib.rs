@@ -58,7 +58,10 @@ pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
-pub use probe::{Contact, Deepest, Law, Posture, Probe, Summary, Weights, Wrench, summary};
+pub use probe::{
+    BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Summary, Weights,
+    Wrench, summary,
+};
 pub use program::{Program, ProgramError, Stop};
 pub use scene::{PartId, Scene, SceneError, ToolId};
 pub use tool::Tool;

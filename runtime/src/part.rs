@@ -3,8 +3,15 @@
 use crate::Unit;
 use crate::cloud::{Cloud, CloudError};
 use crate::mesh::{Mesh, StlError, Survey};
+use crate::pose::Pose;
+use crate::probe::Probe;
+use crate::tool::Tool;
 use crate::tree::Tree;
+use nalgebra::{Point3, Vector3};
 use std::path::Path;
+
+/// The coarsest level of a part has as many points at least.
+const FEWEST: usize = 100;
 
 /// A part: its points in their tree, and what was found out about its mesh.
 #[derive(Clone, Debug)]
@@ -49,9 +56,62 @@ impl Part {
         Part { survey: Some(survey), ..Part::from_cloud(cloud) }
     }
 
+    /// A part as [`Part::from_mesh`] makes it, with coarser levels: each has a quarter of the points of
+    /// the one before, spread as evenly, with weights and a cover of their own, down to some hundred.
+    /// [`Graded`](crate::Graded) chooses among them; all else asks the finest.
+    pub fn detailed(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
+        let mut cloud = Cloud::blue(mesh, points, seed)?;
+        let mut part = Part::new(&cloud, mesh.survey());
+        while cloud.len() >= 4 * FEWEST {
+            cloud = cloud.thinned(mesh, cloud.len() / 4);
+            part.levels.push(Tree::new(&cloud));
+        }
+        Ok(part)
+    }
+
     /// A part from a cloud.
     pub fn from_cloud(cloud: &Cloud) -> Part {
         Part { levels: vec![Tree::new(cloud)], unit: cloud.unit(), survey: None }
+    }
+
+    /// Takes away what is inside a tool at a pose: the points that are deeper than what the cloud cannot
+    /// see ([`Probe::unseen`]); how many, of all levels. The tree is not built anew.
+    ///
+    /// A place of the surface that is left has its nearest point where that was: if it had been taken
+    /// away, the place would be inside the tool as well. So the cover holds for what is left of the
+    /// surface. Of what is gone the points on its rim stay, no deeper than that; the new surface that a
+    /// cut leaves has no points. Where it is not known how steep depth is, or what the cover is, all
+    /// points inside are taken, and no cover is known any more.
+    pub fn cut(&mut self, tool: &dyn Tool, pose: &Pose) -> usize {
+        let mut taken = 0;
+        for tree in &mut self.levels {
+            let mut probe = Probe::of(tree, self.unit, tool);
+            let unseen = probe.unseen();
+            let places = probe.deeper(pose, unseen.unwrap_or(-1.0));
+            taken += places.len();
+            if unseen.is_none() && !places.is_empty() {
+                tree.cover = None;
+            }
+            tree.remove(places);
+        }
+        taken
+    }
+
+    /// Moves points and turns their unit normals, as `to` says for a point and its normal; the tree is
+    /// not built anew, so queries get slower as neighbours part. Weights stay.
+    ///
+    /// The cover grows by twice how far the farthest point goes, which bounds it if no place between the
+    /// points goes farther.
+    pub fn displace(
+        &mut self,
+        mut to: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
+    ) {
+        for tree in &mut self.levels {
+            let farthest = tree.displace(&mut to);
+            if let Some(cover) = &mut tree.cover {
+                cover.radius += 2.0 * farthest;
+            }
+        }
     }
 
     /// The same part in another unit: its numbers are multiplied, its points and its tree stay.
@@ -66,7 +126,12 @@ impl Part {
         self
     }
 
-    /// The points in their tree.
+    /// The points in their tree, the finest first.
+    pub(crate) fn levels(&self) -> &[Tree] {
+        &self.levels
+    }
+
+    /// The points in their tree: of several levels the finest.
     pub fn tree(&self) -> &Tree {
         &self.levels[0]
     }

@@ -259,6 +259,19 @@ impl Cloud {
         self
     }
 
+    /// `count` of the points, or all if there are fewer, spread as evenly as can be, weighed anew
+    /// ([`Cloud::weighed`]).
+    #[must_use]
+    pub fn thinned(&self, mesh: &Mesh, count: usize) -> Cloud {
+        let area = Facets::of(mesh).area();
+        let mut cloud = Cloud::with_capacity(count.min(self.len()), self.unit);
+        for index in thin::thin(&self.points, &self.normals, area, count.max(1)) {
+            let index = index as usize;
+            cloud.push(self.points[index], self.normals[index], self.triangles[index], 0.0);
+        }
+        cloud.weighed(mesh)
+    }
+
     /// One point for each triangle that has an area: its centroid, with that area as weight.
     /// Sums over it are exact, but for rounding, for functions that are affine on each triangle;
     /// for smooth ones the error is of second order in the length of the edges, and of first

@@ -34,7 +34,7 @@ pub struct Contact {
 
 /// Lists what the probe has just felt.
 pub(super) fn list(beside: &Beside<'_>, card: &Card, pose: &Pose, contacts: &mut Vec<Contact>) {
-    let (felt, tree) = (&beside.felt, beside.part.tree());
+    let (felt, tree) = (&beside.felt, beside.tree);
     let rotation = pose.rotation();
     for at in felt.places() {
         let index = beside.search.candidates.indices()[at] as usize;

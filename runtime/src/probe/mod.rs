@@ -7,19 +7,22 @@
 //! ```
 
 mod contacts;
+mod graded;
 mod law;
 mod posture;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
+pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
 pub use posture::{Deepest, Posture};
 pub use wrench::Wrench;
 
+use crate::Unit;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
-use crate::tree::{Search, Sight, View, WIDTH};
+use crate::tree::{Search, Sight, Tree, View, WIDTH};
 use fearless_simd::Level;
 use nalgebra::Point3;
 
@@ -39,7 +42,9 @@ pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
 
 /// What is beside a tool: a part, how it is to be felt, and room to find out.
 struct Beside<'a> {
-    part: &'a Part,
+    tree: &'a Tree,
+    /// The part's.
+    unit: Unit,
     /// The tool's unit of length in the part's.
     length: f64,
     law: Law,
@@ -85,15 +90,21 @@ impl Wanted for Everything {
 impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// A probe with the thesis's law, area weights and the tip for a compliance centre.
     pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
-        let length = tool.card().unit.to(part.unit());
+        Probe::of(part.tree(), part.unit(), tool)
+    }
+
+    /// Of a part's points in their tree, whose lengths are in that unit.
+    pub(crate) fn of(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T> {
+        let length = tool.card().unit.to(unit);
         let beside = Beside {
-            part,
+            tree,
+            unit,
             length,
             law: Law::Thesis,
             weights: Weights::Area,
             centre: Point3::origin(),
             level: Level::new(),
-            sight: Sight::new(&part.tree().frame, tool.card(), length),
+            sight: Sight::new(&tree.frame, tool.card(), length),
             view: View::default(),
             search: Search::default(),
             hit: 0,
@@ -135,8 +146,8 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// Another probe like this one, for another thread.
     #[must_use]
     pub fn another(&self) -> Probe<'a, T> {
-        let Beside { part, law, weights, centre, level, .. } = self.beside;
-        Probe::new(part, self.tool).law(law).weights(weights).centre(centre).level(level)
+        let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
+        Probe::of(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
     }
 
     /// How far a depth that is felt can be from that of the point that was given, in the part's unit:
@@ -145,7 +156,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// of the tool ([`crate::tool::Depth::lipschitz`]). What lies between points is not in it.
     pub fn error(&self) -> Option<f64> {
         const HALF: f64 = f64::EPSILON / 2.0;
-        let (card, tree, length) = (self.tool.card(), self.beside.part.tree(), self.beside.length);
+        let (card, tree, length) = (self.tool.card(), self.beside.tree, self.beside.length);
         let tool = length * card.size();
         let frame = &tree.frame;
         let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
@@ -162,7 +173,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// times how steep depth is at most, and what rounding does ([`Probe::error`]). `None` where either
     /// is not known. As sure as the [cover](crate::Tree::cover), which may be an estimate.
     pub fn unseen(&self) -> Option<f64> {
-        let (card, cover) = (self.tool.card(), self.beside.part.tree().cover()?);
+        let (card, cover) = (self.tool.card(), self.beside.tree.cover()?);
         Some(card.depth.lipschitz? * cover.radius + self.error()?)
     }
 
@@ -196,12 +207,12 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// The deepest point; `None` without contact.
     pub fn deepest(&mut self, pose: &Pose) -> Option<Deepest> {
-        if self.ask::<Depths>(pose, false) { posture::deepest(&self.beside, pose) } else { None }
+        if self.ask::<Depths>(pose) { posture::deepest(&self.beside, pose) } else { None }
     }
 
     /// What a posture is judged by: niceness, and how deep which surfaces are.
     pub fn posture(&mut self, pose: &Pose) -> Posture {
-        if self.ask::<Postures>(pose, false) {
+        if self.ask::<Postures>(pose) {
             posture::posture(&self.beside, self.tool.card(), pose)
         } else {
             Posture::default()
@@ -210,10 +221,35 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// Force, torque, depth and niceness of the whole contact.
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
-        let any = match self.beside.law {
-            Law::Gradient => self.ask::<AlongGradients>(pose, true),
-            Law::Thesis | Law::Facing => self.ask::<AlongDirections>(pose, true),
-        };
+        let found = self.beside.look(pose);
+        if found {
+            self.beside.all(true);
+        }
+        self.sum(pose, found)
+    }
+
+    /// Finds the leaves of the whole part that the tool may reach, if no more nodes are looked at than
+    /// that; how many were.
+    fn look_within(&mut self, pose: &Pose, budget: usize) -> Option<usize> {
+        if self.beside.look(pose) { self.beside.within(budget) } else { Some(0) }
+    }
+
+    /// [`Probe::wrench`] of the leaves that were found last.
+    fn looked(&mut self, pose: &Pose) -> Wrench {
+        let found = self.beside.look(pose);
+        if found {
+            self.beside.found();
+        }
+        self.sum(pose, found)
+    }
+
+    /// Evaluates the candidates, if there are any, and sums what is felt.
+    fn sum(&mut self, pose: &Pose, found: bool) -> Wrench {
+        let any = found
+            && match self.beside.law {
+                Law::Gradient => self.feel::<AlongGradients>(),
+                Law::Thesis | Law::Facing => self.feel::<AlongDirections>(),
+            };
         let Beside { law, weights, .. } = self.beside;
         if any { wrench::sum(&self.beside, pose) } else { Wrench::nothing(law, weights) }
     }
@@ -222,11 +258,21 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
         let mut contacts = std::mem::take(&mut self.beside.contacts);
         contacts.clear();
-        if self.ask::<Everything>(pose, false) {
+        if self.ask::<Everything>(pose) {
             contacts::list(&self.beside, self.tool.card(), pose, &mut contacts);
         }
         self.beside.contacts = contacts;
         &self.beside.contacts
+    }
+
+    /// The places in the tree of the points inside that are deeper than that.
+    pub(crate) fn deeper(&mut self, pose: &Pose, depth: f64) -> Vec<usize> {
+        if !self.ask::<Depths>(pose) {
+            return vec![];
+        }
+        let Beside { felt, search, length, .. } = &self.beside;
+        let deep = felt.places().filter(|at| felt.depth[*at] * length > depth);
+        deep.map(|at| search.candidates.indices()[at] as usize).collect()
     }
 
     /// Asks the same at many poses, on all cores: what each is asked, it is asked by itself, so the
@@ -258,11 +304,11 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     }
 
     /// Finds the candidates of the whole part and evaluates them; whether any is inside.
-    fn ask<W: Wanted>(&mut self, pose: &Pose, skin: bool) -> bool {
+    fn ask<W: Wanted>(&mut self, pose: &Pose) -> bool {
         if !self.beside.look(pose) {
             return false;
         }
-        self.beside.all(skin);
+        self.beside.all(false);
         self.feel::<W>()
     }
 
@@ -281,27 +327,37 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 impl Beside<'_> {
     /// Looks from a pose; whether the tool may reach the part.
     fn look(&mut self, pose: &Pose) -> bool {
-        self.sight.look(&self.part.tree().frame, pose, &mut self.view)
+        self.sight.look(&self.tree.frame, pose, &mut self.view)
     }
 
     /// Finds the candidates of the whole part.
     fn all(&mut self, skin: bool) {
-        self.search.all(self.level, (self.part.tree(), &self.sight, &self.view), skin);
+        self.search.all(self.level, (self.tree, &self.sight, &self.view), skin);
+    }
+
+    /// Finds the leaves of the whole part, looking at so many nodes at most; how many it were.
+    fn within(&mut self, budget: usize) -> Option<usize> {
+        self.search.within(self.level, (self.tree, &self.sight, &self.view), budget)
+    }
+
+    /// Finds the candidates of the leaves that were found last.
+    fn found(&mut self) {
+        self.search.found(self.level, (self.tree, &self.sight, &self.view));
     }
 
     /// Finds those of the leaf that was hit last.
     fn again(&mut self) {
-        self.search.leaf(self.level, (self.part.tree(), &self.sight, &self.view), self.hit);
+        self.search.leaf(self.level, (self.tree, &self.sight, &self.view), self.hit);
     }
 
     /// Finds the nodes above the leaves that the tool may reach; how many there are.
     fn nodes(&mut self) -> usize {
-        self.search.nodes(self.level, (self.part.tree(), &self.sight, &self.view))
+        self.search.nodes(self.level, (self.tree, &self.sight, &self.view))
     }
 
     /// Finds the candidates under one of them.
     fn under(&mut self, node: usize) {
-        self.search.under(self.level, (self.part.tree(), &self.sight, &self.view), node);
+        self.search.under(self.level, (self.tree, &self.sight, &self.view), node);
     }
 
     /// Notes the leaf of a point inside.

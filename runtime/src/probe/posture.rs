@@ -45,7 +45,7 @@ pub(super) fn deepest(beside: &Beside<'_>, pose: &Pose) -> Option<Deepest> {
 /// A candidate as the deepest; its depth is in the tool's unit.
 pub(super) fn at(beside: &Beside<'_>, pose: &Pose, candidate: usize, depth: f64) -> Deepest {
     let place = beside.search.candidates.indices()[candidate] as usize;
-    let tree = beside.part.tree();
+    let tree = beside.tree;
     let point = pose.tip() + beside.view.relative(tree, place);
     Deepest { depth: depth * beside.length, point, triangle: tree.triangle(place) }
 }

@@ -207,9 +207,7 @@ fn add<S: Simd>(
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
     let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
     let push = match beside.weights {
-        Weights::Area => {
-            single(simd, &candidates.weights, block) * beside.part.tree().weight * magnitude
-        }
+        Weights::Area => single(simd, &candidates.weights, block) * beside.tree.weight * magnitude,
         Weights::Unit => magnitude,
     };
     sums.pushes[0] += push;

@@ -18,8 +18,8 @@ pub(crate) struct Item {
 /// A box by its ends.
 #[derive(Clone, Copy)]
 pub(crate) struct Bounds {
-    low: [f64; 3],
-    high: [f64; 3],
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
 }
 
 impl Bounds {
@@ -53,7 +53,7 @@ impl Bounds {
         self.low[axis] / 2.0 + self.high[axis] / 2.0
     }
 
-    fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
         (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
     }
 }
@@ -66,7 +66,7 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         .map(|(place, index)| Item { at: frame.inside(place), index })
         .collect();
     order(&mut items);
-    let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(leaf).unzip();
+    let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(lay).unzip();
     let leaf_size = boxes.iter().map(|b| outward(b.size() / 2.0)).fold(0.0, f32::max);
     let levels = levels(boxes);
     let weight = cloud.weights().iter().fold(0.0, |most: f64, weight| most.max(*weight));
@@ -79,6 +79,7 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         weight,
         triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
         cover: cloud.cover(),
+        gone: 0,
     }
 }
 
@@ -142,22 +143,27 @@ pub(crate) fn order(items: &mut [Item]) {
     }
 }
 
-/// A leaf and the box about its points as they are stored.
-fn leaf(items: &[Item]) -> (Leaf, Bounds) {
+/// A leaf and the box about its points as they are stored. What is NaN is not there.
+pub(super) fn lay(items: &[Item]) -> (Leaf, Bounds) {
     let bounds = Bounds::of(items.iter().map(|item| item.at));
     let centre: [f64; 3] = std::array::from_fn(|axis| f64::from(bounds.middle(axis) as f32));
     let mut leaf = Leaf { offset: [[f32::NAN; WIDTH]; 3] };
-    let mut half = [0f64; 3];
     for (lane, item) in items.iter().enumerate() {
         for axis in 0..3 {
-            let offset = (item.at[axis] - centre[axis]) as f32;
-            leaf.offset[axis][lane] = offset;
-            half[axis] = half[axis].max(f64::from(offset.abs()));
+            leaf.offset[axis][lane] = (item.at[axis] - centre[axis]) as f32;
         }
     }
+    let half = leaf_bounds(&leaf);
     let low = std::array::from_fn(|axis| centre[axis] - half[axis]);
     let high = std::array::from_fn(|axis| centre[axis] + half[axis]);
     (leaf, Bounds { low, high })
+}
+
+/// How far a leaf's points are from its centre; negative if there is none.
+pub(super) fn leaf_bounds(leaf: &Leaf) -> [f64; 3] {
+    // NaN is passed over.
+    leaf.offset
+        .map(|list| list.into_iter().fold(-1.0, |half, offset| f64::max(half, offset.abs().into())))
 }
 
 fn skin(items: &[Item], cloud: &Cloud, largest: f64) -> Skin {
@@ -177,19 +183,26 @@ fn skin(items: &[Item], cloud: &Cloud, largest: f64) -> Skin {
 fn side_by_side(bounds: &[Bounds]) -> Boxes {
     let mut boxes = Boxes { centre: [[f32::NAN; WIDTH]; 3], half: [[0.0; WIDTH]; 3] };
     for (lane, bounds) in bounds.iter().enumerate() {
-        for axis in 0..3 {
-            let centre = bounds.middle(axis) as f32;
-            let reach =
-                (bounds.high[axis] - f64::from(centre)).max(f64::from(centre) - bounds.low[axis]);
-            boxes.centre[axis][lane] = centre;
-            boxes.half[axis][lane] = outward(reach);
-        }
+        boxes.put(lane, bounds);
     }
     boxes
 }
 
+impl Boxes {
+    /// Puts a box, or none if it has no inside, at its place.
+    pub(super) fn put(&mut self, lane: usize, bounds: &Bounds) {
+        for axis in 0..3 {
+            let [low, high] = [bounds.low[axis], bounds.high[axis]];
+            let centre = if low <= high { bounds.middle(axis) as f32 } else { f32::NAN };
+            let reach = (high - f64::from(centre)).max(f64::from(centre) - low);
+            self.centre[axis][lane] = centre;
+            self.half[axis][lane] = if centre.is_nan() { 0.0 } else { outward(reach) };
+        }
+    }
+}
+
 /// The box about boxes as they are stored.
-fn around(boxes: &Boxes) -> Bounds {
+pub(super) fn around(boxes: &Boxes) -> Bounds {
     let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
     for axis in 0..3 {
         for (centre, half) in boxes.centre[axis].iter().zip(boxes.half[axis]) {
@@ -204,7 +217,7 @@ fn around(boxes: &Boxes) -> Bounds {
 }
 
 /// The nearest `f32` that is no smaller.
-fn outward(value: f64) -> f32 {
+pub(super) fn outward(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) < value { near.next_up() } else { near }
 }

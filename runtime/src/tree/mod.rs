@@ -14,6 +14,7 @@
 
 mod build;
 mod candidates;
+mod change;
 mod sift;
 mod view;
 mod walk;
@@ -77,6 +78,8 @@ pub struct Tree {
     /// Of each point, in the tree's order.
     pub(crate) triangles: Vec<u32>,
     pub(crate) cover: Option<Cover>,
+    /// How many points were taken away.
+    pub(crate) gone: usize,
 }
 
 impl Tree {
@@ -93,14 +96,19 @@ impl Tree {
         self.cover = self.cover.map(|cover| Cover { radius: factor * cover.radius, ..cover });
     }
 
-    /// How many points there are.
-    pub fn len(&self) -> usize {
-        self.triangles.len()
+    /// How many nodes and leaves there are.
+    pub(crate) fn nodes(&self) -> usize {
+        self.levels.iter().map(Vec::len).sum::<usize>() + self.leaves.len()
     }
 
-    /// Whether there is none; a [`Cloud`] always has some.
+    /// How many points there are, of those that were not taken away.
+    pub fn len(&self) -> usize {
+        self.triangles.len() - self.gone
+    }
+
+    /// Whether there is none: a [`Cloud`] always has some, but all may have been cut away.
     pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
+        self.len() == 0
     }
 
     /// How far the surface gets from the points that were given; `None` where that is not known.
@@ -109,7 +117,7 @@ impl Tree {
     }
 
     /// A point as it is stored, by its place in the tree's order, rounded to the world's `f64`;
-    /// queries work with the unrounded one.
+    /// queries work with the unrounded one. NaN if it was taken away.
     pub fn point(&self, index: usize) -> Point3<f64> {
         let [centre, offset] = self.stored(index);
         Point3::from(std::array::from_fn(|axis| {

@@ -32,6 +32,20 @@ impl Search {
         sift(simd, &mut self.some, seen, (leaves, skin), &mut self.candidates);
     }
 
+    /// Finds the leaves of a part that the tool may reach, looking at so many nodes and leaves at most;
+    /// how many it were.
+    pub(crate) fn within(&mut self, level: Level, seen: Seen<'_>, most: usize) -> Option<usize> {
+        dispatch!(level, simd => self.walker.within(simd, seen, most))
+    }
+
+    /// Finds the candidates of the leaves that were found last, and what the part has there.
+    pub(crate) fn found(&mut self, level: Level, seen: Seen<'_>) {
+        self.candidates.clear();
+        let (leaves, some, candidates) =
+            (self.walker.found(), &mut self.some, &mut self.candidates);
+        dispatch!(level, simd => sift(simd, some, seen, (leaves, true), candidates));
+    }
+
     /// Finds the nodes above the leaves that the tool may reach; how many there are.
     pub(crate) fn nodes(&mut self, level: Level, seen: Seen<'_>) -> usize {
         dispatch!(level, simd => self.walker.find(simd, seen))

@@ -87,6 +87,45 @@ impl Walker {
         self.nodes[self.above].count
     }
 
+    /// Finds the leaves of the whole part, looking at so many nodes and leaves at most; how many it
+    /// were.
+    #[inline(always)]
+    pub(super) fn within<S: Simd>(
+        &mut self,
+        simd: S,
+        (tree, sight, view): (&Tree, &Sight, &View),
+        most: usize,
+    ) -> Option<usize> {
+        self.above = (tree.levels.len() - 1) % 2;
+        if !sight.fits {
+            let leaves = tree.leaves.len();
+            return (leaves <= most).then(|| {
+                self.nodes[1 - self.above].all(leaves);
+                leaves
+            });
+        }
+        let [even, odd] = &mut self.nodes;
+        even.room(1);
+        even.count = 1;
+        even.index[0] = 0;
+        even.slabs[0] = sight.reach.all;
+        let mut spent = 1;
+        for (level, boxes) in tree.levels.iter().enumerate() {
+            let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
+            below(simd, boxes, sight, view, (from, 0..from.count), to);
+            spent += to.count;
+            if spent > most {
+                return None;
+            }
+        }
+        Some(spent)
+    }
+
+    /// The leaves that were found last.
+    pub(super) fn found(&self) -> &Nodes {
+        &self.nodes[1 - self.above]
+    }
+
     /// One leaf alone.
     pub(super) fn only(
         &mut self,
