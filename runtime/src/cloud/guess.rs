@@ -13,6 +13,8 @@ const NEIGHBOURS: usize = 8;
 const REACHES: [f64; 2] = [2.0, 0.7];
 /// Neighbours whose normals are at more than 107° are on the far side of a thin sheet.
 const SAME_SIDE: f64 = -0.3;
+/// Neighbours whose normals are at more than 45° are beyond an edge.
+const FLAT: f64 = 0.7;
 /// The corners of a cell before it is cut.
 const CORNERS: usize = 16;
 /// Points that one core takes at a time.
@@ -44,7 +46,14 @@ pub(super) fn guess(points: &[Point3<f64>], normals: &[Vector3<f64>]) -> Cells {
                 }
             }
             areas.push(area(&cell, normal));
-            radius = cell.iter().map(|(corner, _)| corner.norm()).fold(radius, f64::max);
+            // Beside an edge the plane goes on where the surface does not.
+            let beside = |squared: f64| squared < (REACHES[0] * spacing).powi(2);
+            let edge = found.iter().any(|&(squared, other)| {
+                let facing = normals[other as usize].dot(normal);
+                beside(squared) && (SAME_SIDE..FLAT).contains(&facing)
+            });
+            let corners = cell.iter().map(|(corner, _)| corner.norm()).fold(0.0, f64::max);
+            radius = radius.max(if edge { corners.min(REACHES[1] * spacing) } else { corners });
         }
         (areas, radius)
     });

@@ -109,3 +109,206 @@ fn clouds_from_elsewhere_are_checked() {
     let none = Cloud::new(vec![], vec![], vec![], vec![], UNIT);
     assert_eq!(none, Err(CloudError::Empty));
 }
+
+fn random(mesh: &Mesh, count: usize) -> Cloud {
+    Cloud::random(mesh, count, 5).expect("a cloud")
+}
+
+/// Sample elimination as it is described: one at a time, with all distances.
+fn thinned_one_by_one(cloud: &Cloud, area: f64, count: usize) -> Vec<u32> {
+    let all = cloud.len();
+    let reach = 2.0 * (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
+    let least = 0.65 * (1.0 - (count as f64 / all as f64).powf(1.5));
+    let share = |i: usize, j: usize| {
+        let away = (cloud.points[i] - cloud.points[j]).norm() / reach;
+        let same = cloud.normals[i].dot(&cloud.normals[j]) > -0.3;
+        if i != j && same && away < 1.0 { (1.0 - away.max(least)).powi(8) } else { 0.0 }
+    };
+    let mut left: Vec<usize> = (0..all).collect();
+    let mut crowded: Vec<f64> = (0..all).map(|i| (0..all).map(|j| share(i, j)).sum()).collect();
+    while left.len() > count {
+        let most = (0..left.len()).max_by(|a, b| crowded[left[*a]].total_cmp(&crowded[left[*b]]));
+        let gone = left.remove(most.expect("some are left"));
+        left.iter().for_each(|other| crowded[*other] -= share(gone, *other));
+    }
+    left.into_iter().map(|index| index as u32).collect()
+}
+
+#[test]
+fn all_at_once_leave_as_one_by_one() {
+    let tube = shapes::tube(1.0, 2.0, 3.0, 64, 3, UNIT).expect("a tube");
+    for (mesh, count) in [(cuboid(), 100), (cuboid(), 399), (tube, 60)] {
+        let cloud = random(&mesh, 400);
+        let area = mesh.survey().area;
+        let thinned = thin::thin(&cloud.points, &cloud.normals, area, count);
+        let expected = thinned_one_by_one(&cloud, area, count);
+        assert_eq!(thinned.len(), count);
+        // Single precision may tell apart otherwise what is as crowded to seven figures.
+        let other = thinned.iter().filter(|index| !expected.contains(index)).count();
+        assert!(other * 50 <= count, "{other} of {count} are others");
+    }
+}
+
+#[test]
+fn without_neighbours_as_many_are_left_as_are_asked_for() {
+    let far = |i: u32| Point3::new(f64::from(i), 0.0, 0.0);
+    let points: Vec<_> = (0..9).map(far).collect();
+    let left = thin::thin(&points, &[Vector3::z(); 9], 1e-6, 4);
+    assert_eq!(left, [0, 1, 2, 3]);
+    let same = thin::thin(&[Point3::origin(); 9], &[Vector3::z(); 9], 1.0, 4);
+    assert_eq!(same.len(), 4);
+}
+
+/// Places all over a mesh, with the triangles that they lie on.
+fn places(mesh: &Mesh, fine: u32) -> impl Iterator<Item = (u32, Point3<f64>)> {
+    let steps = (0..=fine).flat_map(move |i| (0..=fine - i).map(move |j| (i, j)));
+    (0..).zip(mesh.corners()).flat_map(move |(id, [a, b, c])| {
+        let part = move |k: u32| f64::from(k) / f64::from(fine);
+        steps.clone().map(move |(i, j)| (id, a + part(i) * (b - a) + part(j) * (c - a)))
+    })
+}
+
+fn nearest(cloud: &Cloud, place: &Point3<f64>) -> f64 {
+    cloud.points().iter().map(|p| (p - place).norm()).fold(f64::INFINITY, f64::min)
+}
+
+/// Two sheets back to back, so close that a point is nearer to the other sheet than to its neighbours.
+fn sheets() -> Mesh {
+    let high = Point3::new(4.0, 4.0, 0.01);
+    shapes::cuboid(Point3::origin(), high, UNIT).expect("a sheet")
+}
+
+/// Long and thin: the triangles' angles are near 0 and 180 degrees.
+fn slivers() -> Mesh {
+    let at = |x: f64, y: f64| Point3::new(x, y, 0.0);
+    let vertices =
+        vec![at(0.0, 0.0), at(50.0, 0.0), at(25.0, 1e-3), at(25.0, -0.5), at(100.0, 1e-6)];
+    Mesh::new(vertices, vec![[0, 1, 2], [1, 0, 3], [1, 4, 2]], UNIT).expect("slivers")
+}
+
+#[test]
+fn nothing_is_farther_than_the_covering_radius() {
+    let ball = shapes::sphere(2.0, 3, UNIT).expect("a ball");
+    let mut doubled = cuboid().triangles().to_vec();
+    doubled.extend(cuboid().triangles().iter().map(|&[a, b, c]| [a, c, b]));
+    let doubled = Mesh::new(cuboid().vertices().to_vec(), doubled, UNIT).expect("a mesh");
+    for mesh in [cuboid(), ball, sheets(), slivers(), doubled] {
+        for count in [1, 2, 3, 10, 300] {
+            let blue = Cloud::blue(&mesh, count, 1).expect("a cloud");
+            let random = random(&mesh, count).weighed(&mesh);
+            for cloud in [blue, random] {
+                let cover = cloud.cover().expect("a cover");
+                assert!(cover.proved && cloud.len() == count);
+                let fine = if mesh.triangles().len() > 100 { 6 } else { 60 };
+                let far = places(&mesh, fine).map(|(_, place)| nearest(&cloud, &place));
+                let far = far.fold(0.0, f64::max);
+                // It is no looser than the grid is coarse.
+                let coarse = 0.9;
+                assert!(far <= cover.radius, "{count}: {far} beyond {}", cover.radius);
+                assert!(far >= coarse * cover.radius, "{count}: {far} for {}", cover.radius);
+                let sum: f64 = cloud.weights().iter().sum();
+                assert!((sum / mesh.survey().area - 1.0).abs() < 1e-13, "{count}: {sum}");
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_are_the_areas_of_cells() {
+    // On a plane every place belongs to the nearest point.
+    let mesh = shapes::plane(1.0, 3, UNIT).expect("a plane");
+    let cloud = random(&mesh, 40).weighed(&mesh);
+    let fine = 150;
+    let mut counted = vec![0.0; 40];
+    let mut all = 0.0;
+    for (_, place) in places(&mesh, fine) {
+        let away = |i: &usize| (cloud.points()[*i] - place).norm();
+        let owner = (0..40).min_by(|i, j| away(i).total_cmp(&away(j))).expect("some");
+        counted[owner] += 1.0;
+        all += 1.0;
+    }
+    for (weight, counted) in cloud.weights().iter().zip(counted) {
+        assert!((weight - 4.0 * counted / all).abs() < 2e-3, "{weight} {}", 4.0 * counted / all);
+    }
+}
+
+#[test]
+fn the_sides_of_a_sheet_are_weighed_apart() {
+    let mesh = sheets();
+    let cloud = Cloud::blue(&mesh, 400, 1).expect("a cloud");
+    let side = |up: f64| {
+        let of = cloud.normals().iter().zip(cloud.weights()).filter(|(n, _)| n.z * up > 0.5);
+        of.map(|(_, weight)| *weight).sum::<f64>()
+    };
+    let [top, bottom] = [side(1.0), side(-1.0)];
+    // The rim has hardly any points: its area is the sides'.
+    assert!((top - 16.0).abs() < 0.12 && (bottom - 16.0).abs() < 0.12, "{top} {bottom}");
+    let count = cloud.normals().iter().filter(|n| n.z > 0.5).count();
+    assert!((180..=220).contains(&count), "{count}");
+}
+
+#[test]
+#[cfg(feature = "parallel")]
+fn a_blue_cloud_is_the_same_on_any_number_of_cores() {
+    let tube = shapes::tube(3.0, 5.0, 13.0, 96, 4, UNIT).expect("a tube");
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| Cloud::blue(&tube, 20_000, 3).expect("a cloud"))
+    };
+    let one = on(1);
+    assert!(one.cover().is_some_and(|cover| {
+        cover.radius * (one.len() as f64 / tube.survey().area).sqrt() <= 0.95
+    }));
+    assert_eq!(one, on(2));
+    assert_eq!(one, on(5));
+}
+
+#[test]
+fn a_radius_says_how_many_points() {
+    let mesh = cuboid();
+    for sampling in [Sampling::Blue, Sampling::Random] {
+        for radius in [10.0, 0.5, 0.05] {
+            let cloud = Cloud::covering(&mesh, radius, sampling, 1).expect("a cloud");
+            let found = cloud.cover().expect("a cover").radius;
+            assert!(found <= radius, "{found} of {radius}");
+            let spare = if sampling == Sampling::Blue { 0.85 } else { 0.7 };
+            assert!(cloud.len() < 5 || found > spare * radius, "{found} of {radius}");
+        }
+    }
+    for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refused = Cloud::covering(&mesh, radius, Sampling::Blue, 1);
+        assert!(matches!(refused, Err(CloudError::Radius { .. })), "{refused:?}");
+    }
+    let refused = Cloud::covering(&mesh, 1e-5, Sampling::Blue, 1).expect_err("too many points");
+    let text = refused.to_string();
+    assert!(text.contains("wants about 2.3e11 points") && text.contains("certify"), "{text}");
+}
+
+#[test]
+fn of_points_alone_cells_are_estimated() {
+    let mesh = shapes::tube(3.0, 5.0, 13.0, 512, 8, UNIT).expect("a tube");
+    let points = |cloud: Cloud, areas: Option<Vec<f64>>| {
+        let Cloud { points, normals, .. } = cloud;
+        Cloud::from_points(Points { places: points, normals, faces: None, areas }, UNIT)
+    };
+    for (cloud, close, near) in
+        [(Cloud::blue(&mesh, 5_000, 1), 0.05, 0.25), (Cloud::random(&mesh, 5_000, 1), 0.15, 0.5)]
+    {
+        let cloud = cloud.expect("a cloud").weighed(&mesh);
+        let guessed = points(cloud.clone(), None).expect("points");
+        let cover = guessed.cover().expect("a cover");
+        let radius = cloud.cover().expect("a cover").radius;
+        assert!(!cover.proved && (cover.radius / radius - 1.0).abs() < near, "{cover:?} {radius}");
+        let area: f64 = guessed.weights().iter().sum();
+        assert!((area / mesh.survey().area - 1.0).abs() < close, "{area}");
+        let given = points(cloud.clone(), Some(cloud.weights().to_vec())).expect("points");
+        assert_eq!(given.weights(), cloud.weights());
+    }
+    let same = vec![Point3::origin(); 20];
+    let all = Points { places: same, normals: vec![Vector3::z(); 20], faces: None, areas: None };
+    let cloud = Cloud::from_points(all.clone(), UNIT).expect("points");
+    assert!(cloud.weights().iter().all(|weight| *weight == 0.0));
+    let negative = Points { areas: Some(vec![-1.0; 20]), ..all };
+    let refused = Cloud::from_points(negative, UNIT);
+    assert_eq!(refused, Err(CloudError::Weight { point: 0, weight: -1.0 }));
+}

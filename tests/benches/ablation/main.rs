@@ -39,7 +39,7 @@ use clap::Parser;
 use std::num::NonZeroUsize;
 use std::thread::available_parallelism;
 use touchoff::scenes::{POSES, Path, tube};
-use touchoff::{Part, Pose};
+use touchoff::{Cloud, Part, Pose};
 
 /// Seed of the clouds.
 const SEED: u64 = 1;
@@ -92,7 +92,7 @@ fn main() {
 }
 
 fn part(points: usize) -> Part {
-    Part::from_mesh(&tube(), points, SEED).expect("the tube has a surface")
+    Part::from_cloud(&Cloud::random(&tube(), points, SEED).expect("the tube has a surface"))
 }
 
 fn poses(path: Path, count: usize) -> Vec<Pose> {

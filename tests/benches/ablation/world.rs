@@ -10,7 +10,7 @@ use std::hint::black_box;
 use tools_library::Fig73;
 use touchoff::mesh::shapes;
 use touchoff::scenes::{HEIGHT, INNER, OUTER, Path, apart};
-use touchoff::{Part, Pose, Probe, Scene, Tool, ToolId, Unit};
+use touchoff::{Cloud, Part, Pose, Probe, Scene, Tool, ToolId, Unit};
 
 /// Parts that are not touched.
 const OTHERS: usize = 9;
@@ -49,7 +49,8 @@ pub(crate) fn far_parts(setting: &Setting) -> Vec<Row> {
     let thinner = shapes::tube(INNER, OUTER - DEPTH - GAP, HEIGHT, 1024, 1, Unit::Millimetre)
         .expect("a tube by construction");
     let others: Vec<Part> = (0..OTHERS as u64)
-        .map(|seed| Part::from_mesh(&thinner, points, seed).expect("the tube has a surface"))
+        .map(|seed| Cloud::random(&thinner, points, seed).expect("the tube has a surface"))
+        .map(|cloud| Part::from_cloud(&cloud))
         .collect();
     let [mut alone, mut far, mut near] = [(0, 0.0), (OTHERS, FAR), (OTHERS, 0.0)]
         .map(|(count, away)| beside(setting.part, &others[..count], away));

@@ -5,7 +5,7 @@ use std::path::Path as File;
 use std::time::Instant;
 use touchoff::scenes::{Path, tube};
 use touchoff::tool::{Interpreted, Tool};
-use touchoff::{Part, Pose, Probe};
+use touchoff::{Cloud, Part, Pose, Probe};
 use touchoff_tests::measure::compile::library;
 
 /// Poses of a row; each is asked for once, so that nothing is learnt.
@@ -13,7 +13,8 @@ const POSES: usize = 4_000;
 
 fn main() {
     let mesh = tube();
-    let part = Part::from_mesh(&mesh, 20_000, 1).expect("the tube has a surface");
+    let cloud = Cloud::random(&mesh, 20_000, 1).expect("the tube has a surface");
+    let part = Part::from_cloud(&cloud);
     println!(
         "# What a tool costs that is loaded at run time
 

@@ -3,7 +3,7 @@
 use crate::oracle::draw::Draw;
 use touchoff::scenes::{Path, tube};
 use touchoff::tool::{Points, Tool};
-use touchoff::{Part, Pose};
+use touchoff::{Cloud, Part, Pose};
 
 /// Tools that the benches evaluate: one of straight lines and a ball, the thesis's by hand and by
 /// profile, and one of many pieces.
@@ -40,7 +40,7 @@ pub fn near(tool: &dyn Tool, count: usize) -> Points {
 /// # Panics
 /// Of no points.
 pub fn part(points: usize) -> Part {
-    Part::from_mesh(&tube(), points, 1).expect("the tube has a surface")
+    Part::from_cloud(&Cloud::random(&tube(), points, 1).expect("the tube has a surface"))
 }
 
 /// A path cut into poses.

@@ -7,7 +7,7 @@ use crate::{
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
 use touchoff::mesh::shapes;
-use touchoff::{Mesh, Part, Pose};
+use touchoff::{Cloud, Mesh, Part, Pose};
 use touchoff_tests::oracle::closed_forms::quadrature;
 use touchoff_tests::oracle::draw::Draw;
 
@@ -24,7 +24,8 @@ fn scatters(what: &str, mesh: &Mesh, squares: Figures, scenes: impl Fn(u64) -> S
         for seed in 0..SEEDS {
             let scene = scenes(seed);
             // A longer cloud begins with the shorter one of its seed: other seeds for every count.
-            let part = Part::from_mesh(mesh, count, count as u64 + seed).expect("a part");
+            let cloud = Cloud::random(mesh, count, count as u64 + seed).expect("a cloud");
+            let part = Part::from_cloud(&cloud);
             let (got, _) = measure(&scene, &part);
             for (k, want) in figures(&scene.want).into_iter().enumerate() {
                 let deviation = ((area * squares[k] - want * want) / count as f64).sqrt();

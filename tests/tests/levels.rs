@@ -1,0 +1,217 @@
+//! Levels of detail within a budget, and parts that change while they are felt.
+
+use nalgebra::{Point3, Vector3};
+use std::collections::BTreeSet;
+use tools_library::{Ball, Fig73, Fig73Exact};
+use touchoff::scenes::{Path, tube};
+use touchoff::{Cloud, Graded, Law, Mesh, Part, Pose, Probe, Wrench};
+use touchoff_tests::oracle::draw::Draw;
+
+const POSES: usize = 2_000;
+
+fn detailed(points: usize) -> Part {
+    Part::detailed(&tube(), points, 1).expect("the tube has a surface")
+}
+
+fn felt(part: &Part, budget: usize, path: Path) -> Vec<touchoff::GradedWrench> {
+    let mut graded = Graded::new(part, &Fig73, budget, Law::Gradient).expect("a budget that does");
+    (0..POSES).map(|k| graded.wrench(&path.pose(k, POSES))).collect()
+}
+
+#[test]
+fn no_query_looks_at_more_nodes_than_it_may() {
+    let part = detailed(100_000);
+    let mut levels = BTreeSet::new();
+    for path in [Path::Outside, Path::Inside, Path::Hold] {
+        for budget in [60, 200, 1_000, 1_000_000] {
+            let all = felt(&part, budget, path);
+            assert!(all.iter().all(|felt| felt.nodes <= budget), "{budget}");
+            levels.extend(all.iter().map(|felt| felt.level));
+            // The same queries, the same answers.
+            assert_eq!(all, felt(&part, budget, path));
+        }
+    }
+    assert!(levels.len() >= 4, "{levels:?}");
+    // With enough of a budget the finest level answers, as a probe does.
+    let mut probe = Probe::new(&part, &Fig73).law(Law::Gradient);
+    for (k, felt) in felt(&part, 1_000_000, Path::Outside).into_iter().enumerate() {
+        assert_eq!((felt.level, felt.unseen), (0, probe.unseen()));
+        assert_eq!(felt.wrench, probe.wrench(&Path::Outside.pose(k, POSES)));
+    }
+    // Each level is felt as a part of its own would be: coarser, and it says by how much.
+    let coarse = felt(&part, 60, Path::Outside);
+    let fine = felt(&part, 1_000_000, Path::Outside);
+    let mut looser = 0;
+    for (coarse, fine) in coarse.iter().zip(&fine) {
+        let (bound, finer) = (coarse.unseen.expect("a bound"), fine.unseen.expect("a bound"));
+        assert!(fine.wrench.depth() <= coarse.wrench.depth() + bound);
+        looser += usize::from(bound > 2.0 * finer);
+    }
+    assert!(looser > POSES / 2);
+}
+
+#[test]
+fn a_budget_too_small_is_refused() {
+    let part = detailed(2_000);
+    let refused = Graded::new(&part, &Fig73, 5, Law::Thesis).err().expect("5 nodes are too few");
+    assert!(refused.needed > 5 && refused.to_string().contains("a budget of 5 nodes is too small"));
+    assert!(Graded::new(&part, &Fig73, refused.needed, Law::Thesis).is_ok());
+}
+
+#[test]
+fn force_is_continuous_where_the_level_changes() {
+    // Into the rim, slowly: the deeper, the more nodes.
+    let part = detailed(200_000);
+    let slowly = |k: usize| {
+        let z = 13.4 - 1.0 * k as f64 / 20_000.0;
+        Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose")
+    };
+    let mut graded = Graded::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut before: Option<touchoff::GradedWrench> = None;
+    let (mut changes, mut jumps) = (0, 0);
+    for k in 0..20_000 {
+        let felt = graded.wrench(&slowly(k));
+        if let Some(before) = before {
+            let step = (felt.wrench.force - before.wrench.force).norm();
+            // What the level's own force would have stepped by.
+            if felt.level != before.level {
+                changes += 1;
+                assert_eq!(felt.wrench.force, before.wrench.force);
+                let alone = Graded::new(&part, &Ball, 90, Law::Gradient)
+                    .expect("a budget that does")
+                    .wrench(&slowly(k));
+                jumps += usize::from((alone.wrench.force - before.wrench.force).norm() > 1e-4);
+            }
+            let scale = felt.wrench.force.norm().max(0.01);
+            assert!(step < 0.02 * scale + 1e-3, "{k}: {step} of {scale}");
+        }
+        before = Some(felt);
+    }
+    assert!(changes >= 2 && jumps >= 1, "{changes} {jumps}");
+}
+
+/// Places all over a mesh that are outside a tool, but not as far as that.
+fn left<'a>(
+    mesh: &'a Mesh,
+    poses: &'a [Pose],
+    draw: &'a mut Draw,
+) -> impl Iterator<Item = Point3<f64>> + 'a {
+    let cloud =
+        Cloud::random(mesh, 60_000, (1e9 * draw.between(0.0, 1.0)) as u64).expect("a cloud");
+    cloud.points().to_vec().into_iter().filter(move |place| {
+        poses.iter().all(|pose| {
+            let from = pose.rotation().inverse() * (place - pose.tip());
+            // The ball end mill's ball and flute, written anew.
+            let (d, z) = (from.x.hypot(from.y), from.z);
+            let inside = if z < 3.0 { d.hypot(z - 3.0) < 3.0 } else { d < 3.0 && z < 20.0 };
+            !inside
+        })
+    })
+}
+
+fn sums(part: &Part, tool: &dyn touchoff::Tool, pose: &Pose) -> Wrench {
+    Probe::new(part, tool).wrench(pose)
+}
+
+#[test]
+fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
+    let mesh = tube();
+    let mut part = detailed(20_000);
+    let cover = part.tree().cover().expect("a cover");
+    let mut draw = Draw::new(5);
+    let poses: Vec<Pose> = (0..12)
+        .map(|_| {
+            let angle = draw.between(0.0, 6.28);
+            let out = draw.between(3.5, 7.0);
+            let tip = Point3::new(out * angle.cos(), out * angle.sin(), draw.between(9.0, 12.5));
+            Pose::from_axis(tip, Vector3::z()).expect("a pose")
+        })
+        .collect();
+    let all = part.tree().len();
+    let mut taken = 0;
+    for pose in &poses {
+        taken += part.cut(&Ball, pose);
+        // No point is deeper than what the cloud does not see.
+        let unseen = Probe::new(&part, &Ball).unseen().expect("a bound");
+        assert!(sums(&part, &Ball, pose).depth() <= unseen);
+        assert_eq!(part.cut(&Ball, pose), 0);
+    }
+    assert!(taken > 1_000 && part.tree().len() < all);
+    assert_eq!(part.tree().cover(), Some(cover));
+    let points: Vec<Point3<f64>> =
+        (0..all).map(|place| part.tree().point(place)).filter(|point| !point.x.is_nan()).collect();
+    assert_eq!(points.len(), part.tree().len());
+    let mut looked = 0;
+    for place in left(&mesh, &poses, &mut draw).take(4_000) {
+        let nearest = points.iter().map(|p| (p - place).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest <= cover.radius * (1.0 + 1e-6), "{nearest} of {}", cover.radius);
+        looked += 1;
+    }
+    assert!(looked > 3_000);
+    // The same is felt as of a part that never had those points.
+    let tree = part.tree();
+    let places: Vec<usize> = (0..all).filter(|place| !tree.point(*place).x.is_nan()).collect();
+    let fresh = Cloud::new(
+        points,
+        places.iter().map(|place| tree.normal(*place).into()).collect(),
+        places.iter().map(|place| tree.triangle(*place)).collect(),
+        places.iter().map(|place| tree.weight(*place)).collect(),
+        part.unit(),
+    );
+    let fresh = Part::from_cloud(&fresh.expect("a cloud"));
+    for k in 0..POSES {
+        let pose = Path::Hold.pose(k, POSES);
+        let (changed, fresh) = (sums(&part, &Fig73, &pose), sums(&fresh, &Fig73, &pose));
+        assert_eq!(changed.colliding, fresh.colliding);
+        assert!((changed.force - fresh.force).norm() <= 1e-5 * (1.0 + fresh.force.norm()));
+    }
+}
+
+#[test]
+fn nothing_is_left_of_a_part_inside_a_tool() {
+    let high = Point3::new(0.1, 0.1, 0.1);
+    let cube = touchoff::mesh::shapes::cuboid(Point3::origin(), high, touchoff::Unit::Millimetre);
+    let cloud = Cloud::random(&cube.expect("a cube"), 500, 1).expect("a cloud");
+    let mut part = Part::from_cloud(&cloud);
+    let pose = Pose::from_axis(Point3::new(0.0, 0.0, -3.0), Vector3::z()).expect("a pose");
+    assert_eq!((part.cut(&Ball, &pose), part.tree().is_empty()), (500, true));
+    let mut probe = Probe::new(&part, &Ball);
+    assert!(!probe.detect(&pose) && probe.deepest(&pose).is_none());
+    assert_eq!(probe.wrench(&pose).colliding, 0);
+}
+
+#[test]
+fn a_part_that_bends_is_felt_where_it_is() {
+    let bend = |k: f64| {
+        move |p: Point3<f64>, n: Vector3<f64>| (Point3::new(p.x + k * p.z * p.z, p.y, p.z), n)
+    };
+    let mut part = detailed(20_000);
+    let before = part.tree().cover().expect("a cover");
+    part.displace(bend(0.02));
+    let farthest = 0.02 * 13.116f64.powi(2);
+    let after = part.tree().cover().expect("a cover").radius - before.radius;
+    assert!((after - 2.0 * farthest).abs() < 1e-3 * farthest, "{after}");
+    let cloud = Cloud::blue(&tube(), 20_000, 1).expect("a cloud");
+    let bent: Vec<Point3<f64>> =
+        cloud.points().iter().map(|p| bend(0.02)(*p, Vector3::z()).0).collect();
+    let (normals, triangles) = (cloud.normals().to_vec(), cloud.triangles().to_vec());
+    let bent = Cloud::new(bent, normals, triangles, cloud.weights().to_vec(), cloud.unit());
+    let bent = Part::from_cloud(&bent.expect("a cloud"));
+    let mut touched = 0;
+    for k in 0..POSES {
+        let pose = Path::Hold.pose(k, POSES);
+        let (changed, fresh) = (sums(&part, &Fig73Exact, &pose), sums(&bent, &Fig73Exact, &pose));
+        touched += usize::from(fresh.colliding > 0);
+        assert!(changed.colliding.abs_diff(fresh.colliding) <= 1, "{k}");
+        assert!((changed.force - fresh.force).norm() <= 1e-4 * (1.0 + fresh.force.norm()), "{k}");
+        assert!((changed.depth() - fresh.depth()).abs() < 1e-5, "{k}");
+    }
+    assert!(touched > POSES / 4);
+    // What does not move is not touched, not by a bit.
+    let still = part.clone();
+    part.displace(|p, n| (p, n));
+    for k in 0..POSES {
+        let pose = Path::Hold.pose(k, POSES);
+        assert_eq!(sums(&part, &Fig73, &pose), sums(&still, &Fig73, &pose));
+    }
+}
