@@ -103,7 +103,7 @@ fn left<'a>(
             let from = pose.rotation().inverse() * (place - pose.tip());
             // The ball end mill's ball and flute, written anew.
             let (d, z) = (from.x.hypot(from.y), from.z);
-            let inside = if z < 3.0 { d.hypot(z - 3.0) < 3.0 } else { d < 3.0 && z < 20.0 };
+            let inside = if z < 5.0 { d.hypot(z - 5.0) < 5.0 } else { d < 5.0 && z < 72.0 };
             !inside
         })
     })
