@@ -17,7 +17,7 @@ pub(super) const VERSION: u32 = 1;
 /// What every section's place and length is a multiple of.
 pub(super) const ALIGN: usize = 64;
 /// How many bytes a core sums at a time; a multiple of [`ALIGN`]. A change of it changes checksums.
-const CHUNK: usize = 1 << 18;
+const CHUNK: usize = 1 << 20;
 /// Where the header's own checksum is.
 const OWN: std::ops::Range<usize> = 16..20;
 
