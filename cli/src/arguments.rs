@@ -23,6 +23,8 @@ pub(crate) enum Command {
     Demo,
     /// Feel a part with a tool along a path.
     Run(Box<Run>),
+    /// Take points of a part, and save them to be felt later.
+    Sample(Box<Sample>),
     /// List the compiled tools, or those of files.
     Tools {
         /// Files to list in their place.
@@ -102,10 +104,10 @@ impl Given {
 /// The part, and how it is felt as points.
 #[derive(Args)]
 pub(crate) struct PartFile {
-    /// The part: a mesh in STL, PLY or OBJ, or points with normals in PLY.
+    /// The part: a mesh in STL, PLY or OBJ, points with normals in PLY, or a `.touchoff` that was saved.
     #[arg(long, value_name = "FILE")]
     pub(crate) part: PathBuf,
-    /// The part's unit, which these formats do not say: `mm`, `inch` or `m`.
+    /// The part's unit, which most formats do not say: `mm`, `inch` or `m`.
     #[arg(long)]
     pub(crate) unit: Unit,
     /// Points that are taken of the surface.
@@ -121,6 +123,20 @@ pub(crate) struct PartFile {
     /// The same seed, the same points.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct Sample {
+    #[command(flatten)]
+    pub(crate) part: PartFile,
+    /// The tool that a tolerance is meant for, by name or as a `.tool` file [default: one of exact depths].
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: Option<String>,
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// Where the points go.
+    #[arg(short, long, value_name = "OUT.touchoff")]
+    pub(crate) output: PathBuf,
 }
 
 #[derive(Args)]

@@ -40,6 +40,17 @@ pub(crate) enum Failure {
     /// The part's file could not be read.
     #[error(transparent)]
     Shape(#[from] touchoff::mesh::ShapeError),
+    /// A saved part could not be opened or written.
+    #[error(transparent)]
+    Saved(#[from] touchoff::SavedError),
+    /// A saved part is told by its name.
+    #[error("saved parts are told by their name: write `-o {}` instead of `{file}`", .better.display())]
+    SavedName {
+        /// What was asked for.
+        file: String,
+        /// A name that would do.
+        better: std::path::PathBuf,
+    },
     /// What is asked for wants a mesh.
     #[error("`{what}` is for meshes: {file} has points and no triangles")]
     NoTriangles {

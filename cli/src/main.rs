@@ -29,6 +29,7 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
+        Some(Command::Sample(wanted)) => part::sample(&wanted),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
         Some(Command::Check { files, given }) => {
             return ended(check::check(&files, &given, arguments.json));

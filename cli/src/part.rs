@@ -1,11 +1,14 @@
 //! The part that is felt: from its file to its points.
 
-use crate::arguments::PartFile;
+use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
-use crate::files::length;
+use crate::files::{Found, length};
 use touchoff::mesh::Shape;
 use touchoff::tool::Card;
 use touchoff::{Cloud, Cover, Mesh, Part, Probe, Tool, Unit};
+
+/// What names of saved parts end in.
+const SAVED: &str = "touchoff";
 
 /// A part, and its mesh if it has one.
 pub(crate) struct Loaded {
@@ -14,8 +17,16 @@ pub(crate) struct Loaded {
 }
 
 /// Reads a part and takes points of it, for that tool.
-pub(crate) fn load(wanted: &PartFile, card: &Card) -> Result<Loaded, Failure> {
+pub(crate) fn load(wanted: &PartFile, card: Option<&Card>) -> Result<Loaded, Failure> {
     let file = wanted.part.display();
+    let no_mesh = |what| Failure::NoTriangles { file: file.to_string(), what };
+    if wanted.part.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED)) {
+        if wanted.tolerance.is_some() {
+            return Err(no_mesh("--tolerance"));
+        }
+        let part = Part::open(&wanted.part)?.to(wanted.unit);
+        return Ok(Loaded { part, mesh: None });
+    }
     match Shape::read(&wanted.part, wanted.unit)? {
         Shape::Mesh(mesh) => {
             let survey = mesh.survey();
@@ -25,33 +36,33 @@ pub(crate) fn load(wanted: &PartFile, card: &Card) -> Result<Loaded, Failure> {
             let cloud = spread(&mesh, wanted, card)?;
             Ok(Loaded { part: Part::new(&cloud, survey), mesh: Some(mesh) })
         }
-        Shape::Points(points) if wanted.tolerance.is_none() => {
-            let estimated =
-                if points.areas.is_some() { "their cover is" } else { "areas and cover are" };
-            say!("{file}: {} points without triangles: {estimated} estimated", points.places.len());
-            let cloud = Cloud::from_points(points, wanted.unit)?;
-            Ok(Loaded { part: Part::from_cloud(&cloud), mesh: None })
-        }
-        Shape::Points(_) => {
-            Err(Failure::NoTriangles { file: file.to_string(), what: "--tolerance" })
+        Shape::Points(_) if wanted.tolerance.is_some() => Err(no_mesh("--tolerance")),
+        Shape::Points(points) => {
+            let estimated = if points.areas.is_some() { "cover" } else { "areas and cover" };
+            say!("{file}: {} points, no triangles: {estimated} estimated", points.places.len());
+            let part = Part::from_cloud(&Cloud::from_points(points, wanted.unit)?);
+            Ok(Loaded { part, mesh: None })
         }
     }
 }
 
 /// As many points as are asked for, or as the tolerance wants.
-fn spread(mesh: &Mesh, wanted: &PartFile, card: &Card) -> Result<Cloud, Failure> {
+fn spread(mesh: &Mesh, wanted: &PartFile, card: Option<&Card>) -> Result<Cloud, Failure> {
     let PartFile { sampling, seed, unit, .. } = *wanted;
     let Some(tolerance) = wanted.tolerance else {
         let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
         return Ok(Cloud::sample(mesh, sampling, points, seed)?);
     };
-    let Some(steepest) = card.depth.lipschitz else {
-        return Err(Failure::NoSteepness(card.name.to_string()));
+    let steepest = match card {
+        None => 1.0,
+        Some(card) => {
+            card.depth.lipschitz.ok_or_else(|| Failure::NoSteepness(card.name.to_string()))?
+        }
     };
     let radius = tolerance / steepest;
     let cloud = Cloud::covering(mesh, radius, sampling, seed)?;
     say!(
-        "a tolerance of {}: depth grows by {steepest:.4} at most for each length, so no place may be \
+        "a tolerance of {}: depth grows by {steepest:.4} for each length at most, so no place may be \
          farther than {} from all points: {} points",
         length(tolerance, unit),
         length(radius, unit),
@@ -60,18 +71,39 @@ fn spread(mesh: &Mesh, wanted: &PartFile, card: &Card) -> Result<Cloud, Failure>
     Ok(cloud)
 }
 
-/// What the points know of the surface between them.
-pub(crate) fn about(part: &Part, tool: &dyn Tool, unit: Unit) {
+/// Says what the points know of the surface between them.
+pub(crate) fn about(part: &Part, tool: Option<&dyn Tool>, unit: Unit) {
     let Some(Cover { radius, proved }) = part.tree().cover() else { return };
     let sure = if proved { "proved" } else { "estimated" };
-    let deeper = match Probe::new(part, tool).unseen() {
-        Some(unseen) => {
-            format!("the surface is no more than {} deeper than found", length(unseen, unit))
+    let deeper = match tool.map(|tool| Probe::new(part, tool).unseen()) {
+        Some(Some(unseen)) => {
+            format!(": the surface is no more than {} deeper than found", length(unseen, unit))
         }
-        None => "how much deeper it is than found is not known for this tool".to_owned(),
+        Some(None) => ": how much deeper it is than found is not known for this tool".to_owned(),
+        None => String::new(),
     };
     say!(
-        "no place of the surface is farther than {} from all points ({sure}): {deeper}",
+        "no place of the surface is farther than {} from all points ({sure}){deeper}",
         length(radius, unit)
     );
+}
+
+/// Takes points of a part and saves them.
+pub(crate) fn sample(wanted: &Sample) -> Result<(), Failure> {
+    let found = match &wanted.tool {
+        Some(name) => Some(Found::find(name, &wanted.given)?),
+        None if wanted.given.is_none() => None,
+        None => return Err(Failure::NothingToSet("name one with `--tool`")),
+    };
+    let tool = found.as_ref().map(Found::tool);
+    let output = &wanted.output;
+    if !output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED)) {
+        let (file, better) = (output.display().to_string(), output.with_extension(SAVED));
+        return Err(Failure::SavedName { file, better });
+    }
+    let Loaded { part, .. } = load(&wanted.part, tool.map(Tool::card))?;
+    about(&part, tool, wanted.part.unit);
+    part.save(output)?;
+    say!("{}: {} points", output.display(), part.tree().len());
+    Ok(())
 }

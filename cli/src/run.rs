@@ -72,7 +72,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let unit = wanted.part.unit;
     program.check_unit(unit)?;
     program.check_poses(tool.card())?;
-    let Loaded { part, mesh } = part::load(&wanted.part, tool.card())?;
+    let Loaded { part, mesh } = part::load(&wanted.part, Some(tool.card()))?;
     let facets = match (wanted.certify, &mesh) {
         (Some(tolerance), Some(mesh)) => Some((Facets::new(mesh), tolerance)),
         (Some(_), None) => {
@@ -86,7 +86,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         None => None,
     };
     about(wanted, &part, &program, tool.card());
-    part::about(&part, tool, unit);
+    part::about(&part, Some(tool), unit);
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     if !json {

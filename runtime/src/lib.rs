@@ -45,6 +45,7 @@ mod part;
 mod pose;
 mod probe;
 pub mod program;
+mod saved;
 mod scene;
 pub mod scenes;
 pub mod tool;
@@ -63,6 +64,7 @@ pub use probe::{
     Wrench, summary,
 };
 pub use program::{Program, ProgramError, Stop};
+pub use saved::SavedError;
 pub use scene::{PartId, Scene, SceneError, ToolId};
 pub use tool::Tool;
 pub use tool_macros::{include_tool, tool, tool_library};

@@ -17,9 +17,9 @@ const FEWEST: usize = 100;
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The finest first; each of the others has some of the points of the one before.
-    levels: Vec<Tree>,
-    unit: Unit,
-    survey: Option<Survey>,
+    pub(crate) levels: Vec<Tree>,
+    pub(crate) unit: Unit,
+    pub(crate) survey: Option<Survey>,
 }
 
 /// A part that could not be made.

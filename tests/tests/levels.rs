@@ -100,7 +100,7 @@ fn left<'a>(
         Cloud::random(mesh, 60_000, (1e9 * draw.between(0.0, 1.0)) as u64).expect("a cloud");
     cloud.points().to_vec().into_iter().filter(move |place| {
         poses.iter().all(|pose| {
-            let from = pose.rotation().inverse() * (place - pose.tip());
+            let from = pose.rotation().transpose() * (place - pose.tip());
             // The ball end mill's ball and flute, written anew.
             let (d, z) = (from.x.hypot(from.y), from.z);
             let inside = if z < 5.0 { d.hypot(z - 5.0) < 5.0 } else { d < 5.0 && z < 72.0 };

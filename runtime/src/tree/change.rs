@@ -7,24 +7,26 @@ use nalgebra::{Point3, Vector3};
 impl Tree {
     /// Takes points away, by their places. Those that stay do not move, not by a bit.
     pub(crate) fn remove(&mut self, places: impl IntoIterator<Item = usize>) {
+        let (leaves, skins) = (self.leaves.to_mut(), self.skins.to_mut());
         let mut touched = Vec::new();
         for place in places {
             let (leaf, lane) = (place / WIDTH, place % WIDTH);
-            let offset = &mut self.leaves[leaf].offset;
+            let offset = &mut leaves[leaf].offset;
             if !offset[0][lane].is_nan() {
                 offset.iter_mut().for_each(|list| list[lane] = f32::NAN);
-                self.skins[leaf].weight[lane] = 0.0;
+                skins[leaf].weight[lane] = 0.0;
                 self.gone += 1;
                 touched.push(leaf);
             }
         }
         touched.sort_unstable();
         touched.dedup();
-        let boxes = self.levels.len() - 1;
+        let bottom = self.levels.len() - 1;
+        let all = self.levels[bottom].to_mut();
         for leaf in &touched {
             // The centre stays: points are stored from there.
-            let half = leaf_bounds(&self.leaves[*leaf]);
-            let boxes = &mut self.levels[boxes][leaf / WIDTH];
+            let half = leaf_bounds(&leaves[*leaf]);
+            let boxes = &mut all[leaf / WIDTH];
             for (axis, half) in half.iter().enumerate() {
                 boxes.half[axis][leaf % WIDTH] = outward(half.max(0.0));
                 if *half < 0.0 {
@@ -60,14 +62,14 @@ impl Tree {
                     moved = true;
                     farthest = farthest.max((there - from).norm());
                     item.at = self.frame.inside(there.into());
-                    let skin = &mut self.skins[leaf].normal;
+                    let skin = &mut self.skins.to_mut()[leaf].normal;
                     (0..3).for_each(|axis| skin[axis][lane] = turned[axis] as f32);
                 }
             }
             if moved {
                 let (laid, bounds) = lay(&items);
-                self.leaves[leaf] = laid;
-                self.levels[boxes][leaf / WIDTH].put(leaf % WIDTH, &bounds);
+                self.leaves.to_mut()[leaf] = laid;
+                self.levels[boxes].to_mut()[leaf / WIDTH].put(leaf % WIDTH, &bounds);
                 let half = bounds.size() / 2.0;
                 self.leaf_size = self.leaf_size.max(outward(half));
                 touched.push(leaf);
@@ -86,9 +88,10 @@ impl Tree {
             touched.iter_mut().for_each(|node| *node /= WIDTH);
             touched.dedup();
             let (above, below) = self.levels.split_at_mut(level);
+            let above = above[level - 1].to_mut();
             for node in &touched {
                 let bounds = around(&below[0][*node]);
-                above[level - 1][node / WIDTH].put(node % WIDTH, &bounds);
+                above[node / WIDTH].put(node % WIDTH, &bounds);
             }
         }
     }

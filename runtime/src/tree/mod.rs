@@ -15,37 +15,43 @@
 mod build;
 mod candidates;
 mod change;
+mod shelf;
 mod sift;
 mod view;
 mod walk;
 
 pub(crate) use build::{Bounds, Item, levels, order};
 use candidates::Candidates;
+pub(crate) use shelf::Shelf;
 pub(crate) use sift::Search;
 pub(crate) use view::{Sight, View};
 pub(crate) use walk::{extent, load, seen};
 
 use crate::cloud::{Cloud, Cover};
+use bytemuck::{Pod, Zeroable};
 use nalgebra::Point3;
 
 /// Children of a node, points of a leaf.
 pub(crate) const WIDTH: usize = 16;
 
 /// 16 boxes by centre and half extent; what is not there has NaN for a centre.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Boxes {
     pub(crate) centre: [[f32; WIDTH]; 3],
     pub(crate) half: [[f32; WIDTH]; 3],
 }
 
 /// 16 points by their offset from the centre of the leaf's box; what is not there is NaN.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Leaf {
     pub(crate) offset: [[f32; WIDTH]; 3],
 }
 
 /// What a part has at 16 points: its normal and their weight, as a part of the tree's.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Skin {
     pub(crate) normal: [[f32; WIDTH]; 3],
     pub(crate) weight: [f32; WIDTH],
@@ -67,16 +73,16 @@ pub(crate) struct Frame {
 pub struct Tree {
     pub(crate) frame: Frame,
     /// From the root's children down to the leaves' boxes.
-    pub(crate) levels: Vec<Vec<Boxes>>,
-    pub(crate) leaves: Vec<Leaf>,
+    pub(crate) levels: Vec<Shelf<Boxes>>,
+    pub(crate) leaves: Shelf<Leaf>,
     /// The largest half extent of a leaf's box.
     pub(crate) leaf_size: f32,
     /// Of each leaf.
-    pub(crate) skins: Vec<Skin>,
+    pub(crate) skins: Shelf<Skin>,
     /// The largest weight; the others are parts of it.
     pub(crate) weight: f64,
     /// Of each point, in the tree's order.
-    pub(crate) triangles: Vec<u32>,
+    pub(crate) triangles: Shelf<u32>,
     pub(crate) cover: Option<Cover>,
     /// How many points were taken away.
     pub(crate) gone: usize,
@@ -98,12 +104,17 @@ impl Tree {
 
     /// How many nodes and leaves there are.
     pub(crate) fn nodes(&self) -> usize {
-        self.levels.iter().map(Vec::len).sum::<usize>() + self.leaves.len()
+        self.levels.iter().map(|level| level.len()).sum::<usize>() + self.leaves.len()
     }
 
     /// How many points there are, of those that were not taken away.
     pub fn len(&self) -> usize {
-        self.triangles.len() - self.gone
+        self.places() - self.gone
+    }
+
+    /// How many places there are, those of points that were taken away as well.
+    pub fn places(&self) -> usize {
+        self.triangles.len()
     }
 
     /// Whether there is none: a [`Cloud`] always has some, but all may have been cut away.

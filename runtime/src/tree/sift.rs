@@ -1,7 +1,7 @@
 //! Which points of the leaves may be inside a tool.
 
 use super::walk::{Nodes, Walker, load, seen, within};
-use super::{Candidates, Sight, Tree, View};
+use super::{Candidates, Leaf, Sight, Skin, Tree, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
 /// The search for the points of a part that may be inside a tool, with its memory kept between queries.
@@ -81,13 +81,14 @@ fn sift<S: Simd>(
     (leaves, skin): (&Nodes, bool),
     candidates: &mut Candidates,
 ) {
+    let (offsets, skins): (&[Leaf], &[Skin]) = (&tree.leaves, &tree.skins);
     some.resize(leaves.len() + 1, (0, 0));
     let point = [f32x16::splat(simd, 0.0); 3];
     // First which leaves have some: a branch at each leaf would be mispredicted at every other.
     let mut count = 0;
     for at in 0..leaves.len() {
         let leaf = leaves.get(at);
-        let offset = load(simd, &tree.leaves[leaf.index as usize].offset);
+        let offset = load(simd, &offsets[leaf.index as usize].offset);
         let hits = if sight.fits {
             let p = seen(&offset, &view.rows, leaf.middle);
             within(simd, &sight.reach, leaf.slabs, &p, &point).0
@@ -101,10 +102,10 @@ fn sift<S: Simd>(
     for (leaf, hits) in &some[..count] {
         let index = *leaf as usize;
         let base = view.leaf_from_tip(tree.centre(index));
-        let offset = load(simd, &tree.leaves[index].offset);
+        let offset = load(simd, &offsets[index].offset);
         candidates.take(simd, view, (*leaf, base), &offset, *hits);
         if skin {
-            candidates.take_skin(simd, &tree.skins[index], *hits);
+            candidates.take_skin(simd, &skins[index], *hits);
         }
         candidates.took(hits.count_ones() as usize);
     }

@@ -1,7 +1,7 @@
 //! Which leaves a tool may reach: the descent in `f32`, with margins.
 
 use super::view::{Reach, SLABS};
-use super::{Boxes, Sight, Tree, View, WIDTH};
+use super::{Boxes, Shelf, Sight, Tree, View, WIDTH};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
 use std::ops::Range;
 
@@ -236,7 +236,7 @@ pub(super) fn within<S: Simd>(
 fn descend<S: Simd>(
     simd: S,
     nodes: &mut [Nodes; 2],
-    levels: &[Vec<Boxes>],
+    levels: &[Shelf<Boxes>],
     sight: &Sight,
     view: &View,
 ) {

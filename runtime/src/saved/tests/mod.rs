@@ -1,0 +1,214 @@
+mod refused;
+
+use super::layout::{List, lists};
+use super::*;
+use crate::mesh::shapes;
+use crate::scenes::{self, Path as Course};
+use crate::tree::{Shelf, Tree};
+use crate::{Cloud, Cover, Pose, Probe, Unit};
+use memmap2::MmapMut;
+use nalgebra::Point3;
+
+crate::tool! {
+    tool Ball "a ball on a straight shank" {
+        units mm;
+        let r = 1;
+        curve nose = hypot(d, z - r) - r;
+        curve side = r - d;
+        curve end = 30 - z;
+        region ball as ball cutting where z <= r, nose <= 0 { depth: -nose; }
+        region shank where z >= r, 0 <= side <= end { depth: side; }
+        region end as shank where 0 <= end <= side { depth: end; }
+        niceness cutting: 1 - depth/r;
+    }
+}
+
+/// Bytes in memory, as a file is.
+fn map_of(bytes: &[u8]) -> Arc<Mmap> {
+    let mut map = MmapMut::map_anon(bytes.len().max(1)).expect("memory");
+    map[..bytes.len()].copy_from_slice(bytes);
+    Arc::new(map.make_read_only().expect("memory"))
+}
+
+fn open(bytes: &[u8]) -> Result<Part, SavedError> {
+    read::part(&map_of(bytes), "a.part")
+}
+
+fn says(bytes: &[u8]) -> String {
+    open(bytes).expect_err("it should be refused").to_string()
+}
+
+fn saved(part: &Part) -> Vec<u8> {
+    let (header, sections) = layout::of(part);
+    let mut bytes = Vec::new();
+    write(&mut bytes, &header, &sections).expect("written");
+    bytes
+}
+
+fn cuboid() -> crate::Mesh {
+    shapes::cuboid(Point3::origin(), Point3::new(9.0, 8.0, 7.0), Unit::Millimetre).expect("a mesh")
+}
+
+/// Forty points: everything in some thousand bytes.
+fn small() -> Part {
+    Part::from_mesh(&cuboid(), 40, 1).expect("a part")
+}
+
+/// Every bit of the lists.
+fn bits(part: &Part) -> Vec<u8> {
+    let mut all = Vec::new();
+    for tree in &part.levels {
+        tree.levels.iter().for_each(|boxes| all.extend(bytemuck::cast_slice::<_, u8>(boxes)));
+        all.extend(bytemuck::cast_slice::<_, u8>(&tree.leaves));
+        all.extend(bytemuck::cast_slice::<_, u8>(&tree.skins));
+        all.extend(bytemuck::cast_slice::<_, u8>(&tree.triangles));
+    }
+    all
+}
+
+/// All that is felt at some poses, in words that tell every two numbers apart.
+fn felt(part: &Part, poses: &[Pose]) -> String {
+    let mut probe = Probe::new(part, &Ball);
+    let mut felt = format!("{:?} {:?} {:?}\n", part.unit(), part.survey(), part.tree().cover());
+    for pose in poses {
+        let (any, wrench, deepest) = (probe.detect(pose), probe.wrench(pose), probe.deepest(pose));
+        felt += &format!("{any} {wrench:?} {deepest:?} {:?}\n", probe.contacts(pose));
+    }
+    felt
+}
+
+fn along_the_courses(each: usize) -> Vec<Pose> {
+    Course::ALL.iter().flat_map(|path| (0..each).map(|k| path.pose(k, each))).collect()
+}
+
+#[test]
+fn an_opened_part_feels_like_the_one_that_was_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("tube.part");
+    let poses = along_the_courses(500);
+    let tube = scenes::tube();
+    let random = Part::from_cloud(&Cloud::random(&tube, 20_000, 1).expect("a cloud"));
+    let even = Part::from_mesh(&tube, 3_000, 1).expect("a part");
+    let few = Part::from_cloud(&Cloud::random(&tube, 16, 1).expect("a cloud"));
+    let one = Part::from_cloud(&Cloud::random(&tube, 1, 1).expect("a cloud"));
+    for part in [random, even, few, one] {
+        part.save(&path).expect("saved");
+        let opened = Part::open(&path).expect("opened");
+        assert!(bits(&part) == bits(&opened));
+        assert!(felt(&part, &poses) == felt(&opened, &poses));
+        let (part, opened) = (part.to(Unit::Inch), opened.to(Unit::Inch));
+        assert!(felt(&part, &poses[..100]) == felt(&opened, &poses[..100]));
+        // In place of the file that it lies in.
+        opened.save(&path).expect("saved");
+        assert!(felt(&part, &poses[..100]) == felt(&opened, &poses[..100]));
+        let again = Part::open(&path).expect("opened");
+        assert!(felt(&part, &poses[..100]) == felt(&again, &poses[..100]));
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left over");
+}
+
+#[test]
+fn every_tree_is_saved() {
+    let mut part = small();
+    for (points, proved) in [(300, false), (17, true)] {
+        let mut tree = Tree::new(&Cloud::random(&cuboid(), points, 1).expect("a cloud"));
+        tree.cover = Some(Cover { radius: 0.1 + 0.2, proved });
+        part.levels.push(tree);
+    }
+    let opened = open(&saved(&part)).expect("opened");
+    assert_eq!(opened.levels.len(), 3);
+    assert!(bits(&part) == bits(&opened));
+    let rest = |part: &Part| {
+        let of = |tree: &Tree| format!("{:?}{}{}", tree.frame, tree.leaf_size, tree.weight);
+        part.levels.iter().map(|tree| (of(tree), tree.cover)).collect::<Vec<_>>()
+    };
+    assert_eq!(rest(&part), rest(&opened));
+    assert!(saved(&part) == saved(&opened), "the same part, the same bytes");
+}
+
+#[test]
+fn what_is_changed_is_a_copy() {
+    let bytes = saved(&small());
+    let map = map_of(&bytes);
+    let mut part = read::part(&map, "a.part").expect("opened");
+    let other = part.clone();
+    part.levels[0].triangles.to_mut()[3] = 77;
+    part.levels[0].triangles.to_mut()[4] = 78;
+    assert_eq!(part.tree().triangles[3..5], [77, 78]);
+    assert_eq!(other.tree().triangle(3), small().tree().triangle(3));
+    assert!(map[..] == bytes);
+    let mut own = Shelf::from(vec![1, 2]);
+    own.to_mut()[0] = 3;
+    assert_eq!((&own[..], format!("{own:?}").as_str()), (&[3, 2][..], "[3, 2]"));
+}
+
+#[test]
+fn lists_lie_at_multiples_of_64() {
+    let map = map_of(&saved(&small()));
+    let part = read::part(&map, "a.part").expect("opened");
+    let tree = part.tree();
+    let places = [
+        tree.levels[0].as_ptr().addr(),
+        tree.leaves.as_ptr().addr(),
+        tree.skins.as_ptr().addr(),
+        tree.triangles.as_ptr().addr(),
+    ];
+    for place in places {
+        assert_eq!(place % ALIGN, 0);
+        assert!(map.as_ptr_range().contains(&std::ptr::with_exposed_provenance(place)));
+    }
+}
+
+#[test]
+fn lists_have_the_lengths_that_trees_have() {
+    for points in [1, 15, 16, 17, 255, 256, 257, 4095, 4096, 4097, 65_537] {
+        let tree = Tree::new(&Cloud::random(&cuboid(), points, 1).expect("a cloud"));
+        let mut levels = 0;
+        for (list, count) in lists(points as u64) {
+            let found = match list {
+                List::Boxes(level) => {
+                    assert_eq!(level, levels);
+                    levels += 1;
+                    tree.levels[level].len()
+                }
+                List::Leaves => tree.leaves.len(),
+                List::Skins => tree.skins.len(),
+                List::Triangles => tree.triangles.len(),
+            };
+            assert_eq!(found as u64, count, "{list} of {points}");
+        }
+        assert_eq!(levels, tree.levels.len());
+    }
+}
+
+#[test]
+fn what_cannot_be_written_leaves_the_old_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("old.part");
+    small().save(&path).expect("saved");
+    let full = || io::Error::from(io::ErrorKind::StorageFull);
+    let failed = replace(&path, |out| out.write_all(b"half").and(Err(full())));
+    assert_eq!(failed.expect_err("full").kind(), io::ErrorKind::StorageFull);
+    Part::open(&path).expect("the old one");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left over");
+    for nowhere in [folder.path().join("no/such.part"), folder.path().to_owned(), path.join("x")] {
+        let said = small().save(&nowhere).expect_err("nowhere to write").to_string();
+        let named = format!("cannot write {}: ", nowhere.display());
+        assert!(said.starts_with(&named) && said.contains("the file is as it was"), "{said}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_the_usual_permissions_stay() {
+    use std::os::unix::fs::{MetadataExt, symlink};
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    File::create(at("usual")).expect("a file");
+    small().save(at("real.part")).expect("saved");
+    symlink(at("real.part"), at("link.part")).expect("a link");
+    small().save(at("link.part")).expect("saved");
+    assert!(fs::symlink_metadata(at("link.part")).expect("a link").is_symlink());
+    let mode = |name: &str| fs::metadata(at(name)).expect("a file").mode();
+    assert_eq!(mode("real.part"), mode("usual"));
+}
