@@ -115,7 +115,7 @@ pub(crate) struct PartFile {
     pub(crate) points: u64,
     /// As many points as it takes for no place of the surface to be deeper than found by more than this,
     /// in the part's unit.
-    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance, conflicts_with = "points")]
+    #[arg(long, value_name = "TOLERANCE", value_parser = positive, conflicts_with = "points")]
     pub(crate) tolerance: Option<f64>,
     /// How the points are spread: `blue`, evenly, or `random`.
     #[arg(long, default_value_t = Sampling::Blue)]
@@ -172,6 +172,14 @@ fn tolerance(text: &str) -> Result<f64, String> {
         Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
         Ok(value) => Err(format!("{value} is no tolerance: write a length of 0 or more")),
         Err(_) => Err(format!("`{text}` is not a number")),
+    }
+}
+
+/// A length above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    match tolerance(text)? {
+        0.0 => Err("no cloud is exact: write a length above 0, or ask for `--certify`".to_owned()),
+        value => Ok(value),
     }
 }
 

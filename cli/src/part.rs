@@ -53,13 +53,13 @@ fn spread(mesh: &Mesh, wanted: &PartFile, card: Option<&Card>) -> Result<Cloud, 
         let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
         return Ok(Cloud::sample(mesh, sampling, points, seed)?);
     };
-    let steepest = match card {
+    let steepest = match card.map(|card| (card, card.depth.lipschitz)) {
         None => 1.0,
-        Some(card) => {
-            card.depth.lipschitz.ok_or_else(|| Failure::NoSteepness(card.name.to_string()))?
-        }
+        Some((_, Some(steepest))) if steepest > 0.0 => steepest,
+        Some((card, _)) => return Err(Failure::NoSteepness(card.name.to_string())),
     };
-    let radius = tolerance / steepest;
+    // What rounding takes is less than this.
+    let radius = tolerance / steepest * (1.0 - 1e-6);
     let cloud = Cloud::covering(mesh, radius, sampling, seed)?;
     say!(
         "a tolerance of {}: depth grows by {steepest:.4} for each length at most, so no place may be \

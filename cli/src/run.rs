@@ -20,7 +20,7 @@ struct Row<'a> {
     line: usize,
     colliding: usize,
     depth: f64,
-    /// What no place of the surface is deeper than, where that is known.
+    /// What no place of the surface is deeper than, where that is proved.
     depth_bound: Option<f64>,
     force: [f64; 3],
     torque: [f64; 3],
@@ -97,7 +97,8 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         .law(wanted.law)
         .weights(wanted.weights)
         .centre(wanted.center.unwrap_or(Point3::origin()));
-    let unseen = probe.unseen();
+    let proved = part.tree().cover().is_some_and(|cover| cover.proved);
+    let unseen = probe.unseen().filter(|_| proved);
     let mut summary = Summary::default();
     for (index, stop) in program.stops.iter().enumerate() {
         let start = Instant::now();

@@ -1,7 +1,7 @@
 //! The workpiece, ready to be felt.
 
 use crate::Unit;
-use crate::cloud::{Cloud, CloudError};
+use crate::cloud::{Cloud, CloudError, Cover, check_place, unit_normal};
 use crate::mesh::{Mesh, StlError, Survey};
 use crate::pose::Pose;
 use crate::probe::Probe;
@@ -80,7 +80,8 @@ impl Part {
     /// A place of the surface that is left has its nearest point where that was: if it had been taken
     /// away, the place would be inside the tool as well. So the cover holds for what is left of the
     /// surface. Of what is gone the points on its rim stay, no deeper than that; the new surface that a
-    /// cut leaves has no points. Where it is not known how steep depth is, or what the cover is, all
+    /// cut leaves has no points, and no question knows of it. Of a coarse level that sees less than the
+    /// tool is deep nothing is taken. Where it is not known how steep depth is, or what the cover is, all
     /// points inside are taken, and no cover is known any more.
     pub fn cut(&mut self, tool: &dyn Tool, pose: &Pose) -> usize {
         let mut taken = 0;
@@ -101,17 +102,36 @@ impl Part {
     /// not built anew, so queries get slower as neighbours part. Weights stay.
     ///
     /// The cover grows by twice how far the farthest point goes, which bounds it if no place between the
-    /// points goes farther.
+    /// points goes farther: that is the caller's word, so it counts as estimated from then on.
+    ///
+    /// # Errors
+    /// A place or a normal that is none; nothing has moved then.
     pub fn displace(
         &mut self,
         mut to: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
-    ) {
-        for tree in &mut self.levels {
-            let farthest = tree.displace(&mut to);
-            if let Some(cover) = &mut tree.cover {
-                cover.radius += 2.0 * farthest;
+    ) -> Result<(), CloudError> {
+        let mut moved = Vec::new();
+        for tree in &self.levels {
+            let mut here = Vec::new();
+            for (place, point, normal) in tree.all() {
+                let (there, turned) = to(point, normal);
+                if there != point || turned != normal {
+                    check_place(place, &there)?;
+                    here.push((place, there, unit_normal(place, turned)?));
+                }
             }
+            moved.push(here);
         }
+        for (tree, moved) in
+            self.levels.iter_mut().zip(&moved).filter(|(_, moved)| !moved.is_empty())
+        {
+            let farthest = tree.put(moved);
+            tree.cover = tree.cover.map(|Cover { radius, .. }| Cover {
+                radius: radius + 2.0 * farthest,
+                proved: false,
+            });
+        }
+        Ok(())
     }
 
     /// The same part in another unit: its numbers are multiplied, its points and its tree stay.

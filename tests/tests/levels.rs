@@ -90,6 +90,39 @@ fn force_is_continuous_where_the_level_changes() {
     assert!(changes >= 2 && jumps >= 1, "{changes} {jumps}");
 }
 
+#[test]
+fn a_tool_that_trembles_about_its_budget_is_felt_all_the_same() {
+    let part = detailed(200_000);
+    // Deep in the wall the budget is not enough for what just touching is felt by.
+    let pose = |z: f64| Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose");
+    let mut graded = Graded::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut levels = |z: f64| graded.wrench(&pose(z)).level;
+    let (shallow, deep) = (levels(13.1), levels(12.2));
+    assert!(shallow < deep, "{shallow} {deep}");
+    let mut graded = Graded::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut alone = Probe::new(&part, &Ball).law(Law::Gradient);
+    let (mut last, mut changes, mut near) = (None, 0, 0);
+    for k in 0..2_000 {
+        let z = if k % 2 == 0 { 13.1 } else { 12.2 };
+        let felt = graded.wrench(&pose(z));
+        changes += usize::from(last.is_some_and(|level| level != felt.level));
+        last = Some(felt.level);
+        let true_force = alone.wrench(&pose(z)).force;
+        near +=
+            usize::from((felt.wrench.force - true_force).norm() < 0.25 * true_force.norm() + 0.1);
+    }
+    assert!(changes <= 2 * 2_000 / 32 + 2, "{changes}");
+    assert!(near > 1_000, "{near}");
+    // Out of the part there is no force left of it.
+    let away = graded.wrench(&pose(20.0)).wrench;
+    assert_eq!((away.force, away.torque), (Vector3::zeros(), Vector3::zeros()));
+    let again = graded.wrench(&pose(12.2));
+    let fresh = Graded::new(&part, &Ball, 90, Law::Gradient)
+        .expect("a budget that does")
+        .wrench(&pose(12.2));
+    assert_eq!(again, fresh);
+}
+
 /// Places all over a mesh that are outside a tool, but not as far as that.
 fn left<'a>(
     mesh: &'a Mesh,
@@ -187,9 +220,11 @@ fn a_part_that_bends_is_felt_where_it_is() {
     };
     let mut part = detailed(20_000);
     let before = part.tree().cover().expect("a cover");
-    part.displace(bend(0.02));
+    part.displace(bend(0.02)).expect("places");
     let farthest = 0.02 * 13.116f64.powi(2);
-    let after = part.tree().cover().expect("a cover").radius - before.radius;
+    let cover = part.tree().cover().expect("a cover");
+    let after = cover.radius - before.radius;
+    assert!(before.proved && !cover.proved);
     assert!((after - 2.0 * farthest).abs() < 1e-3 * farthest, "{after}");
     let cloud = Cloud::blue(&tube(), 20_000, 1).expect("a cloud");
     let bent: Vec<Point3<f64>> =
@@ -209,7 +244,13 @@ fn a_part_that_bends_is_felt_where_it_is() {
     assert!(touched > POSES / 4);
     // What does not move is not touched, not by a bit.
     let still = part.clone();
-    part.displace(|p, n| (p, n));
+    part.displace(|p, n| (p, n)).expect("places");
+    assert_eq!(part.tree().cover(), still.tree().cover());
+    // What is no place is refused before anything moves.
+    for wrong in [f64::NAN, f64::INFINITY] {
+        assert!(part.displace(|p, n| (Point3::new(p.x + 1.0, p.y, wrong), n)).is_err());
+        assert!(part.displace(|p, n| (p, wrong * n)).is_err());
+    }
     for k in 0..POSES {
         let pose = Path::Hold.pose(k, POSES);
         assert_eq!(sums(&part, &Fig73, &pose), sums(&still, &Fig73, &pose));

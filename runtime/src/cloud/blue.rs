@@ -1,7 +1,9 @@
 //! Points spread evenly: thinned, and put where the surface is farthest from all.
 
-use super::cells::{Hole, Sites, Surface};
+use super::cells::Hole;
+use super::diagram::Sites;
 use super::draw::Facets;
+use super::pieces::Surface;
 use super::{Cloud, thin};
 use crate::mesh::Mesh;
 use nalgebra::Point3;
@@ -48,8 +50,8 @@ pub(super) fn blue(mesh: &Mesh, facets: &Facets, count: usize, seed: u64) -> Clo
         if (cloud.len() - before) * 50 < put {
             far = NEARER * farthest.iter().copied().fold(0.0, f64::max).min(far);
         }
-        if far == 0.0 {
-            // All of the surface is at a point: more of them tell nothing new.
+        if far <= surface.rounded() {
+            // All of the surface is at a point already.
             (0..count - cloud.len()).for_each(|index| take(&mut cloud, index));
         }
     }

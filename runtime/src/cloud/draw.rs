@@ -95,6 +95,6 @@ impl Facets {
 
 /// A number in [0, 1), a multiple of 2^-53: times any area it stays below that area, rounded or
 /// not.
-fn fraction(random: &mut Pcg64) -> f64 {
+pub(super) fn fraction(random: &mut Pcg64) -> f64 {
     (random.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }

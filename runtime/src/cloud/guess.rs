@@ -1,7 +1,7 @@
 //! What is not known of points without a mesh: the area of each one's cell, and how far the surface gets
 //! from them. Estimates: each cell is taken for flat, in the plane across the point's normal.
 
-use super::cells::{Cells, Corner, EDGE, area, clip};
+use super::diagram::{Corner, EDGE, area, clip};
 use super::near::Near;
 use crate::cores;
 use nalgebra::{Point3, Vector3};
@@ -20,23 +20,27 @@ const CORNERS: usize = 16;
 /// Points that one core takes at a time.
 const TOGETHER: usize = 1 << 10;
 
-/// Estimates the cells of points with unit normals.
-pub(super) fn guess(points: &[Point3<f64>], normals: &[Vector3<f64>]) -> Cells {
+/// Estimates the areas of the cells of points with unit normals, and how far the surface gets from them;
+/// `None` where nothing tells.
+pub(super) fn guess(points: &[Point3<f64>], normals: &[Vector3<f64>]) -> (Vec<f64>, Option<f64>) {
     let near = Near::new(points);
     let lists = cores::ranges(points.len(), TOGETHER, |range| {
         let (mut found, mut cell, mut cut) = (vec![], vec![], vec![]);
-        let (mut areas, mut radius) = (Vec::with_capacity(range.len()), 0f64);
+        let (mut areas, mut radius) = (Vec::with_capacity(range.len()), Some(0f64));
         for site in range {
             let (at, normal) = (points[site], &normals[site]);
-            let around = NEIGHBOURS.min(points.len() - 1);
-            let spacing = (PI * near.nearest_of(at.into(), around + 1) / NEIGHBOURS as f64).sqrt();
+            let facing = |other: u32| normals[other as usize].dot(normal);
+            near.within(at.into(), 0.0, &mut found);
+            // What is there more than once shares its cell.
+            let shared = found.iter().filter(|(_, other)| facing(*other) > SAME_SIDE).count();
+            let around = (found.len() * (1 + NEIGHBOURS)).min(points.len());
+            let spacing = (PI * near.nearest_of(at.into(), around) / NEIGHBOURS as f64).sqrt();
             near.within(at.into(), 2.0 * REACHES[0] * spacing, &mut found);
             for reach in REACHES {
                 cell.clear();
                 cell.extend(polygon(normal, reach * spacing));
                 for &(squared, other) in &found {
-                    let facing = normals[other as usize].dot(normal);
-                    if squared > 0.0 && facing > SAME_SIDE {
+                    if squared > 0.0 && facing(other) > SAME_SIDE {
                         let toward = points[other as usize] - at;
                         clip(&mut cell, &mut cut, toward, squared / 2.0, other);
                     }
@@ -45,20 +49,20 @@ pub(super) fn guess(points: &[Point3<f64>], normals: &[Vector3<f64>]) -> Cells {
                     break;
                 }
             }
-            areas.push(area(&cell, normal));
+            areas.push(area(&cell, normal) / shared as f64);
             // Beside an edge the plane goes on where the surface does not.
             let beside = |squared: f64| squared < (REACHES[0] * spacing).powi(2);
             let edge = found.iter().any(|&(squared, other)| {
-                let facing = normals[other as usize].dot(normal);
-                beside(squared) && (SAME_SIDE..FLAT).contains(&facing)
+                beside(squared) && (SAME_SIDE..FLAT).contains(&facing(other))
             });
             let corners = cell.iter().map(|(corner, _)| corner.norm()).fold(0.0, f64::max);
-            radius = radius.max(if edge { corners.min(REACHES[1] * spacing) } else { corners });
+            let here = if edge { corners.min(REACHES[1] * spacing) } else { corners };
+            radius = radius.filter(|_| spacing > 0.0).map(|radius| radius.max(here));
         }
         (areas, radius)
     });
-    let radius = lists.iter().map(|(_, radius)| *radius).fold(0.0, f64::max);
-    Cells { areas: lists.into_iter().flat_map(|(areas, _)| areas).collect(), radius }
+    let radius = lists.iter().map(|(_, radius)| *radius).reduce(|a, b| Some(a?.max(b?)));
+    (lists.into_iter().flat_map(|(areas, _)| areas).collect(), radius.flatten())
 }
 
 /// A polygon about a circle across a normal.

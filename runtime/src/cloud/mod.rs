@@ -3,17 +3,24 @@
 
 mod blue;
 mod cells;
+mod diagram;
 mod draw;
+mod error;
 mod guess;
 mod near;
+mod pieces;
 mod thin;
 
+pub use error::CloudError;
+
 use crate::Unit;
-use crate::mesh::{LARGEST_COORDINATE, Mesh, Points, area_and_normal, coordinate_holds};
+use crate::mesh::{Mesh, Points, area_and_normal, coordinate_holds};
 use crate::words::words;
-use cells::{Cells, Sites, Surface};
+use cells::Cells;
+use diagram::Sites;
 use draw::Facets;
 use nalgebra::{Point3, Vector3};
+use pieces::Surface;
 
 /// How far the norm of a given normal may be from 1 before it is refused rather than normalised.
 pub const NORMAL_TOLERANCE: f64 = 1e-3;
@@ -46,8 +53,8 @@ pub enum Sampling {
 
 words!(Sampling, "blue, random", Blue "blue", Random "random");
 
-/// The most points that [`Cloud::covering`] takes: they want some 8 GiB while they are spread.
-pub const MOST_COVERING: usize = 20_000_000;
+/// The most points that are spread evenly: they want some 12 GiB while they are.
+pub const MOST_BLUE: usize = 20_000_000;
 
 /// How far a surface gets from the points of a cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,85 +63,6 @@ pub struct Cover {
     pub radius: f64,
     /// Whether it is proved, of a mesh, or estimated, from the points alone.
     pub proved: bool,
-}
-
-/// Lists that make no cloud, or a wish for one that cannot be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum CloudError {
-    /// There is nothing to touch.
-    #[error("the cloud has no point: ask for one at least")]
-    Empty,
-    /// More points than 32-bit indices can tell apart.
-    #[error("{count} points are more than 32-bit indices can tell apart: ask for fewer")]
-    TooMany {
-        /// How many were asked for.
-        count: usize,
-    },
-    /// A covering radius that is no length.
-    #[error("{radius} is no covering radius: give a finite length above 0")]
-    Radius {
-        /// What was asked for.
-        radius: f64,
-    },
-    /// A covering radius that wants too many points.
-    #[error(
-        "a covering radius of {radius} wants about {needed:.1e} points, more than {MOST_COVERING}, \
-         which would have one of about {instead:.3}: ask for that, or ask the triangles \
-         (`certify`), between which nothing lies"
-    )]
-    TooFine {
-        /// What was asked for.
-        radius: f64,
-        /// About how many points it wants.
-        needed: f64,
-        /// About what so many points as there can be have.
-        instead: f64,
-    },
-    /// The lists do not belong together.
-    #[error(
-        "{points} points, {normals} normals, {triangles} triangle ids and {weights} weights: give \
-         one of each for every point"
-    )]
-    Lengths {
-        /// How many points there are.
-        points: usize,
-        /// How many normals there are.
-        normals: usize,
-        /// How many triangle ids there are.
-        triangles: usize,
-        /// How many weights there are.
-        weights: usize,
-    },
-    /// A coordinate is NaN, infinite or too large.
-    #[error(
-        "point {point} has the coordinate {coordinate}: coordinates must be finite and within \
-         {LARGEST_COORDINATE:e}"
-    )]
-    Coordinate {
-        /// The point's index.
-        point: usize,
-        /// The coordinate.
-        coordinate: f64,
-    },
-    /// A normal is not a direction.
-    #[error(
-        "the normal of point {point} has norm {norm}: give a unit vector (within \
-         {NORMAL_TOLERANCE} of 1)"
-    )]
-    Normal {
-        /// The point's index.
-        point: usize,
-        /// The normal's norm; NaN when a component is.
-        norm: f64,
-    },
-    /// A weight is not an area.
-    #[error("the weight of point {point} is {weight}: give a finite area, 0 or more")]
-    Weight {
-        /// The point's index.
-        point: usize,
-        /// The weight.
-        weight: f64,
-    },
 }
 
 impl Cloud {
@@ -158,15 +86,18 @@ impl Cloud {
     /// `count` points spread evenly, no two close together and no place far from all, each with
     /// the area of its cell for a weight, and how far the surface gets from them ([`Cloud::cover`]).
     ///
-    /// Of five times as many random points the most crowded are taken away, until 98 in 100 of those
+    /// Of four times as many random points the most crowded are taken away, until 96 in 100 of those
     /// wanted are left; the others are put, one by one, where the surface is farthest from all: so
     /// edges and corners of the part get points where that helps. The same mesh, count and seed
     /// give the same cloud, however many cores there are.
     ///
     /// # Errors
-    /// A count of 0, or beyond 32 bits with the points that are taken away.
+    /// A count of 0, or more than [`MOST_BLUE`].
     pub fn blue(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
-        check_count(count.saturating_mul(blue::CANDIDATES))?;
+        check_count(count)?;
+        if count > MOST_BLUE {
+            return Err(CloudError::TooManyBlue { count });
+        }
         let cloud = blue::blue(mesh, &Facets::of(mesh), count, seed);
         Ok(cloud.weighed(mesh))
     }
@@ -191,7 +122,7 @@ impl Cloud {
     /// of them: about `0.8 · area / radius²` of [`Sampling::Blue`].
     ///
     /// # Errors
-    /// A radius that is no length, or that wants more than [`MOST_COVERING`] points.
+    /// A radius that is no length, or that wants more than [`MOST_BLUE`] points.
     pub fn covering(
         mesh: &Mesh,
         radius: f64,
@@ -209,8 +140,8 @@ impl Cloud {
         };
         loop {
             let needed = area * (usual / radius).powi(2);
-            if needed > MOST_COVERING as f64 {
-                let instead = usual * (area / MOST_COVERING as f64).sqrt();
+            if needed > MOST_BLUE as f64 {
+                let instead = usual * (area / MOST_BLUE as f64).sqrt();
                 return Err(CloudError::TooFine { radius, needed, instead });
             }
             let count = (needed.ceil() as usize).max(1);
@@ -218,7 +149,8 @@ impl Cloud {
             match cloud.cover {
                 Some(cover) if cover.radius > radius => {
                     let here = cover.radius * (count as f64 / area).sqrt();
-                    usual = (1.005 * usual).max(1.005 * here);
+                    // Where few points are far apart more of them soon do better than that.
+                    usual *= (1.005 * here / usual).clamp(1.005, 2.0);
                 }
                 _ => return Ok(cloud),
             }
@@ -233,17 +165,17 @@ impl Cloud {
     /// See [`Cloud::new`].
     pub fn from_points(points: Points, unit: Unit) -> Result<Cloud, CloudError> {
         let Points { places, normals, faces, areas } = points;
-        let count = places.len() as u32;
-        let weights = vec![0.0; places.len()];
-        let faces = faces.unwrap_or_else(|| (0..count).collect());
+        let count = places.len();
+        let faces = faces.unwrap_or_else(|| (0..count as u32).collect());
+        let estimated = areas.is_none();
+        let weights = areas.unwrap_or_else(|| vec![0.0; count]);
         let mut cloud = Cloud::new(places, normals, faces, weights, unit)?;
-        let guess = guess::guess(&cloud.points, &cloud.normals);
-        cloud.cover = Some(Cover { radius: guess.radius, proved: false });
-        cloud.weights = areas.unwrap_or(guess.areas);
-        match cloud.weights.iter().position(|weight| !(weight.is_finite() && *weight >= 0.0)) {
-            Some(point) => Err(CloudError::Weight { point, weight: cloud.weights[point] }),
-            None => Ok(cloud),
+        let (areas, radius) = guess::guess(&cloud.points, &cloud.normals);
+        cloud.cover = radius.map(|radius| Cover { radius, proved: false });
+        if estimated {
+            cloud.weights = areas;
         }
+        Ok(cloud)
     }
 
     /// The same points, each with the area of its cell on the mesh that they were taken from: the
@@ -314,18 +246,10 @@ impl Cloud {
         }
         check_count(count)?;
         for (point, place) in points.iter().enumerate() {
-            if let Some(&coordinate) = place.iter().find(|&&c| !coordinate_holds(c)) {
-                return Err(CloudError::Coordinate { point, coordinate });
-            }
+            check_place(point, place)?;
         }
         for (point, normal) in normals.iter_mut().enumerate() {
-            let norm = normal.norm();
-            // NaN is near nothing, and so refused.
-            let near_one = (norm - 1.0).abs() <= NORMAL_TOLERANCE;
-            if !near_one {
-                return Err(CloudError::Normal { point, norm });
-            }
-            *normal /= norm;
+            *normal = unit_normal(point, *normal)?;
         }
         for (point, &weight) in weights.iter().enumerate() {
             if !(weight.is_finite() && weight >= 0.0) {
@@ -373,7 +297,7 @@ impl Cloud {
         &self.weights
     }
 
-    /// How far the surface gets from the points; `None` where that was not found out.
+    /// How far the surface gets from the points; `None` where that is not known.
     pub fn cover(&self) -> Option<Cover> {
         self.cover
     }
@@ -396,6 +320,25 @@ fn check_count(count: usize) -> Result<(), CloudError> {
         0 => Err(CloudError::Empty),
         _ if u32::try_from(count).is_err() => Err(CloudError::TooMany { count }),
         _ => Ok(()),
+    }
+}
+
+/// Whether a point is somewhere.
+pub(crate) fn check_place(point: usize, place: &Point3<f64>) -> Result<(), CloudError> {
+    match place.iter().find(|&&c| !coordinate_holds(c)) {
+        Some(&coordinate) => Err(CloudError::Coordinate { point, coordinate }),
+        None => Ok(()),
+    }
+}
+
+/// A normal of length 1, from one that nearly is.
+pub(crate) fn unit_normal(point: usize, normal: Vector3<f64>) -> Result<Vector3<f64>, CloudError> {
+    let norm = normal.norm();
+    // NaN is near nothing, and so refused.
+    if (norm - 1.0).abs() <= NORMAL_TOLERANCE {
+        Ok(normal / norm)
+    } else {
+        Err(CloudError::Normal { point, norm })
     }
 }
 

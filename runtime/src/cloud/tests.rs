@@ -1,5 +1,8 @@
+use super::draw::fraction;
 use super::*;
 use crate::mesh::shapes;
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64;
 
 const UNIT: Unit = Unit::Millimetre;
 
@@ -311,4 +314,81 @@ fn of_points_alone_cells_are_estimated() {
     let negative = Points { areas: Some(vec![-1.0; 20]), ..all };
     let refused = Cloud::from_points(negative, UNIT);
     assert_eq!(refused, Err(CloudError::Weight { point: 0, weight: -1.0 }));
+}
+
+/// Points in the same place, and places mirrored in the surface: nearness leaves open whose a place is.
+#[test]
+fn points_that_are_as_near_lose_nothing() {
+    let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+    let vertices = vec![at(0.0, 0.0, 0.0), at(40.0, 10.0, 0.0), at(0.0, 20.0, 0.0)];
+    let mesh = Mesh::new(vertices, vec![[0, 1, 2]], UNIT).expect("a triangle");
+    let check = |points: Vec<Point3<f64>>| {
+        let count = points.len();
+        let (normals, ids) = (vec![Vector3::z(); count], vec![0; count]);
+        let cloud = Cloud::new(points, normals, ids, vec![0.0; count], UNIT).expect("a cloud");
+        let cloud = cloud.weighed(&mesh);
+        let far = places(&mesh, 40).map(|(_, place)| nearest(&cloud, &place)).fold(0.0, f64::max);
+        let radius = cloud.cover().expect("a cover").radius;
+        // The covering radius is at a corner of the triangle or between points: the grid is close.
+        assert!(far <= radius && radius <= 1.1 * far + 0.3, "{far} {radius} {:?}", cloud.points());
+        let sum: f64 = cloud.weights().iter().sum();
+        assert!((sum / 400.0 - 1.0).abs() < 1e-12, "{sum}");
+        cloud
+    };
+    let twice = check(vec![at(10.1, 10.0, 0.0), at(11.1, 12.5, 0.0), at(11.1, 12.5, 0.0)]);
+    assert!(twice.weights()[0] > 100.0 && twice.weights()[1] > 100.0 && twice.weights()[2] == 0.0);
+    let mirrored = check(vec![at(10.0, 9.0, 2.0), at(10.0, 9.0, -2.0), at(20.0, 10.0, 0.5)]);
+    assert!(mirrored.weights()[0] > 100.0 && mirrored.weights()[1] == 0.0);
+    let mut random = Pcg64::seed_from_u64(4);
+    let mut draw = || fraction(&mut random);
+    for _ in 0..300 {
+        let mut points: Vec<_> =
+            (0..8).map(|_| at(20.0 * draw(), 5.0 + 10.0 * draw(), 0.0)).collect();
+        let again = points.clone();
+        points.extend(again.iter().map(|p| at(p.x, p.y, p.z)));
+        points.extend(again.iter().map(|p| at(p.x.next_up(), p.y, 0.0)));
+        let lifted = draw();
+        points
+            .extend(again.iter().take(3).flat_map(|p| [lifted, -lifted].map(|z| at(p.x, p.y, z))));
+        check(points);
+    }
+}
+
+#[test]
+fn what_has_no_area_is_covered_too() {
+    let mut vertices = cuboid().vertices().to_vec();
+    vertices.extend([Point3::new(50.0, 0.0, 0.0), Point3::new(100.0, 0.0, 0.0)]);
+    let mut triangles = cuboid().triangles().to_vec();
+    triangles.push([0, 8, 9]);
+    let mesh = Mesh::new(vertices, triangles, UNIT).expect("a mesh");
+    for cloud in [Cloud::blue(&mesh, 50, 1), Cloud::random(&mesh, 50, 1)] {
+        let cloud = cloud.expect("a cloud").weighed(&mesh);
+        let far = places(&mesh, 50).map(|(_, place)| nearest(&cloud, &place)).fold(0.0, f64::max);
+        let radius = cloud.cover().expect("a cover").radius;
+        assert!(far <= radius && radius < 1.1 * far, "{far} {radius}");
+        let sum: f64 = cloud.weights().iter().sum();
+        assert!((sum / 28.0 - 1.0).abs() < 1e-12, "{sum}");
+    }
+}
+
+#[test]
+fn points_that_repeat_share_their_cells() {
+    let mesh = shapes::plane(1.0, 4, UNIT).expect("a plane");
+    let cloud = Cloud::blue(&mesh, 500, 1).expect("a cloud");
+    let thrice = |list: &[Point3<f64>]| [list, list, list].concat();
+    let points = |places: Vec<Point3<f64>>, areas| {
+        let normals = vec![Vector3::z(); places.len()];
+        Cloud::from_points(Points { places, normals, faces: None, areas }, UNIT)
+    };
+    let [one, three] = [cloud.points().to_vec(), thrice(cloud.points())]
+        .map(|places| points(places, None).expect("points"));
+    let sum = |cloud: &Cloud| cloud.weights().iter().sum::<f64>();
+    assert!((sum(&one) - sum(&three)).abs() < 1e-9 && one.cover() == three.cover());
+    // Nothing tells how far the surface gets from one point.
+    for count in [1, 20] {
+        let alone = points(vec![Point3::origin(); count], None).expect("points");
+        assert_eq!(alone.cover(), None);
+    }
+    let short = points(vec![Point3::origin(); 20], Some(vec![1.0]));
+    assert!(matches!(short, Err(CloudError::Lengths { weights: 1, .. })), "{short:?}");
 }

@@ -14,7 +14,8 @@ const FADE: u32 = 32;
 /// before it is asked; and as nodes are counted, not time, the same queries have the same answers.
 ///
 /// Each level is a complete quadrature with weights and a cover of its own. A query goes through the
-/// levels from the coarsest on and answers with the finest that it can pay.
+/// levels from the coarsest on and answers with the finest that it can pay; but while force and torque
+/// still go over from a change of level, with none that is finer.
 pub struct Graded<'a, T: ?Sized = dyn Tool + 'a> {
     /// The coarsest first.
     probes: Vec<Probe<'a, T>>,
@@ -22,11 +23,11 @@ pub struct Graded<'a, T: ?Sized = dyn Tool + 'a> {
     last: Option<Last>,
 }
 
-/// What the last query answered.
+/// What the last query answered in contact.
 struct Last {
     level: usize,
-    force: Vector3<f64>,
-    torque: Vector3<f64>,
+    /// Force and torque.
+    pushed: [Vector3<f64>; 2],
     /// What was added to force and torque when the level changed last, and for how long it still is.
     step: [Vector3<f64>; 2],
     left: u32,
@@ -36,12 +37,12 @@ struct Last {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GradedWrench {
     /// As [`Probe::wrench`] has it of that level, but force and torque do not jump when the level
-    /// changes: at that query they are those of the query before, and in the next 32 they go over to
-    /// what they are.
+    /// changes in contact: at that query they are those of the query before, and in the next 32 they go
+    /// over to what they are. Without contact they are 0.
     pub wrench: Wrench,
     /// Which level was felt: 0 is the finest.
     pub level: usize,
-    /// How many nodes were looked at.
+    /// How many nodes were looked at, of this level and of coarser ones.
     pub nodes: usize,
     /// How much deeper than found the surface can be ([`Probe::unseen`] of that level).
     pub unseen: Option<f64>,
@@ -83,28 +84,34 @@ impl<'a, T: Senses + ?Sized> Graded<'a, T> {
 
     /// Force, torque, depth and niceness of the whole contact, as finely as the budget allows.
     pub fn wrench(&mut self, pose: &Pose) -> GradedWrench {
+        let last = self.last.take();
         let (mut nodes, mut finest) = (0, 0);
+        let coarsest = self.probes.len() - 1;
         for (place, probe) in self.probes.iter_mut().enumerate() {
+            if last.as_ref().is_some_and(|last| last.left > 0 && coarsest - place < last.level) {
+                break;
+            }
             match probe.look_within(pose, self.budget - nodes) {
                 Some(more) => (nodes, finest) = (nodes + more, place),
                 None => break,
             }
         }
-        let level = self.probes.len() - 1 - finest;
+        let level = coarsest - finest;
         let probe = &mut self.probes[finest];
         let mut wrench = probe.looked(pose);
-        let (mut step, mut left) = ([Vector3::zeros(); 2], 0);
-        if let Some(last) = &self.last {
-            (step, left) = if last.level == level {
-                (last.step, last.left.saturating_sub(1))
-            } else {
-                ([last.force - wrench.force, last.torque - wrench.torque], FADE)
+        if wrench.colliding > 0 {
+            let (step, left) = match &last {
+                Some(last) if last.level == level => (last.step, last.left.saturating_sub(1)),
+                Some(last) => {
+                    ([last.pushed[0] - wrench.force, last.pushed[1] - wrench.torque], FADE)
+                }
+                None => ([Vector3::zeros(); 2], 0),
             };
+            let share = f64::from(left) / f64::from(FADE);
+            wrench.force += share * step[0];
+            wrench.torque += share * step[1];
+            self.last = Some(Last { level, pushed: [wrench.force, wrench.torque], step, left });
         }
-        let share = f64::from(left) / f64::from(FADE);
-        wrench.force += share * step[0];
-        wrench.torque += share * step[1];
-        self.last = Some(Last { level, force: wrench.force, torque: wrench.torque, step, left });
         GradedWrench { wrench, level, nodes, unseen: probe.unseen() }
     }
 }

@@ -37,49 +37,59 @@ impl Tree {
         self.fit_above(touched);
     }
 
-    /// Moves points and turns their normals; how far the farthest went, in the part's unit. What goes
-    /// nowhere is not touched.
-    pub(crate) fn displace(
-        &mut self,
-        mut to: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
-    ) -> f64 {
+    /// The points that there are, by their places, with their normals.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (usize, Point3<f64>, Vector3<f64>)> {
+        let all = (0..self.places()).map(|place| (place, self.point(place)));
+        let there = all.filter(|(_, point)| !point.x.is_nan());
+        there.map(|(place, point)| (place, point, self.normal(place).into()))
+    }
+
+    /// Puts points elsewhere, given in the order of their places, with unit normals; how far the farthest
+    /// of all points is from where it was, in the part's unit.
+    pub(crate) fn put(&mut self, moved: &[(usize, Point3<f64>, Vector3<f64>)]) -> f64 {
         let mut farthest = 0f64;
         let mut touched = Vec::new();
-        let boxes = self.levels.len() - 1;
-        for leaf in 0..self.leaves.len() {
-            let mut items = [Item { at: [f64::NAN; 3], index: 0 }; WIDTH];
-            let mut moved = false;
-            for (lane, item) in items.iter_mut().enumerate() {
-                let place = leaf * WIDTH + lane;
-                if self.leaves[leaf].offset[0][lane].is_nan() {
-                    continue;
-                }
-                let [centre, offset] = self.stored(place);
-                item.at = [0, 1, 2].map(|axis| centre[axis] + offset[axis]);
-                let (from, normal) = (self.point(place), Vector3::from(self.normal(place)));
-                let (there, turned) = to(from, normal);
-                if there != from || turned != normal {
-                    moved = true;
-                    farthest = farthest.max((there - from).norm());
-                    item.at = self.frame.inside(there.into());
-                    let skin = &mut self.skins.to_mut()[leaf].normal;
-                    (0..3).for_each(|axis| skin[axis][lane] = turned[axis] as f32);
-                }
+        let bottom = self.levels.len() - 1;
+        let (leaves, skins) = (self.leaves.to_mut(), self.skins.to_mut());
+        let boxes = self.levels[bottom].to_mut();
+        for some in moved.chunk_by(|a, b| a.0 / WIDTH == b.0 / WIDTH) {
+            let leaf = some[0].0 / WIDTH;
+            let (all, offset) = (&mut boxes[leaf / WIDTH], leaves[leaf].offset);
+            let before: [[f64; 3]; WIDTH] = std::array::from_fn(|lane| {
+                let part = |axis: usize| {
+                    f64::from(all.centre[axis][leaf % WIDTH]) + f64::from(offset[axis][lane])
+                };
+                [part(0), part(1), part(2)]
+            });
+            let mut items = before.map(|at| Item { at, index: 0 });
+            for (place, point, normal) in some {
+                items[place % WIDTH].at = self.frame.inside((*point).into());
+                let skin = &mut skins[leaf].normal;
+                (0..3).for_each(|axis| skin[axis][place % WIDTH] = normal[axis] as f32);
             }
-            if moved {
-                let (laid, bounds) = lay(&items);
-                self.leaves.to_mut()[leaf] = laid;
-                self.levels[boxes].to_mut()[leaf / WIDTH].put(leaf % WIDTH, &bounds);
-                let half = bounds.size() / 2.0;
-                self.leaf_size = self.leaf_size.max(outward(half));
-                touched.push(leaf);
+            let (laid, bounds) = lay(&items);
+            leaves[leaf] = laid;
+            all.put(leaf % WIDTH, &bounds);
+            self.leaf_size = self.leaf_size.max(outward(bounds.size() / 2.0));
+            touched.push(leaf);
+            // Those that stay are rounded anew beside those that go.
+            for (lane, before) in before.iter().enumerate() {
+                let away: f64 = (0..3)
+                    .map(|axis| {
+                        let centre = f64::from(all.centre[axis][leaf % WIDTH]);
+                        let now = centre + f64::from(leaves[leaf].offset[axis][lane]);
+                        (now - before[axis]).powi(2)
+                    })
+                    .sum();
+                // NaN where there is no point.
+                farthest = farthest.max(away.sqrt());
             }
         }
         self.fit_above(touched);
         // The frame is about its origin.
         let whole = around(&self.levels[0][0]);
         self.frame.size = self.frame.size.max(outward(2.0 * whole.farthest() * (1.0 + 1e-6)));
-        farthest
+        farthest * self.frame.scale
     }
 
     /// Fits the boxes above some leaves, which are given in order.

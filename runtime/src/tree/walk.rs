@@ -110,6 +110,9 @@ impl Walker {
         even.index[0] = 0;
         even.slabs[0] = sight.reach.all;
         let mut spent = 1;
+        if spent > most {
+            return None;
+        }
         for (level, boxes) in tree.levels.iter().enumerate() {
             let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
             below(simd, boxes, sight, view, (from, 0..from.count), to);

@@ -56,7 +56,9 @@ fn budgeted(
     (poses, wanted): (&[Pose], &[Wrench]),
 ) -> Result<(), Box<dyn Error>> {
     let mut graded = Graded::new(part, &Fig73, budget, Law::Gradient)?;
-    poses.iter().take(500).for_each(|pose| drop(graded.wrench(pose)));
+    for pose in poses.iter().take(500) {
+        graded.wrench(pose);
+    }
     let (mut times, mut felt) = (Vec::with_capacity(POSES), Vec::with_capacity(POSES));
     for pose in poses {
         let start = Instant::now();
@@ -115,7 +117,8 @@ fn changes(points: usize) -> Result<(), Box<dyn Error>> {
     for bend in [0.001, 0.01] {
         let to = |p: Point3<f64>, n: Vector3<f64>| (bent(&p, bend), n);
         let mut moved = part.clone();
-        let ((), seconds) = timed(|| moved.displace(to));
+        let (done, seconds) = timed(|| moved.displace(to));
+        done?;
         println!(
             "| {points} | bent by {:.1} mm at the top | {:.2} ms | {built} |",
             bend * 13.116f64.powi(2),

@@ -1,0 +1,229 @@
+//! Which point has which part of a piece of the surface.
+//!
+//! A triangle is divided by `|x − p|² + σ² |n − m|²`, p a point and m its normal, x a place of the
+//! triangle and n its normal: the nearest point has it, one with another normal only if it is
+//! nearer by far. So cells end at edges, and the two sides of a thin sheet are kept apart, but what
+//! has no point of its own falls to what is near. In the triangle's plane this is a power diagram:
+//! cells are convex, and each is the piece cut by straight lines, one for each neighbour, until
+//! no farther point can reach it. The diagram is walked from one cell to all whose lines touch it. With
+//! σ = 0 the corners of cells are the places that are farthest from all points (Lévy and Bonneel 2013
+//! have both uses of such diagrams).
+//!
+//! **Rounding** decides nothing: a line cuts only what is beyond it by more than it can be off, so a
+//! computed cell contains the true one, and the neighbours of that touch it. Of points whose lines no
+//! corner is clearly off, twice the same point or its mirror image, the first has all.
+
+use super::near::Near;
+use super::pieces::{Piece, Surface};
+use crate::cores;
+use nalgebra::{Point3, Vector3};
+
+/// How far from a point, in spacings, most of those are that cut its cell.
+const BESIDE: f64 = 2.5;
+/// Points that one core takes at a time.
+const TOGETHER: usize = 1 << 10;
+/// How far a corner can be computed to be beyond a line, of the terms that it is a sum of.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Points on a surface, by where they are.
+pub(super) struct Sites<'a> {
+    pub(super) points: &'a [Point3<f64>],
+    normals: &'a [Vector3<f64>],
+    near: Near,
+    /// Those within `near_by` of each, the nearest first, and where each one's begin.
+    beside: Vec<u32>,
+    starts: Vec<usize>,
+    near_by: f64,
+}
+
+/// A corner of a cell from its point, and which point's line goes on from there.
+pub(super) type Corner = (Vector3<f64>, u32);
+/// No point's: an edge of the piece.
+pub(super) const EDGE: u32 = u32::MAX;
+
+/// Room to divide a piece.
+#[derive(Default)]
+pub(super) struct Room {
+    found: Vec<(f64, u32)>,
+    farther: Vec<u32>,
+    cell: Vec<Corner>,
+    cut: Vec<Corner>,
+    /// Points whose cells are or will be looked at: the first has the piece's middle.
+    pub(super) met: Vec<u32>,
+}
+
+impl<'a> Sites<'a> {
+    pub(super) fn new(
+        surface: &Surface,
+        points: &'a [Point3<f64>],
+        normals: &'a [Vector3<f64>],
+    ) -> Sites<'a> {
+        let near = Near::new(points);
+        let near_by = BESIDE * surface.spacing;
+        let lists = cores::ranges(points.len(), TOGETHER, |range| {
+            let (mut found, mut beside, mut counts) = (vec![], vec![], vec![]);
+            for site in range {
+                near.within(points[site].into(), near_by, &mut found);
+                counts.push(found.len());
+                beside.extend(found.iter().map(|(_, other)| *other));
+            }
+            (beside, counts)
+        });
+        let mut starts = Vec::with_capacity(points.len() + 1);
+        let mut beside = Vec::with_capacity(lists.iter().map(|(list, _)| list.len()).sum());
+        starts.push(0);
+        for (list, counts) in lists {
+            beside.extend(list);
+            counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));
+        }
+        Sites { points, normals, near, beside, starts, near_by }
+    }
+}
+
+impl Surface {
+    /// Calls with each point that has a cell in a piece, and that cell's corners from the point.
+    /// `turned` is σ².
+    pub(super) fn divide(
+        &self,
+        piece: &Piece,
+        sites: &Sites<'_>,
+        turned: f64,
+        room: &mut Room,
+        mut with: impl FnMut(u32, &[Corner]),
+    ) {
+        let Room { found, farther, cell, cut, met } = room;
+        let apart =
+            |site: u32| turned * (sites.normals[site as usize] - piece.normal).norm_squared();
+        met.clear();
+        met.push(self.first(piece, sites, apart, found));
+        let mut next = 0;
+        while let Some(&site) = met.get(next) {
+            next += 1;
+            let (at, mine) = (sites.points[site as usize], apart(site));
+            cell.clear();
+            cell.extend(self.corners(piece).iter().map(|corner| (corner - at, EDGE)));
+            let mut reach = reach_of(cell, mine);
+            let range = sites.starts[site as usize]..sites.starts[site as usize + 1];
+            let (mut list, mut all) = (&sites.beside[range], false);
+            'cut: loop {
+                for &other in list.iter().filter(|other| **other != site) {
+                    let toward = sites.points[other as usize] - at;
+                    let squared = toward.norm_squared();
+                    if squared > reach * reach {
+                        break 'cut;
+                    }
+                    let beyond = apart(other);
+                    let half = (squared + beyond - mine) / 2.0;
+                    let slack =
+                        ROUNDING * (reach * squared.sqrt() + squared + beyond.abs() + mine.abs());
+                    let [least, most] = over(cell, &toward, half);
+                    if most < -slack {
+                        continue;
+                    }
+                    if !met.iter().rev().any(|one| *one == other) {
+                        met.push(other);
+                    }
+                    if most <= slack {
+                        if least >= -slack && other < site {
+                            cell.clear();
+                            break 'cut;
+                        }
+                    } else if clip(cell, cut, toward, half + slack, other) {
+                        if cell.is_empty() {
+                            break 'cut;
+                        }
+                        reach = reach_of(cell, mine);
+                    }
+                }
+                if all || reach <= sites.near_by {
+                    break;
+                }
+                all = true;
+                sites.near.within(at.into(), reach, found);
+                let near_by = sites.near_by * sites.near_by;
+                farther.clear();
+                farther.extend(found.iter().filter(|(d, _)| *d > near_by).map(|(_, other)| *other));
+                list = farther;
+            }
+            if !cell.is_empty() {
+                with(site, cell);
+            }
+        }
+    }
+
+    /// The point whose cell has a piece's middle.
+    fn first(
+        &self,
+        piece: &Piece,
+        sites: &Sites<'_>,
+        apart: impl Fn(u32) -> f64,
+        found: &mut Vec<(f64, u32)>,
+    ) -> u32 {
+        let corners = self.corners(piece);
+        let sum: Vector3<f64> = corners.iter().map(|corner| corner - corners[0]).sum();
+        let middle = corners[0] + sum / corners.len() as f64;
+        let mut within = self.spacing;
+        loop {
+            sites.near.within(middle.into(), within, found);
+            let nearest = found
+                .iter()
+                .map(|&(squared, site)| (squared + apart(site), site))
+                .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            if let Some((_, site)) = nearest.filter(|(least, _)| *least <= within * within) {
+                return site;
+            }
+            within *= 2.0;
+        }
+    }
+}
+
+/// How far from a cell's point others can be that cut it.
+fn reach_of(cell: &[Corner], mine: f64) -> f64 {
+    let most = cell.iter().map(|(v, _)| v.norm_squared()).fold(0.0, f64::max);
+    (most.sqrt() + (most + mine).sqrt()) * (1.0 + 1e-12)
+}
+
+/// How far the corners of a cell are beyond `v · toward = half`: the least and the most.
+fn over(cell: &[Corner], toward: &Vector3<f64>, half: f64) -> [f64; 2] {
+    cell.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], (v, _)| {
+        let over = v.dot(toward) - half;
+        [least.min(over), most.max(over)]
+    })
+}
+
+/// Cuts away what is beyond `v · toward = half`; whether there was any.
+pub(super) fn clip(
+    cell: &mut Vec<Corner>,
+    cut: &mut Vec<Corner>,
+    toward: Vector3<f64>,
+    half: f64,
+    other: u32,
+) -> bool {
+    let over = |(v, _): &Corner| v.dot(&toward) - half;
+    if cell.iter().all(|corner| over(corner) <= 0.0) {
+        return false;
+    }
+    cut.clear();
+    for (place, corner) in cell.iter().enumerate() {
+        let next = &cell[(place + 1) % cell.len()];
+        let (here, there) = (over(corner), over(next));
+        let between = || corner.0 + (next.0 - corner.0) * (here / (here - there));
+        if here <= 0.0 {
+            cut.push(*corner);
+            if there > 0.0 {
+                cut.push((between(), other));
+            }
+        } else if there <= 0.0 {
+            cut.push((between(), corner.1));
+        }
+    }
+    std::mem::swap(cell, cut);
+    true
+}
+
+/// The area of a cell.
+pub(super) fn area(cell: &[Corner], normal: &Vector3<f64>) -> f64 {
+    let Some((first, rest)) = cell.split_first() else { return 0.0 };
+    let fan = rest.windows(2).map(|pair| (pair[0].0 - first.0).cross(&(pair[1].0 - first.0)));
+    (fan.map(|cross| cross.dot(normal)).sum::<f64>() / 2.0).max(0.0)
+}
