@@ -275,8 +275,8 @@ pub(super) fn header_checksum(header: &[u8]) -> u32 {
 }
 
 /// The checksum of each of some sections, filled up with zeros to a multiple of [`ALIGN`]: the CRC-32
-/// of the CRC-32s of its chunks. So a change of up to 32 bits side by side is found for certain: it
-/// changes the chunk's, or two, and with them 32 or 64 bits side by side of what the last is taken of.
+/// of the CRC-32s of its chunks. A CRC-32 finds every change within 32 bits side by side. So a flipped
+/// bit is found for certain: it changes its chunk's, which is 32 bits of what the last is taken of.
 pub(super) fn checksums(sections: &[&[u8]]) -> Vec<u32> {
     let chunks: Vec<&[u8]> = sections.iter().flat_map(|bytes| bytes.chunks(CHUNK)).collect();
     let sums = cores::ranges(chunks.len(), 1, |at| {

@@ -225,7 +225,9 @@ impl Records<'_> {
             // Items have at most 384 bytes, and there are fewer than 2^32.
             let bytes = count * list.item();
             let misplaced = || reader.unsound(format!("{list} are not where they should be"));
-            if (section.at, section.bytes) != (*end, bytes) || section.at % ALIGN as u64 != 0 {
+            if (section.at, section.bytes) != (*end, bytes)
+                || !section.at.is_multiple_of(ALIGN as u64)
+            {
                 return Err(misplaced());
             }
             let filled_to = end.checked_add(bytes.next_multiple_of(ALIGN as u64));
