@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use nalgebra::Point3;
 use std::path::PathBuf;
 use tool_dsl::source::Source;
-use touchoff::{Law, Unit, Weights};
+use touchoff::{Law, Sampling, Unit, Weights};
 
 /// What a cutting tool feels of a workpiece, at any pose. Alone: `touchoff demo`.
 #[derive(Parser)]
@@ -99,14 +99,34 @@ impl Given {
     }
 }
 
+/// The part, and how it is felt as points.
 #[derive(Args)]
-pub(crate) struct Run {
-    /// The part: an STL file, binary or ASCII.
+pub(crate) struct PartFile {
+    /// The part: a mesh in STL, PLY or OBJ, or points with normals in PLY.
     #[arg(long, value_name = "FILE")]
     pub(crate) part: PathBuf,
-    /// The part's unit, which STL does not say: `mm`, `inch` or `m`.
+    /// The part's unit, which these formats do not say: `mm`, `inch` or `m`.
     #[arg(long)]
     pub(crate) unit: Unit,
+    /// Points that are taken of the surface.
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    pub(crate) points: u64,
+    /// As many points as it takes for no place of the surface to be deeper than found by more than this,
+    /// in the part's unit.
+    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance, conflicts_with = "points")]
+    pub(crate) tolerance: Option<f64>,
+    /// How the points are spread: `blue`, evenly, or `random`.
+    #[arg(long, default_value_t = Sampling::Blue)]
+    pub(crate) sampling: Sampling,
+    /// The same seed, the same points.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct Run {
+    #[command(flatten)]
+    pub(crate) part: PartFile,
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: String,
@@ -115,12 +135,6 @@ pub(crate) struct Run {
     /// The path: a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, or APT-CL.
     #[arg(long, value_name = "FILE")]
     pub(crate) path: PathBuf,
-    /// Points of the part's cloud.
-    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
-    pub(crate) points: u64,
-    /// Seed of the cloud: the same seed, the same points.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
     /// Force law: `thesis`, `gradient` or `facing`.
     #[arg(long, default_value_t = Law::Thesis)]
     pub(crate) law: Law,

@@ -8,7 +8,7 @@ use std::io::Write;
 use std::time::Instant;
 use tools_library::Fig73;
 use touchoff::scenes::{POSES, Path, tube};
-use touchoff::{Part, Pose, Probe};
+use touchoff::{Cloud, Part, Pose, Probe};
 
 /// What the thesis printed for a row: contacts (average and most), µs (average). 250 MHz R10000.
 struct Printed {
@@ -47,7 +47,7 @@ pub(crate) fn demo(json: bool) -> Result<(), Failure> {
     }
     let mut rows = Vec::new();
     for printed in &TABLE_7_1 {
-        let part = Part::from_mesh(&mesh, printed.points, 1)?;
+        let part = Part::from_cloud(&Cloud::random(&mesh, printed.points, 1)?);
         for (path, thesis) in [(Path::Outside, &printed.outside), (Path::Inside, &printed.inside)] {
             progress.set_message(format!("{} points, {}", printed.points, path.name()));
             let row = measure(&part, path, &progress);

@@ -37,9 +37,23 @@ pub(crate) enum Failure {
     /// What was asked to be proved cannot be.
     #[error(transparent)]
     Uncertified(#[from] touchoff::certify::Uncertified),
-    /// The part's mesh could not be read.
+    /// The part's file could not be read.
     #[error(transparent)]
-    Stl(#[from] touchoff::StlError),
+    Shape(#[from] touchoff::mesh::ShapeError),
+    /// What is asked for wants a mesh.
+    #[error("`{what}` is for meshes: {file} has points and no triangles")]
+    NoTriangles {
+        /// The part.
+        file: String,
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// Nothing is proved of how a tool's depth grows.
+    #[error(
+        "how fast depth grows in `{0}` is not proved (`touchoff check` says why), so no number of points \
+         has a tolerance: give `--points`"
+    )]
+    NoSteepness(String),
     /// No tool has this name.
     #[error(
         "no tool is called `{name}`{meant}: `touchoff tools` lists them; a file's name ends in `.tool`"

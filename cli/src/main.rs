@@ -15,6 +15,7 @@ mod draw;
 mod failure;
 mod files;
 mod fmt;
+mod part;
 mod run;
 mod stages;
 mod timing;

@@ -3,6 +3,7 @@
 use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
+use crate::part::{self, Loaded};
 use crate::timing::{Timing, nanoseconds};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -11,7 +12,7 @@ use std::io::Write;
 use std::time::Instant;
 use touchoff::certify::{Certifier, Facets, Penetration};
 use touchoff::tool::Card;
-use touchoff::{Contact, Mesh, Part, Probe, Program, Unit, Wrench};
+use touchoff::{Contact, Part, Probe, Program, Unit, Wrench};
 
 #[derive(Serialize)]
 struct Row<'a> {
@@ -19,6 +20,8 @@ struct Row<'a> {
     line: usize,
     colliding: usize,
     depth: f64,
+    /// What no place of the surface is deeper than, where that is known.
+    depth_bound: Option<f64>,
     force: [f64; 3],
     torque: [f64; 3],
     niceness: Option<f64>,
@@ -66,27 +69,35 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
     let program = Program::read(&wanted.path)?;
-    program.check_unit(wanted.unit)?;
+    let unit = wanted.part.unit;
+    program.check_unit(unit)?;
     program.check_poses(tool.card())?;
-    let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
-    let mesh = Mesh::read_stl(&wanted.part, wanted.unit)?;
-    let part = Part::from_mesh(&mesh, points, wanted.seed)?;
-    let facets = wanted.certify.map(|tolerance| (Facets::new(&mesh), tolerance));
+    let Loaded { part, mesh } = part::load(&wanted.part, tool.card())?;
+    let facets = match (wanted.certify, &mesh) {
+        (Some(tolerance), Some(mesh)) => Some((Facets::new(mesh), tolerance)),
+        (Some(_), None) => {
+            let file = wanted.part.part.display().to_string();
+            return Err(Failure::NoTriangles { file, what: "--certify" });
+        }
+        (None, _) => None,
+    };
     let mut certifier = match &facets {
         Some((facets, tolerance)) => Some((Certifier::new(facets, tool)?, *tolerance)),
         None => None,
     };
     about(wanted, &part, &program, tool.card());
+    part::about(&part, tool, unit);
 
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     if !json {
         let proved = if certifier.is_some() { "proved; " } else { "" };
-        writeln!(out, "    line  points   depth ({})  {proved}by surface", wanted.unit)?;
+        writeln!(out, "    line  points   depth ({})  {proved}by surface", unit)?;
     }
     let mut probe = Probe::new(&part, tool)
         .law(wanted.law)
         .weights(wanted.weights)
         .centre(wanted.center.unwrap_or(Point3::origin()));
+    let unseen = probe.unseen();
     let mut summary = Summary::default();
     for (index, stop) in program.stops.iter().enumerate() {
         let start = Instant::now();
@@ -102,33 +113,29 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
             Certified::new(&found, tool.card())
         });
         if json {
-            let row = row((index, stop.line), &felt, ns, surfaces, certified);
+            let bound = unseen.map(|unseen| felt.depth() + unseen);
+            let row = row((index, stop.line), (&felt, bound), ns, surfaces, certified);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
         } else if felt.colliding > 0 || certified.as_ref().is_some_and(|c| c.triangle.is_some()) {
-            let proved = certified.map(|c| format!("{}; ", c.shown(wanted.unit)));
+            let proved = certified.map(|c| format!("{}; ", c.shown(unit)));
             let each: Vec<String> = surfaces
                 .iter()
-                .map(|(name, depth)| format!("{name} {}", figure(*depth, wanted.unit)))
+                .map(|(name, depth)| format!("{name} {}", figure(*depth, unit)))
                 .collect();
-            let depth = figure(felt.depth(), wanted.unit);
+            let depth = figure(felt.depth(), unit);
             let (line, points) = (stop.line, felt.colliding);
             let (proved, each) = (proved.unwrap_or_default(), each.join(", "));
             writeln!(out, "{line:>8} {points:>7} {depth:>12}  {proved}{each}")?;
         }
     }
     out.flush()?;
-    summary.print(wanted.unit);
+    summary.print(unit);
     Ok(())
 }
 
 /// What was loaded.
 fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
-    if let Some(survey) = part.survey() {
-        for finding in survey.findings() {
-            say!("{}: {finding}", wanted.part.display());
-        }
-    }
     let ignored: BTreeMap<&str, usize> =
         program.ignored.iter().fold(BTreeMap::new(), |mut words, (_, word)| {
             *words.entry(word.as_str()).or_default() += 1;
@@ -144,7 +151,7 @@ fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
         program.stops.len(),
         wanted.law,
         wanted.weights,
-        wanted.unit,
+        wanted.part.unit,
     );
 }
 
@@ -159,7 +166,7 @@ fn by_surface<'a>(contacts: &[Contact], card: &'a Card) -> BTreeMap<&'a str, f64
 
 fn row<'a>(
     (pose, line): (usize, usize),
-    felt: &Wrench,
+    (felt, depth_bound): (&Wrench, Option<f64>),
     ns: u64,
     surfaces: BTreeMap<&'a str, f64>,
     certified: Option<Certified<'a>>,
@@ -170,6 +177,7 @@ fn row<'a>(
         line,
         colliding: felt.colliding,
         depth: felt.depth(),
+        depth_bound,
         force: parts(felt.force),
         torque: parts(felt.torque),
         niceness: felt.niceness,

@@ -38,6 +38,7 @@ extern crate self as touchoff;
 
 pub mod certify;
 pub mod cloud;
+mod cores;
 pub mod mesh;
 mod motion;
 mod part;
@@ -49,19 +50,19 @@ pub mod scenes;
 pub mod tool;
 mod tree;
 mod unit;
+mod words;
 
-pub use cloud::{Cloud, CloudError};
+pub use cloud::{Cloud, CloudError, Cover, Sampling};
 pub use fearless_simd::Level;
 pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
-pub use probe::{
-    Contact, Deepest, Law, Posture, Probe, Summary, UnknownWord, Weights, Wrench, summary,
-};
+pub use probe::{Contact, Deepest, Law, Posture, Probe, Summary, Weights, Wrench, summary};
 pub use program::{Program, ProgramError, Stop};
 pub use scene::{PartId, Scene, SceneError, ToolId};
 pub use tool::Tool;
 pub use tool_macros::{include_tool, tool, tool_library};
 pub use tree::Tree;
 pub use unit::{Unit, UnknownUnit};
+pub use words::UnknownWord;

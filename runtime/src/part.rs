@@ -9,7 +9,8 @@ use std::path::Path;
 /// A part: its points in their tree, and what was found out about its mesh.
 #[derive(Clone, Debug)]
 pub struct Part {
-    tree: Tree,
+    /// The finest first; each of the others has some of the points of the one before.
+    levels: Vec<Tree>,
     unit: Unit,
     survey: Option<Survey>,
 }
@@ -26,8 +27,8 @@ pub enum PartError {
 }
 
 impl Part {
-    /// A part from an STL file, whose lengths are in `unit`: `points` points spread at random,
-    /// evenly over the surface, the same for the same `seed`.
+    /// A part from an STL file, whose lengths are in `unit`, its points as [`Part::from_mesh`]
+    /// spreads them.
     pub fn read_stl(
         path: impl AsRef<Path>,
         unit: Unit,
@@ -37,15 +38,20 @@ impl Part {
         Ok(Part::from_mesh(&Mesh::read_stl(path, unit)?, points, seed)?)
     }
 
-    /// A part from a mesh, its points as [`Part::read_stl`] spreads them.
+    /// A part from a mesh: `points` points spread evenly over the surface ([`Cloud::blue`]), the
+    /// same for the same `seed`.
     pub fn from_mesh(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
-        let cloud = Cloud::random(mesh, points, seed)?;
-        Ok(Part { survey: Some(mesh.survey()), ..Part::from_cloud(&cloud) })
+        Ok(Part::new(&Cloud::blue(mesh, points, seed)?, mesh.survey()))
+    }
+
+    /// A part from a cloud on a mesh, and what was found out about that.
+    pub fn new(cloud: &Cloud, survey: Survey) -> Part {
+        Part { survey: Some(survey), ..Part::from_cloud(cloud) }
     }
 
     /// A part from a cloud.
     pub fn from_cloud(cloud: &Cloud) -> Part {
-        Part { tree: Tree::new(cloud), unit: cloud.unit(), survey: None }
+        Part { levels: vec![Tree::new(cloud)], unit: cloud.unit(), survey: None }
     }
 
     /// The same part in another unit: its numbers are multiplied, its points and its tree stay.
@@ -53,7 +59,7 @@ impl Part {
     pub fn to(mut self, unit: Unit) -> Part {
         if unit != self.unit {
             let factor = self.unit.to(unit);
-            self.tree.scale_by(factor);
+            self.levels.iter_mut().for_each(|tree| tree.scale_by(factor));
             self.survey = self.survey.map(|survey| survey.to(unit));
             self.unit = unit;
         }
@@ -62,7 +68,7 @@ impl Part {
 
     /// The points in their tree.
     pub fn tree(&self) -> &Tree {
-        &self.tree
+        &self.levels[0]
     }
 
     /// The unit of every length of the part.

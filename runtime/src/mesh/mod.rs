@@ -1,12 +1,18 @@
 //! The part: triangles with ids that hold, in a stated unit.
 //!
-//! A [`Mesh`] is read from an STL file or generated ([`shapes`]); it is correct as data (every
-//! index in range, every coordinate finite, some area) but not necessarily a solid. What it is,
-//! [`Mesh::survey`] says. Coordinates are the world's, in the mesh's [`Unit`].
+//! A [`Mesh`] is read from an STL, PLY or OBJ file or generated ([`shapes`]); [`Shape::read`] takes
+//! any of these, and [`Points`] too. A mesh is correct as data (every index in range, every
+//! coordinate finite, some area) but not necessarily a solid. What it is, [`Mesh::survey`] says.
+//! Coordinates are the world's, in the mesh's [`Unit`].
 
+mod faces;
+mod obj;
+mod ply;
+mod read;
 pub mod shapes;
 mod stl;
 mod survey;
+mod words;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,8 +21,12 @@ use nalgebra::{Point3, Vector3};
 
 use crate::Unit;
 
+pub use obj::ObjError;
+pub use ply::{PlyError, Points};
+pub use read::{Shape, ShapeError};
 pub use stl::StlError;
 pub use survey::Survey;
+pub use words::Place;
 
 /// The largest coordinate a mesh may have, of either sign. Up to here areas and volumes, which
 /// are products of coordinates, stay far from overflow; all that a binary STL file can hold

@@ -5,6 +5,7 @@ use std::io;
 
 use nalgebra::{Point3, Vector3};
 
+use super::words::{Words, number, shown};
 use super::{LARGEST_COORDINATE, MeshError, area_and_normal, coordinate_holds};
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.
@@ -236,45 +237,6 @@ fn read_ascii(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
     }
 }
 
-/// The words of a text and the lines they stand on, whether those end in LF, CR LF or CR.
-#[derive(Clone)]
-struct Words<'a> {
-    rest: &'a [u8],
-    line: usize,
-}
-
-impl<'a> Words<'a> {
-    fn new(bytes: &'a [u8]) -> Words<'a> {
-        let rest = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        Words { rest, line: 1 }
-    }
-
-    /// The next word; `line` is then its line.
-    fn next(&mut self) -> Option<&'a [u8]> {
-        while let [space, rest @ ..] = self.rest
-            && is_space(*space)
-        {
-            let ends_line = *space == b'\n' || (*space == b'\r' && rest.first() != Some(&b'\n'));
-            self.line += usize::from(ends_line);
-            self.rest = rest;
-        }
-        let end = self.rest.iter().position(|&byte| is_space(byte)).unwrap_or(self.rest.len());
-        let (word, rest) = self.rest.split_at(end);
-        self.rest = rest;
-        (!word.is_empty()).then_some(word)
-    }
-
-    fn skip_line(&mut self) {
-        let ends = |&byte: &u8| byte == b'\n' || byte == b'\r';
-        let end = self.rest.iter().position(ends).unwrap_or(self.rest.len());
-        self.rest = &self.rest[end..];
-    }
-}
-
-fn is_space(byte: u8) -> bool {
-    byte.is_ascii_whitespace() || byte == 0x0B
-}
-
 /// The grammar of ASCII STL, one function for each of its phrases.
 struct Ascii<'a> {
     words: Words<'a>,
@@ -316,20 +278,11 @@ impl<'a> Ascii<'a> {
         }
     }
 
-    /// A number, with the word that it is. The many spellings of NaN and infinity (`-nan(ind)`,
-    /// `1.#INF`) count as NaN: exporters write them where a normal cannot be computed.
+    /// A number, with the word that it is.
     fn number(&mut self, expected: &'static str) -> Result<(f64, &'a [u8]), StlError> {
         let word = self.word(expected)?;
-        let text = str::from_utf8(word).map_err(|_| self.unexpected(expected, word))?;
-        let is_odd = || {
-            let text = text.to_ascii_lowercase();
-            ["nan", "inf", "#ind"].iter().any(|odd| text.contains(odd))
-        };
-        match text.parse() {
-            Ok(number) => Ok((number, word)),
-            Err(_) if is_odd() => Ok((f64::NAN, word)),
-            Err(_) => Err(self.unexpected(expected, word)),
-        }
+        let number = number(word).ok_or_else(|| self.unexpected(expected, word))?;
+        Ok((number, word))
     }
 
     /// The rest of a facet after its first word.
@@ -358,12 +311,4 @@ impl<'a> Ascii<'a> {
         self.keyword("`endfacet`", b"endfacet")?;
         Ok((stated, corners))
     }
-}
-
-/// A word fit to be printed: binary data can be long and unprintable.
-fn shown(word: &[u8]) -> String {
-    let text = String::from_utf8_lossy(word);
-    let start: String = text.chars().take(32).collect();
-    let ellipsis = if start.len() < text.len() { "…" } else { "" };
-    format!("{}{ellipsis}", start.escape_debug())
 }

@@ -195,3 +195,24 @@ fn reads_the_real_parts() {
         assert!((survey.area / area - 1.0).abs() < 1e-12, "{file}: {}", survey.area);
     }
 }
+
+#[test]
+fn reads_the_real_parts_in_ply() {
+    let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
+    if !parts.is_dir() {
+        eprintln!("skipped: {} is absent", parts.display());
+        return;
+    }
+    for (file, triangles, closed) in [
+        ("nist_mbe_pmi_1_18k.ply", 18_166, true),
+        ("nist_mbe_pmi_2_46k_leaky.ply", 46_192, false),
+        ("nist_mbe_pmi_3_7k.ply", 7_140, true),
+        ("noether_wavy_mesh_with_hole.ply", 1_347, false),
+    ] {
+        let shape = Shape::read(parts.join(file), UNIT).expect(file);
+        let Shape::Mesh(mesh) = shape else { panic!("{file} has faces") };
+        let survey = mesh.survey();
+        eprintln!("{file}: {survey}");
+        assert_eq!((survey.triangles, survey.closed()), (triangles, closed), "{file}: {survey}");
+    }
+}

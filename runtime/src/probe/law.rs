@@ -1,7 +1,6 @@
 //! How contacts push.
 
-use std::fmt;
-use std::str::FromStr;
+use crate::words::words;
 
 /// How a contact's magnitude becomes a force on the tool. `m` is the magnitude, `w` the weight,
 /// `n` the part's outward normal, `u` the direction to the tool's nearest surface.
@@ -24,37 +23,6 @@ pub enum Weights {
     Area,
     /// For 1, as in the thesis: forces grow with the density.
     Unit,
-}
-
-/// A word that is none of those known.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{word}` is not one of {known}")]
-pub struct UnknownWord {
-    /// The word.
-    pub word: String,
-    /// What would have been understood.
-    pub known: &'static str,
-}
-
-macro_rules! words {
-    ($type:ident, $known:literal, $($variant:ident $word:literal),*) => {
-        impl fmt::Display for $type {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self { $($type::$variant => $word),* })
-            }
-        }
-
-        impl FromStr for $type {
-            type Err = UnknownWord;
-
-            fn from_str(word: &str) -> Result<$type, UnknownWord> {
-                match word {
-                    $($word => Ok($type::$variant),)*
-                    _ => Err(UnknownWord { word: word.to_owned(), known: $known }),
-                }
-            }
-        }
-    };
 }
 
 words!(Law, "thesis, gradient, facing", Thesis "thesis", Gradient "gradient", Facing "facing");

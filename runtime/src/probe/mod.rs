@@ -12,7 +12,7 @@ mod posture;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
-pub use law::{Law, UnknownWord, Weights};
+pub use law::{Law, Weights};
 pub use posture::{Deepest, Posture};
 pub use wrench::Wrench;
 
@@ -156,6 +156,21 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
         let own = length * card.depth.rounding + HALF * tool;
         card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
+    }
+
+    /// How much deeper than its deepest point the part's surface can be: the points' covering radius
+    /// times how steep depth is at most, and what rounding does ([`Probe::error`]). `None` where either
+    /// is not known. As sure as the [cover](crate::Tree::cover), which may be an estimate.
+    pub fn unseen(&self) -> Option<f64> {
+        let (card, cover) = (self.tool.card(), self.beside.part.tree().cover()?);
+        Some(card.depth.lipschitz? * cover.radius + self.error()?)
+    }
+
+    /// What no place of the part's surface is deeper than: the deepest point's depth, 0 without contact,
+    /// and what may lie [between](Probe::unseen) the points. `None` where that is not known.
+    pub fn depth_bound(&mut self, pose: &Pose) -> Option<f64> {
+        let unseen = self.unseen()?;
+        Some(self.deepest(pose).map_or(0.0, |deepest| deepest.depth) + unseen)
     }
 
     /// Whether any point of the part is inside the tool or on its surface. Stops at the first, and looks

@@ -2,7 +2,11 @@
 
 use super::{Boxes, Frame, Leaf, Skin, Tree, WIDTH};
 use crate::cloud::Cloud;
+use crate::cores;
 use nalgebra::Point3;
+
+/// So many items are put in order by one core.
+const ALONE: usize = 1 << 12;
 
 /// Something on its way to a leaf, by its place in the frame.
 #[derive(Clone, Copy)]
@@ -28,6 +32,21 @@ impl Bounds {
             }
         }
         bounds
+    }
+
+    /// About boxes.
+    pub(crate) fn around(boxes: &[Bounds]) -> Bounds {
+        Bounds::of(boxes.iter().flat_map(|bounds| [bounds.low, bounds.high]))
+    }
+
+    /// The squared distance of a place; 0 inside.
+    pub(crate) fn away(&self, at: [f64; 3]) -> f64 {
+        let mut squared = 0.0;
+        for (axis, at) in at.into_iter().enumerate() {
+            let out = (self.low[axis] - at).max(at - self.high[axis]).max(0.0);
+            squared += out * out;
+        }
+        squared
     }
 
     pub(crate) fn middle(&self, axis: usize) -> f64 {
@@ -59,6 +78,7 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         skins: items.chunks(WIDTH).map(|items| skin(items, cloud, weight)).collect(),
         weight,
         triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
+        cover: cloud.cover(),
     }
 }
 
@@ -114,8 +134,12 @@ pub(crate) fn order(items: &mut [Item]) {
         a.at[axis].total_cmp(&b.at[axis]).then(a.index.cmp(&b.index))
     });
     let (low, high) = items.split_at_mut(left);
-    order(low);
-    order(high);
+    if low.len() < ALONE {
+        order(low);
+        order(high);
+    } else {
+        cores::both(|| order(low), || order(high));
+    }
 }
 
 /// A leaf and the box about its points as they are stored.

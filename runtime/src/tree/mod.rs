@@ -24,7 +24,7 @@ pub(crate) use sift::Search;
 pub(crate) use view::{Sight, View};
 pub(crate) use walk::{extent, load, seen};
 
-use crate::cloud::Cloud;
+use crate::cloud::{Cloud, Cover};
 use nalgebra::Point3;
 
 /// Children of a node, points of a leaf.
@@ -76,6 +76,7 @@ pub struct Tree {
     pub(crate) weight: f64,
     /// Of each point, in the tree's order.
     pub(crate) triangles: Vec<u32>,
+    pub(crate) cover: Option<Cover>,
 }
 
 impl Tree {
@@ -89,6 +90,7 @@ impl Tree {
         self.frame.origin *= factor;
         self.frame.scale *= factor;
         self.weight *= factor * factor;
+        self.cover = self.cover.map(|cover| Cover { radius: factor * cover.radius, ..cover });
     }
 
     /// How many points there are.
@@ -99,6 +101,11 @@ impl Tree {
     /// Whether there is none; a [`Cloud`] always has some.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
+    }
+
+    /// How far the surface gets from the points that were given; `None` where that is not known.
+    pub fn cover(&self) -> Option<Cover> {
+        self.cover
     }
 
     /// A point as it is stored, by its place in the tree's order, rounded to the world's `f64`;

@@ -1,0 +1,91 @@
+//! Points spread evenly: thinned, and put where the surface is farthest from all.
+
+use super::cells::{Hole, Sites, Surface};
+use super::draw::Facets;
+use super::{Cloud, thin};
+use crate::mesh::Mesh;
+use nalgebra::Point3;
+use std::collections::HashMap;
+
+/// So many times as many points are drawn as are left.
+pub(super) const CANDIDATES: usize = 4;
+/// One in so many is put where the surface is far from all others.
+const PUT: usize = 25;
+/// How far that is at first, in spacings.
+const FAR: f64 = 0.95;
+/// As how far it goes on, once there is hardly anything so far.
+const NEARER: f64 = 0.97;
+
+pub(super) fn blue(mesh: &Mesh, facets: &Facets, count: usize, seed: u64) -> Cloud {
+    let area = facets.area();
+    let drawn = facets.even(mesh, count * CANDIDATES, seed);
+    let put = count.div_ceil(PUT).min(count - 1);
+    let kept = thin::thin(&drawn.points, &drawn.normals, area, count - put);
+    let mut cloud = Cloud::with_capacity(count, mesh.unit());
+    let take = |cloud: &mut Cloud, index: usize| {
+        cloud.push(drawn.points[index], drawn.normals[index], drawn.triangles[index], 0.0);
+    };
+    kept.iter().for_each(|index| take(&mut cloud, *index as usize));
+
+    let surface = Surface::new(mesh, area, count);
+    let mut far = FAR * (area / count as f64).sqrt();
+    let mut farthest = surface.farthest();
+    while cloud.len() < count {
+        let sites = Sites::new(&surface, &cloud.points, &cloud.normals);
+        let mut holes = surface.holes(&sites, far, &mut farthest);
+        holes.sort_unstable_by(|a, b| {
+            let place =
+                |hole: &Hole| (hole.triangle, hole.place.x.to_bits(), hole.place.y.to_bits());
+            b.distance.total_cmp(&a.distance).then_with(|| place(a).cmp(&place(b)))
+        });
+        let (mut taken, before) = (Put::new(far), cloud.len());
+        for hole in holes {
+            if cloud.len() < count && taken.put(&hole) {
+                let normal = mesh.normal(hole.triangle).unwrap_or_default();
+                cloud.push(hole.place, normal, hole.triangle, 0.0);
+            }
+        }
+        if (cloud.len() - before) * 50 < put {
+            far = NEARER * farthest.iter().copied().fold(0.0, f64::max).min(far);
+        }
+        if far == 0.0 {
+            // All of the surface is at a point: more of them tell nothing new.
+            (0..count - cloud.len()).for_each(|index| take(&mut cloud, index));
+        }
+    }
+    cloud
+}
+
+/// Points that were put into holes, by cells as wide as the least hole is far from other points.
+struct Put {
+    width: f64,
+    cells: HashMap<[i64; 3], Vec<Point3<f64>>>,
+    all: Vec<Point3<f64>>,
+}
+
+impl Put {
+    fn new(width: f64) -> Put {
+        Put { width, cells: HashMap::new(), all: vec![] }
+    }
+
+    /// Puts a point into a hole if none was put as near as all others are.
+    fn put(&mut self, hole: &Hole) -> bool {
+        let cell = [0, 1, 2].map(|axis| (hole.place[axis] / self.width).floor() as i64);
+        let reach = (hole.distance / self.width).ceil();
+        let near = |place: &Point3<f64>| (place - hole.place).norm() < 0.999 * hole.distance;
+        let taken = if (2.0 * reach + 1.0).powi(3) > self.all.len() as f64 {
+            self.all.iter().any(near)
+        } else {
+            let each = || -(reach as i64)..=reach as i64;
+            let beside =
+                each().flat_map(|x| each().flat_map(move |y| each().map(move |z| [x, y, z])));
+            let key = |by: [i64; 3]| [0, 1, 2].map(|axis| cell[axis].wrapping_add(by[axis]));
+            beside.filter_map(|by| self.cells.get(&key(by))).flatten().any(near)
+        };
+        if !taken {
+            self.cells.entry(cell).or_default().push(hole.place);
+            self.all.push(hole.place);
+        }
+        !taken
+    }
+}

@@ -1,0 +1,237 @@
+//! Blue noise by sample elimination: of many points the most crowded is taken away, again and
+//! again, until as many are left as are wanted (Yuksel 2015, *Sample elimination for generating
+//! Poisson disk sample sets*).
+//!
+//! How crowded a point is, is a sum over its neighbours, kept in whole numbers: so it does not
+//! depend on the order in which they leave. Taking a point away only makes others less crowded.
+//! Therefore a point more crowded than all its neighbours will go before any of them, whatever
+//! happens elsewhere, and all such points can go at once; and points go in falling order. So the
+//! whole thing is done in rounds, on all cores, beyond what is wanted; then all that went are
+//! sorted by how crowded they were, and the last of them come back. The result is that of taking
+//! one at a time.
+
+use crate::cores;
+use nalgebra::{Point3, Vector3};
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Of a neighbour as near as can be: 40 bits, and room for 2^24 of them.
+const MOST: f32 = (1u64 << 40) as f32;
+/// Points whose normals are at more than 107° are on two sides of something thin, and no
+/// neighbours.
+const SAME_SIDE: f32 = -0.3;
+/// The most cells along an axis.
+const CELLS: f64 = (1 << 20) as f64;
+/// Points that one core takes at a time.
+const TOGETHER: usize = 1 << 14;
+
+/// Which `count` of these points on a surface of that area are left, ascending.
+pub(super) fn thin(
+    points: &[Point3<f64>],
+    normals: &[Vector3<f64>],
+    area: f64,
+    count: usize,
+) -> Vec<u32> {
+    let excess = points.len().saturating_sub(count);
+    if excess == 0 {
+        return (0..points.len() as u32).collect();
+    }
+    let mut crowd = Crowd::new(points, normals, area, count);
+    let mut gone = crowd.leave();
+    // The most crowded first; of equal ones the last.
+    cores::sort(&mut gone);
+    let gone = gone.into_iter().rev().take(excess);
+    let mut left = vec![true; points.len()];
+    let mut still = points.len();
+    for (_, place) in gone {
+        left[crowd.index[place as usize] as usize] = false;
+        still -= 1;
+    }
+    // Without neighbours none is more crowded than another.
+    let kept = left.iter_mut().rev().filter(|kept| **kept);
+    kept.take(still - count).for_each(|kept| *kept = false);
+    (0..).zip(left).filter(|(_, kept)| *kept).map(|(index, _)| index).collect()
+}
+
+/// Points in the order of the cells that they lie in.
+struct Crowd {
+    /// Which point each was.
+    index: Vec<u32>,
+    /// In units of the largest distance at which points crowd each other.
+    place: [Vec<f32>; 3],
+    normal: Vec<[f32; 3]>,
+    /// One more than how crowded each is; 0 for those that have left.
+    crowded: Vec<AtomicU64>,
+    /// The cell of each, and for each cell the points of it and of those beside it, row by row.
+    cell: Vec<u32>,
+    rows: Vec<[[u32; 2]; 9]>,
+    /// Nearer than this counts as this near.
+    least: f32,
+}
+
+impl Crowd {
+    fn new(points: &[Point3<f64>], normals: &[Vector3<f64>], area: f64, count: usize) -> Crowd {
+        // The radius of discs that would cover that area, packed as closely as can be.
+        let largest = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
+        let share = count as f64 / points.len() as f64;
+        let least = (0.65 * (1.0 - share * share.sqrt())) as f32;
+        let (mut low, mut high) = (points[0], points[0]);
+        for point in points {
+            (low, high) = (low.inf(point), high.sup(point));
+        }
+        let unit = 2.0 * largest;
+        let edge = unit.max((high - low).max() / CELLS);
+        let key = |point: &Point3<f64>| {
+            let [x, y, z] = [0, 1, 2].map(|axis| ((point[axis] - low[axis]) / edge) as u64 + 1);
+            x << 42 | y << 21 | z
+        };
+        let mut keyed: Vec<(u64, u32)> = cores::ranges(points.len(), TOGETHER, |range| {
+            let start = range.start as u32;
+            points[range].iter().zip(start..).map(|(p, i)| (key(p), i)).collect::<Vec<_>>()
+        })
+        .concat();
+        cores::sort(&mut keyed);
+        let (mut keys, mut starts, mut cell) = (vec![], vec![], Vec::with_capacity(keyed.len()));
+        for (place, (key, _)) in (0u32..).zip(&keyed) {
+            if keys.last() != Some(key) {
+                keys.push(*key);
+                starts.push(place);
+            }
+            cell.push(keys.len() as u32 - 1);
+        }
+        starts.push(keyed.len() as u32);
+        let rows = cores::ranges(keys.len(), TOGETHER, |range| rows(&keys, &starts, range));
+        let of = |axis: usize| {
+            let places = keyed.iter().map(|(_, i)| points[*i as usize][axis] - low[axis]);
+            places.map(|from| (from / unit) as f32).collect()
+        };
+        let normal = keyed.iter().map(|(_, i)| {
+            let normal = normals[*i as usize];
+            [normal.x as f32, normal.y as f32, normal.z as f32]
+        });
+        let mut crowd = Crowd {
+            place: [of(0), of(1), of(2)],
+            normal: normal.collect(),
+            crowded: vec![],
+            cell,
+            rows: rows.concat(),
+            least,
+            index: keyed.iter().map(|(_, index)| *index).collect(),
+        };
+        crowd.crowded = cores::ranges(points.len(), TOGETHER, |range| {
+            let of = |place| {
+                let mut sum = 1;
+                crowd.neighbours(place, |_, share| sum += share);
+                AtomicU64::new(sum)
+            };
+            range.map(|place| of(place as u32)).collect::<Vec<_>>()
+        })
+        .into_iter()
+        .flatten()
+        .collect();
+        crowd
+    }
+
+    /// Calls with each neighbour of a point, and how much they crowd each other.
+    #[inline(always)]
+    fn neighbours(&self, at: u32, mut with: impl FnMut(u32, u64)) {
+        let [xs, ys, zs] = &self.place;
+        let me = at as usize;
+        let (x, y, z, normal) = (xs[me], ys[me], zs[me], self.normal[me]);
+        for [from, to] in self.rows[self.cell[me] as usize] {
+            for other in from as usize..to as usize {
+                let (dx, dy, dz) = (xs[other] - x, ys[other] - y, zs[other] - z);
+                let squared = dx * dx + dy * dy + dz * dz;
+                if squared < 1.0 && other != me {
+                    let [i, j, k] = self.normal[other];
+                    if normal[0] * i + normal[1] * j + normal[2] * k > SAME_SIDE {
+                        let near = 1.0 - squared.sqrt().max(self.least);
+                        let fourth = (near * near) * (near * near);
+                        with(other as u32, (fourth * fourth * MOST) as u64);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Lets all leave that have neighbours, those first that are more crowded than all theirs; how
+    /// crowded each was.
+    fn leave(&mut self) -> Vec<(u64, u32)> {
+        let now = |place: u32| (self.crowded[place as usize].load(Relaxed), place);
+        let mut gone = Vec::with_capacity(self.index.len());
+        // With a neighbour that was more crowded when it was looked at last.
+        let mut waiting: Vec<[u32; 2]> =
+            (0..self.index.len() as u32).map(|place| [place, place]).collect();
+        while !waiting.is_empty() {
+            let looked = cores::ranges(waiting.len(), TOGETHER, |range| {
+                let (mut going, mut staying) = (vec![], Vec::with_capacity(range.len()));
+                for &[place, before] in &waiting[range] {
+                    let mine = now(place);
+                    if mine.0 <= 1 {
+                        continue;
+                    }
+                    if now(before) > mine {
+                        staying.push([place, before]);
+                        continue;
+                    }
+                    let mut above = (u64::MAX, place);
+                    self.neighbours(place, |other, _| {
+                        let other = now(other);
+                        if other > mine && other < above {
+                            above = other;
+                        }
+                    });
+                    if above.1 == place {
+                        going.push(mine);
+                    } else {
+                        staying.push([place, above.1]);
+                    }
+                }
+                (going, staying)
+            });
+            let from = gone.len();
+            waiting.clear();
+            for (going, staying) in looked {
+                gone.extend(going);
+                waiting.extend(staying);
+            }
+            let going: &[(u64, u32)] = &gone[from..];
+            cores::ranges(going.len(), TOGETHER, |range| {
+                for (_, place) in &going[range] {
+                    self.crowded[*place as usize].store(0, Relaxed);
+                    self.neighbours(*place, |other, share| {
+                        let other = &self.crowded[other as usize];
+                        // Two that go together are no neighbours, so this is nobody's last word.
+                        if other.load(Relaxed) != 0 {
+                            other.fetch_sub(share, Relaxed);
+                        }
+                    });
+                }
+            });
+        }
+        gone
+    }
+}
+
+/// For some cells the points of each and of those beside it: nine rows along z.
+fn rows(keys: &[u64], starts: &[u32], cells: Range<usize>) -> Vec<[[u32; 2]; 9]> {
+    let mut rows = vec![[[0; 2]; 9]; cells.len()];
+    for row in 0..9usize {
+        let (dx, dy) = ((row / 3) as u64, (row % 3) as u64);
+        // A cell is at 1 at least along every axis, so nothing is borrowed.
+        let first = |key: u64| key + (dx << 42) + (dy << 21) - (1 << 42 | 1 << 21 | 1);
+        let mut at = keys.partition_point(|key| *key < first(keys[cells.start]));
+        for (cell, rows) in cells.clone().zip(&mut rows) {
+            let first = first(keys[cell]);
+            while at < keys.len() && keys[at] < first {
+                at += 1;
+            }
+            let mut end = at;
+            while end < keys.len() && keys[end] <= first + 2 {
+                end += 1;
+            }
+            rows[row] = [starts[at], starts[end]];
+        }
+    }
+    rows
+}

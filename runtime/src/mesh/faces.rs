@@ -1,0 +1,62 @@
+//! Faces of any number of corners, made into triangles.
+
+use std::ops::Range;
+
+use nalgebra::{Point3, Vector3};
+
+use super::words::Place;
+use super::{Mesh, MeshError, weld};
+use crate::Unit;
+
+/// How much of a polygon's area the triangles of its fan may face the other way: what rounding
+/// leaves beside corners that are nearly in line, no more.
+const FOLD: f64 = 1e-3;
+
+/// The triangles of a file's faces, in its order: a polygon is fanned about its first corner.
+#[derive(Default)]
+pub(super) struct Faces {
+    triangles: Vec<[u32; 3]>,
+    /// Where each face of more than three corners stands, and its triangles.
+    polygons: Vec<(Place, Range<usize>)>,
+}
+
+impl Faces {
+    /// A face of three corners or more.
+    pub(super) fn push(&mut self, place: Place, corners: &[u32]) {
+        let start = self.triangles.len();
+        if let [first, others @ ..] = corners {
+            self.triangles.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+        }
+        if corners.len() > 3 {
+            self.polygons.push((place, start..self.triangles.len()));
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The first polygon that its fan does not fill: some of its triangles face the other way.
+    /// Every index must be in range.
+    pub(super) fn folded(&self, vertices: &[Point3<f64>]) -> Option<Place> {
+        let folds = |triangles: &[[u32; 3]]| {
+            let area = |triangle: &[u32; 3]| {
+                let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
+                (b - a).cross(&(c - a))
+            };
+            let sum: Vector3<f64> = triangles.iter().map(area).sum();
+            let against = triangles.iter().map(area).filter(|area| area.dot(&sum) <= 0.0);
+            against.map(|area| area.norm()).sum::<f64>() > FOLD * sum.norm()
+        };
+        let mut polygons = self.polygons.iter();
+        let folded = polygons.find(|(_, range)| folds(&self.triangles[range.clone()]));
+        folded.map(|(place, _)| *place)
+    }
+
+    /// The mesh, in which corners with equal coordinates are one vertex whatever their indices.
+    /// Every index must be in range.
+    pub(super) fn weld(&self, vertices: &[Point3<f64>], unit: Unit) -> Result<Mesh, MeshError> {
+        let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices[vertex as usize]);
+        weld(&self.triangles.iter().map(corners).collect::<Vec<_>>(), unit)
+    }
+}

@@ -1,0 +1,333 @@
+//! Reading OBJ. The reader is our own because `tobj` names no line in its errors, panics on an
+//! index such as `1/-9` and gives every group vertices of its own.
+
+use nalgebra::Point3;
+
+use super::faces::Faces;
+use super::words::{Place, Words, number, shown};
+use super::{LARGEST_COORDINATE, Mesh, MeshError, coordinate_holds};
+use crate::Unit;
+
+/// Why an OBJ file could not be read. Lines count from 1.
+#[derive(Debug, thiserror::Error)]
+pub enum ObjError {
+    /// A line says something else than it must.
+    #[error(
+        "{file}, line {line}: expected {expected}, found {found}: mend the line, or export the \
+         part again"
+    )]
+    Expected {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// What should stand there.
+        expected: &'static str,
+        /// What does.
+        found: String,
+    },
+    /// A vertex is nowhere.
+    #[error(
+        "{file}, line {line}: the coordinate `{coordinate}` is not a finite number within \
+         {LARGEST_COORDINATE:e}: repair the mesh where it was made"
+    )]
+    Coordinate {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// The coordinate as written.
+        coordinate: String,
+    },
+    /// A face names a vertex that is not there.
+    #[error(
+        "{file}, line {line}: the face names vertex {index}, but {vertices} come before it: \
+         vertices count from 1, or back from -1; export the part again"
+    )]
+    Index {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// The vertex it names.
+        index: i64,
+        /// How many vertices come before.
+        vertices: usize,
+    },
+    /// A polygon is not filled by triangles from its first corner.
+    #[error(
+        "{file}, {place}: the polygon is too hollow or too bent to be cut into triangles from its \
+         first corner: export the part in triangles"
+    )]
+    Folded {
+        /// The file.
+        file: String,
+        /// Where the face stands.
+        place: Place,
+    },
+    /// There is no surface.
+    #[error(
+        "{file} has no faces, lines such as `f 1 2 3`: it is no OBJ file, or it holds points or \
+         curves only: export the part as a mesh"
+    )]
+    NoFaces {
+        /// The file.
+        file: String,
+    },
+    /// The file is in order, but what it holds is no mesh.
+    #[error("{file}: {source}")]
+    Mesh {
+        /// The file.
+        file: String,
+        /// What is wrong with the mesh.
+        source: MeshError,
+    },
+}
+
+impl Mesh {
+    /// Reads the faces of an OBJ file as a mesh, whose numbers are in `unit` (OBJ states none);
+    /// `name` stands for the file in errors. No bytes make it panic.
+    ///
+    /// Of all its lines those of `v` and `f` are read, with indices from 1 or back from -1 and
+    /// with or without `/vt/vn`; objects, groups and materials all become one mesh. Polygons and
+    /// equal corners are treated as in [`Mesh::from_ply`]. The format does not say how much there
+    /// is: a file that was cut off between faces shows as a leak in the [survey](Mesh::survey).
+    ///
+    /// # Errors
+    /// See [`ObjError`].
+    pub fn from_obj(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, ObjError> {
+        let file = || name.to_owned();
+        let mut lines = Lines { words: Words::new(bytes), name };
+        let mut vertices = Vec::new();
+        let mut faces = Faces::default();
+        let mut corners = Vec::new();
+        while lines.next() {
+            match lines.word() {
+                Some(b"v") => vertices.push(lines.vertex()?),
+                Some(b"f") => {
+                    let place = Place::Line(lines.words.line);
+                    lines.face(vertices.len(), &mut corners)?;
+                    faces.push(place, &corners);
+                }
+                _ => {}
+            }
+            lines.words.skip_line();
+        }
+        if faces.is_empty() {
+            return Err(ObjError::NoFaces { file: file() });
+        }
+        if let Some(place) = faces.folded(&vertices) {
+            return Err(ObjError::Folded { file: file(), place });
+        }
+        let mesh = faces.weld(&vertices, unit);
+        mesh.map_err(|source| ObjError::Mesh { file: file(), source })
+    }
+}
+
+/// The lines of a file, each of which may go on after a `\` and end in a comment.
+struct Lines<'a, 'n> {
+    words: Words<'a>,
+    name: &'n str,
+}
+
+impl<'a> Lines<'a, '_> {
+    /// Whether there is another line.
+    fn next(&mut self) -> bool {
+        self.words.skip_space();
+        !self.words.rest.is_empty()
+    }
+
+    fn word(&mut self) -> Option<&'a [u8]> {
+        loop {
+            let word = self.words.next_on_line()?;
+            if word.starts_with(b"#") {
+                self.words.skip_line();
+                return None;
+            }
+            let Some(head) = word.strip_suffix(b"\\") else {
+                return Some(word);
+            };
+            self.words.skip_space();
+            if !head.is_empty() {
+                return Some(head);
+            }
+        }
+    }
+
+    fn expected(&self, expected: &'static str, found: Option<&[u8]>) -> ObjError {
+        let found = found.map_or("the end of the line".to_owned(), |w| format!("`{}`", shown(w)));
+        ObjError::Expected { file: self.name.to_owned(), line: self.words.line, expected, found }
+    }
+
+    /// The coordinates after `v`. What may follow them, a weight or a colour, says nothing of
+    /// where the vertex is.
+    fn vertex(&mut self) -> Result<Point3<f64>, ObjError> {
+        let expected = "a coordinate, such as 1.5 or 2e-3";
+        let mut vertex = Point3::origin();
+        for coordinate in vertex.iter_mut() {
+            let word = self.word().ok_or_else(|| self.expected(expected, None))?;
+            *coordinate = number(word).ok_or_else(|| self.expected(expected, Some(word)))?;
+            if !coordinate_holds(*coordinate) {
+                let (file, line) = (self.name.to_owned(), self.words.line);
+                return Err(ObjError::Coordinate { file, line, coordinate: shown(word) });
+            }
+        }
+        Ok(vertex)
+    }
+
+    /// The corners after `f`, of `vertices` so far.
+    fn face(&mut self, vertices: usize, corners: &mut Vec<u32>) -> Result<(), ObjError> {
+        let expected = "a corner such as 7, 7/1 or 7//2: a face has three or more";
+        corners.clear();
+        while let Some(word) = self.word() {
+            let first = word.split(|&byte| byte == b'/').next().unwrap_or_default();
+            let index = str::from_utf8(first).ok().and_then(|text| text.parse::<i64>().ok());
+            let index = index.ok_or_else(|| self.expected(expected, Some(word)))?;
+            let from_end = |back: u64| vertices.checked_sub(usize::try_from(back).ok()?);
+            let corner = match index {
+                0 => None,
+                1.. => usize::try_from(index - 1).ok(),
+                ..0 => from_end(index.unsigned_abs()),
+            };
+            let known = corner.filter(|&corner| corner < vertices);
+            corners.push(known.and_then(|corner| u32::try_from(corner).ok()).ok_or_else(|| {
+                let (file, line) = (self.name.to_owned(), self.words.line);
+                ObjError::Index { file, line, index, vertices }
+            })?);
+        }
+        if corners.len() < 3 {
+            return Err(self.expected(expected, None));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+    use rand_core::{Rng, SeedableRng};
+
+    const UNIT: Unit = Unit::Millimetre;
+    const TRIANGLE: &str = "v 0 0 0\nv .5 0 0 1.0\nv 0 2. 1e-1 0.1 0.2 0.3\nf 1 2 3\n";
+
+    fn cuboid() -> Mesh {
+        let high = Point3::new(1.0, 2.5, 4.0);
+        shapes::cuboid(Point3::origin(), high, UNIT).expect("a cuboid")
+    }
+
+    fn cuboid_file() -> String {
+        let mut text = "# a cuboid\nmtllib a.mtl\no cuboid\n".to_owned();
+        let mesh = cuboid();
+        mesh.vertices().iter().for_each(|v| text += &format!("v {} {} {}\n", v.x, v.y, v.z));
+        text += "vn 0 0 1\nvt 0 0\n";
+        for (id, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+            // Vertex k is also the one k - 8 from the end.
+            text += &match id % 4 {
+                0 => format!("g side{id}\nf {} {} {}\n", a + 1, b + 1, c + 1),
+                1 => format!("f {}/1 {}/1 {}/1\n", a + 1, b + 1, c + 1),
+                2 => format!("f {}//1 {}//1 {}//1 # turned\n", a + 1, b + 1, c + 1),
+                _ => format!("usemtl m\nf -{}/1/1 -{}/1/1 \\\n-{}/1/1\n", 8 - a, 8 - b, 8 - c),
+            };
+        }
+        text
+    }
+
+    fn refusal(bytes: impl AsRef<[u8]>) -> String {
+        let refused = Mesh::from_obj(bytes.as_ref(), "part.obj", UNIT);
+        refused.expect_err("it should be refused").to_string()
+    }
+
+    #[test]
+    fn reads_a_solid() {
+        let text = cuboid_file();
+        for text in [text.clone(), text.replace('\n', "\r\n"), text.replace('\n', "\r")] {
+            let mesh = Mesh::from_obj(text.as_bytes(), "", UNIT).expect("a cuboid");
+            assert!(mesh.survey().solid() && mesh.vertices().len() == 8, "{}", mesh.survey());
+            assert!(mesh.corners().eq(cuboid().corners()));
+        }
+        let latin = [b"# caf\xE9\n", TRIANGLE.as_bytes()].concat();
+        let mesh = Mesh::from_obj(&latin, "", UNIT).expect("Latin-1 in a comment");
+        assert_eq!(mesh.triangle(0)[2], Point3::new(0.0, 2.0, 0.1));
+    }
+
+    #[test]
+    fn polygons_are_fanned_unless_that_folds_them() {
+        let with = |face: &str| {
+            format!("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 .5 0\nv 0 2 0\nf {face}\nf 1 2 5\n")
+        };
+        let mesh = Mesh::from_obj(with("4 5 1 2 3").as_bytes(), "", UNIT).expect("a fan");
+        assert_eq!((mesh.triangles().len(), mesh.area(0) + mesh.area(1)), (4, 1.5));
+        let folded = refusal(with("2 3 4 5 1"));
+        assert!(folded.contains("part.obj, line 6: the polygon is too hollow"), "{folded}");
+    }
+
+    #[test]
+    fn says_what_is_wrong_and_where() {
+        for (change, into, says) in [
+            (
+                "v .5 0 0 1.0",
+                "v .5 0",
+                "line 2: expected a coordinate, such as 1.5 or 2e-3, found the",
+            ),
+            ("v .5", "v 0,5", "line 2: expected a coordinate, such as 1.5 or 2e-3, found `0,5`"),
+            ("v .5", "v 1e61", "line 2: the coordinate `1e61` is not a finite"),
+            ("v .5", "v -nan(ind)", "line 2: the coordinate `-nan(ind)` is not a finite"),
+            (
+                "f 1 2 3",
+                "f 1 2",
+                "line 4: expected a corner such as 7, 7/1 or 7//2: a face has three",
+            ),
+            ("f 1 2 3", "f", "line 4: expected a corner"),
+            ("f 1 2 3", "f 1 2 /3", "line 4: expected a corner such as 7, 7/1 or 7//2: a face has"),
+            ("f 1 2 3", "f 1 2 x", "found `x`"),
+            ("f 1 2 3", "f 1 2 4", "line 4: the face names vertex 4, but 3 come before it"),
+            ("f 1 2 3", "f 1 2 0", "line 4: the face names vertex 0, but 3"),
+            ("f 1 2 3", "f 1 2 -4", "line 4: the face names vertex -4, but 3"),
+            ("f 1 2 3", "f 1 2 -9223372036854775808", "names vertex -9223372036854775808, but"),
+            ("f 1 2 3", "f 1 2 99999999999999999999", "found `99999999999999999999`"),
+            ("f 1 2 3", "f 1 2 2", "part.obj: none of the mesh's 1 triangles"),
+            ("f 1 2 3", "l 1 2 3", "part.obj has no faces"),
+        ] {
+            assert!(TRIANGLE.contains(change), "{change}");
+            let message = refusal(TRIANGLE.replace(change, into));
+            assert!(message.contains(says), "{into}: {message}");
+        }
+        assert!(refusal("").contains("has no faces"));
+    }
+
+    #[test]
+    fn a_file_cut_anywhere_is_refused_or_leaks() {
+        let text = cuboid_file();
+        let whole = text.trim_end().trim_end_matches("/1").len();
+        for length in 0..whole {
+            if let Ok(mesh) = Mesh::from_obj(&text.as_bytes()[..length], "", UNIT) {
+                assert!(!mesh.survey().closed(), "{length}");
+            }
+        }
+    }
+
+    #[test]
+    fn survives_any_bytes() {
+        let mut random = rand_pcg::Pcg64::seed_from_u64(1);
+        let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
+        let words: [&[u8]; 6] = [b"-", b"\\\n", b"/", b"1e400", b"\nf 1 2 3 4\n", b"99999999999"];
+        let seed = cuboid_file().into_bytes();
+        for _ in 0..5000 {
+            let mut bytes = seed.clone();
+            for _ in 0..1 + below(4) {
+                let at = below(bytes.len());
+                match below(4) {
+                    0 => bytes[at] = below(256) as u8,
+                    1 => bytes[at] ^= 1 << below(8),
+                    2 => bytes.truncate(at.max(1)),
+                    _ => drop(bytes.splice(at..at, words[below(6)].iter().copied())),
+                }
+            }
+            if let Ok(mesh) = Mesh::from_obj(&bytes, "", UNIT) {
+                let survey = mesh.survey();
+                assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
+            }
+        }
+    }
+}

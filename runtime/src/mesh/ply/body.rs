@@ -1,0 +1,227 @@
+//! What a PLY file holds, one element after another.
+
+use super::PlyError;
+use super::header::{self, Element, Encoding, Header, Property, Type};
+use crate::mesh::words::{Place, Words, number, shown};
+
+/// An element as read: the numbers asked for and the items of the list asked for.
+pub(super) struct Record<'r, const N: usize> {
+    pub(super) place: Place,
+    pub(super) index: usize,
+    pub(super) numbers: [f64; N],
+    pub(super) items: &'r [f64],
+}
+
+/// Goes through a file after its header.
+pub(super) struct Body<'a, 'n> {
+    name: &'n str,
+    encoding: Encoding,
+    words: Words<'a>,
+    length: usize,
+    index: usize,
+}
+
+impl<'a, 'n> Body<'a, 'n> {
+    pub(super) fn new(bytes: &'a [u8], name: &'n str) -> Result<(Header<'a>, Self), PlyError> {
+        let (header, words) = header::read(bytes, name)?;
+        let encoding = header.encoding;
+        Ok((header, Body { name, encoding, words, length: bytes.len(), index: 0 }))
+    }
+
+    /// Reads all of an element, which must be the next: the properties at `wanted` and the list
+    /// at `list`, none where `None`.
+    pub(super) fn read<const N: usize>(
+        &mut self,
+        element: &Element,
+        wanted: [Option<usize>; N],
+        list: Option<usize>,
+        mut take: impl FnMut(Record<N>) -> Result<(), PlyError>,
+    ) -> Result<(), PlyError> {
+        let (least, found) = (element.least_bytes(self.encoding), self.words.rest.len());
+        if least > found as u128 {
+            let (file, element, count) = (self.file(), shown(element.name), element.count);
+            return Err(PlyError::Promised { file, element, count, least, found });
+        }
+        if element.properties.is_empty() {
+            return Ok(());
+        }
+        let slots: Vec<Option<usize>> = (0..element.properties.len())
+            .map(|property| wanted.iter().position(|&wanted| wanted == Some(property)))
+            .collect();
+        let mut items = Vec::new();
+        for index in 0..element.count {
+            self.index = index;
+            let place = self.start();
+            let mut numbers = [0.0; N];
+            items.clear();
+            for (at, (property, slot)) in element.properties.iter().zip(&slots).enumerate() {
+                match (property.length, slot) {
+                    (Some(length), _) => {
+                        let into = (list == Some(at)).then_some(&mut items);
+                        self.list(element, property, length, place, into)?;
+                    }
+                    (None, Some(slot)) => {
+                        numbers[*slot] = self.number(element, property, property.value)?;
+                    }
+                    (None, None) => self.skip(element, property, 1)?,
+                }
+            }
+            self.end_line()?;
+            take(Record { place, index, numbers, items: &items })?;
+        }
+        Ok(())
+    }
+
+    /// The end of the file, and nothing before it.
+    pub(super) fn end(mut self) -> Result<(), PlyError> {
+        let place = self.start();
+        if self.words.rest.is_empty() {
+            Ok(())
+        } else {
+            Err(PlyError::Trailing { file: self.file(), place })
+        }
+    }
+
+    pub(super) fn file(&self) -> String {
+        self.name.to_owned()
+    }
+
+    fn start(&mut self) -> Place {
+        if self.encoding == Encoding::Ascii {
+            self.words.skip_space();
+        }
+        self.place()
+    }
+
+    fn place(&self) -> Place {
+        match self.encoding {
+            Encoding::Ascii => Place::Line(self.words.line),
+            _ => Place::Byte(self.length - self.words.rest.len()),
+        }
+    }
+
+    fn end_line(&mut self) -> Result<(), PlyError> {
+        if self.encoding == Encoding::Ascii
+            && let Some(word) = self.words.next_on_line()
+        {
+            return Err(self.expected("the end of the line".to_owned(), Some(word)));
+        }
+        Ok(())
+    }
+
+    fn list(
+        &mut self,
+        element: &Element,
+        property: &Property,
+        length: Type,
+        place: Place,
+        into: Option<&mut Vec<f64>>,
+    ) -> Result<(), PlyError> {
+        let value = self.number(element, property, length)?;
+        let Some(count) = whole(value) else {
+            return Err(PlyError::Value {
+                file: self.file(),
+                place,
+                element: shown(element.name),
+                index: self.index,
+                property: format!("the length of {}", shown(property.name)),
+                value,
+                rule: "a whole number, 0 or more, below 2^32",
+            });
+        };
+        match into {
+            None => self.skip(element, property, count as usize),
+            Some(items) => (0..count).try_for_each(|_| {
+                items.push(self.number(element, property, property.value)?);
+                Ok(())
+            }),
+        }
+    }
+
+    fn number(
+        &mut self,
+        element: &Element,
+        property: &Property,
+        of: Type,
+    ) -> Result<f64, PlyError> {
+        if self.encoding == Encoding::Ascii {
+            let word = self.word(element, property)?;
+            return number(word).ok_or_else(|| self.no_number(property, Some(word)));
+        }
+        Ok(match of {
+            Type::I8 => f64::from(i8::from_le_bytes(self.bytes(element)?)),
+            Type::U8 => f64::from(u8::from_le_bytes(self.bytes(element)?)),
+            Type::I16 => f64::from(i16::from_le_bytes(self.bytes(element)?)),
+            Type::U16 => f64::from(u16::from_le_bytes(self.bytes(element)?)),
+            Type::I32 => f64::from(i32::from_le_bytes(self.bytes(element)?)),
+            Type::U32 => f64::from(u32::from_le_bytes(self.bytes(element)?)),
+            Type::F32 => f64::from(f32::from_le_bytes(self.bytes(element)?)),
+            Type::F64 => f64::from_le_bytes(self.bytes(element)?),
+        })
+    }
+
+    /// Skips so many values of a property.
+    fn skip(
+        &mut self,
+        element: &Element,
+        property: &Property,
+        count: usize,
+    ) -> Result<(), PlyError> {
+        if self.encoding == Encoding::Ascii {
+            return (0..count).try_for_each(|_| self.word(element, property).map(drop));
+        }
+        let bytes = count.saturating_mul(property.value.bytes());
+        self.words.rest = self.words.rest.get(bytes..).ok_or_else(|| self.ended(element))?;
+        Ok(())
+    }
+
+    fn word(&mut self, element: &Element, property: &Property) -> Result<&'a [u8], PlyError> {
+        match self.words.next_on_line() {
+            Some(word) => Ok(word),
+            None if self.words.rest.trim_ascii().is_empty() => Err(self.ended(element)),
+            None => Err(self.no_number(property, None)),
+        }
+    }
+
+    /// The next bytes, the lowest first.
+    fn bytes<const N: usize>(&mut self, element: &Element) -> Result<[u8; N], PlyError> {
+        let Some((bytes, rest)) = self.words.rest.split_first_chunk() else {
+            return Err(self.ended(element));
+        };
+        self.words.rest = rest;
+        let mut bytes = *bytes;
+        if self.encoding == Encoding::BigEndian {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    fn no_number(&self, property: &Property, found: Option<&[u8]>) -> PlyError {
+        self.expected(format!("a number for `{}`", shown(property.name)), found)
+    }
+
+    fn expected(&self, expected: String, found: Option<&[u8]>) -> PlyError {
+        let found = found.map_or("the end of the line".to_owned(), |w| format!("`{}`", shown(w)));
+        PlyError::Expected { file: self.file(), line: self.words.line, expected, found }
+    }
+
+    fn ended(&self, element: &Element) -> PlyError {
+        let place = match self.place() {
+            Place::Byte(_) => Place::Byte(self.length),
+            line => line,
+        };
+        PlyError::Ended {
+            file: self.file(),
+            place,
+            element: shown(element.name),
+            index: self.index,
+            count: element.count,
+        }
+    }
+}
+
+/// A number that is whole and fits 32 bits, as such.
+pub(super) fn whole(value: f64) -> Option<u32> {
+    let whole = value as u32;
+    (f64::from(whole) == value).then_some(whole)
+}

@@ -1,0 +1,232 @@
+//! Reading PLY, ASCII and binary in both byte orders. The reader is our own because `ply-rs-bw`
+//! takes properties named twice, numbers too many and bytes left over without a word, refuses a
+//! comment that is not UTF-8 or a coordinate such as `.5`, and names no byte of a binary file.
+
+mod body;
+mod error;
+mod header;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{Point3, Vector3};
+
+use self::body::{Body, Record, whole};
+use self::header::{Element, Header};
+use super::faces::Faces;
+use super::{Mesh, coordinate_holds};
+use crate::Unit;
+
+pub use self::error::PlyError;
+pub(super) use self::header::begins;
+
+/// What writers call the list of a face's corners.
+const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+const COORDINATE_RULE: &str = "finite and within 1e60";
+
+/// Points of a part's surface, as a file gives them.
+///
+/// The lists have the same, non-zero length. Coordinates are finite, normals are unit vectors.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// Where the points are.
+    pub places: Vec<Point3<f64>>,
+    /// Which way is out of the material, of norm 1.
+    pub normals: Vec<Vector3<f64>>,
+    /// The id of the face that each point lies on, if the file says so.
+    pub faces: Option<Vec<u32>>,
+    /// The area for which each point stands, finite and 0 or more, if the file says so.
+    pub areas: Option<Vec<f64>>,
+}
+
+impl Points {
+    /// Reads a PLY file's vertices as points; `name` stands for the file in errors. No bytes make
+    /// it panic.
+    ///
+    /// Each needs `x y z` and a normal `nx ny nz`, which is normalised: exporters round it. It may
+    /// have a `face`, the id of what it lies on, and an `area`. Whatever else there is, faces as
+    /// well, is skipped.
+    ///
+    /// # Errors
+    /// See [`PlyError`].
+    pub fn from_ply(bytes: &[u8], name: &str) -> Result<Points, PlyError> {
+        let (header, mut body) = Body::new(bytes, name)?;
+        let file = || name.to_owned();
+        let (vertex, [x, y, z]) = vertex(&header, name)?;
+        let normal = ["nx", "ny", "nz"].map(|name| vertex.number(name));
+        let [Some(_), Some(_), Some(_)] = normal else {
+            return Err(PlyError::NoNormals { file: file() });
+        };
+        let [nx, ny, nz] = normal;
+        let (face, area) = (vertex.number("face"), vertex.number("area"));
+        let mut points = Points {
+            faces: face.map(|_| Vec::new()),
+            areas: area.map(|_| Vec::new()),
+            ..Points::default()
+        };
+        for element in &header.elements {
+            if element.name != vertex.name {
+                body.read(element, [], None, |_| Ok(()))?;
+                continue;
+            }
+            body.read(element, [x, y, z, nx, ny, nz, face, area], None, |record| {
+                points.places.push(place(&record, name)?);
+                let [_, _, _, nx, ny, nz, face, area] = record.numbers;
+                let normal = Vector3::new(nx, ny, nz);
+                let norm = normal.norm();
+                if !norm.is_normal() || norm * norm < f64::MIN_POSITIVE {
+                    let (file, place, point) = (file(), record.place, record.index);
+                    return Err(PlyError::Normal { file, place, point, norm });
+                }
+                points.normals.push(normal / norm);
+                if let Some(faces) = &mut points.faces {
+                    let rule = "a whole number, 0 or more, below 2^32";
+                    let odd = || value(&record, "vertex", "face", face, rule, name);
+                    faces.push(whole(face).ok_or_else(odd)?);
+                }
+                if let Some(areas) = &mut points.areas {
+                    if !(area.is_finite() && area >= 0.0) {
+                        let rule = "a finite area, 0 or more";
+                        return Err(value(&record, "vertex", "area", area, rule, name));
+                    }
+                    areas.push(area);
+                }
+                Ok(())
+            })?;
+        }
+        body.end()?;
+        Ok(points)
+    }
+}
+
+impl Mesh {
+    /// Reads a PLY file's faces as a mesh, whose numbers are in `unit` (PLY states none); `name`
+    /// stands for the file in errors. No bytes make it panic.
+    ///
+    /// A face of more than three corners is cut into triangles from its first corner, and refused
+    /// where these do not fill it; ids count the resulting triangles. Corners with equal
+    /// coordinates become one vertex, as in [`Mesh::read_stl`]: exporters double the vertices of
+    /// sharp edges. Other elements and properties are skipped.
+    ///
+    /// # Errors
+    /// See [`PlyError`].
+    pub fn from_ply(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, PlyError> {
+        let (header, mut body) = Body::new(bytes, name)?;
+        let file = || name.to_owned();
+        let (vertex, xyz) = vertex(&header, name)?;
+        let face = header.element("face");
+        let list = face.and_then(|face| {
+            let name = LISTS.into_iter().find(|name| face.list(name).is_some())?;
+            Some((face, name))
+        });
+        let Some((face, list)) = list else {
+            return Err(PlyError::NoFaces { file: file() });
+        };
+        let mut vertices = Vec::new();
+        let mut faces = Faces::default();
+        let mut corners = Vec::new();
+        for element in &header.elements {
+            if element.name == vertex.name {
+                body.read(element, xyz, None, |record| {
+                    vertices.push(place(&record, name)?);
+                    Ok(())
+                })?;
+            } else if element.name == face.name {
+                body.read(element, [], element.list(list), |record| {
+                    corners_of(&record, list, vertex.count, name, &mut corners)?;
+                    faces.push(record.place, &corners);
+                    Ok(())
+                })?;
+            } else {
+                body.read(element, [], None, |_| Ok(()))?;
+            }
+        }
+        body.end()?;
+        if faces.is_empty() {
+            return Err(PlyError::NoFaces { file: file() });
+        }
+        if let Some(place) = faces.folded(&vertices) {
+            return Err(PlyError::Folded { file: file(), place });
+        }
+        let mesh = faces.weld(&vertices, unit);
+        mesh.map_err(|source| PlyError::Mesh { file: file(), source })
+    }
+}
+
+/// Whether a PLY file holds faces, and so a mesh rather than points.
+pub(super) fn has_faces(bytes: &[u8], name: &str) -> Result<bool, PlyError> {
+    let (header, _) = header::read(bytes, name)?;
+    Ok(header.element("face").is_some_and(|face| face.count > 0))
+}
+
+/// The element of the points, and which of its properties are the coordinates.
+fn vertex<'h, 'a>(
+    header: &'h Header<'a>,
+    name: &str,
+) -> Result<(&'h Element<'a>, [Option<usize>; 3]), PlyError> {
+    let vertex = header.element("vertex").filter(|vertex| vertex.count > 0);
+    let xyz = |vertex: &Element| ["x", "y", "z"].map(|name| vertex.number(name));
+    match vertex.map(|vertex| (vertex, xyz(vertex))) {
+        Some((vertex, xyz @ [Some(_), Some(_), Some(_)])) => Ok((vertex, xyz)),
+        _ => Err(PlyError::NoPoints { file: name.to_owned() }),
+    }
+}
+
+/// The first three numbers of a vertex, its coordinates.
+fn place<const N: usize>(record: &Record<N>, name: &str) -> Result<Point3<f64>, PlyError> {
+    let axes = ["x", "y", "z"].iter().zip(record.numbers);
+    for (axis, coordinate) in axes.clone() {
+        if !coordinate_holds(coordinate) {
+            return Err(value(record, "vertex", axis, coordinate, COORDINATE_RULE, name));
+        }
+    }
+    let mut place = Point3::origin();
+    place.iter_mut().zip(axes).for_each(|(into, (_, coordinate))| *into = coordinate);
+    Ok(place)
+}
+
+/// The vertices of a face, of which there are `vertices` to choose from.
+fn corners_of(
+    record: &Record<0>,
+    list: &str,
+    vertices: usize,
+    name: &str,
+    corners: &mut Vec<u32>,
+) -> Result<(), PlyError> {
+    let (place, face) = (record.place, record.index);
+    let file = || name.to_owned();
+    corners.clear();
+    for &item in record.items {
+        let Some(vertex) = whole(item) else {
+            let rule = "the number of a vertex, counted from 0";
+            return Err(value(record, "face", list, item, rule, name));
+        };
+        if vertex as usize >= vertices {
+            return Err(PlyError::Index { file: file(), place, face, vertex, vertices });
+        }
+        corners.push(vertex);
+    }
+    match corners.len() {
+        0..=2 => Err(PlyError::Corners { file: file(), place, face, corners: corners.len() }),
+        _ => Ok(()),
+    }
+}
+
+fn value<const N: usize>(
+    record: &Record<N>,
+    element: &str,
+    property: &str,
+    value: f64,
+    rule: &'static str,
+    name: &str,
+) -> PlyError {
+    PlyError::Value {
+        file: name.to_owned(),
+        place: record.place,
+        element: element.to_owned(),
+        index: record.index,
+        property: property.to_owned(),
+        value,
+        rule,
+    }
+}
