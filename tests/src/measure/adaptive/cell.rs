@@ -1,6 +1,6 @@
 //! Triangles, and the rules they are integrated by.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Vector3, Vector6};
 use touchoff::tool::{Felt, LANES, Points};
 use touchoff::{Mesh, Pose, Tool};
 
@@ -32,22 +32,22 @@ pub(super) type Corners = [Vector3<f64>; 3];
 
 /// A triangle of a part, or a piece of one, and the part's normal there.
 #[derive(Clone, Debug)]
-pub struct Face {
+pub(super) struct Face {
     /// Its corners, in the world.
-    pub corners: [Point3<f64>; 3],
+    pub(super) corners: [Point3<f64>; 3],
     /// The part's outward normal.
-    pub normal: Vector3<f64>,
+    pub(super) normal: Vector3<f64>,
 }
 
 /// The faces of a mesh.
-pub fn faces(mesh: &Mesh) -> Vec<Face> {
+pub(super) fn faces(mesh: &Mesh) -> Vec<Face> {
     let all = (0..).zip(mesh.triangles());
     let face = |(id, _)| Some(Face { corners: mesh.triangle(id), normal: mesh.normal(id)? });
     all.filter_map(face).collect()
 }
 
 /// The same faces, halved until no edge is longer than `longest`.
-pub fn split(faces: &[Face], longest: f64) -> Vec<Face> {
+pub(super) fn split(faces: &[Face], longest: f64) -> Vec<Face> {
     let mut split = Vec::new();
     for Face { corners, normal } in faces {
         let mut left = vec![corners.map(|corner| corner.coords)];
@@ -63,7 +63,7 @@ pub fn split(faces: &[Face], longest: f64) -> Vec<Face> {
 }
 
 /// Which of the faces the tool touches, by its distance.
-pub fn touched(faces: &[Face], near: &dyn Tool, pose: &Pose) -> Vec<Face> {
+pub(super) fn touched(faces: &[Face], near: &dyn Tool, pose: &Pose) -> Vec<Face> {
     const LEAST: f64 = 1e-3;
     let touches = |face: &&Face| {
         let mut left = vec![in_tool(&face.corners, pose)];
@@ -118,26 +118,11 @@ pub(super) fn push(corners: &Corners, points: &mut Points) {
 }
 
 /// Force, and torque about the tip; in the tool's frame.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sum {
-    pub(super) force: Vector3<f64>,
-    pub(super) torque: Vector3<f64>,
-}
+pub(super) type Sum = Vector6<f64>;
 
-impl Sum {
-    pub(super) fn add(&mut self, other: &Sum, factor: f64) {
-        self.force += other.force * factor;
-        self.torque += other.torque * factor;
-    }
-
-    /// How far they are apart.
-    pub(super) fn from(&self, other: &Sum) -> [f64; 2] {
-        [(self.force - other.force).norm(), (self.torque - other.torque).norm()]
-    }
-
-    pub(super) fn norms(&self) -> [f64; 2] {
-        [self.force.norm(), self.torque.norm()]
-    }
+/// How large force and torque are.
+pub(super) fn norms(sum: &Sum) -> [f64; 2] {
+    [0, 3].map(|row| sum.fixed_rows::<3>(row).norm())
 }
 
 /// What the rule's points of a triangle saw. Sums are of its area's unit.
@@ -169,9 +154,10 @@ pub(super) fn see(felt: &Felt, points: &Points, at: usize, normal: &Vector3<f64>
         let magnitude = felt.magnitude[i];
         let place = Vector3::new(x[i], y[i], z[i]);
         let force = (normal - vector(&felt.direction, i)) * magnitude;
-        let sum = Sum { force, torque: place.cross(&force) };
-        seen.high.add(&sum, HIGH[k]);
-        seen.low.add(&sum, LOW[k]);
+        let torque = place.cross(&force);
+        let sum = Sum::new(force.x, force.y, force.z, torque.x, torque.y, torque.z);
+        seen.high += sum * HIGH[k];
+        seen.low += sum * LOW[k];
         seen.alike &= seen.inside == 0 || felt.region[i] == region;
         region = felt.region[i];
         seen.inside += 1;

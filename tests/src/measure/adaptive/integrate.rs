@@ -1,7 +1,9 @@
 //! The integrator.
 
-use super::cell::{Bit, Corners, Seen, Sum, area, cut, halves, in_tool, middle, push, radius, see};
-use super::{Face, cell};
+use super::cell::{self, Face};
+use super::cell::{
+    Bit, Corners, Seen, Sum, area, cut, halves, in_tool, middle, norms, push, radius, see,
+};
 use nalgebra::Vector3;
 use touchoff::tool::{Ask, Felt, Points, Senses, Wanted};
 use touchoff::{Level, Pose, Tool};
@@ -13,47 +15,44 @@ const HIDDEN: f64 = 0.1;
 /// Of how much a cut moves the sum, its share of the error.
 const MOVED: f64 = 0.05;
 
+/// After so many evaluations it ends.
+const MOST: usize = 1 << 24;
+
 /// How an integral is made.
 #[derive(Clone, Copy, Debug)]
-pub struct Settings {
+pub(super) struct Settings {
     /// The error that is wished, relative to the force, and to the torque about the tip or the force on an arm of 1 mm.
-    pub tolerance: f64,
-    /// After so many evaluations it ends.
-    pub most: usize,
+    pub(super) tolerance: f64,
     /// How curved the tool may be beside the part, 1/mm: by it what sees nothing is taken to be outside.
-    pub curved: f64,
+    pub(super) curved: f64,
     /// The difference of both rules is the error of the worse one. The better one's is smaller by so many times the difference's
     /// share of the sum, where all is smooth.
-    pub smooth: f64,
+    pub(super) smooth: f64,
 }
 
 impl Settings {
     /// For a tool of radius 1 mm.
-    pub fn new(tolerance: f64) -> Settings {
-        Settings { tolerance, most: 1 << 21, curved: 1.0, smooth: 300.0 }
+    pub(super) fn new(tolerance: f64) -> Settings {
+        Settings { tolerance, curved: 1.0, smooth: 300.0 }
     }
 
     /// For what is a reference: it trusts less in what it does not see, and takes the larger error.
-    pub fn reference() -> Settings {
-        Settings { tolerance: 1e-6, most: 1 << 24, curved: 8.0, smooth: f64::INFINITY }
+    pub(super) fn reference() -> Settings {
+        Settings { tolerance: 1e-6, curved: 8.0, smooth: f64::INFINITY }
     }
 }
 
 /// What came of it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Answer {
+pub(super) struct Answer {
     /// On the tool, in the world.
-    pub force: Vector3<f64>,
-    /// About the tip, in the world.
-    pub torque: Vector3<f64>,
-    /// The sums of the estimated errors.
-    pub estimate: [f64; 2],
+    pub(super) force: Vector3<f64>,
+    /// The sum of the estimated errors of the force.
+    pub(super) estimate: f64,
     /// At how many points the tool was evaluated.
-    pub evaluations: usize,
-    /// From how many places the distance to it was asked for.
-    pub distances: usize,
+    pub(super) evaluations: usize,
     /// How often those with too much error were halved, and once more.
-    pub rounds: usize,
+    pub(super) rounds: usize,
 }
 
 struct What;
@@ -74,7 +73,7 @@ struct Cell {
 }
 
 /// A tool beside triangles. Memory is kept between questions.
-pub struct Adaptive<'a, T: ?Sized> {
+pub(super) struct Adaptive<'a, T: ?Sized> {
     tool: &'a T,
     /// The same solid, of which the distance is known.
     near: &'a dyn Tool,
@@ -89,7 +88,7 @@ pub struct Adaptive<'a, T: ?Sized> {
 
 impl<'a, T: Senses + ?Sized> Adaptive<'a, T> {
     /// Of a tool, and one of the same shape that has a profile. Both in mm, as the part.
-    pub fn new(tool: &'a T, near: &'a dyn Tool) -> Adaptive<'a, T> {
+    pub(super) fn new(tool: &'a T, near: &'a dyn Tool) -> Adaptive<'a, T> {
         Adaptive {
             tool,
             near,
@@ -104,26 +103,25 @@ impl<'a, T: Senses + ?Sized> Adaptive<'a, T> {
     }
 
     /// The integral over the faces; those that the tool does not touch may be left out.
-    pub fn integrate(&mut self, faces: &[Face], pose: &Pose, settings: &Settings) -> Answer {
+    pub(super) fn integrate(&mut self, faces: &[Face], pose: &Pose, settings: &Settings) -> Answer {
         self.begin(faces, pose);
         let mut answer = Answer::default();
         loop {
             answer.rounds += 1;
             self.measure(settings, &mut answer);
             self.kept.extend(self.fresh.iter().filter(|cell| !cell.outside));
-            let (mut all, mut error) = (Sum::default(), [0.0; 2]);
+            let (mut all, mut error) = (Sum::zeros(), [0.0; 2]);
             for cell in &self.kept {
-                all.add(&cell.sum, 1.0);
+                all += cell.sum;
                 error = [error[0] + cell.error[0], error[1] + cell.error[1]];
             }
-            let [force, torque] = all.norms();
+            let [force, torque] = norms(&all);
             let allowed = [force, torque.max(force)]
                 .map(|size| (size * settings.tolerance).max(f64::MIN_POSITIVE));
             let done = error[0] <= allowed[0] && error[1] <= allowed[1];
-            if done || answer.evaluations > settings.most {
-                answer.force = pose.rotation() * all.force;
-                answer.torque = pose.rotation() * all.torque;
-                answer.estimate = error;
+            if done || answer.evaluations > MOST {
+                answer.force = pose.rotation() * all.fixed_rows::<3>(0);
+                answer.estimate = error[0];
                 return answer;
             }
             // Where the sum is too large, one at least has more than its share.
@@ -152,7 +150,7 @@ impl<'a, T: Senses + ?Sized> Adaptive<'a, T> {
                 corners,
                 face,
                 area: area(&corners),
-                sum: Sum::default(),
+                sum: Sum::zeros(),
                 error: [0.0; 2],
                 outside: false,
             });
@@ -169,11 +167,10 @@ impl<'a, T: Senses + ?Sized> Adaptive<'a, T> {
         for (at, cell) in self.fresh.iter_mut().enumerate() {
             let seen = see(&self.felt, &self.points, at, &self.normals[cell.face]);
             if seen.inside == 0 {
-                blind(cell, self.near, settings, answer);
+                blind(cell, self.near, settings);
                 continue;
             }
-            cell.sum = Sum::default();
-            cell.sum.add(&seen.high, cell.area);
+            cell.sum = seen.high * cell.area;
             cell.error = difference(&seen, cell.area, settings.smooth);
             let bits = cut(&cell.corners, cell.area, &seen);
             self.bits.extend(bits.into_iter().flatten().map(|bit| (at, bit)));
@@ -192,14 +189,14 @@ impl<'a, T: Senses + ?Sized> Adaptive<'a, T> {
         let mut next = 0;
         for bits in self.bits.chunk_by(|a, b| a.0 == b.0) {
             let cell = &mut self.fresh[bits[0].0];
-            let (mut high, mut low) = (Sum::default(), Sum::default());
+            let (mut high, mut low) = (Sum::zeros(), Sum::zeros());
             for (_, (_, area)) in bits {
                 let seen = see(&self.felt, &self.points, next, &self.normals[cell.face]);
-                high.add(&seen.high, *area);
-                low.add(&seen.low, *area);
+                high += seen.high * *area;
+                low += seen.low * *area;
                 next += 1;
             }
-            let (rules, moved) = (high.from(&low), high.from(&cell.sum));
+            let (rules, moved) = (norms(&(high - low)), norms(&(high - cell.sum)));
             cell.error = [0, 1].map(|k| rules[k] + MOVED * moved[k]);
             cell.sum = high;
         }
@@ -207,19 +204,17 @@ impl<'a, T: Senses + ?Sized> Adaptive<'a, T> {
 }
 
 /// Of a cell that saw nothing: outside for certain, or as good as, or with something hidden.
-fn blind(cell: &mut Cell, near: &dyn Tool, settings: &Settings, answer: &mut Answer) {
+fn blind(cell: &mut Cell, near: &dyn Tool, settings: &Settings) {
     let middle = middle(&cell.corners);
     let radius = radius(&cell.corners, &middle);
-    answer.distances += 1;
     let mut hidden = radius - near.clearance(middle.into());
     if hidden > 0.0 && radius <= BLIND {
-        answer.distances += 3;
         let corners = cell.corners.map(|corner| near.clearance(corner.into()));
         let least = corners.into_iter().fold(f64::INFINITY, f64::min);
         hidden = hidden.min(settings.curved * radius * radius / 2.0 - least);
     }
     cell.outside = hidden <= 0.0;
-    cell.sum = Sum::default();
+    cell.sum = Sum::zeros();
     // As much as if all of it were inside, where it is too long to tell.
     let error = if radius > BLIND { 1.0 } else { HIDDEN * hidden } * cell.area;
     cell.error = [error, error * middle.norm()];
@@ -227,7 +222,7 @@ fn blind(cell: &mut Cell, near: &dyn Tool, settings: &Settings, answer: &mut Ans
 
 /// The error of a triangle's sum.
 fn difference(seen: &Seen, area: f64, factor: f64) -> [f64; 2] {
-    let (rules, sums) = (seen.high.from(&seen.low), seen.high.norms());
+    let (rules, sums) = (norms(&(seen.high - seen.low)), norms(&seen.high));
     [0, 1].map(|k| {
         let smooth = seen.inside == cell::RULE && seen.alike && rules[k] > 0.0;
         let share = if smooth { (factor * rules[k] / sums[k]).min(1.0) } else { 1.0 };

@@ -10,10 +10,8 @@
 
 mod cell;
 mod integrate;
+mod page;
 mod scenes;
 mod table;
 
-pub use cell::{Face, faces, split, touched};
-pub use integrate::{Adaptive, Answer, Settings};
-pub use scenes::{Scene, scenes};
-pub use table::{Outcome, Row, measure, unrefined};
+pub use page::page;
