@@ -1,6 +1,7 @@
 //! Figures that the project quotes of itself, each made by a command of `src/bin`.
 
 pub mod accuracy;
+pub mod adaptive;
 pub mod certified;
 pub mod compile;
 pub mod kernels;
