@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod certified;
 pub mod compile;
+pub mod convergence;
 pub mod kernels;
 pub mod mutants;
 pub mod points;
