@@ -90,7 +90,7 @@ impl Place {
         let mut middle = Point3::origin();
         for (k, along) in along.into_iter().enumerate() {
             let axis = (first + k) % 3;
-            let high = draw.bits() % 2 == 0;
+            let high = draw.bits().is_multiple_of(2);
             let from_end = match self {
                 // Beside an edge of the hollow both sides are as near.
                 Place::Hollow if k < ends => -far,
