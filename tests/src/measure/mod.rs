@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod adaptive;
 pub mod certified;
 pub mod compile;
+pub mod convergence;
 pub mod kernels;
 pub mod mutants;
 pub mod points;
