@@ -154,7 +154,7 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
     let mut draw = Draw::new(5);
     let poses: Vec<Pose> = (0..12)
         .map(|_| {
-            let angle = draw.between(0.0, 6.28);
+            let angle = draw.between(0.0, std::f64::consts::TAU);
             let out = draw.between(3.5, 7.0);
             let tip = Point3::new(out * angle.cos(), out * angle.sin(), draw.between(9.0, 12.5));
             Pose::from_axis(tip, Vector3::z()).expect("a pose")

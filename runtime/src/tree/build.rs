@@ -149,8 +149,8 @@ pub(super) fn lay(items: &[Item]) -> (Leaf, Bounds) {
     let centre: [f64; 3] = std::array::from_fn(|axis| f64::from(bounds.middle(axis) as f32));
     let mut leaf = Leaf { offset: [[f32::NAN; WIDTH]; 3] };
     for (lane, item) in items.iter().enumerate() {
-        for axis in 0..3 {
-            leaf.offset[axis][lane] = (item.at[axis] - centre[axis]) as f32;
+        for (axis, centre) in centre.iter().enumerate() {
+            leaf.offset[axis][lane] = (item.at[axis] - centre) as f32;
         }
     }
     let half = leaf_bounds(&leaf);

@@ -108,6 +108,26 @@ fn an_opened_part_feels_like_the_one_that_was_saved() {
 }
 
 #[test]
+fn what_is_cut_stays_cut() {
+    let poses = along_the_courses(100);
+    let mut part = Part::detailed(&scenes::tube(), 4_000, 1).expect("a part");
+    let mut opened = open(&saved(&part)).expect("opened");
+    // The own lists and the mapped ones are changed alike; and what was changed can be saved.
+    for pose in &poses {
+        assert_eq!(part.cut(&Ball, pose), opened.cut(&Ball, pose));
+    }
+    assert!(part.tree().gone > 0 && bits(&part) == bits(&opened));
+    let again = open(&saved(&part)).expect("opened");
+    assert_eq!(again.tree().len(), part.tree().len());
+    assert!(felt(&part, &poses) == felt(&opened, &poses));
+    assert!(felt(&part, &poses) == felt(&again, &poses));
+    let lift = |point: Point3<f64>, normal: nalgebra::Vector3<f64>| (point + 0.01 * normal, normal);
+    part.displace(lift).expect("places");
+    opened.displace(lift).expect("places");
+    assert!(bits(&part) == bits(&opened) && felt(&part, &poses) == felt(&opened, &poses));
+}
+
+#[test]
 fn every_tree_is_saved() {
     let mut part = small();
     for (points, proved) in [(300, false), (17, true)] {
