@@ -91,7 +91,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     if !json {
         let proved = if certifier.is_some() { "proved; " } else { "" };
-        writeln!(out, "    line  points   depth ({})  {proved}by surface", unit)?;
+        writeln!(out, "    line  points   depth ({unit})  {proved}by surface")?;
     }
     let mut probe = Probe::new(&part, tool)
         .law(wanted.law)
