@@ -1,0 +1,109 @@
+//! Parts as a user brings them, and what is said of their points.
+
+use crate::bench::{Bench, rows, stderr, touchoff};
+use serde_json::Value;
+use touchoff::{Cloud, Mesh, Unit};
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+fn run(bench: &Bench, part: &str, more: &[&str]) -> std::process::Output {
+    bench.run(part, "path.csv", "D2Ball", &[&["--json"], more].concat())
+}
+
+#[test]
+fn a_tolerance_picks_as_many_points_as_it_takes() {
+    let bench = Bench::new();
+    let output = run(&bench, "block.stl", &["--tolerance", "0.05"]);
+    let said = stderr(&output);
+    assert!(said.contains("a tolerance of 0.05") && said.contains(" points"), "{said}");
+    assert!(said.contains("(proved): the surface is no more than 0.0"), "{said}");
+    // The ball is 0.5 deep in the block at the second pose.
+    let found = rows(&output);
+    let (depth, bound) = (number(&found[1]["depth"]), number(&found[1]["depth_bound"]));
+    assert!(depth <= 0.5 + 1e-9 && bound >= 0.5 && bound - depth <= 0.05, "{depth} {bound}");
+    assert!(number(&found[0]["depth_bound"]) <= 0.05);
+    for wrong in ["0", "-1", "fine"] {
+        let output = run(&bench, "block.stl", &["--tolerance", wrong]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    }
+    let both = run(&bench, "block.stl", &["--tolerance", "0.1", "--points", "10"]);
+    assert_eq!(both.status.code(), Some(2));
+    let output = run(&bench, "block.stl", &["--tolerance", "1e-6"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said.contains("more than 20000000") && said.contains("certify"), "{said}");
+}
+
+#[test]
+fn points_are_spread_as_is_asked_for() {
+    let bench = Bench::new();
+    let number_of = |sampling: &str| {
+        let said = stderr(&run(&bench, "block.stl", &["--sampling", sampling, "--points", "2000"]));
+        let at = said.find("farther than ").expect("the cover") + "farther than ".len();
+        said[at..].split(' ').next().and_then(|word| word.parse::<f64>().ok()).expect("a length")
+    };
+    assert!(1.5 * number_of("blue") < number_of("random"));
+    assert_eq!(run(&bench, "block.stl", &["--sampling", "green"]).status.code(), Some(2));
+}
+
+#[test]
+fn points_without_triangles_are_felt_and_their_error_is_called_an_estimate() {
+    let bench = Bench::new();
+    let mesh = Mesh::read_stl(bench.folder.path().join("block.stl"), Unit::Millimetre);
+    let cloud = Cloud::blue(&mesh.expect("the block"), 3_000, 1).expect("a cloud");
+    let mut ply = String::from("ply\nformat ascii 1.0\nelement vertex 3000\n");
+    for name in ["x", "y", "z", "nx", "ny", "nz"] {
+        ply += &format!("property double {name}\n");
+    }
+    ply += "end_header\n";
+    for (p, n) in cloud.points().iter().zip(cloud.normals()) {
+        ply += &format!("{} {} {} {} {} {}\n", p.x, p.y, p.z, n.x, n.y, n.z);
+    }
+    bench.write("block.ply", &ply);
+    let output = run(&bench, "block.ply", &[]);
+    let said = stderr(&output);
+    assert!(said.contains("areas and cover estimated") && said.contains("(estimated)"), "{said}");
+    let [found, of_mesh] =
+        [output, run(&bench, "block.stl", &["--points", "3000"])].map(|output| rows(&output));
+    let [found, of_mesh] = [&found, &of_mesh].map(|rows| number(&rows[1]["integral"]));
+    assert!((found / of_mesh - 1.0).abs() < 0.03, "{found} {of_mesh}");
+}
+
+#[test]
+fn saved_parts_are_felt_as_they_were() {
+    let bench = Bench::new();
+    let file = |name: &str| bench.folder.path().join(name).display().to_string();
+    let sample = |out: &str, more: &[&str]| {
+        let (part, out) = (file("block.stl"), file(out));
+        let given = ["sample", "--part", &part, "--unit", "mm", "-o", &out];
+        touchoff(&[&given[..], more].concat())
+    };
+    let output = sample("block.touchoff", &["--points", "5000"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("5000 points"), "{}", stderr(&output));
+    let felt = |part: &str| {
+        let mut found = rows(&run(&bench, part, &["--points", "5000"]));
+        for row in &mut found {
+            row["ns"] = Value::Null;
+        }
+        found
+    };
+    assert_eq!(felt("block.touchoff"), felt("block.stl"));
+    let refused = sample("block.part", &[]);
+    assert!(stderr(&refused).contains("block.touchoff` instead of"), "{}", stderr(&refused));
+    let nowhere = sample("no/such/folder/block.touchoff", &[]);
+    assert_eq!(nowhere.status.code(), Some(1), "{}", stderr(&nowhere));
+    let mut bytes = std::fs::read(file("block.touchoff")).expect("saved");
+    bytes[5_000] ^= 1;
+    bench.write("flipped.touchoff", &bytes);
+    bench.refused("flipped.touchoff", "path.csv", "D2Ball", &["flipped.touchoff"]);
+    bench.write("short.touchoff", &bytes[..4_000]);
+    bench.refused("short.touchoff", "path.csv", "D2Ball", &["short.touchoff"]);
+    let stl = std::fs::read(file("block.stl")).expect("the block");
+    bench.write("foreign.touchoff", stl);
+    bench.refused("foreign.touchoff", "path.csv", "D2Ball", &["foreign.touchoff"]);
+    let certified = run(&bench, "block.touchoff", &["--certify", "1e-6"]);
+    assert!(stderr(&certified).contains("`--certify` is for meshes"), "{}", stderr(&certified));
+}
