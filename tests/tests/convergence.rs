@@ -22,7 +22,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
 
 #[test]
 fn errors_fall_as_they_should() {
-    let sizes = [19.0, 108.0, 611.0].map(|contacts| Often { contacts, clouds: 8, placements: 16 });
+    let sizes = [19.0, 88.0, 400.0].map(|contacts| Often { contacts, clouds: 6, placements: 16 });
     for contact in [Contact::BallInPlane, Contact::SideInPlane, Contact::BallOnBall] {
         let table = table(contact, &sizes, 3);
         let name = contact.name();
