@@ -15,7 +15,7 @@ pub(super) const CANDIDATES: usize = 4;
 const PUT: usize = 25;
 /// How far that is at first, in spacings.
 const FAR: f64 = 0.95;
-/// As how far it goes on, once there is hardly anything so far.
+/// How much nearer the next ones may be.
 const NEARER: f64 = 0.97;
 
 pub(super) fn blue(mesh: &Mesh, facets: &Facets, count: usize, seed: u64) -> Cloud {
@@ -37,19 +37,17 @@ pub(super) fn blue(mesh: &Mesh, facets: &Facets, count: usize, seed: u64) -> Clo
         let mut holes = surface.holes(&sites, far, &mut farthest);
         holes.sort_unstable_by(|a, b| {
             let place =
-                |hole: &Hole| (hole.triangle, hole.place.x.to_bits(), hole.place.y.to_bits());
+                |hole: &Hole| (hole.triangle, <[f64; 3]>::from(hole.place).map(f64::to_bits));
             b.distance.total_cmp(&a.distance).then_with(|| place(a).cmp(&place(b)))
         });
-        let (mut taken, before) = (Put::new(far), cloud.len());
+        let mut taken = Put::new(far);
         for hole in holes {
             if cloud.len() < count && taken.put(&hole) {
                 let normal = mesh.normal(hole.triangle).unwrap_or_default();
                 cloud.push(hole.place, normal, hole.triangle, 0.0);
             }
         }
-        if (cloud.len() - before) * 50 < put {
-            far = NEARER * farthest.iter().copied().fold(0.0, f64::max).min(far);
-        }
+        far = NEARER * farthest.iter().copied().fold(0.0, f64::max).min(far);
         if far <= surface.rounded() {
             // All of the surface is at a point already.
             (0..count - cloud.len()).for_each(|index| take(&mut cloud, index));

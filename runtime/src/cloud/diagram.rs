@@ -48,6 +48,8 @@ pub(super) struct Room {
     farther: Vec<u32>,
     cell: Vec<Corner>,
     cut: Vec<Corner>,
+    /// Points whose lines have touched the cell, and how far these were and can be off.
+    touched: Vec<(u32, Vector3<f64>, f64, f64)>,
     /// Points whose cells are or will be looked at: the first has the piece's middle.
     pub(super) met: Vec<u32>,
 }
@@ -91,7 +93,7 @@ impl Surface {
         room: &mut Room,
         mut with: impl FnMut(u32, &[Corner]),
     ) {
-        let Room { found, farther, cell, cut, met } = room;
+        let Room { found, farther, cell, cut, touched, met } = room;
         let apart =
             |site: u32| turned * (sites.normals[site as usize] - piece.normal).norm_squared();
         met.clear();
@@ -102,6 +104,7 @@ impl Surface {
             let (at, mine) = (sites.points[site as usize], apart(site));
             cell.clear();
             cell.extend(self.corners(piece).iter().map(|corner| (corner - at, EDGE)));
+            touched.clear();
             let mut reach = reach_of(cell, mine);
             let range = sites.starts[site as usize]..sites.starts[site as usize + 1];
             let (mut list, mut all) = (&sites.beside[range], false);
@@ -120,12 +123,11 @@ impl Surface {
                     if most < -slack {
                         continue;
                     }
-                    if !met.iter().rev().any(|one| *one == other) {
-                        met.push(other);
-                    }
+                    touched.push((other, toward, half, slack));
                     if most <= slack {
                         if least >= -slack && other < site {
                             cell.clear();
+                            meet(met, other);
                             break 'cut;
                         }
                     } else if clip(cell, cut, toward, half + slack, other) {
@@ -147,6 +149,10 @@ impl Surface {
             }
             if !cell.is_empty() {
                 with(site, cell);
+                let still = touched
+                    .iter()
+                    .filter(|(_, toward, half, slack)| over(cell, toward, *half)[1] >= -slack);
+                still.for_each(|(other, ..)| meet(met, *other));
             }
         }
     }
@@ -174,6 +180,13 @@ impl Surface {
             }
             within *= 2.0;
         }
+    }
+}
+
+/// Notes a point whose cell is to be looked at.
+fn meet(met: &mut Vec<u32>, other: u32) {
+    if !met.iter().rev().any(|one| *one == other) {
+        met.push(other);
     }
 }
 

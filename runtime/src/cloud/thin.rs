@@ -62,9 +62,9 @@ struct Crowd {
     normal: Vec<[f32; 3]>,
     /// One more than how crowded each is; 0 for those that have left.
     crowded: Vec<AtomicU64>,
-    /// The cell of each, and for each cell the points of it and of those beside it, row by row.
-    cell: Vec<u32>,
-    rows: Vec<[[u32; 2]; 9]>,
+    /// The neighbours of each, one after the other, and where each one's begin.
+    neighbours: Vec<u32>,
+    starts: Vec<usize>,
     /// Nearer than this counts as this near.
     least: f32,
 }
@@ -100,7 +100,8 @@ impl Crowd {
             cell.push(keys.len() as u32 - 1);
         }
         starts.push(keyed.len() as u32);
-        let rows = cores::ranges(keys.len(), TOGETHER, |range| rows(&keys, &starts, range));
+        let rows =
+            cores::ranges(keys.len(), TOGETHER, |range| rows(&keys, &starts, range)).concat();
         let of = |axis: usize| {
             let places = keyed.iter().map(|(_, i)| points[*i as usize][axis] - low[axis]);
             places.map(|from| (from / unit) as f32).collect()
@@ -112,46 +113,59 @@ impl Crowd {
         let mut crowd = Crowd {
             place: [of(0), of(1), of(2)],
             normal: normal.collect(),
-            crowded: vec![],
-            cell,
-            rows: rows.concat(),
+            crowded: Vec::with_capacity(keyed.len()),
+            neighbours: vec![],
+            starts: Vec::with_capacity(keyed.len() + 1),
             least,
             index: keyed.iter().map(|(_, index)| *index).collect(),
         };
-        crowd.crowded = cores::ranges(points.len(), TOGETHER, |range| {
-            let of = |place| {
-                let mut sum = 1;
-                crowd.neighbours(place, |_, share| sum += share);
-                AtomicU64::new(sum)
-            };
-            range.map(|place| of(place as u32)).collect::<Vec<_>>()
-        })
-        .into_iter()
-        .flatten()
-        .collect();
+        let met = cores::ranges(points.len(), TOGETHER, |range| {
+            let (mut neighbours, mut each) = (vec![], Vec::with_capacity(range.len()));
+            for place in range {
+                let (from, mut crowded) = (neighbours.len(), 1);
+                for [first, last] in &rows[cell[place] as usize] {
+                    for other in *first..*last {
+                        if let Some(share) = crowd.share(place as u32, other) {
+                            neighbours.push(other);
+                            crowded += share;
+                        }
+                    }
+                }
+                each.push((crowded, neighbours.len() - from));
+            }
+            (neighbours, each)
+        });
+        crowd.neighbours.reserve(met.iter().map(|(neighbours, _)| neighbours.len()).sum());
+        crowd.starts.push(0);
+        for (neighbours, each) in met {
+            crowd.neighbours.extend(neighbours);
+            for (crowded, count) in each {
+                crowd.crowded.push(AtomicU64::new(crowded));
+                crowd.starts.push(crowd.starts[crowd.starts.len() - 1] + count);
+            }
+        }
         crowd
     }
 
-    /// Calls with each neighbour of a point, and how much they crowd each other.
+    /// How much two points crowd each other; `None` if they are no neighbours.
     #[inline(always)]
-    fn neighbours(&self, at: u32, mut with: impl FnMut(u32, u64)) {
-        let [xs, ys, zs] = &self.place;
-        let me = at as usize;
-        let (x, y, z, normal) = (xs[me], ys[me], zs[me], self.normal[me]);
-        for [from, to] in self.rows[self.cell[me] as usize] {
-            for other in from as usize..to as usize {
-                let (dx, dy, dz) = (xs[other] - x, ys[other] - y, zs[other] - z);
-                let squared = dx * dx + dy * dy + dz * dz;
-                if squared < 1.0 && other != me {
-                    let [i, j, k] = self.normal[other];
-                    if normal[0] * i + normal[1] * j + normal[2] * k > SAME_SIDE {
-                        let near = 1.0 - squared.sqrt().max(self.least);
-                        let fourth = (near * near) * (near * near);
-                        with(other as u32, (fourth * fourth * MOST) as u64);
-                    }
-                }
-            }
+    fn share(&self, one: u32, other: u32) -> Option<u64> {
+        let (i, j) = (one as usize, other as usize);
+        let [dx, dy, dz] = self.place.each_ref().map(|list| list[j] - list[i]);
+        let squared = dx * dx + dy * dy + dz * dz;
+        if squared >= 1.0 || one == other {
+            return None;
         }
+        let ([a, b, c], [x, y, z]) = (self.normal[i], self.normal[j]);
+        (a * x + b * y + c * z > SAME_SIDE).then(|| {
+            let near = 1.0 - squared.sqrt().max(self.least);
+            let fourth = (near * near) * (near * near);
+            (fourth * fourth * MOST) as u64
+        })
+    }
+
+    fn neighbours(&self, at: u32) -> &[u32] {
+        &self.neighbours[self.starts[at as usize]..self.starts[at as usize + 1]]
     }
 
     /// Lets all leave that have neighbours, those first that are more crowded than all theirs; how
@@ -174,17 +188,12 @@ impl Crowd {
                         staying.push([place, before]);
                         continue;
                     }
-                    let mut above = (u64::MAX, place);
-                    self.neighbours(place, |other, _| {
-                        let other = now(other);
-                        if other > mine && other < above {
-                            above = other;
-                        }
-                    });
-                    if above.1 == place {
-                        going.push(mine);
-                    } else {
-                        staying.push([place, above.1]);
+                    // The least of those that are more crowded: it stays the longest.
+                    let others = self.neighbours(place).iter().map(|other| now(*other));
+                    let above = others.filter(|other| *other > mine).min();
+                    match above {
+                        None => going.push(mine),
+                        Some((_, above)) => staying.push([place, above]),
                     }
                 }
                 (going, staying)
@@ -199,13 +208,13 @@ impl Crowd {
             cores::ranges(going.len(), TOGETHER, |range| {
                 for (_, place) in &going[range] {
                     self.crowded[*place as usize].store(0, Relaxed);
-                    self.neighbours(*place, |other, share| {
-                        let other = &self.crowded[other as usize];
+                    for other in self.neighbours(*place) {
+                        let crowded = &self.crowded[*other as usize];
                         // Two that go together are no neighbours, so this is nobody's last word.
-                        if other.load(Relaxed) != 0 {
-                            other.fetch_sub(share, Relaxed);
+                        if crowded.load(Relaxed) != 0 {
+                            crowded.fetch_sub(self.share(*place, *other).unwrap_or(0), Relaxed);
                         }
-                    });
+                    }
                 }
             });
         }
