@@ -2,7 +2,7 @@
 
 use touchoff::mesh::MeshError;
 use touchoff::tool::ToolError;
-use touchoff::{CloudError, PartError, ProgramError};
+use touchoff::{CloudError, ProgramError};
 
 impl Failure {
     /// Whether the reader of the output has closed it, which is no failure.
@@ -19,9 +19,6 @@ impl Failure {
 /// What ends the program with exit status 1.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// The part could not be loaded.
-    #[error(transparent)]
-    Part(#[from] PartError),
     /// A cloud could not be made.
     #[error(transparent)]
     Cloud(#[from] CloudError),

@@ -2,7 +2,7 @@
 
 use crate::Unit;
 use crate::cloud::{Cloud, CloudError, Cover, check_place, unit_normal};
-use crate::mesh::{Mesh, StlError, Survey};
+use crate::mesh::{Mesh, Shape, ShapeError, Survey};
 use crate::pose::Pose;
 use crate::probe::Probe;
 use crate::tool::Tool;
@@ -25,24 +25,28 @@ pub struct Part {
 /// A part that could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
-    /// The mesh could not be read.
+    /// The file could not be read.
     #[error(transparent)]
-    Stl(#[from] StlError),
+    Shape(#[from] ShapeError),
     /// The cloud could not be made.
     #[error(transparent)]
     Cloud(#[from] CloudError),
 }
 
 impl Part {
-    /// A part from an STL file, whose lengths are in `unit`, its points as [`Part::from_mesh`]
-    /// spreads them.
-    pub fn read_stl(
+    /// A part from a mesh in STL, PLY or OBJ, whose lengths are in `unit`, its points as
+    /// [`Part::from_mesh`] spreads them; or from points with normals in PLY, all of them, as
+    /// [`Cloud::from_points`] takes them.
+    pub fn read(
         path: impl AsRef<Path>,
         unit: Unit,
         points: usize,
         seed: u64,
     ) -> Result<Part, PartError> {
-        Ok(Part::from_mesh(&Mesh::read_stl(path, unit)?, points, seed)?)
+        Ok(match Shape::read(path, unit)? {
+            Shape::Mesh(mesh) => Part::from_mesh(&mesh, points, seed)?,
+            Shape::Points(points) => Part::from_cloud(&Cloud::from_points(points, unit)?),
+        })
     }
 
     /// A part from a mesh: `points` points spread evenly over the surface ([`Cloud::blue`]), the
