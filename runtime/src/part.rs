@@ -94,7 +94,10 @@ impl Part {
             let unseen = probe.unseen();
             let places = probe.deeper(pose, unseen.unwrap_or(-1.0));
             taken += places.len();
-            if unseen.is_none() && !places.is_empty() {
+            if places.is_empty() {
+                continue;
+            }
+            if unseen.is_none() {
                 tree.cover = None;
             }
             tree.remove(places);
