@@ -40,7 +40,9 @@ pub fn near(tool: &dyn Tool, count: usize) -> Points {
 /// # Panics
 /// Of no points.
 pub fn part(points: usize) -> Part {
-    Part::from_cloud(&Cloud::random(&tube(), points, 1).expect("the tube has a surface"))
+    let mesh = tube();
+    let cloud = Cloud::random(&mesh, points, 1).expect("the tube has a surface");
+    Part::new(&cloud, mesh.survey())
 }
 
 /// A path cut into poses.
