@@ -123,10 +123,16 @@ pub(super) fn cover(rows: &[cover::Row]) -> String {
     let [quick, long] = seconds(|row| row.work.as_secs_f64());
     let [slow, fast] = seconds(|row| row.one.as_secs_f64() / row.all.as_secs_f64());
     let [least, most] = seconds(|row| 100.0 * row.work.as_secs_f64() / row.one.as_secs_f64());
+    let shared = least < 95.0;
+    let rest = if shared {
+        ": the rest other programs had, so what more cores save is not told"
+    } else {
+        ""
+    };
     format!(
         "From 10,000 points on ε √(N/area) is {low:.3} to {high:.3} of blue clouds and {low_random:.2} to {high_random:.2} of random ones. {points} points keep \
          one core busy for {quick:.1} to {long:.1} s; by the clock it took {slow:.2} to {fast:.2} times as long as all cores, \
-         and was busy for {least:.0} to {most:.0} % of that: the rest other programs had, so only a quiet machine tells what more cores save."
+         and was busy for {least:.0} to {most:.0} % of that{rest}."
     )
 }
 
