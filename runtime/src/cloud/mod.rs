@@ -178,7 +178,7 @@ impl Cloud {
         Ok(cloud)
     }
 
-    /// The same points, each with the area of its cell on the mesh that they were taken from: the
+    /// The same points, each with the area of its cell on the mesh that they were taken from, in the same unit: the
     /// places that it is nearest to, of those on its side of an edge or of a thin sheet. Their sum
     /// is the mesh's area to rounding. And the cloud's [cover](Cloud::cover).
     #[must_use]
