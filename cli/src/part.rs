@@ -3,6 +3,7 @@
 use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
 use crate::files::{Found, length};
+use std::path::Path;
 use touchoff::mesh::Shape;
 use touchoff::tool::Card;
 use touchoff::{Cloud, Cover, Mesh, Part, Probe, Tool, Unit};
@@ -20,7 +21,7 @@ pub(crate) struct Loaded {
 pub(crate) fn load(wanted: &PartFile, card: Option<&Card>) -> Result<Loaded, Failure> {
     let file = wanted.part.display();
     let no_mesh = |what| Failure::NoTriangles { file: file.to_string(), what };
-    if wanted.part.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED)) {
+    if is_saved(&wanted.part) {
         if wanted.tolerance.is_some() {
             return Err(no_mesh("--tolerance"));
         }
@@ -44,6 +45,11 @@ pub(crate) fn load(wanted: &PartFile, card: Option<&Card>) -> Result<Loaded, Fai
             Ok(Loaded { part, mesh: None })
         }
     }
+}
+
+/// Whether a file's name is that of a saved part.
+fn is_saved(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED))
 }
 
 /// As many points as are asked for, or as the tolerance wants.
@@ -97,7 +103,7 @@ pub(crate) fn sample(wanted: &Sample) -> Result<(), Failure> {
     };
     let tool = found.as_ref().map(Found::tool);
     let output = &wanted.output;
-    if !output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED)) {
+    if !is_saved(output) {
         let (file, better) = (output.display().to_string(), output.with_extension(SAVED));
         return Err(Failure::SavedName { file, better });
     }

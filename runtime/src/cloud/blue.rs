@@ -10,7 +10,7 @@ use nalgebra::Point3;
 use std::collections::HashMap;
 
 /// So many times as many points are drawn as are left.
-pub(super) const CANDIDATES: usize = 4;
+const CANDIDATES: usize = 4;
 /// One in so many is put where the surface is far from all others.
 const PUT: usize = 25;
 /// How far that is at first, in spacings.
@@ -18,7 +18,13 @@ const FAR: f64 = 0.95;
 /// How much nearer the next ones may be.
 const NEARER: f64 = 0.97;
 
-pub(super) fn blue(mesh: &Mesh, facets: &Facets, count: usize, seed: u64) -> Cloud {
+pub(super) fn blue(
+    mesh: &Mesh,
+    facets: &Facets,
+    surface: &Surface,
+    count: usize,
+    seed: u64,
+) -> Cloud {
     let area = facets.area();
     let drawn = facets.even(mesh, count * CANDIDATES, seed);
     let put = count.div_ceil(PUT).min(count - 1);
@@ -29,11 +35,10 @@ pub(super) fn blue(mesh: &Mesh, facets: &Facets, count: usize, seed: u64) -> Clo
     };
     kept.iter().for_each(|index| take(&mut cloud, *index as usize));
 
-    let surface = Surface::new(mesh, area, count);
-    let mut far = FAR * (area / count as f64).sqrt();
+    let mut far = FAR * surface.spacing;
     let mut farthest = surface.farthest();
     while cloud.len() < count {
-        let sites = Sites::new(&surface, &cloud.points, &cloud.normals);
+        let sites = Sites::new(surface, &cloud.points, &cloud.normals);
         let mut holes = surface.holes(&sites, far, &mut farthest);
         holes.sort_unstable_by(|a, b| {
             let place =

@@ -13,6 +13,7 @@
 //! computed cell contains the true one, and the neighbours of that touch it. Of points whose lines no
 //! corner is clearly off, twice the same point or its mirror image, the first has all.
 
+use super::lists::Lists;
 use super::near::Near;
 use super::pieces::{Piece, Surface};
 use crate::cores;
@@ -30,9 +31,8 @@ pub(super) struct Sites<'a> {
     pub(super) points: &'a [Point3<f64>],
     normals: &'a [Vector3<f64>],
     near: Near,
-    /// Those within `near_by` of each, the nearest first, and where each one's begin.
-    beside: Vec<u32>,
-    starts: Vec<usize>,
+    /// Those within `near_by` of each, the nearest first.
+    beside: Lists,
     near_by: f64,
 }
 
@@ -63,22 +63,16 @@ impl<'a> Sites<'a> {
         let near = Near::new(points);
         let near_by = BESIDE * surface.spacing;
         let lists = cores::ranges(points.len(), TOGETHER, |range| {
-            let (mut found, mut beside, mut counts) = (vec![], vec![], vec![]);
+            let (mut found, mut beside) = (vec![], Lists::default());
             for site in range {
                 near.within(points[site].into(), near_by, &mut found);
-                counts.push(found.len());
-                beside.extend(found.iter().map(|(_, other)| *other));
+                found.iter().for_each(|(_, other)| beside.push(*other));
+                beside.end();
             }
-            (beside, counts)
+            beside
         });
-        let mut starts = Vec::with_capacity(points.len() + 1);
-        let mut beside = Vec::with_capacity(lists.iter().map(|(list, _)| list.len()).sum());
-        starts.push(0);
-        for (list, counts) in lists {
-            beside.extend(list);
-            counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));
-        }
-        Sites { points, normals, near, beside, starts, near_by }
+        let beside = Lists::joined(lists);
+        Sites { points, normals, near, beside, near_by }
     }
 }
 
@@ -106,8 +100,7 @@ impl Surface {
             cell.extend(self.corners(piece).iter().map(|corner| (corner - at, EDGE)));
             touched.clear();
             let mut reach = reach_of(cell, mine);
-            let range = sites.starts[site as usize]..sites.starts[site as usize + 1];
-            let (mut list, mut all) = (&sites.beside[range], false);
+            let (mut list, mut all) = (sites.beside.of(site), false);
             'cut: loop {
                 for &other in list.iter().filter(|other| **other != site) {
                     let toward = sites.points[other as usize] - at;
@@ -117,8 +110,7 @@ impl Surface {
                     }
                     let beyond = apart(other);
                     let half = (squared + beyond - mine) / 2.0;
-                    let slack =
-                        ROUNDING * (reach * squared.sqrt() + squared + beyond.abs() + mine.abs());
+                    let slack = ROUNDING * (reach * squared.sqrt() + squared + beyond + mine);
                     let [least, most] = over(cell, &toward, half);
                     if most < -slack {
                         continue;

@@ -56,7 +56,8 @@ impl Facets {
         cloud
     }
 
-    /// As many points, one from each of as many equal shares of the area: they are for thinning.
+    /// As many points, one from each of as many equal shares of the area, without weights: they are
+    /// for thinning.
     pub(super) fn even(&self, mesh: &Mesh, count: usize, seed: u64) -> Cloud {
         let share = self.area() / count as f64;
         let draw = |range: Range<usize>| {
@@ -65,7 +66,7 @@ impl Facets {
             for index in range {
                 let facet = self.at((index as f64 + fraction(&mut random)) * share);
                 let point = self.point(mesh, facet, &mut random);
-                drawn.push(point, self.normals[facet], self.ids[facet], share);
+                drawn.push(point, self.normals[facet], self.ids[facet], 0.0);
             }
             drawn
         };

@@ -1,6 +1,7 @@
 //! What is not known of points without a mesh: the area of each one's cell, and how far the surface gets
 //! from them. Estimates: each cell is taken for flat, in the plane across the point's normal.
 
+use super::SAME_SIDE;
 use super::diagram::{Corner, EDGE, area, clip};
 use super::near::Near;
 use crate::cores;
@@ -11,8 +12,6 @@ use std::f64::consts::{PI, TAU};
 const NEIGHBOURS: usize = 8;
 /// How far a cell reaches at most, and where that shows that the surface ends there, in spacings.
 const REACHES: [f64; 2] = [2.0, 0.7];
-/// Neighbours whose normals are at more than 107° are on the far side of a thin sheet.
-const SAME_SIDE: f64 = -0.3;
 /// Neighbours whose normals are at more than 45° are beyond an edge.
 const FLAT: f64 = 0.7;
 /// The corners of a cell before it is cut.

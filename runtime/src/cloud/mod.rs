@@ -7,6 +7,7 @@ mod diagram;
 mod draw;
 mod error;
 mod guess;
+mod lists;
 mod near;
 mod pieces;
 mod thin;
@@ -21,6 +22,9 @@ use diagram::Sites;
 use draw::Facets;
 use nalgebra::{Point3, Vector3};
 use pieces::Surface;
+
+/// Points whose normals are at more than 107°, a cosine below this, are on two sides of something thin.
+const SAME_SIDE: f64 = -0.3;
 
 /// How far the norm of a given normal may be from 1 before it is refused rather than normalised.
 pub const NORMAL_TOLERANCE: f64 = 1e-3;
@@ -98,8 +102,9 @@ impl Cloud {
         if count > MOST_BLUE {
             return Err(CloudError::TooManyBlue { count });
         }
-        let cloud = blue::blue(mesh, &Facets::of(mesh), count, seed);
-        Ok(cloud.weighed(mesh))
+        let facets = Facets::of(mesh);
+        let surface = Surface::new(mesh, facets.area(), count);
+        Ok(blue::blue(mesh, &facets, &surface, count, seed).weighed_on(&surface))
     }
 
     /// `count` points spread as is said, weighed, their cover known.
@@ -182,10 +187,14 @@ impl Cloud {
     /// places that it is nearest to, of those on its side of an edge or of a thin sheet. Their sum
     /// is the mesh's area to rounding. And the cloud's [cover](Cloud::cover).
     #[must_use]
-    pub fn weighed(mut self, mesh: &Mesh) -> Cloud {
+    pub fn weighed(self, mesh: &Mesh) -> Cloud {
         let surface = Surface::new(mesh, Facets::of(mesh).area(), self.len());
+        self.weighed_on(&surface)
+    }
+
+    fn weighed_on(mut self, surface: &Surface) -> Cloud {
         let Cells { areas, radius } =
-            surface.cells(&Sites::new(&surface, &self.points, &self.normals));
+            surface.cells(&Sites::new(surface, &self.points, &self.normals));
         self.weights = areas;
         self.cover = Some(Cover { radius, proved: true });
         self
@@ -201,7 +210,8 @@ impl Cloud {
             let index = index as usize;
             cloud.push(self.points[index], self.normals[index], self.triangles[index], 0.0);
         }
-        cloud.weighed(mesh)
+        let surface = Surface::new(mesh, area, cloud.len());
+        cloud.weighed_on(&surface)
     }
 
     /// One point for each triangle that has an area: its centroid, with that area as weight.

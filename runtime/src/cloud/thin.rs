@@ -10,6 +10,8 @@
 //! sorted by how crowded they were, and the last of them come back. The result is that of taking
 //! one at a time.
 
+use super::SAME_SIDE;
+use super::lists::Lists;
 use crate::cores;
 use nalgebra::{Point3, Vector3};
 use std::ops::Range;
@@ -17,9 +19,6 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Of a neighbour as near as can be: 40 bits, and room for 2^24 of them.
 const MOST: f32 = (1u64 << 40) as f32;
-/// Points whose normals are at more than 107° are on two sides of something thin, and no
-/// neighbours.
-const SAME_SIDE: f32 = -0.3;
 /// The most cells along an axis.
 const CELLS: f64 = (1 << 20) as f64;
 /// Points that one core takes at a time.
@@ -62,9 +61,7 @@ struct Crowd {
     normal: Vec<[f32; 3]>,
     /// One more than how crowded each is; 0 for those that have left.
     crowded: Vec<AtomicU64>,
-    /// The neighbours of each, one after the other, and where each one's begin.
-    neighbours: Vec<u32>,
-    starts: Vec<usize>,
+    neighbours: Lists,
     /// Nearer than this counts as this near.
     least: f32,
 }
@@ -114,15 +111,14 @@ impl Crowd {
             place: [of(0), of(1), of(2)],
             normal: normal.collect(),
             crowded: Vec::with_capacity(keyed.len()),
-            neighbours: vec![],
-            starts: Vec::with_capacity(keyed.len() + 1),
+            neighbours: Lists::default(),
             least,
             index: keyed.iter().map(|(_, index)| *index).collect(),
         };
         let met = cores::ranges(points.len(), TOGETHER, |range| {
-            let (mut neighbours, mut each) = (vec![], Vec::with_capacity(range.len()));
+            let (mut neighbours, mut sums) = (Lists::default(), Vec::with_capacity(range.len()));
             for place in range {
-                let (from, mut crowded) = (neighbours.len(), 1);
+                let mut crowded = 1;
                 for [first, last] in &rows[cell[place] as usize] {
                     for other in *first..*last {
                         if let Some(share) = crowd.share(place as u32, other) {
@@ -131,19 +127,14 @@ impl Crowd {
                         }
                     }
                 }
-                each.push((crowded, neighbours.len() - from));
+                neighbours.end();
+                sums.push(crowded);
             }
-            (neighbours, each)
+            (neighbours, sums)
         });
-        crowd.neighbours.reserve(met.iter().map(|(neighbours, _)| neighbours.len()).sum());
-        crowd.starts.push(0);
-        for (neighbours, each) in met {
-            crowd.neighbours.extend(neighbours);
-            for (crowded, count) in each {
-                crowd.crowded.push(AtomicU64::new(crowded));
-                crowd.starts.push(crowd.starts[crowd.starts.len() - 1] + count);
-            }
-        }
+        let (neighbours, sums): (Vec<Lists>, Vec<Vec<u64>>) = met.into_iter().unzip();
+        crowd.neighbours = Lists::joined(neighbours);
+        crowd.crowded.extend(sums.into_iter().flatten().map(AtomicU64::new));
         crowd
     }
 
@@ -157,15 +148,11 @@ impl Crowd {
             return None;
         }
         let ([a, b, c], [x, y, z]) = (self.normal[i], self.normal[j]);
-        (a * x + b * y + c * z > SAME_SIDE).then(|| {
+        (a * x + b * y + c * z > SAME_SIDE as f32).then(|| {
             let near = 1.0 - squared.sqrt().max(self.least);
             let fourth = (near * near) * (near * near);
             (fourth * fourth * MOST) as u64
         })
-    }
-
-    fn neighbours(&self, at: u32) -> &[u32] {
-        &self.neighbours[self.starts[at as usize]..self.starts[at as usize + 1]]
     }
 
     /// Lets all leave that have neighbours, those first that are more crowded than all theirs; how
@@ -189,7 +176,7 @@ impl Crowd {
                         continue;
                     }
                     // The least of those that are more crowded: it stays the longest.
-                    let others = self.neighbours(place).iter().map(|other| now(*other));
+                    let others = self.neighbours.of(place).iter().map(|other| now(*other));
                     let above = others.filter(|other| *other > mine).min();
                     match above {
                         None => going.push(mine),
@@ -208,7 +195,7 @@ impl Crowd {
             cores::ranges(going.len(), TOGETHER, |range| {
                 for (_, place) in &going[range] {
                     self.crowded[*place as usize].store(0, Relaxed);
-                    for other in self.neighbours(*place) {
+                    for other in self.neighbours.of(*place) {
                         let crowded = &self.crowded[*other as usize];
                         // Two that go together are no neighbours, so this is nobody's last word.
                         if crowded.load(Relaxed) != 0 {

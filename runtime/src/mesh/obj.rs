@@ -206,7 +206,8 @@ impl<'a> Lines<'a, '_> {
 mod tests {
     use super::*;
     use crate::mesh::shapes;
-    use rand_core::{Rng, SeedableRng};
+    use crate::mesh::tests::mangled;
+    use rand_core::SeedableRng;
 
     const UNIT: Unit = Unit::Millimetre;
     const TRIANGLE: &str = "v 0 0 0\nv .5 0 0 1.0\nv 0 2. 1e-1 0.1 0.2 0.3\nf 1 2 3\n";
@@ -310,20 +311,10 @@ mod tests {
     #[test]
     fn survives_any_bytes() {
         let mut random = rand_pcg::Pcg64::seed_from_u64(1);
-        let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
         let words: [&[u8]; 6] = [b"-", b"\\\n", b"/", b"1e400", b"\nf 1 2 3 4\n", b"99999999999"];
         let seed = cuboid_file().into_bytes();
         for _ in 0..5000 {
-            let mut bytes = seed.clone();
-            for _ in 0..1 + below(4) {
-                let at = below(bytes.len());
-                match below(4) {
-                    0 => bytes[at] = below(256) as u8,
-                    1 => bytes[at] ^= 1 << below(8),
-                    2 => bytes.truncate(at.max(1)),
-                    _ => drop(bytes.splice(at..at, words[below(6)].iter().copied())),
-                }
-            }
+            let bytes = mangled(&seed, &words, &mut random);
             if let Ok(mesh) = Mesh::from_obj(&bytes, "", UNIT) {
                 let survey = mesh.survey();
                 assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");

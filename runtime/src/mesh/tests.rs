@@ -145,24 +145,30 @@ fn welds_what_only_noise_tells_apart() {
     assert_eq!(mesh.triangles()[2..], [[0, 3, 2], [4, 1, 2]]);
 }
 
+/// A file with up to four places changed, cut off or with a word put in.
+pub(super) fn mangled(file: &[u8], words: &[&[u8]], random: &mut rand_pcg::Pcg64) -> Vec<u8> {
+    let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
+    let mut bytes = file.to_vec();
+    for _ in 0..1 + below(4) {
+        let at = below(bytes.len());
+        match below(4) {
+            0 => bytes[at] = below(256) as u8,
+            1 => bytes[at] ^= 1 << below(8),
+            2 => bytes.truncate(at.max(1)),
+            _ => drop(bytes.splice(at..at, words[below(words.len())].iter().copied())),
+        }
+    }
+    bytes
+}
+
 #[test]
 fn survives_any_bytes() {
     let mut random = rand_pcg::Pcg64::seed_from_u64(1);
-    let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
     let text = format!("solid\n{}endsolid\n", FACET.repeat(2)).into_bytes();
     let words: [&[u8]; 6] = [b"endfacet", b"solid", b"\r\n", b"1e400", b"vertex", b"\0"];
     for seed in [binary("", &[one(), one()]), binary("solid", &[one()]), text, vec![0; 90]] {
         for _ in 0..5000 {
-            let mut bytes = seed.clone();
-            for _ in 0..1 + below(4) {
-                let at = below(bytes.len());
-                match below(4) {
-                    0 => bytes[at] = below(256) as u8,
-                    1 => bytes[at] ^= 1 << below(8),
-                    2 => bytes.truncate(at.max(1)),
-                    _ => drop(bytes.splice(at..at, words[below(6)].iter().copied())),
-                }
-            }
+            let bytes = mangled(&seed, &words, &mut random);
             if let Ok(mesh) = Mesh::from_stl(&bytes, "", UNIT) {
                 let survey = mesh.survey();
                 assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");

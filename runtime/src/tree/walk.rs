@@ -75,12 +75,7 @@ impl Walker {
         let above = tree.levels.len() - 1;
         self.above = above % 2;
         if sight.fits {
-            let [first, _] = &mut self.nodes;
-            first.room(1);
-            first.count = 1;
-            first.index[0] = 0;
-            first.slabs[0] = sight.reach.all;
-            descend(simd, &mut self.nodes, &tree.levels[..above], sight, view);
+            descend(simd, &mut self.nodes, &tree.levels[..above], sight, view, usize::MAX);
         } else {
             self.nodes[self.above].all(tree.levels[above].len());
         }
@@ -104,24 +99,7 @@ impl Walker {
                 leaves
             });
         }
-        let [even, odd] = &mut self.nodes;
-        even.room(1);
-        even.count = 1;
-        even.index[0] = 0;
-        even.slabs[0] = sight.reach.all;
-        let mut spent = 1;
-        if spent > most {
-            return None;
-        }
-        for (level, boxes) in tree.levels.iter().enumerate() {
-            let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
-            below(simd, boxes, sight, view, (from, 0..from.count), to);
-            spent += to.count;
-            if spent > most {
-                return None;
-            }
-        }
-        Some(spent)
+        descend(simd, &mut self.nodes, &tree.levels, sight, view, most)
     }
 
     /// The leaves that were found last.
@@ -234,7 +212,8 @@ pub(super) fn within<S: Simd>(
     (hit.to_bitmask() as u32, by)
 }
 
-/// Down some levels from the root, which is in the first of the two.
+/// Down some levels from the root, looking at so many nodes and what they lead to at most; how many it
+/// were.
 #[inline(always)]
 fn descend<S: Simd>(
     simd: S,
@@ -242,15 +221,26 @@ fn descend<S: Simd>(
     levels: &[Shelf<Boxes>],
     sight: &Sight,
     view: &View,
-) {
+    most: usize,
+) -> Option<usize> {
     let [even, odd] = nodes;
+    even.room(1);
+    even.count = 1;
+    even.index[0] = 0;
+    even.slabs[0] = sight.reach.all;
+    let mut spent = 1;
+    if spent > most {
+        return None;
+    }
     for (level, boxes) in levels.iter().enumerate() {
-        if level % 2 == 0 {
-            below(simd, boxes, sight, view, (even, 0..even.count), odd);
-        } else {
-            below(simd, boxes, sight, view, (odd, 0..odd.count), even);
+        let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
+        below(simd, boxes, sight, view, (from, 0..from.count), to);
+        spent += to.count;
+        if spent > most {
+            return None;
         }
     }
+    Some(spent)
 }
 
 /// The children of some nodes that the tool may reach. What lies behind the last leaf is NaN and

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::mesh::shapes;
-use rand_core::{Rng, SeedableRng};
+use crate::mesh::tests::mangled;
+use rand_core::SeedableRng;
 
 const UNIT: Unit = Unit::Millimetre;
 const ENCODINGS: [&str; 3] = ["ascii", "binary_little_endian", "binary_big_endian"];
@@ -370,22 +371,12 @@ fn a_file_cut_anywhere_is_refused() {
 #[test]
 fn survives_any_bytes() {
     let mut random = rand_pcg::Pcg64::seed_from_u64(1);
-    let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
     let words: [&[u8]; 8] =
         [b"9", b" ", b"\r\n", b"1e400", b"list", b"\0", b"element a 9\n", b"property int q\n"];
     for encoding in ENCODINGS {
         for seed in [mesh_file(encoding), cloud_file(encoding, &[([1.0; 6], 1, 0.5); 3])] {
             for _ in 0..2000 {
-                let mut bytes = seed.clone();
-                for _ in 0..1 + below(4) {
-                    let at = below(bytes.len());
-                    match below(4) {
-                        0 => bytes[at] = below(256) as u8,
-                        1 => bytes[at] ^= 1 << below(8),
-                        2 => drop(bytes.splice(at..at, words[below(8)].iter().copied())),
-                        _ => bytes.truncate(at.max(1)),
-                    }
-                }
+                let bytes = mangled(&seed, &words, &mut random);
                 if let Ok(mesh) = Mesh::from_ply(&bytes, "", UNIT) {
                     let survey = mesh.survey();
                     assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
