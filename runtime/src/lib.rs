@@ -43,6 +43,7 @@ pub mod mesh;
 mod motion;
 mod part;
 mod pose;
+pub mod precision;
 mod probe;
 pub mod program;
 mod saved;
@@ -60,8 +61,8 @@ pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
 pub use probe::{
-    BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Summary, Weights,
-    Wrench, summary,
+    BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Summary,
+    Weights, Wrench, summary,
 };
 pub use program::{Program, ProgramError, Stop};
 pub use saved::SavedError;

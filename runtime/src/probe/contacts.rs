@@ -2,6 +2,7 @@
 
 use super::{Beside, Weights};
 use crate::pose::Pose;
+use crate::precision::Precision;
 use crate::tool::Card;
 use nalgebra::{Point3, Vector3};
 
@@ -33,24 +34,31 @@ pub struct Contact {
 }
 
 /// Lists what the probe has just felt.
-pub(super) fn list(beside: &Beside<'_>, card: &Card, pose: &Pose, contacts: &mut Vec<Contact>) {
+pub(super) fn list<P: Precision>(
+    beside: &Beside<'_, P>,
+    card: &Card,
+    pose: &Pose,
+    contacts: &mut Vec<Contact>,
+) {
     let (felt, tree) = (&beside.felt, beside.tree);
     let rotation = pose.rotation();
     for at in felt.places() {
         let index = beside.search.candidates.indices()[at] as usize;
-        let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
-        let region = felt.region[at] as usize;
+        let vector = |lists: &[Vec<P::Number>; 3]| {
+            Vector3::from(lists.each_ref().map(|list| list[at].into()))
+        };
+        let region = felt.region[at].into() as usize;
         contacts.push(Contact {
             point: pose.tip() + beside.view.relative(tree, index),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,
             surface: card.regions[region].surface,
-            depth: felt.depth[at] * beside.length,
-            magnitude: felt.magnitude[at],
+            depth: felt.depth[at].into() * beside.length,
+            magnitude: felt.magnitude[at].into(),
             direction: rotation * vector(&felt.direction),
             gradient: rotation * vector(&felt.gradient),
-            niceness: felt.niceness[at],
+            niceness: felt.niceness[at].into(),
             weight: match beside.weights {
                 Weights::Area => tree.weight(index),
                 Weights::Unit => 1.0,

@@ -16,11 +16,12 @@ pub use contacts::{Contact, Summary, summary};
 pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
 pub use posture::{Deepest, Posture};
-pub use wrench::Wrench;
+pub use wrench::{Rounding, Wrench};
 
 use crate::Unit;
 use crate::part::Part;
 use crate::pose::Pose;
+use crate::precision::{Filtered, Precision};
 use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
 use crate::tree::{Search, Sight, Tree, View, WIDTH};
 use fearless_simd::Level;
@@ -35,13 +36,13 @@ use nalgebra::Point3;
 /// What a question does not need is not computed. Of a tool whose type is known, as in
 /// `Probe::new(&part, &Ball)`, a program has code only for the questions that it asks; of a
 /// `&dyn Tool` for all of them.
-pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
+pub struct Probe<'a, T: ?Sized = dyn Tool + 'a, P: Precision = Filtered> {
     tool: &'a T,
-    beside: Beside<'a>,
+    beside: Beside<'a, P>,
 }
 
 /// What is beside a tool: a part, how it is to be felt, and room to find out.
-struct Beside<'a> {
+struct Beside<'a, P: Precision> {
     tree: &'a Tree,
     /// The part's.
     unit: Unit,
@@ -51,12 +52,12 @@ struct Beside<'a> {
     weights: Weights,
     centre: Point3<f64>,
     level: Level,
-    sight: Sight,
-    view: View,
-    search: Search,
+    sight: Sight<P::Rough>,
+    view: View<P::Rough>,
+    search: Search<P::Rough, P::Number>,
     /// A leaf that had a point inside when it was asked last whether any has.
     hit: u32,
-    felt: Felt,
+    felt: Felt<P::Number>,
     contacts: Vec<Contact>,
 }
 
@@ -95,6 +96,12 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// Of a part's points in their tree, whose lengths are in that unit.
     pub(crate) fn of(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T> {
+        Probe::exactly(tree, unit, tool)
+    }
+}
+
+impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
+    fn exactly(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T, P> {
         let length = tool.card().unit.to(unit);
         let beside = Beside {
             tree,
@@ -116,14 +123,14 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
 
     /// With another force law.
     #[must_use]
-    pub fn law(mut self, law: Law) -> Probe<'a, T> {
+    pub fn law(mut self, law: Law) -> Probe<'a, T, P> {
         self.beside.law = law;
         self
     }
 
     /// With other weights.
     #[must_use]
-    pub fn weights(mut self, weights: Weights) -> Probe<'a, T> {
+    pub fn weights(mut self, weights: Weights) -> Probe<'a, T, P> {
         self.beside.weights = weights;
         self
     }
@@ -131,23 +138,33 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// With a compliance centre: a point of the tool's frame, in the part's unit, about which
     /// torque is taken.
     #[must_use]
-    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a, T> {
+    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a, T, P> {
         self.beside.centre = centre;
         self
     }
 
     /// With another SIMD level than the best of this machine. The answers do not change.
     #[must_use]
-    pub fn level(mut self, level: Level) -> Probe<'a, T> {
+    pub fn level(mut self, level: Level) -> Probe<'a, T, P> {
         self.beside.level = level;
         self
     }
 
+    /// With another precision than [`Filtered`]: `probe.precision::<Single>()`.
+    #[must_use]
+    pub fn precision<Q: Precision>(self) -> Probe<'a, T, Q>
+    where
+        T: Senses<Q::Number>,
+    {
+        let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
+        Probe::exactly(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
+    }
+
     /// Another probe like this one, for another thread.
     #[must_use]
-    pub fn another(&self) -> Probe<'a, T> {
+    pub fn another(&self) -> Probe<'a, T, P> {
         let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
-        Probe::of(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
+        Probe::exactly(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
     }
 
     /// How far a depth that is felt can be from that of the point that was given, in the part's unit:
@@ -162,10 +179,8 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
         // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
         let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
-        // A point inside is no farther from the tip than the tool is large, so neither is the origin
-        // but for the part's size: two sums, then three products and a change of unit.
-        let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
-        let own = length * card.depth.rounding + HALF * tool;
+        let carried = P::carried(tool, leaf, part);
+        let own = length * P::felt(&card.depth) + HALF * tool;
         card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
     }
 
@@ -251,7 +266,8 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
                 Law::Thesis | Law::Facing => self.feel::<AlongDirections>(),
             };
         let Beside { law, weights, .. } = self.beside;
-        if any { wrench::sum(&self.beside, pose) } else { Wrench::nothing(law, weights) }
+        let reach = self.tool.card().size();
+        if any { wrench::sum(&self.beside, reach, pose) } else { Wrench::nothing(law, weights) }
     }
 
     /// Every point of the part inside the tool, with all that is felt there.
@@ -271,7 +287,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             return vec![];
         }
         let Beside { felt, search, length, .. } = &self.beside;
-        let deep = felt.places().filter(|at| felt.depth[*at] * length > depth);
+        let deep = felt.places().filter(|at| felt.depth[*at].into() * length > depth);
         deep.map(|at| search.candidates.indices()[at] as usize).collect()
     }
 
@@ -288,7 +304,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     pub fn map<R: Send>(
         &self,
         poses: &[Pose],
-        ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
+        ask: impl Fn(&mut Probe<'a, T, P>, &Pose) -> R + Sync,
     ) -> Vec<R> {
         use rayon::prelude::*;
         // So many that starting another probe is nothing beside them.
@@ -324,7 +340,7 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     }
 }
 
-impl Beside<'_> {
+impl<P: Precision> Beside<'_, P> {
     /// Looks from a pose; whether the tool may reach the part.
     fn look(&mut self, pose: &Pose) -> bool {
         self.sight.look(&self.tree.frame, pose, &mut self.view)

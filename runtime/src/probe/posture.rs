@@ -2,6 +2,7 @@
 
 use super::Beside;
 use crate::pose::Pose;
+use crate::precision::Precision;
 use crate::tool::Card;
 use nalgebra::Point3;
 
@@ -31,10 +32,10 @@ pub struct Posture {
 }
 
 /// The deepest of what was felt, the first of several.
-pub(super) fn deepest(beside: &Beside<'_>, pose: &Pose) -> Option<Deepest> {
+pub(super) fn deepest<P: Precision>(beside: &Beside<'_, P>, pose: &Pose) -> Option<Deepest> {
     let mut most = None;
     for candidate in beside.felt.places() {
-        let depth = beside.felt.depth[candidate];
+        let depth = beside.felt.depth[candidate].into();
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
         }
@@ -43,7 +44,12 @@ pub(super) fn deepest(beside: &Beside<'_>, pose: &Pose) -> Option<Deepest> {
 }
 
 /// A candidate as the deepest; its depth is in the tool's unit.
-pub(super) fn at(beside: &Beside<'_>, pose: &Pose, candidate: usize, depth: f64) -> Deepest {
+pub(super) fn at<P: Precision>(
+    beside: &Beside<'_, P>,
+    pose: &Pose,
+    candidate: usize,
+    depth: f64,
+) -> Deepest {
     let place = beside.search.candidates.indices()[candidate] as usize;
     let tree = beside.tree;
     let point = pose.tip() + beside.view.relative(tree, place);
@@ -51,18 +57,18 @@ pub(super) fn at(beside: &Beside<'_>, pose: &Pose, candidate: usize, depth: f64)
 }
 
 /// What was felt as a posture.
-pub(super) fn posture(beside: &Beside<'_>, card: &Card, pose: &Pose) -> Posture {
+pub(super) fn posture<P: Precision>(beside: &Beside<'_, P>, card: &Card, pose: &Pose) -> Posture {
     let felt = &beside.felt;
     let (mut colliding, mut most, mut niceness) = (0, None, f64::INFINITY);
     let mut body: Option<f64> = None;
     for candidate in felt.places() {
         colliding += 1;
-        let depth = felt.depth[candidate];
+        let depth = felt.depth[candidate].into();
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
         }
-        niceness = niceness.min(felt.niceness[candidate]);
-        if !card.surface_of(felt.region[candidate] as usize).cutting {
+        niceness = niceness.min(felt.niceness[candidate].into());
+        if !card.surface_of(felt.region[candidate].into() as usize).cutting {
             body = Some(body.map_or(depth, |most| most.max(depth)));
         }
     }

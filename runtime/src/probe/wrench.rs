@@ -2,7 +2,8 @@
 
 use super::{Beside, Deepest, Law, Weights, posture};
 use crate::pose::Pose;
-use crate::tool::LANES;
+use crate::precision::Precision;
+use crate::tool::{LANES, Number};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
 use nalgebra::Vector3;
 
@@ -27,6 +28,19 @@ pub struct Wrench {
     pub integral: f64,
     /// `½ Σ w m²`
     pub energy: f64,
+    /// What of them is rounding.
+    pub rounding: Rounding,
+}
+
+/// How far rounding can take the force and the torque of a [`Wrench`] from the true sums of what was felt
+/// point by point: a bound, not an estimate. `integral` and `energy`, whose terms are all positive, lose no
+/// more than `colliding + 6` units of roundoff (2^-53) of themselves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rounding {
+    /// The length of the force's error.
+    pub force: f64,
+    /// The length of the torque's.
+    pub torque: f64,
 }
 
 impl Wrench {
@@ -42,6 +56,7 @@ impl Wrench {
             niceness: None,
             integral: 0.0,
             energy: 0.0,
+            rounding: Rounding::default(),
         }
     }
 
@@ -63,13 +78,21 @@ impl Wrench {
         };
         self.integral += other.integral;
         self.energy += other.energy;
+        let one = |mine: f64, theirs: f64, sum: Vector3<f64>| mine + theirs + UNIT * sum.norm();
+        self.rounding = Rounding {
+            force: one(self.rounding.force, other.rounding.force, self.force),
+            torque: one(self.rounding.torque, other.rounding.torque, self.torque),
+        };
     }
 
     /// The same in the frame in which its own is at `place`.
     pub(crate) fn turned(mut self, place: &Pose) -> Wrench {
         if self.colliding > 0 && *place != Pose::default() {
-            self.force = place.rotation() * self.force;
-            self.torque = place.rotation() * self.torque;
+            let turned = |v: Vector3<f64>| (place.rotation() * v, TURNED * UNIT * v.norm());
+            let (force, torque) = (turned(self.force), turned(self.torque));
+            (self.force, self.torque) = (force.0, torque.0);
+            self.rounding.force += force.1;
+            self.rounding.torque += torque.1;
             if let Some(deepest) = &mut self.deepest {
                 deepest.point = place.tip() + place.rotation() * deepest.point.coords;
             }
@@ -83,12 +106,20 @@ impl Wrench {
     }
 }
 
+/// The unit roundoff, widened for products of errors.
+const UNIT: f64 = f64::EPSILON / 2.0 * (1.0 + 1e-6);
+/// Of a vector that is turned: three products and two sums in each part, whose sizes are those of the row's
+/// parts times the vector's.
+const TURNED: f64 = 3.0 * 1.733;
+
 /// Sums over eight lanes: each lane adds its points in order, the lanes are added at the end.
 struct Sums<S: Simd> {
     /// `Σ w m` and `Σ w m²`.
     pushes: [f64x8<S>; 2],
     /// In the tool's frame: force and torque about the tip.
     tool: [f64x8<S>; 6],
+    /// What the parts of all forces are together, without their signs.
+    size: f64x8<S>,
     niceness: f64x8<S>,
     depth: f64x8<S>,
     deepest: f64x8<S>,
@@ -98,14 +129,17 @@ struct Sums<S: Simd> {
 struct Totals {
     pushes: [f64; 2],
     tool: [f64; 6],
+    size: f64,
+    /// How many blocks had a point inside.
+    blocks: usize,
     niceness: f64,
     /// The deepest, and which candidate it is: the first of several.
     depth: f64,
     deepest: f64,
 }
 
-/// Sums what the probe has just felt.
-pub(super) fn sum(beside: &Beside<'_>, pose: &Pose) -> Wrench {
+/// Sums what the probe has just felt, with a tool that reaches that far from its tip, in its unit.
+pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, reach: f64, pose: &Pose) -> Wrench {
     let colliding = beside.felt.count();
     let totals = dispatch!(beside.level, simd => totals(simd, beside, pose));
     let rotation = pose.rotation();
@@ -115,6 +149,7 @@ pub(super) fn sum(beside: &Beside<'_>, pose: &Pose) -> Wrench {
     let force = rotation * half(&totals.tool, 0);
     let about_tip = rotation * (half(&totals.tool, 3) * beside.length);
     let arm = rotation * beside.centre.coords;
+    let torque = about_tip - arm.cross(&force);
     Wrench {
         law: beside.law,
         weights: beside.weights,
@@ -122,11 +157,33 @@ pub(super) fn sum(beside: &Beside<'_>, pose: &Pose) -> Wrench {
         deepest: (totals.depth >= 0.0)
             .then(|| posture::at(beside, pose, totals.deepest as usize, totals.depth)),
         force,
-        torque: about_tip - arm.cross(&force),
+        torque,
         niceness: (colliding > 0).then_some(totals.niceness),
         integral: totals.pushes[0],
         energy: totals.pushes[1] / 2.0,
+        rounding: rounding(beside, &totals, reach, torque),
     }
+}
+
+/// Each lane adds a term a block, seven sums at most join the lanes (Higham, *Accuracy and Stability of Numerical
+/// Algorithms*, 2002, eq. 4.4). A force is a product of a push, which is two products, and of the
+/// difference of a direction and a turned normal, each part of which errs by five units at most where
+/// these cancel. A moment is two products and a difference of lengths up to the tool's and such forces.
+fn rounding<P: Precision>(
+    beside: &Beside<'_, P>,
+    totals: &Totals,
+    reach: f64,
+    torque: Vector3<f64>,
+) -> Rounding {
+    let additions = totals.blocks as f64 + 7.0;
+    let terms = 3.0 * totals.size + 9.0 * totals.pushes[0];
+    let force = UNIT * ((additions + TURNED) * totals.size + terms);
+    let moments = UNIT * ((additions + TURNED + 5.0) * totals.size + terms);
+    let arm = beside.centre.coords.norm();
+    let torque = 2.0 * reach * beside.length * moments
+        + arm * (force + UNIT * 12.0 * totals.size)
+        + UNIT * torque.norm();
+    Rounding { force, torque }
 }
 
 // What runs on vectors is in functions that are always inlined: a closure would be compiled without
@@ -135,17 +192,20 @@ pub(super) fn sum(beside: &Beside<'_>, pose: &Pose) -> Wrench {
 type Triple<S> = [f64x8<S>; 3];
 
 #[inline(always)]
-fn totals<S: Simd>(simd: S, beside: &Beside<'_>, pose: &Pose) -> Totals {
+fn totals<P: Precision, S: Simd>(simd: S, beside: &Beside<'_, P>, pose: &Pose) -> Totals {
     let zero = f64x8::splat(simd, 0.0);
     let mut sums = Sums {
         pushes: [zero; 2],
         tool: [zero; 6],
+        size: zero,
         niceness: f64x8::splat(simd, f64::INFINITY),
         depth: f64x8::splat(simd, -1.0),
         deepest: zero,
     };
+    let mut blocks = 0;
     for (block, inside) in beside.felt.inside.iter().enumerate() {
         if *inside != 0 {
+            blocks += 1;
             add(simd, beside, pose, block, *inside, &mut sums);
         }
     }
@@ -155,6 +215,8 @@ fn totals<S: Simd>(simd: S, beside: &Beside<'_>, pose: &Pose) -> Totals {
     Totals {
         pushes: [sums.pushes[0].reduce_sum(), sums.pushes[1].reduce_sum()],
         tool: six(&sums.tool),
+        size: sums.size.reduce_sum(),
+        blocks,
         niceness: sums.niceness.reduce_min(),
         depth,
         deepest: deepest.reduce_min(),
@@ -170,32 +232,27 @@ fn six<S: Simd>(sums: &[f64x8<S>; 6]) -> [f64; 6] {
     totals
 }
 
-#[inline(always)]
-fn load<S: Simd>(simd: S, list: &[f64], block: usize) -> f64x8<S> {
-    f64x8::from_slice(simd, &list[block * LANES..(block + 1) * LANES])
-}
-
 /// Three lists; 0 where the mask is not set.
 #[inline(always)]
-fn load_vector<S: Simd>(
+fn load_vector<N: Number, S: Simd>(
     simd: S,
-    lists: &[Vec<f64>; 3],
+    lists: &[Vec<N>; 3],
     block: usize,
     mask: mask64x8<S>,
 ) -> Triple<S> {
     let zero = f64x8::splat(simd, 0.0);
     [
-        mask.select(load(simd, &lists[0], block), zero),
-        mask.select(load(simd, &lists[1], block), zero),
-        mask.select(load(simd, &lists[2], block), zero),
+        mask.select(N::wide(simd, &lists[0], block), zero),
+        mask.select(N::wide(simd, &lists[1], block), zero),
+        mask.select(N::wide(simd, &lists[2], block), zero),
     ]
 }
 
 /// Adds one block of points.
 #[inline(always)]
-fn add<S: Simd>(
+fn add<P: Precision, S: Simd>(
     simd: S,
-    beside: &Beside<'_>,
+    beside: &Beside<'_, P>,
     pose: &Pose,
     block: usize,
     inside: u8,
@@ -205,16 +262,18 @@ fn add<S: Simd>(
     let (felt, candidates) = (&beside.felt, &beside.search.candidates);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
-    let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
+    let magnitude = in_solid.select(P::Number::wide(simd, &felt.magnitude, block), zero);
     let push = match beside.weights {
-        Weights::Area => single(simd, &candidates.weights, block) * beside.tree.weight * magnitude,
+        Weights::Area => {
+            f32::wide(simd, &candidates.weights, block) * beside.tree.weight * magnitude
+        }
         Weights::Unit => magnitude,
     };
     sums.pushes[0] += push;
     sums.pushes[1] += push * magnitude;
-    let niceness = sums.niceness.min(load(simd, &felt.niceness, block));
+    let niceness = sums.niceness.min(P::Number::wide(simd, &felt.niceness, block));
     sums.niceness = in_solid.select(niceness, sums.niceness);
-    let depth = load(simd, &felt.depth, block);
+    let depth = P::Number::wide(simd, &felt.depth, block);
     let deeper = in_solid & depth.simd_gt(sums.depth);
     let indices = f64x8::from_slice(simd, &COUNT) + (block * LANES) as f64;
     sums.depth = deeper.select(depth, sums.depth);
@@ -223,14 +282,14 @@ fn add<S: Simd>(
     let p = load_vector(simd, candidates.points.lists(), block, in_solid);
     if beside.law == Law::Gradient {
         let slope = load_vector(simd, &felt.gradient, block, in_solid);
-        accumulate(&mut sums.tool, push, p, slope);
+        accumulate(sums, push, p, slope);
         return;
     }
     let direction = load_vector(simd, &felt.direction, block, in_solid);
     let normal = [
-        single(simd, &candidates.normals[0], block),
-        single(simd, &candidates.normals[1], block),
-        single(simd, &candidates.normals[2], block),
+        f32::wide(simd, &candidates.normals[0], block),
+        f32::wide(simd, &candidates.normals[1], block),
+        f32::wide(simd, &candidates.normals[2], block),
     ];
     // The normal in the tool's frame, where the direction is.
     let mut way = direction;
@@ -245,24 +304,15 @@ fn add<S: Simd>(
         Law::Facing => along.simd_le(zero).select(push, zero),
         _ => push,
     };
-    accumulate(&mut sums.tool, force, p, way);
-}
-
-/// Numbers of single precision.
-#[inline(always)]
-fn single<S: Simd>(simd: S, list: &[f32], block: usize) -> f64x8<S> {
-    let some = &list[block * LANES..(block + 1) * LANES];
-    let mut wide = [0.0; LANES];
-    for (wide, single) in wide.iter_mut().zip(some) {
-        *wide = f64::from(*single);
-    }
-    f64x8::from_slice(simd, &wide)
+    accumulate(sums, force, p, way);
 }
 
 /// Adds `push · way` and its moment about the origin.
 #[inline(always)]
-fn accumulate<S: Simd>(sums: &mut [f64x8<S>; 6], push: f64x8<S>, p: Triple<S>, way: Triple<S>) {
+fn accumulate<S: Simd>(sums: &mut Sums<S>, push: f64x8<S>, p: Triple<S>, way: Triple<S>) {
     let f = [push * way[0], push * way[1], push * way[2]];
+    sums.size += f[0].abs() + f[1].abs() + f[2].abs();
+    let sums = &mut sums.tool;
     sums[0] += f[0];
     sums[1] += f[1];
     sums[2] += f[2];

@@ -1,7 +1,9 @@
 //! Tools that the macros compile.
 
-use super::{Ask, Card, Felt, LANES, Lane, Points, Senses, Tool, Wanted, on_vectors, present};
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use super::{
+    Ask, Card, Felt, LANES, Lane, Number, Points, Senses, Tool, Wanted, on_vectors, present,
+};
+use fearless_simd::{Level, Simd, dispatch};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
@@ -83,7 +85,7 @@ impl<T: Evaluators> Tool for T {
 
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, ask);
-        on_vectors!(level, simd => lanes::<T, _>(simd, ask, points, length, felt));
+        on_vectors!(level, simd => lanes::<T, f64, _>(simd, ask, points, length, felt));
         one_by_one::<T>(ask, points, length, felt);
     }
 }
@@ -91,61 +93,74 @@ impl<T: Evaluators> Tool for T {
 impl<T: Evaluators> Senses for T {
     fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, W::ASK);
-        on_vectors!(level, simd => lanes::<T, _>(simd, W::ASK, points, length, felt));
+        on_vectors!(level, simd => lanes::<T, f64, _>(simd, W::ASK, points, length, felt));
         one_by_one::<T>(W::ASK, points, length, felt);
     }
 }
 
-/// Three coordinates of eight points.
-#[inline(always)]
-fn load<S: Simd>(simd: S, lists: [&[f64]; 3], block: usize) -> [f64x8<S>; 3] {
-    let place = block * LANES..(block + 1) * LANES;
-    [
-        f64x8::from_slice(simd, &lists[0][place.clone()]),
-        f64x8::from_slice(simd, &lists[1][place.clone()]),
-        f64x8::from_slice(simd, &lists[2][place]),
-    ]
+/// At every level by vectors: the nested form is of `f64`.
+impl<T: Evaluators> Senses<f32> for T {
+    fn feel<W: Wanted>(
+        &self,
+        level: Level,
+        points: &Points<f32>,
+        length: f64,
+        felt: &mut Felt<f32>,
+    ) {
+        felt.reserve(points, W::ASK);
+        dispatch!(level, simd => lanes::<T, f32, _>(simd, W::ASK, points, length, felt));
+    }
 }
 
 #[inline(always)]
-fn store<S: Simd>(list: &mut [f64], block: usize, values: f64x8<S>) {
-    values.store_slice(&mut list[block * LANES..(block + 1) * LANES]);
-}
-
-#[inline(always)]
-fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: usize, values: [f64x8<S>; 3]) {
-    store(&mut lists[0], block, values[0]);
-    store(&mut lists[1], block, values[1]);
-    store(&mut lists[2], block, values[2]);
+fn store_vector<N: Number, S: Simd>(
+    lists: &mut [Vec<N>; 3],
+    block: usize,
+    values: [N::Eight<S>; 3],
+) {
+    N::store::<S>(values[0], &mut lists[0], block);
+    N::store::<S>(values[1], &mut lists[1], block);
+    N::store::<S>(values[2], &mut lists[2], block);
 }
 
 /// Blocks of eight. What runs on vectors is in functions that are always inlined, since a closure would
 /// be compiled without the vector instructions of its surroundings.
 #[inline(always)]
-fn lanes<T: Evaluators, S: Simd>(simd: S, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
-    let length = f64x8::splat(simd, length);
+fn lanes<T: Evaluators, N: Number, S: Simd>(
+    simd: S,
+    ask: Ask,
+    points: &Points<N>,
+    length: f64,
+    felt: &mut Felt<N>,
+) {
+    let length = N::splat(simd, length);
     let lists = points.coordinates();
     for block in 0..felt.inside.len() {
-        let present = mask64x8::from_bitmask(simd, u64::from(present(points.len(), block)));
-        let here = T::feel_lanes(load(simd, lists, block), length, present, ask);
-        felt.inside[block] = here.inside.to_bitmask() as u8;
+        let present = N::mask(simd, present(points.len(), block));
+        let p = [
+            N::load(simd, lists[0], block),
+            N::load(simd, lists[1], block),
+            N::load(simd, lists[2], block),
+        ];
+        let here = T::feel_lanes(p, length, present, ask);
+        felt.inside[block] = N::bits::<S>(here.inside);
         if ask.depth {
-            store(&mut felt.depth, block, here.depth);
+            N::store::<S>(here.depth, &mut felt.depth, block);
         }
         if ask.magnitude {
-            store(&mut felt.magnitude, block, here.magnitude);
+            N::store::<S>(here.magnitude, &mut felt.magnitude, block);
         }
         if ask.niceness {
-            store(&mut felt.niceness, block, here.niceness);
+            N::store::<S>(here.niceness, &mut felt.niceness, block);
         }
         if ask.direction {
-            store_vector(&mut felt.direction, block, here.direction);
+            store_vector::<N, S>(&mut felt.direction, block, here.direction);
         }
         if ask.gradient {
-            store_vector(&mut felt.gradient, block, here.gradient);
+            store_vector::<N, S>(&mut felt.gradient, block, here.gradient);
         }
         if ask.region {
-            store(&mut felt.region, block, here.region);
+            N::store::<S>(here.region, &mut felt.region, block);
         }
     }
 }

@@ -109,7 +109,7 @@ fn card(tool: &Checked) -> Card {
         outline: model.outline().map(piece).collect(),
         depth: {
             let Bounds { least, lipschitz, rounding } = tool.bounds;
-            Depth { least, lipschitz, rounding }
+            Depth { least, lipschitz, rounding: rounding[0], rounding_single: rounding[1] }
         },
     }
 }

@@ -1,23 +1,107 @@
 //! Points that may be inside, carried to the tool's frame.
 
-use super::walk::{LANE, Triple};
-use super::{Skin, View, WIDTH};
-use crate::tool::{LANES, Points};
+use super::walk::{LANE, Triple, seen};
+use super::{Rough, Skin, View, WIDTH};
+use crate::tool::{LANES, Number, Points};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
 };
 
+/// A format that points are carried to the tool's frame in.
+pub trait Carried: Number {
+    /// What of a view is wanted for that.
+    type Way;
+
+    /// The same, of a view.
+    fn way<R: Rough>(view: &View<R>) -> Self::Way;
+
+    /// Carries those points of a leaf whose bits are set: `Rᵀ (p − t)`, the difference first. `base` is
+    /// the leaf's centre from the tip.
+    fn carry<R: Rough, S: Simd>(
+        simd: S,
+        view: (&View<R>, &Self::Way),
+        base: [f64; 3],
+        offset: &Triple<S>,
+        hits: u32,
+        points: &mut Points<Self>,
+    );
+}
+
+impl Carried for f64 {
+    type Way = ();
+
+    #[inline(always)]
+    fn way<R: Rough>(_: &View<R>) {}
+
+    /// All of it in `f64`.
+    #[inline(always)]
+    fn carry<R: Rough, S: Simd>(
+        simd: S,
+        (view, ()): (&View<R>, &()),
+        base: [f64; 3],
+        offset: &Triple<S>,
+        hits: u32,
+        points: &mut Points,
+    ) {
+        let (x, y, z) = (offset[0].widen(), offset[1].widen(), offset[2].widen());
+        let halves = [[x.0, y.0, z.0], [x.1, y.1, z.1]];
+        let mut count = 0;
+        for (half, bits) in halves.into_iter().zip([hits & 0xff, hits >> 8]) {
+            let p = [
+                half[0] * view.scale + base[0],
+                half[1] * view.scale + base[1],
+                half[2] * view.scale + base[2],
+            ];
+            let mask = mask64x8::from_bitmask(simd, u64::from(bits));
+            let places = points.next(count, LANES);
+            for (row, place) in view.carry.iter().zip(places) {
+                let carried: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
+                carried.compress(mask).store_slice(place);
+            }
+            count += bits.count_ones() as usize;
+        }
+    }
+}
+
+impl Carried for f32 {
+    /// From the tree's frame and unit to the tool's.
+    type Way = [[f32; 3]; 3];
+
+    #[inline(always)]
+    fn way<R: Rough>(view: &View<R>) -> [[f32; 3]; 3] {
+        view.exactly().0.map(|row| row.map(|part| part as f32))
+    }
+
+    /// The leaf's centre in `f64`, so that it does not matter how far away the part begins.
+    #[inline(always)]
+    fn carry<R: Rough, S: Simd>(
+        simd: S,
+        (view, rows): (&View<R>, &[[f32; 3]; 3]),
+        base: [f64; 3],
+        offset: &Triple<S>,
+        hits: u32,
+        points: &mut Points<f32>,
+    ) {
+        let centre = view.carried(base).map(|part| part as f32);
+        let carried = seen::<f32, S>(offset, rows, centre);
+        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
+        for (part, place) in carried.into_iter().zip(points.next(0, WIDTH)) {
+            part.compress(mask).store_slice(place);
+        }
+    }
+}
+
 /// Candidates by their place in the tree, and in the tool's frame in the tool's unit.
 #[derive(Default)]
-pub(crate) struct Candidates {
+pub(crate) struct Candidates<N = f64> {
     indices: Vec<u32>,
-    pub(crate) points: Points,
+    pub(crate) points: Points<N>,
     /// Of each, if it was wanted.
     pub(crate) normals: [Vec<f32>; 3],
     pub(crate) weights: Vec<f32>,
 }
 
-impl Candidates {
+impl<N: Carried> Candidates<N> {
     pub(crate) fn clear(&mut self) {
         self.points.clear();
     }
@@ -41,13 +125,12 @@ impl Candidates {
         }
     }
 
-    /// Takes the points of a leaf whose bits are set: `Rᵀ (p − t)`, the difference first, in `f64`.
-    /// `base` is the leaf's centre from the tip. There is room for all of them.
+    /// Takes the points of a leaf whose bits are set; there is room for all of them.
     #[inline(always)]
-    pub(super) fn take<S: Simd>(
+    pub(super) fn take<R: Rough, S: Simd>(
         &mut self,
         simd: S,
-        view: &View,
+        view: (&View<R>, &N::Way),
         (leaf, base): (u32, [f64; 3]),
         offset: &Triple<S>,
         hits: u32,
@@ -56,23 +139,7 @@ impl Candidates {
         let mask = mask32x16::from_bitmask(simd, u64::from(hits));
         let at = self.points.len();
         lanes.compress(mask).store_slice(&mut self.indices[at..at + WIDTH]);
-        let (x, y, z) = (offset[0].widen(), offset[1].widen(), offset[2].widen());
-        let halves = [[x.0, y.0, z.0], [x.1, y.1, z.1]];
-        let mut count = 0;
-        for (half, bits) in halves.into_iter().zip([hits & 0xff, hits >> 8]) {
-            let p = [
-                half[0] * view.scale + base[0],
-                half[1] * view.scale + base[1],
-                half[2] * view.scale + base[2],
-            ];
-            let mask = mask64x8::from_bitmask(simd, u64::from(bits));
-            let places = self.points.next(count, LANES);
-            for (row, place) in view.carry.iter().zip(places) {
-                let carried: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
-                carried.compress(mask).store_slice(place);
-            }
-            count += bits.count_ones() as usize;
-        }
+        N::carry(simd, view, base, offset, hits, &mut self.points);
     }
 
     /// Takes what the part has there.

@@ -15,6 +15,7 @@
 mod build;
 mod candidates;
 mod change;
+mod rough;
 mod shelf;
 mod sift;
 mod view;
@@ -22,6 +23,8 @@ mod walk;
 
 pub(crate) use build::{Bounds, Item, levels, order};
 use candidates::Candidates;
+pub(crate) use candidates::Carried;
+pub(crate) use rough::Rough;
 pub(crate) use shelf::Shelf;
 pub(crate) use sift::Search;
 pub(crate) use view::{Sight, View};

@@ -12,5 +12,7 @@ mod law;
 mod margins;
 mod parts;
 mod poses;
+mod precision;
 mod scenes;
 mod solids;
+mod sums;

@@ -166,7 +166,7 @@ fn card(tool: &Checked) -> TokenStream {
             }
         }
     });
-    let rounding = literal(tool.bounds.rounding);
+    let [rounding, single] = tool.bounds.rounding.map(literal);
     let [least, lipschitz] = [tool.bounds.least, tool.bounds.lipschitz].map(|bound| match bound {
         Some(bound) => {
             let bound = literal(bound);
@@ -195,7 +195,7 @@ fn card(tool: &Checked) -> TokenStream {
                 ::touchoff::Unit::#unit,
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
-                (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
+                (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding, rounding_single: #single }),
             );
             &CARD
         }

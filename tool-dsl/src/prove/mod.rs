@@ -154,13 +154,14 @@ pub struct Bounds {
     pub least: Option<f64>,
     /// See [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
-    /// How far rounding can take a computed depth of `f64` from the true value, in the file's unit.
-    pub rounding: f64,
+    /// How far rounding can take a computed depth, of `f64` and of `f32`, from the true value, in the
+    /// file's unit.
+    pub rounding: [f64; 2],
 }
 
 impl Bounds {
     pub(crate) const NONE: Bounds =
-        Bounds { least: None, lipschitz: None, rounding: f64::INFINITY };
+        Bounds { least: None, lipschitz: None, rounding: [f64::INFINITY; 2] };
 
     /// What is proved of a tool in little time, and what is wrong with it by that.
     ///

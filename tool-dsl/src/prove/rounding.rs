@@ -20,14 +20,16 @@ struct Rounded {
     error: [f64; 2],
 }
 
-/// How far rounding can take any region's computed depth of `f64` from its true value, over the whole of
-/// a tool's box.
-pub(super) fn over(tool: &Checked) -> f64 {
+/// How far rounding can take any region's computed depth, of `f64` and of `f32`, from its true value, over
+/// the whole of a tool's box.
+pub(super) fn over(tool: &Checked) -> [f64; 2] {
     let model = &tool.model;
     let depths = || model.regions.iter().map(|region| region.depth);
     let mut errors = Errors::new(&model.graph, model.domain, depths());
     let cell = tool.extent.cell();
-    depths().map(|depth| errors.over(depth, &cell)[0]).fold(0.0, f64::max)
+    depths()
+        .map(|depth| errors.over(depth, &cell))
+        .fold([0.0; 2], |most, error| [most[0].max(error[0]), most[1].max(error[1])])
 }
 
 /// Errors of chosen nodes of a graph over one box after another. The coordinates x, y and z of a

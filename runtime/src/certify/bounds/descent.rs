@@ -58,9 +58,9 @@ impl Node {
         let middle = view.seen(centre);
         let Corners([a, b, c]) = &facets.leaves[index];
         [
-            seen(&load(simd, a), &view.rows, middle),
-            seen(&load(simd, b), &view.rows, middle),
-            seen(&load(simd, c), &view.rows, middle),
+            seen::<f32, S>(&load::<f32, S>(simd, a), &view.rows, middle),
+            seen::<f32, S>(&load::<f32, S>(simd, b), &view.rows, middle),
+            seen::<f32, S>(&load::<f32, S>(simd, c), &view.rows, middle),
         ]
     }
 
@@ -135,7 +135,8 @@ pub(crate) fn rings<S: Simd>(
     view: &View,
     shift: Option<&Shift>,
 ) -> Rings<f32x16<S>> {
-    let (centre, half) = (load(simd, &boxes.centre), load(simd, &boxes.half));
+    let centre = load::<f32, S>(simd, &boxes.centre);
+    let half = load::<f32, S>(simd, &boxes.half);
     let [x, y, z] = seen(&centre, &view.rows, view.origin);
     let zero = f32x16::splat(simd, 0.0);
     let (x, y) = (x.abs(), y.abs());
