@@ -114,7 +114,7 @@ pub(crate) struct PartFile {
     #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     pub(crate) points: u64,
     /// As many points as it takes for no place of the surface to be deeper than found by more than this,
-    /// in the part's unit.
+    /// in the part's unit; where `run` would take more than a million, it proves depth to that instead.
     #[arg(long, value_name = "TOLERANCE", value_parser = positive, conflicts_with = "points")]
     pub(crate) tolerance: Option<f64>,
     /// How the points are spread: `blue`, evenly, or `random`.

@@ -4,21 +4,37 @@ use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
 use crate::files::{Found, length};
 use std::path::Path;
+use touchoff::cloud::MOST_BLUE;
 use touchoff::mesh::Shape;
 use touchoff::tool::Card;
-use touchoff::{Cloud, Cover, Mesh, Part, Probe, Tool, Unit};
+use touchoff::{Cloud, CloudError, Cover, Mesh, Part, Probe, Tool, Unit};
 
 /// What names of saved parts end in.
 const SAVED: &str = "touchoff";
+
+/// A tolerance that wants more points than this is rather proved of the triangles: to spread so many takes
+/// seconds, and to ask them longer than a proof (docs/accuracy.md).
+const RATHER_PROVED: usize = 1_000_000;
 
 /// A part, and its mesh if it has one.
 pub(crate) struct Loaded {
     pub(crate) part: Part,
     pub(crate) mesh: Option<Mesh>,
+    /// To what tolerance depth has to be proved, as the points do not keep it.
+    pub(crate) prove: Option<f64>,
+}
+
+/// What is done about a tolerance that wants very many points.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Fine {
+    /// As many points are taken as there can be.
+    Points,
+    /// Depth is proved of the triangles.
+    Proof,
 }
 
 /// Reads a part and takes points of it, for that tool.
-pub(crate) fn load(wanted: &PartFile, card: Option<&Card>) -> Result<Loaded, Failure> {
+pub(crate) fn load(wanted: &PartFile, card: Option<&Card>, fine: Fine) -> Result<Loaded, Failure> {
     let file = wanted.part.display();
     let no_mesh = |what| Failure::NoTriangles { file: file.to_string(), what };
     if is_saved(&wanted.part) {
@@ -26,7 +42,7 @@ pub(crate) fn load(wanted: &PartFile, card: Option<&Card>) -> Result<Loaded, Fai
             return Err(no_mesh("--tolerance"));
         }
         let part = Part::open(&wanted.part)?.to(wanted.unit);
-        return Ok(Loaded { part, mesh: None });
+        return Ok(Loaded { part, mesh: None, prove: None });
     }
     match Shape::read(&wanted.part, wanted.unit)? {
         Shape::Mesh(mesh) => {
@@ -34,15 +50,15 @@ pub(crate) fn load(wanted: &PartFile, card: Option<&Card>) -> Result<Loaded, Fai
             for finding in survey.findings() {
                 say!("{file}: {finding}");
             }
-            let cloud = spread(&mesh, wanted, card)?;
-            Ok(Loaded { part: Part::new(&cloud, survey), mesh: Some(mesh) })
+            let (cloud, prove) = spread(&mesh, wanted, card, fine)?;
+            Ok(Loaded { part: Part::new(&cloud, survey), mesh: Some(mesh), prove })
         }
         Shape::Points(_) if wanted.tolerance.is_some() => Err(no_mesh("--tolerance")),
         Shape::Points(points) => {
             let estimated = if points.areas.is_some() { "cover" } else { "areas and cover" };
             say!("{file}: {} points, no triangles: {estimated} estimated", points.places.len());
             let part = Part::from_cloud(&Cloud::from_points(points, wanted.unit)?);
-            Ok(Loaded { part, mesh: None })
+            Ok(Loaded { part, mesh: None, prove: None })
         }
     }
 }
@@ -52,13 +68,20 @@ fn is_saved(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(SAVED))
 }
 
-/// As many points as are asked for, or as the tolerance wants.
-fn spread(mesh: &Mesh, wanted: &PartFile, card: Option<&Card>) -> Result<Cloud, Failure> {
+/// As many points as are asked for, or as the tolerance wants; and what is to be proved, if these would be
+/// too many.
+fn spread(
+    mesh: &Mesh,
+    wanted: &PartFile,
+    card: Option<&Card>,
+    fine: Fine,
+) -> Result<(Cloud, Option<f64>), Failure> {
     let PartFile { sampling, seed, unit, .. } = *wanted;
-    let Some(tolerance) = wanted.tolerance else {
+    let some = || {
         let points = usize::try_from(wanted.points).unwrap_or(usize::MAX);
-        return Ok(Cloud::sample(mesh, sampling, points, seed)?);
+        Cloud::sample(mesh, sampling, points, seed)
     };
+    let Some(tolerance) = wanted.tolerance else { return Ok((some()?, None)) };
     let steepest = match card.map(|card| (card, card.depth.lipschitz)) {
         None => 1.0,
         Some((_, Some(steepest))) if steepest > 0.0 => steepest,
@@ -66,15 +89,29 @@ fn spread(mesh: &Mesh, wanted: &PartFile, card: Option<&Card>) -> Result<Cloud, 
     };
     // What rounding takes is less than this.
     let radius = tolerance / steepest * (1.0 - 1e-6);
-    let cloud = Cloud::covering(mesh, radius, sampling, seed)?;
-    say!(
+    let most = if fine == Fine::Proof { RATHER_PROVED } else { MOST_BLUE };
+    let wants = format!(
         "a tolerance of {}: depth grows by {steepest:.4} for each length at most, so no place may be \
-         farther than {} from all points: {} points",
+         farther than {} from all points",
         length(tolerance, unit),
         length(radius, unit),
-        cloud.len(),
     );
-    Ok(cloud)
+    match Cloud::covering(mesh, radius, sampling, most, seed) {
+        Ok(cloud) => {
+            say!("{wants}: {} points", cloud.len());
+            Ok((cloud, None))
+        }
+        Err(CloudError::TooFine { needed, .. }) if fine == Fine::Proof => {
+            let cloud = some()?;
+            say!(
+                "{wants}, which takes some {needed:.0e} points: depth is proved of the triangles instead, \
+                 force is that of {} points",
+                cloud.len(),
+            );
+            Ok((cloud, Some(tolerance)))
+        }
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// Says what the points know of the surface between them.
@@ -107,7 +144,7 @@ pub(crate) fn sample(wanted: &Sample) -> Result<(), Failure> {
         let (file, better) = (output.display().to_string(), output.with_extension(SAVED));
         return Err(Failure::SavedName { file, better });
     }
-    let Loaded { part, .. } = load(&wanted.part, tool.map(Tool::card))?;
+    let Loaded { part, .. } = load(&wanted.part, tool.map(Tool::card), Fine::Points)?;
     about(&part, tool, wanted.part.unit);
     part.save(output)?;
     say!("{}: {} points", output.display(), part.tree().len());

@@ -3,7 +3,7 @@
 use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
-use crate::part::{self, Loaded};
+use crate::part::{self, Fine, Loaded};
 use crate::timing::{Timing, nanoseconds};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -72,8 +72,9 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let unit = wanted.part.unit;
     program.check_unit(unit)?;
     program.check_poses(tool.card())?;
-    let Loaded { part, mesh } = part::load(&wanted.part, Some(tool.card()))?;
-    let facets = match (wanted.certify, &mesh) {
+    let Loaded { part, mesh, prove } = part::load(&wanted.part, Some(tool.card()), Fine::Proof)?;
+    let certify = [wanted.certify, prove].into_iter().flatten().reduce(f64::min);
+    let facets = match (certify, &mesh) {
         (Some(tolerance), Some(mesh)) => Some((Facets::new(mesh), tolerance)),
         (Some(_), None) => {
             let file = wanted.part.part.display().to_string();
@@ -114,7 +115,9 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
             Certified::new(&found, tool.card())
         });
         if json {
-            let bound = unseen.map(|unseen| felt.depth() + unseen);
+            let seen = unseen.map(|unseen| felt.depth() + unseen);
+            let proved = certified.as_ref().map(|certified| certified.deepest[1]);
+            let bound = [seen, proved].into_iter().flatten().reduce(f64::min);
             let row = row((index, stop.line), (&felt, bound), ns, surfaces, certified);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;

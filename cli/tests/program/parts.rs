@@ -30,7 +30,31 @@ fn a_tolerance_picks_as_many_points_as_it_takes() {
     }
     let both = run(&bench, "block.stl", &["--tolerance", "0.1", "--points", "10"]);
     assert_eq!(both.status.code(), Some(2));
+}
+
+/// What would take too many points is proved; what is only to be saved cannot be.
+#[test]
+fn a_fine_tolerance_is_proved() {
+    let bench = Bench::new();
     let output = run(&bench, "block.stl", &["--tolerance", "1e-6"]);
+    let said = stderr(&output);
+    assert!(said.contains("depth is proved of the triangles instead"), "{said}");
+    let found = rows(&output);
+    let bound = number(&found[1]["depth_bound"]);
+    assert!((0.5..=0.5 + 2e-6).contains(&bound), "{bound}");
+    assert!(number(&found[1]["deepest"][1]) <= bound + 1e-12);
+    let block = bench.folder.path().join("block.stl");
+    let output = touchoff(&[
+        "sample",
+        "--part",
+        block.to_str().expect("a path"),
+        "--unit",
+        "mm",
+        "--tolerance",
+        "1e-6",
+        "-o",
+        "fine.touchoff",
+    ]);
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(1));
     assert!(said.contains("more than 20000000") && said.contains("certify"), "{said}");

@@ -31,7 +31,7 @@ pub enum CloudError {
     },
     /// A covering radius that wants too many points.
     #[error(
-        "a covering radius of {radius} wants about {needed:.1e} points, more than {MOST_BLUE}, \
+        "a covering radius of {radius} wants about {needed:.1e} points, more than {most}, \
          which would have one of about {instead:.2e}: ask for that, or ask the triangles \
          (`certify`), between which nothing lies"
     )]
@@ -40,6 +40,8 @@ pub enum CloudError {
         radius: f64,
         /// About how many points it wants.
         needed: f64,
+        /// The most that there can be.
+        most: usize,
         /// About what so many points as there can be have.
         instead: f64,
     },

@@ -124,16 +124,18 @@ impl Cloud {
     }
 
     /// As many points as it takes for no place of the surface to be farther than `radius` from all
-    /// of them: about `0.8 · area / radius²` of [`Sampling::Blue`].
+    /// of them, but no more than `most`: about `0.8 · area / radius²` of [`Sampling::Blue`].
     ///
     /// # Errors
-    /// A radius that is no length, or that wants more than [`MOST_BLUE`] points.
+    /// A radius that is no length, or that wants more than `most` points or [`MOST_BLUE`].
     pub fn covering(
         mesh: &Mesh,
         radius: f64,
         sampling: Sampling,
+        most: usize,
         seed: u64,
     ) -> Result<Cloud, CloudError> {
+        let most = most.min(MOST_BLUE);
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(CloudError::Radius { radius });
         }
@@ -145,9 +147,9 @@ impl Cloud {
         };
         loop {
             let needed = area * (usual / radius).powi(2);
-            if needed > MOST_BLUE as f64 {
-                let instead = usual * (area / MOST_BLUE as f64).sqrt();
-                return Err(CloudError::TooFine { radius, needed, instead });
+            if needed > most as f64 {
+                let instead = usual * (area / most as f64).sqrt();
+                return Err(CloudError::TooFine { radius, needed, most, instead });
             }
             let count = (needed.ceil() as usize).max(1);
             let cloud = Cloud::sample(mesh, sampling, count, seed)?;

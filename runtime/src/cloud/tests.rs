@@ -271,7 +271,7 @@ fn a_radius_says_how_many_points() {
     let mesh = cuboid();
     for sampling in [Sampling::Blue, Sampling::Random] {
         for radius in [10.0, 0.5, 0.05] {
-            let cloud = Cloud::covering(&mesh, radius, sampling, 1).expect("a cloud");
+            let cloud = Cloud::covering(&mesh, radius, sampling, MOST_BLUE, 1).expect("a cloud");
             let found = cloud.cover().expect("a cover").radius;
             assert!(found <= radius, "{found} of {radius}");
             let spare = if sampling == Sampling::Blue { 0.85 } else { 0.7 };
@@ -279,10 +279,11 @@ fn a_radius_says_how_many_points() {
         }
     }
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refused = Cloud::covering(&mesh, radius, Sampling::Blue, 1);
+        let refused = Cloud::covering(&mesh, radius, Sampling::Blue, MOST_BLUE, 1);
         assert!(matches!(refused, Err(CloudError::Radius { .. })), "{refused:?}");
     }
-    let refused = Cloud::covering(&mesh, 1e-5, Sampling::Blue, 1).expect_err("too many points");
+    let refused =
+        Cloud::covering(&mesh, 1e-5, Sampling::Blue, MOST_BLUE, 1).expect_err("too many points");
     let text = refused.to_string();
     assert!(text.contains("wants about 2.3e11 points") && text.contains("certify"), "{text}");
 }

@@ -3,7 +3,7 @@
 use super::{
     Ask, Card, Felt, LANES, Lane, Number, Points, Senses, Tool, Wanted, on_vectors, present,
 };
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Fallback, Level, Simd};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
@@ -98,7 +98,7 @@ impl<T: Evaluators> Senses for T {
     }
 }
 
-/// At every level by vectors: the nested form is of `f64`.
+/// The nested form is of `f64`, so here the lanes are all there is.
 impl<T: Evaluators> Senses<f32> for T {
     fn feel<W: Wanted>(
         &self,
@@ -108,7 +108,8 @@ impl<T: Evaluators> Senses<f32> for T {
         felt: &mut Felt<f32>,
     ) {
         felt.reserve(points, W::ASK);
-        dispatch!(level, simd => lanes::<T, f32, _>(simd, W::ASK, points, length, felt));
+        on_vectors!(level, simd => lanes::<T, f32, _>(simd, W::ASK, points, length, felt));
+        lanes::<T, f32, _>(Fallback::new(), W::ASK, points, length, felt);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Fourier and Motzkin's elimination: what linear conditions say of fewer variables.
 
-/// A residue below this, relative to the curve's largest coefficient, is rounding.
+/// A residue below this, relative to the curve's largest coefficient, or to the unit that conditions are
+/// in, is rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// The most conditions that elimination may grow to.
 const CONDITIONS: usize = 600;
@@ -11,6 +12,16 @@ pub(super) struct Condition {
     pub(super) factors: Vec<f64>,
     pub(super) constant: f64,
     pub(super) strict: bool,
+}
+
+/// Conditions in a unit of their own, a power of two near the largest constant; and that unit. So what is
+/// rounding does not depend on the unit that a tool is written in.
+pub(super) fn in_own_unit(conditions: Vec<Condition>) -> (Vec<Condition>, f64) {
+    let mut conditions: Vec<Condition> = conditions.into_iter().map(scaled).collect();
+    let largest = conditions.iter().fold(0f64, |most, c| most.max(c.constant.abs()));
+    let unit = if largest > 0.0 { largest.log2().floor().exp2() } else { 1.0 };
+    conditions.iter_mut().for_each(|condition| condition.constant /= unit);
+    (conditions, unit)
 }
 
 /// The conditions that remain when some variables may be anything, those first that leave fewest;

@@ -2,7 +2,7 @@
 //! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
 //! sees where borders meet in a corner, to a part in 10^12.
 
-use super::eliminate::{Condition, ROUNDING, scaled, without};
+use super::eliminate::{Condition, ROUNDING, in_own_unit, scaled, without};
 use super::forms::{Form, Variable, Variables, compares_roots};
 use crate::expr::Id;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
@@ -93,7 +93,7 @@ impl Linear {
     }
 
     fn range(&self, signs: &[Signs], wanted: usize) -> Interval {
-        let conditions: Vec<Condition> = self.conditions(signs).into_iter().map(scaled).collect();
+        let (conditions, unit) = in_own_unit(self.conditions(signs));
         let size = conditions.iter().fold(0f64, |m, c| m.max(c.constant.abs()));
         let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
         let Some(conditions) = without(conditions, others) else { return EVERYTHING };
@@ -104,9 +104,9 @@ impl Linear {
             let end = -constant / factor;
             let slack = ROUNDING * (size + end.abs());
             if factor > ROUNDING {
-                range.high = range.high.min(end + slack);
+                range.high = range.high.min(unit * (end + slack));
             } else if factor < -ROUNDING {
-                range.low = range.low.max(end - slack);
+                range.low = range.low.max(unit * (end - slack));
             }
         }
         range
@@ -150,7 +150,7 @@ impl Linear {
     /// Whether these signs contradict one another, if what is linear in the curves settles it: of straight
     /// lines elimination overlooks nothing.
     pub(super) fn judged(&self, signs: &[Signs]) -> Option<bool> {
-        let rest = without(self.conditions(signs), (0..self.variables).collect())?;
+        let rest = self.without_any(self.conditions(signs))?;
         if absurd(&rest) {
             return Some(true);
         }
@@ -236,7 +236,12 @@ impl Linear {
     }
 
     fn none_keeps(&self, conditions: Vec<Condition>) -> bool {
-        without(conditions, (0..self.variables).collect()).is_some_and(|rest| absurd(&rest))
+        self.without_any(conditions).is_some_and(|rest| absurd(&rest))
+    }
+
+    /// What remains of conditions, in their own unit, when all variables may be anything.
+    fn without_any(&self, conditions: Vec<Condition>) -> Option<Vec<Condition>> {
+        without(in_own_unit(conditions).0, (0..self.variables).collect())
     }
 }
 

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Remakes every table and plot of docs/accuracy.md, in about three quarters of an hour on two cores:
+#   scripts/accuracy.sh [SEED]
+# The machine has to be quiet for the times in work-precision.md; nothing else depends on it.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seed="${1:-1}"
+to=docs/measured
+
+measure() { cargo run --release --quiet -p touchoff-tests --bin "$@"; }
+
+cargo run --release --quiet --features peers -- bench --seed "$seed" --out "$to" > /dev/null
+measure accuracy -- 1000000 > "$to/accuracy.md"
+measure stress -- --seed "$seed" > "$to/stress.md"
+measure search -- --seed "$seed" > "$to/search.md"
+measure continuity -- --seed "$seed" --to "$to"
+measure convergence -- --seed "$seed" --to "$to"
