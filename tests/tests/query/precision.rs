@@ -3,7 +3,7 @@
 use crate::compare::tools;
 use crate::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use tools_library::{Barrel, Fig73Exact};
+use tools_library::{Barrel, Fig73Exact, UnitSphere};
 use touchoff::precision::{Double, Single};
 use touchoff::tool::Senses;
 use touchoff::{Law, Level, Pose, Probe, Unit};
@@ -83,7 +83,7 @@ fn single_keeps_the_error_that_is_stated() {
 fn single_has_the_same_bits_at_every_level() {
     let part = parts::tube(3_000);
     let said = |level: Level, pose: &Pose| {
-        let probe = Probe::new(&part, &Fig73Exact).precision::<Single>().law(Law::Gradient);
+        let probe = Probe::new(&part, &UnitSphere).precision::<Single>().law(Law::Gradient);
         let mut probe = probe.level(level);
         let (wrench, detected) = (probe.wrench(pose), probe.detect(pose));
         format!("{wrench:?} {detected} {:?}", probe.contacts(pose))
@@ -108,12 +108,12 @@ fn single_does_not_mind_how_far_away_a_part_is() {
     let shift = Vector3::new(1e9, -1e9, 1e9);
     let [here, there] =
         [Vector3::zeros(), shift].map(|by| parts::carried(&parts::tube_mesh(), 20_000, |p| p + by));
-    let mut near = Probe::new(&here, &Fig73Exact).precision::<Single>();
-    let mut far = Probe::new(&there, &Fig73Exact).precision::<Single>();
+    let mut near = Probe::new(&here, &UnitSphere).precision::<Single>();
+    let mut far = Probe::new(&there, &UnitSphere).precision::<Single>();
     assert_eq!(here.unit(), Unit::Millimetre);
     // Coordinates at 1e9 are a tenth of a µm apart, and so are the points.
     let apart = near.error().expect("bounded") + far.error().expect("bounded") + 1e-6;
-    let path = touchoff::scenes::Path::Inside;
+    let path = touchoff::scenes::Path::Outside;
     for k in 0..500 {
         let pose = path.pose(k, 500);
         let moved = Pose::from_axis(pose.tip() + shift, pose.axis()).expect("a pose");
