@@ -65,6 +65,10 @@ impl Wrench {
         if other.colliding == 0 {
             return;
         }
+        if self.colliding == 0 {
+            *self = *other;
+            return;
+        }
         self.colliding += other.colliding;
         self.deepest = match (self.deepest, other.deepest) {
             (Some(mine), Some(theirs)) if theirs.depth > mine.depth => Some(theirs),
