@@ -8,3 +8,4 @@ pub mod convergence;
 pub mod kernels;
 pub mod mutants;
 pub mod points;
+pub mod stress;
