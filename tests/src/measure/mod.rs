@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod adaptive;
+pub mod bench;
 pub mod certified;
 pub mod compile;
 pub mod continuity;

@@ -6,20 +6,20 @@
 //! but the grid knows the tool's shape: what the method is for. Two grids: `grid` in space, as
 //! voxmaps are, and `grid-dz` in the half plane, which only a tool with an axis allows.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece, dot};
-use crate::grid::Grid;
-use crate::grid_dz::GridDz;
-use crate::points::{Bounds, Point, Tree};
+use super::grid::Grid;
+use super::grid_dz::GridDz;
+use super::points::{Bounds, Point, Tree};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece, dot};
 use touchoff::{Cloud, Pose};
 
 /// Points of a leaf, tried from 8 to 64 at 20,000 points.
 const LEAF: usize = 8;
 
 /// How much steeper than the distance the magnitude may be: √5.
-pub(crate) const STEEPEST: f64 = 2.236_067_977_5;
+pub const STEEPEST: f64 = 2.236_067_977_5;
 
 /// A tool by the values of its field on a grid.
-pub(crate) trait Field {
+pub trait Field {
     /// No more than the distance from a point to the tool; at most 0 inside.
     fn clearance(&self, p: [f64; 3]) -> f64;
 
@@ -42,21 +42,24 @@ impl Sphere {
     }
 }
 
-pub(crate) struct Shell<F> {
+/// A field, and the points under their spheres.
+pub struct Shell<F> {
     name: &'static str,
     field: F,
     tree: Tree<Sphere>,
 }
 
 impl Shell<Grid> {
-    pub(crate) fn in_space(piece: &Workpiece) -> Self {
-        Shell { name: "grid", field: Grid::new(), tree: spheres(&piece.cloud) }
+    /// With the grid in space.
+    pub fn in_space(piece: &Workpiece) -> Self {
+        Shell { name: "grid", field: Grid::known(), tree: spheres(&piece.cloud) }
     }
 }
 
 impl Shell<GridDz> {
-    pub(crate) fn in_the_half_plane(piece: &Workpiece) -> Self {
-        Shell { name: "grid-dz", field: GridDz::new(), tree: spheres(&piece.cloud) }
+    /// With the grid in the half plane.
+    pub fn in_the_half_plane(piece: &Workpiece) -> Self {
+        Shell { name: "grid-dz", field: GridDz::known(), tree: spheres(&piece.cloud) }
     }
 }
 

@@ -4,9 +4,9 @@
 //! a node in the tool's frame against the largest radius over its stretch of the axis; a block's 64
 //! points in `f32`, as wide as the machine goes, with a margin; what is left in `f64`.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece};
-use crate::formula;
-use crate::points::{Bounds, Point, order, points};
+use super::formula;
+use super::points::{Bounds, Point, order, points};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
@@ -22,7 +22,8 @@ const MARGIN: f64 = 1e-4;
 /// 64 points; what is not there lies far away.
 struct Block([[f32; BLOCK]; 3]);
 
-pub(crate) struct ParryBvh {
+/// Blocks of points under `parry3d`'s tree.
+pub struct ParryBvh {
     level: Level,
     bvh: Bvh,
     blocks: Vec<Block>,
@@ -31,7 +32,8 @@ pub(crate) struct ParryBvh {
 }
 
 impl ParryBvh {
-    pub(crate) fn new(piece: &Workpiece) -> ParryBvh {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> ParryBvh {
         let mut points = points(&piece.cloud);
         order(&mut points, BLOCK);
         let boxes: Vec<Aabb> = points

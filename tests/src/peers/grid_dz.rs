@@ -3,9 +3,10 @@
 //! Squares of [`CELL`] mm: 0.33 million `f32`, 1.3 MB, for the same tool as the grid in space, five
 //! times as fine. What stands at the corners is the same.
 
-use crate::formula;
-use crate::shell::{Field, STEEPEST};
-use touchoff_tests::oracle::{Oracle, fig_7_3_exact};
+use super::formula;
+use super::shell::{Field, STEEPEST};
+use crate::oracle::{Oracle, fig_7_3_exact};
+use std::sync::OnceLock;
 
 /// The side of a cell, mm.
 const CELL: f64 = 0.02;
@@ -14,7 +15,9 @@ const AROUND: f64 = 1.0;
 /// So near to the surface the field is the magnitude, which goes on outside, not the distance.
 const BAND: f64 = 2.0 * CELL;
 
-pub(crate) struct GridDz {
+/// The field at the corners of squares.
+#[derive(Clone)]
+pub struct GridDz {
     /// Corners along d and along z.
     count: [usize; 2],
     /// d fastest.
@@ -22,7 +25,16 @@ pub(crate) struct GridDz {
 }
 
 impl GridDz {
-    pub(crate) fn new() -> GridDz {
+    /// That of the tool, which is worked out once.
+    pub fn known() -> GridDz {
+        static GRID: OnceLock<GridDz> = OnceLock::new();
+        GRID.get_or_init(GridDz::default).clone()
+    }
+}
+
+impl Default for GridDz {
+    /// Of the tool.
+    fn default() -> GridDz {
         let exact = fig_7_3_exact();
         let cells = |length: f64| (length / CELL).round() as usize + 1;
         let count = [cells(formula::RADIUS + AROUND), cells(formula::TIP + 2.0 * AROUND)];
@@ -37,7 +49,9 @@ impl GridDz {
         }
         GridDz { count, field }
     }
+}
 
+impl GridDz {
     /// Distance from the axis, and both coordinates in cells.
     fn cells(p: [f64; 3]) -> (f64, [f64; 2]) {
         let d = (p[0] * p[0] + p[1] * p[1]).sqrt();

@@ -8,9 +8,9 @@
 //! tightly by its support function: better than what the thesis had. Overlap ends at the first
 //! direction that separates, and the larger of two volumes is divided first.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece, dot};
-use crate::formula;
-use crate::points::{Point, points};
+use super::formula;
+use super::points::{Point, points};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece, dot};
 use touchoff::Pose;
 
 /// Most points of a leaf, tried from 4 to 32 at 20,000 points.
@@ -196,10 +196,12 @@ impl Tool {
     }
 }
 
-pub(crate) struct Thesis(Box<Node>);
+/// The cloud's tree.
+pub struct Thesis(Box<Node>);
 
 impl Thesis {
-    pub(crate) fn new(piece: &Workpiece) -> Thesis {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> Thesis {
         Thesis(build(&mut points(&piece.cloud)))
     }
 }

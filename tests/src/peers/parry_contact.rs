@@ -7,19 +7,24 @@
 //! shape and a triangle that overlap deepest: one depth, no sum over the contact, so no force and
 //! torque. It feels all of the surface, not points of it.
 
-use crate::contender::{Answer, Contender, Workpiece};
+use crate::race::contender::{Answer, Contender, Workpiece};
 use parry3d::math::{Pose as Place, Rotation, Vector};
 use parry3d::query::contact;
 use parry3d::shape::{Compound, SharedShape, TriMesh};
 use touchoff::Pose;
 
-pub(crate) struct ParryContact {
+/// The tool as a compound, the part as a mesh.
+pub struct ParryContact {
     tool: Compound,
     part: TriMesh,
 }
 
 impl ParryContact {
-    pub(crate) fn new(piece: &Workpiece) -> ParryContact {
+    /// Of a part's triangles.
+    ///
+    /// # Panics
+    /// If there are none.
+    pub fn new(piece: &Workpiece) -> ParryContact {
         // parry's cylinders and cones stand along y, the cone's point up; here y is from the spindle
         // to the tip, and places are those of the centres.
         let turn = Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2);

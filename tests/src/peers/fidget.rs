@@ -7,8 +7,8 @@
 //! The tape is not simplified from node to node: for so short a tape compiling a shorter one takes
 //! longer than all points together.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece};
-use crate::points::{Bounds, Tree};
+use super::points::{Bounds, Tree};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
 use fidget::context::Tree as Formula;
 use fidget::eval::{BulkEvaluator, Function, MathFunction, Tape, TracingEvaluator};
 use fidget::jit::{JitFloatSliceEval, JitFunction, JitGradSliceEval, JitIntervalEval};
@@ -27,7 +27,8 @@ type TapeOf<E> = <E as BulkEvaluator>::Tape;
 /// Where x, y and z stand among a tape's arguments.
 type Places = [usize; 3];
 
-pub(crate) struct Fidget {
+/// The formula as machine code, over a tree of the points.
+pub struct Fidget {
     tree: Tree<Bounds>,
     interval: (JitIntervalEval, <JitIntervalEval as TracingEvaluator>::Tape, Places),
     values: (JitFloatSliceEval, TapeOf<JitFloatSliceEval>, Places),
@@ -40,7 +41,11 @@ pub(crate) struct Fidget {
 }
 
 impl Fidget {
-    pub(crate) fn new(piece: &Workpiece) -> Fidget {
+    /// Of a part's points.
+    ///
+    /// # Panics
+    /// Never: the formula has all three coordinates.
+    pub fn new(piece: &Workpiece) -> Fidget {
         let mut context = fidget::Context::new();
         let node = context.import(&magnitude());
         let function = JitFunction::new(&context, &[node]).expect("a formula of x, y and z");
@@ -95,10 +100,10 @@ fn places(tape: &impl Tape) -> Places {
     [Var::X, Var::Y, Var::Z].map(|var| tape.vars().get(&var).expect("the formula has all three"))
 }
 
-/// [`crate::formula::magnitude`] as fidget's expression.
+/// [`super::formula::magnitude`] as fidget's expression.
 fn magnitude() -> Formula {
     let (x, y, up) = Formula::axes();
-    let z = crate::formula::TIP as f32 - up;
+    let z = super::formula::TIP as f32 - up;
     let squared = x.square() + y.square();
     let d = squared.sqrt();
     let above = (z.clone() - 19.0).max(0.0);
@@ -141,7 +146,7 @@ impl Contender for Fidget {
         let slopes = eval.eval(tape, &self.hits_at).expect("lists of one length");
         for (hit, slope) in self.hits.iter().zip(&slopes[0]) {
             let away = [slope.dx, slope.dy, slope.dz].map(|c| -f64::from(c));
-            let length = crate::contender::dot(away, away).sqrt();
+            let length = crate::race::contender::dot(away, away).sqrt();
             // On the axis there is no slope across.
             let way = if length > 0.0 { away.map(|c| c / length) } else { [1.0, 0.0, 0.0] };
             let point = &self.tree.points()[self.near[*hit]];

@@ -5,20 +5,22 @@
 //! goes; it takes its own sign for the answer, so points within some 1e-6 of the surface may fall
 //! on the wrong side.
 
-use crate::contender::{Answer, Contender, Sums, View, Workpiece};
-use crate::formula;
-use crate::points::{Point, points};
+use super::formula;
+use super::points::{Point, points};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use touchoff::Pose;
 
-pub(crate) struct Scalar {
+/// Every point in `f64`, with branches.
+pub struct Scalar {
     /// Coordinates alone, since few points need more.
     at: Vec<[f64; 3]>,
     points: Vec<Point>,
 }
 
 impl Scalar {
-    pub(crate) fn new(piece: &Workpiece) -> Scalar {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> Scalar {
         let points = points(&piece.cloud);
         Scalar { at: points.iter().map(|point| point.at).collect(), points }
     }
@@ -48,7 +50,8 @@ impl Contender for Scalar {
 
 const WIDTH: usize = 16;
 
-pub(crate) struct Lanes {
+/// Every point in `f32`, sixteen at a time.
+pub struct Lanes {
     level: Level,
     /// Coordinates list by list; what fills the last block lies far away.
     at: [Vec<f32>; 3],
@@ -56,7 +59,8 @@ pub(crate) struct Lanes {
 }
 
 impl Lanes {
-    pub(crate) fn new(piece: &Workpiece) -> Lanes {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> Lanes {
         let points = points(&piece.cloud);
         let room = points.len().next_multiple_of(WIDTH);
         let at = [0, 1, 2].map(|axis| {

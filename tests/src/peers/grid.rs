@@ -5,10 +5,11 @@
 //! between eight corners it is interpolated. That errs by the order of the cell's square, and by that
 //! of the cell where the tool has edges.
 
-use crate::contender::dot;
-use crate::formula;
-use crate::shell::{Field, STEEPEST};
-use touchoff_tests::oracle::{Oracle, fig_7_3_exact};
+use super::formula;
+use super::shell::{Field, STEEPEST};
+use crate::oracle::{Oracle, fig_7_3_exact};
+use crate::race::contender::dot;
+use std::sync::OnceLock;
 
 /// The side of a cell, mm.
 const CELL: f64 = 0.1;
@@ -19,14 +20,25 @@ const BOX: [[f64; 2]; 3] = [[-5.0, 5.0], [-5.0, 5.0], [0.0, formula::TIP]];
 /// So near to the surface the field is the magnitude, which goes on outside, not the distance.
 const BAND: f64 = 2.0 * CELL;
 
-pub(crate) struct Grid {
+/// The field at the corners of cubes.
+#[derive(Clone)]
+pub struct Grid {
     count: [usize; 3],
     /// x fastest.
     field: Vec<f32>,
 }
 
 impl Grid {
-    pub(crate) fn new() -> Grid {
+    /// That of the tool, which is worked out once.
+    pub fn known() -> Grid {
+        static GRID: OnceLock<Grid> = OnceLock::new();
+        GRID.get_or_init(Grid::default).clone()
+    }
+}
+
+impl Default for Grid {
+    /// Of the tool.
+    fn default() -> Grid {
         let exact = fig_7_3_exact();
         let count =
             BOX.map(|[low, high]| ((high - low + 2.0 * AROUND) / CELL).round() as usize + 1);
@@ -44,7 +56,9 @@ impl Grid {
         }
         Grid { count, field }
     }
+}
 
+impl Grid {
     /// A point in cells from the grid's corner.
     fn cells(p: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| (p[axis] - BOX[axis][0] + AROUND) / CELL)

@@ -6,7 +6,7 @@
 //! as a whole, for the average; odd blocks query by query, for the percentiles, which the clock makes
 //! longer by some 20 ns. A method too slow for its share of time sits out blocks, evenly.
 
-use crate::contender::{Answer, Contender};
+use super::contender::{Answer, Contender};
 use cpu_time::ThreadTime;
 use std::time::{Duration, Instant};
 use touchoff::Pose;
@@ -18,7 +18,7 @@ const TRIAL: usize = 5;
 
 /// What was measured of one method.
 #[derive(Default)]
-pub(crate) struct Times {
+pub struct Times {
     /// Even blocks: queries, wall and CPU time.
     together: usize,
     wall: Duration,
@@ -30,34 +30,35 @@ pub(crate) struct Times {
 }
 
 impl Times {
-    pub(crate) fn poses(&self) -> usize {
+    /// How many poses it was asked at.
+    pub fn poses(&self) -> usize {
         self.together + self.single.len()
     }
 
     /// Wall time of a query, ns.
-    pub(crate) fn average(&self) -> f64 {
+    pub fn average(&self) -> f64 {
         self.wall.as_secs_f64() * 1e9 / self.together.max(1) as f64
     }
 
     /// CPU time of a query, ns.
-    pub(crate) fn cpu(&self) -> f64 {
+    pub fn cpu(&self) -> f64 {
         self.cpu.as_secs_f64() * 1e9 / self.together.max(1) as f64
     }
 
     /// What a part of all queries took at most, ns; `None` if there are too few of them to say.
-    pub(crate) fn percentile(&self, part: f64) -> Option<u64> {
+    pub fn percentile(&self, part: f64) -> Option<u64> {
         let beyond = (1.0 - part) * self.single.len() as f64;
         let at = (self.single.len() as f64 * part) as usize;
         (beyond > 1.0 - 1e-9).then(|| self.single[at.min(self.single.len() - 1)])
     }
 
     /// The longest query, ns.
-    pub(crate) fn longest(&self) -> Option<u64> {
+    pub fn longest(&self) -> Option<u64> {
         self.single.last().copied()
     }
 
     /// Points inside, on average and most.
-    pub(crate) fn colliding(&self) -> (f64, usize) {
+    pub fn colliding(&self) -> (f64, usize) {
         (self.colliding as f64 / self.poses().max(1) as f64, self.most)
     }
 
@@ -68,17 +69,13 @@ impl Times {
 }
 
 /// Keeps the thread on the last core; whether that worked.
-pub(crate) fn pin() -> bool {
+pub fn pin() -> bool {
     let cores = core_affinity::get_core_ids().unwrap_or_default();
     cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
 }
 
 /// Times methods on a path, each for about `seconds` at most.
-pub(crate) fn race(
-    methods: &mut [Box<dyn Contender + '_>],
-    poses: &[Pose],
-    seconds: f64,
-) -> Vec<Times> {
+pub fn race(methods: &mut [Box<dyn Contender + '_>], poses: &[Pose], seconds: f64) -> Vec<Times> {
     let strides: Vec<usize> =
         methods.iter_mut().map(|m| stride(&mut **m, poses, seconds)).collect();
     let mut times: Vec<Times> = methods.iter().map(|_| Times::default()).collect();

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use touchoff::{Cloud, Mesh, Part, Pose};
 
 /// A method, ready to be asked at one pose after another.
-pub(crate) trait Contender {
+pub trait Contender {
     /// The word for it, as in the table.
     fn name(&self) -> &'static str;
 
@@ -20,60 +20,65 @@ pub(crate) trait Contender {
 /// What a method found. Force and torque about the tip are on the tool, in the world's frame, by
 /// the law `Σ w m (n − u)`.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Answer {
+pub struct Answer {
     /// How many points are inside; of methods without points, whether anything is.
-    pub(crate) colliding: usize,
+    pub colliding: usize,
     /// How deep the deepest is; 0 without contact.
-    pub(crate) depth: f64,
+    pub depth: f64,
     /// Force and torque, if the method has any.
-    pub(crate) wrench: Option<[Vector3<f64>; 2]>,
+    pub wrench: Option<[Vector3<f64>; 2]>,
 }
 
 /// The part, as the methods are given it.
-pub(crate) struct Workpiece {
-    pub(crate) mesh: Mesh,
-    pub(crate) cloud: Cloud,
-    pub(crate) part: Part,
+pub struct Workpiece {
+    /// Its triangles.
+    pub mesh: Mesh,
+    /// Points of it.
+    pub cloud: Cloud,
+    /// The same points in their tree.
+    pub part: Part,
 }
 
 /// A pose as three rows that turn the world's vectors into the tool's frame.
-pub(crate) struct View {
-    pub(crate) tip: [f64; 3],
+pub struct View {
+    /// Where the tip is, in the world.
+    pub tip: [f64; 3],
     rows: [[f64; 3]; 3],
 }
 
 impl View {
-    pub(crate) fn of(pose: &Pose) -> View {
+    /// From a pose.
+    pub fn of(pose: &Pose) -> View {
         let column = |axis: usize| pose.rotation().column(axis).into_owned().into();
         View { tip: pose.tip().coords.into(), rows: [column(0), column(1), column(2)] }
     }
 
     /// A point of the world from the tip, still in the world's directions.
     #[inline]
-    pub(crate) fn arm(&self, p: [f64; 3]) -> [f64; 3] {
+    pub fn arm(&self, p: [f64; 3]) -> [f64; 3] {
         [p[0] - self.tip[0], p[1] - self.tip[1], p[2] - self.tip[2]]
     }
 
     /// A vector of the world in the tool's frame.
     #[inline]
-    pub(crate) fn turn(&self, v: [f64; 3]) -> [f64; 3] {
+    pub fn turn(&self, v: [f64; 3]) -> [f64; 3] {
         [dot(self.rows[0], v), dot(self.rows[1], v), dot(self.rows[2], v)]
     }
 
     /// How far a box with these half extents reaches along the tool's axes.
     #[inline]
-    pub(crate) fn reach(&self, half: [f64; 3]) -> [f64; 3] {
+    pub fn reach(&self, half: [f64; 3]) -> [f64; 3] {
         let along = |row: [f64; 3]| dot([row[0].abs(), row[1].abs(), row[2].abs()], half);
         [along(self.rows[0]), along(self.rows[1]), along(self.rows[2])]
     }
 
     /// The rows in single precision.
-    pub(crate) fn single(&self) -> [[f32; 3]; 3] {
+    pub fn single(&self) -> [[f32; 3]; 3] {
         self.rows.map(|row| row.map(|c| c as f32))
     }
 
     /// From the tool's frame to the world's.
-    pub(crate) fn back(&self, v: Vector3<f64>) -> Vector3<f64> {
+    pub fn back(&self, v: Vector3<f64>) -> Vector3<f64> {
         let [x, y, z] = self.rows.map(Vector3::from);
         Matrix3::from_columns(&[x, y, z]) * v
     }
@@ -82,7 +87,7 @@ impl View {
 /// The sums of a contact. The tool's directions and the part's normals are summed apart, each in
 /// its own frame, so that nothing is turned point by point.
 #[derive(Default)]
-pub(crate) struct Sums {
+pub struct Sums {
     colliding: usize,
     depth: f64,
     /// Force and torque in the tool's frame, and in the world's.
@@ -94,7 +99,7 @@ impl Sums {
     /// A point inside: where it is from the tip in the world's directions and in the tool's frame,
     /// its weight and normal, its magnitude and direction.
     #[inline]
-    pub(crate) fn add(
+    pub fn add(
         &mut self,
         [arm, p]: [[f64; 3]; 2],
         (weight, normal): (f64, [f64; 3]),
@@ -110,13 +115,15 @@ impl Sums {
         self.tool[1] -= Vector3::from(p).cross(&pulled);
     }
 
-    pub(crate) fn answer(&self, view: &View) -> Answer {
+    /// What they come to.
+    pub fn answer(&self, view: &View) -> Answer {
         let sum = |at: usize| view.back(self.tool[at]) + self.part[at];
         Answer { colliding: self.colliding, depth: self.depth, wrench: Some([sum(0), sum(1)]) }
     }
 }
 
+/// The scalar product.
 #[inline]
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

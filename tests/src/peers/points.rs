@@ -1,23 +1,26 @@
 //! Points in an order in which neighbours lie together, and a tree of boxes about them. What
 //! `parry-bvh`, `fidget` and `grid` stand on.
 
-use crate::contender::{Sums, View};
-use crate::formula;
+use super::formula;
+use crate::race::contender::{Sums, View};
 use std::ops::Range;
 use touchoff::Cloud;
 
 /// A point of the cloud with all that is known of it.
 #[derive(Clone, Copy)]
-pub(crate) struct Point {
-    pub(crate) at: [f64; 3],
-    pub(crate) normal: [f64; 3],
-    pub(crate) weight: f64,
+pub struct Point {
+    /// Where it is.
+    pub at: [f64; 3],
+    /// Out of the material.
+    pub normal: [f64; 3],
+    /// The area it stands for.
+    pub weight: f64,
 }
 
 impl Point {
     /// Adds the point to the sums if the formula in `f64` has it inside.
     #[inline]
-    pub(crate) fn feel(&self, view: &View, sums: &mut Sums) {
+    pub fn feel(&self, view: &View, sums: &mut Sums) {
         let arm = view.arm(self.at);
         let p = view.turn(arm);
         if let Some(felt) = formula::sense(p) {
@@ -27,7 +30,7 @@ impl Point {
 }
 
 /// The cloud's points, as they come.
-pub(crate) fn points(cloud: &Cloud) -> Vec<Point> {
+pub fn points(cloud: &Cloud) -> Vec<Point> {
     let lists = cloud.points().iter().zip(cloud.normals()).zip(cloud.weights());
     lists
         .map(|((at, normal), weight)| Point {
@@ -39,7 +42,7 @@ pub(crate) fn points(cloud: &Cloud) -> Vec<Point> {
 }
 
 /// Kd order: across the longest side, the left part a power of two of full leaves.
-pub(crate) fn order(points: &mut [Point], leaf: usize) {
+pub fn order(points: &mut [Point], leaf: usize) {
     if points.len() <= leaf {
         return;
     }
@@ -54,18 +57,21 @@ pub(crate) fn order(points: &mut [Point], leaf: usize) {
 
 /// A box by its centre and half extents.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounds {
-    pub(crate) centre: [f64; 3],
-    pub(crate) half: [f64; 3],
+pub struct Bounds {
+    /// Its centre.
+    pub centre: [f64; 3],
+    /// Half of its sides.
+    pub half: [f64; 3],
 }
 
 impl Bounds {
-    pub(crate) fn at(point: [f64; 3]) -> Bounds {
+    /// Of a point.
+    pub fn at(point: [f64; 3]) -> Bounds {
         Bounds { centre: point, half: [0.0; 3] }
     }
 
     /// About some boxes.
-    pub(crate) fn of(all: impl Iterator<Item = Bounds>) -> Bounds {
+    pub fn of(all: impl Iterator<Item = Bounds>) -> Bounds {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for one in all {
             for axis in 0..3 {
@@ -83,7 +89,7 @@ const CHILDREN: usize = 4;
 
 /// A tree without pointers: node `n` of a level has the children `4 n …` of the next, and below
 /// the last level stand the leaves' points.
-pub(crate) struct Tree<N> {
+pub struct Tree<N> {
     points: Vec<Point>,
     leaf: usize,
     /// From the root down.
@@ -94,7 +100,7 @@ pub(crate) struct Tree<N> {
 
 impl<N> Tree<N> {
     /// The tree of a cloud, leaves of so many points, each node made of its box and points.
-    pub(crate) fn new(cloud: &Cloud, leaf: usize, node: impl Fn(Bounds, &[Point]) -> N) -> Self {
+    pub fn new(cloud: &Cloud, leaf: usize, node: impl Fn(Bounds, &[Point]) -> N) -> Self {
         let mut points = points(cloud);
         order(&mut points, leaf);
         let mut levels = Vec::new();
@@ -116,13 +122,13 @@ impl<N> Tree<N> {
     }
 
     /// All points, in the tree's order.
-    pub(crate) fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// All points, and which of them lie in leaves that are reached through nodes that may touch
     /// the tool.
-    pub(crate) fn leaves(
+    pub fn leaves(
         &mut self,
         mut touches: impl FnMut(&N) -> bool,
     ) -> (&[Point], impl Iterator<Item = Range<usize>>) {

@@ -6,10 +6,10 @@
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 /// Where the tip is along the thesis's `z`.
-pub(crate) const TIP: f64 = 20.0;
+pub const TIP: f64 = 20.0;
 
 /// The largest radius of the tool.
-pub(crate) const RADIUS: f64 = 5.0;
+pub const RADIUS: f64 = 5.0;
 
 /// Magnitude and direction, radial and along the thesis's `z`, not of unit length.
 type Felt = (f64, [f64; 2]);
@@ -17,7 +17,7 @@ type Felt = (f64, [f64; 2]);
 /// Magnitude and unit direction at a point of the tool's frame; `None` outside. Three trees of
 /// splits, one behind the other.
 #[inline]
-pub(crate) fn sense(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
+pub fn sense(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let z = TIP - p[2];
     let squared = p[0] * p[0] + p[1] * p[1];
     let felt = if z >= 15.0 {
@@ -32,7 +32,7 @@ pub(crate) fn sense(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
 
 /// The cutter and its ball, 15 ≤ z ≤ 20.
 #[inline]
-pub(crate) fn cutter(squared: f64, z: f64) -> Option<Felt> {
+pub fn cutter(squared: f64, z: f64) -> Option<Felt> {
     if squared > 1.0 || z > TIP {
         return None;
     }
@@ -49,7 +49,7 @@ pub(crate) fn cutter(squared: f64, z: f64) -> Option<Felt> {
 
 /// The spindle and its taper, 11 < z < 15.
 #[inline]
-pub(crate) fn spindle(squared: f64, z: f64) -> Option<Felt> {
+pub fn spindle(squared: f64, z: f64) -> Option<Felt> {
     if squared > 9.0 {
         return None;
     }
@@ -65,7 +65,7 @@ pub(crate) fn spindle(squared: f64, z: f64) -> Option<Felt> {
 
 /// The housing, 0 ≤ z ≤ 11.
 #[inline]
-pub(crate) fn housing(squared: f64, z: f64) -> Option<Felt> {
+pub fn housing(squared: f64, z: f64) -> Option<Felt> {
     if squared > 25.0 || z < 0.0 {
         return None;
     }
@@ -83,7 +83,7 @@ pub(crate) fn housing(squared: f64, z: f64) -> Option<Felt> {
 
 /// The direction in the tool's frame, as a unit vector; +x for radial on the axis.
 #[inline]
-pub(crate) fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f64, [f64; 3]) {
+pub fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f64, [f64; 3]) {
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
     let d = squared.sqrt();
     let radial = if d > 0.0 { [p[0] / d, p[1] / d] } else { [1.0, 0.0] };
@@ -93,14 +93,14 @@ pub(crate) fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f6
 
 /// Whether a point lies outside by its distance from the axis alone, without branches.
 #[inline]
-pub(crate) fn beside(p: [f64; 3]) -> bool {
+pub fn beside(p: [f64; 3]) -> bool {
     let radius = if p[2] < 9.0 { (p[2] - 4.0).clamp(1.0, 3.0) } else { RADIUS };
     (p[0] * p[0] + p[1] * p[1] > radius * radius) | (p[2] < 0.0) | (p[2] > TIP)
 }
 
 /// Magnitude as one formula of minima and maxima, negative outside: what the regions come to, since
 /// they join without jumps. √5-Lipschitz everywhere.
-pub(crate) fn magnitude(p: [f64; 3]) -> f64 {
+pub fn magnitude(p: [f64; 3]) -> f64 {
     let d = p[0].hypot(p[1]);
     let z = TIP - p[2];
     let housing = 14.0 - d.min(3.0) - z;
@@ -110,7 +110,7 @@ pub(crate) fn magnitude(p: [f64; 3]) -> f64 {
 }
 
 /// Five concave functions of `d` and `z` whose largest is [`magnitude`], each with its slopes.
-pub(crate) fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
+pub fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
     let linear = |by_d: f64, by_z: f64, rest: f64| (rest + by_d * d + by_z * z, [by_d, by_z]);
     let least = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };
     let side = linear(-1.0, 0.0, 3.0);
@@ -143,7 +143,7 @@ fn magnitude_lanes<S: Simd>(squared: f32x16<S>, z: f32x16<S>) -> f32x16<S> {
 
 /// [`magnitude`] of sixteen of some points, seen from the tip by the rows of a rotation.
 #[inline(always)]
-pub(crate) fn magnitude_from<S: Simd>(
+pub fn magnitude_from<S: Simd>(
     simd: S,
     [xs, ys, zs]: [&[f32]; 3],
     (rows, tip): ([[f32; 3]; 3], [f32; 3]),
@@ -160,7 +160,7 @@ pub(crate) fn magnitude_from<S: Simd>(
 /// Whether a box of the tool's frame, by its centre and half extents, may touch the tool: not
 /// beside its ends, nor farther from the axis than its largest radius over the box's stretch.
 #[inline]
-pub(crate) fn may_touch(centre: [f64; 3], half: [f64; 3]) -> bool {
+pub fn may_touch(centre: [f64; 3], half: [f64; 3]) -> bool {
     let (low, high) = (centre[2] - half[2], centre[2] + half[2]);
     if high < 0.0 || low > TIP {
         return false;
