@@ -2,58 +2,55 @@
 
 use super::methods::{Felt, Precision};
 use crate::race::contender::Contender;
-use tools_library::{D2Ball, Fig73, Fig73Exact, UnitSphere};
+use tools_library::{Fig73, Fig73Exact, UnitSphere};
 use touchoff::{Part, Probe, Tool};
 
 /// A tool, by its type where that is known.
 #[derive(Clone, Copy)]
 pub(super) enum Cutter<'t> {
-    /// The thesis's tool, its magnitudes.
-    Fig73,
     /// The thesis's tool, true depths.
     Fig73Exact,
     /// A ball of radius 1.
     UnitSphere,
-    /// A ball cutter of 2 mm.
-    D2Ball,
     /// Any other.
     Any(&'t dyn Tool),
 }
 
 impl<'t> Cutter<'t> {
+    /// The thesis's tool with its own magnitudes.
+    #[cfg(feature = "peers")]
+    pub(super) const THESIS: Cutter<'static> = Cutter::Any(&Fig73);
+
     /// Of a tool of the library, by its name, or of any other.
     pub(super) fn of(tool: &'t dyn Tool, compiled: bool) -> Cutter<'t> {
         match &*tool.card().name {
-            "Fig73" if compiled => Cutter::Fig73,
             "Fig73Exact" if compiled => Cutter::Fig73Exact,
             "UnitSphere" if compiled => Cutter::UnitSphere,
-            "D2Ball" if compiled => Cutter::D2Ball,
             _ => Cutter::Any(tool),
         }
     }
 
     /// The same solid with a profile, so that its distance is known.
     pub(super) fn near(self) -> &'t dyn Tool {
-        match self {
-            Cutter::Fig73 => &Fig73Exact,
-            other => other.tool(),
-        }
+        if self.is_the_thesis() { &Fig73Exact } else { self.tool() }
     }
 
     /// The tool itself.
     pub(super) fn tool(self) -> &'t dyn Tool {
         match self {
-            Cutter::Fig73 => &Fig73,
             Cutter::Fig73Exact => &Fig73Exact,
             Cutter::UnitSphere => &UnitSphere,
-            Cutter::D2Ball => &D2Ball,
             Cutter::Any(tool) => tool,
         }
     }
 
+    fn is_the_thesis(self) -> bool {
+        self.tool().card() == Fig73.card()
+    }
+
     /// Whether the peers, who know only the formula of fig. 7.3, know this solid.
     pub(super) fn peers_know_it(self) -> bool {
-        matches!(self, Cutter::Fig73 | Cutter::Fig73Exact)
+        matches!(self, Cutter::Fig73Exact) || self.is_the_thesis()
     }
 
     /// A probe at a precision; `None` where the tool cannot be asked in it.
@@ -66,10 +63,8 @@ impl<'t> Cutter<'t> {
         't: 'p,
     {
         match self {
-            Cutter::Fig73 => Felt::known(Probe::new(part, &Fig73), precision),
-            Cutter::Fig73Exact => Felt::known(Probe::new(part, &Fig73Exact), precision),
-            Cutter::UnitSphere => Felt::known(Probe::new(part, &UnitSphere), precision),
-            Cutter::D2Ball => Felt::known(Probe::new(part, &D2Ball), precision),
+            Cutter::Fig73Exact => Some(Felt::known(Probe::new(part, &Fig73Exact), precision)),
+            Cutter::UnitSphere => Some(Felt::known(Probe::new(part, &UnitSphere), precision)),
             Cutter::Any(tool) => Felt::any(Probe::new(part, tool), precision),
         }
     }

@@ -2,53 +2,62 @@
 
 use crate::race::contender::{Answer, Contender};
 use touchoff::certify::Certifier;
+use touchoff::precision::{self, Double, Filtered, Single};
 use touchoff::tool::Senses;
 use touchoff::{Graded, Pose, Probe, Wrench};
 
 /// In what arithmetic a cloud's points are asked. The one place where those that are measured stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Precision {
+    /// `f64` throughout.
+    Double,
     /// `f32` rules out, `f64` decides.
     Filtered,
+    /// `f32` throughout, but for the sums.
+    Single,
 }
 
 impl Precision {
     /// All that are measured.
-    pub(super) const ALL: [Precision; 1] = [Precision::Filtered];
+    pub(super) const ALL: [Precision; 3] =
+        [Precision::Filtered, Precision::Double, Precision::Single];
     /// What a probe does if nothing is said.
     pub(super) const USUAL: Precision = Precision::Filtered;
 
     /// The words for it.
     pub(super) const fn name(self) -> &'static str {
         match self {
+            Precision::Double => "f64",
             Precision::Filtered => "f32 filter + f64",
+            Precision::Single => "f32",
         }
     }
 }
 
 /// All that is felt of a cloud's points.
-pub(super) struct Felt<'a, T: ?Sized>(Probe<'a, T>);
+pub(super) struct Felt<'a, T: ?Sized, P: precision::Precision>(Probe<'a, T, P>);
 
-impl<'a, T: Senses + 'a> Felt<'a, T> {
+impl<'a, T: Senses + Senses<f32> + 'a> Felt<'a, T, Filtered> {
     /// A probe of a tool whose type is known.
-    pub(super) fn known(
-        probe: Probe<'a, T>,
-        precision: Precision,
-    ) -> Option<Box<dyn Contender + 'a>> {
+    pub(super) fn known(probe: Probe<'a, T>, precision: Precision) -> Box<dyn Contender + 'a> {
         match precision {
-            Precision::Filtered => Some(Box::new(Felt(probe))),
+            Precision::Double => Box::new(Felt(probe.precision::<Double>())),
+            Precision::Filtered => Box::new(Felt(probe)),
+            Precision::Single => Box::new(Felt(probe.precision::<Single>())),
         }
     }
 }
 
-impl<'a> Felt<'a, dyn touchoff::Tool + 'a> {
-    /// A probe of a tool whose type is not known.
+impl<'a> Felt<'a, dyn touchoff::Tool + 'a, Filtered> {
+    /// A probe of a tool whose type is not known, which no `f32` is for.
     pub(super) fn any(
         probe: Probe<'a, dyn touchoff::Tool + 'a>,
         precision: Precision,
     ) -> Option<Box<dyn Contender + 'a>> {
         match precision {
+            Precision::Double => Some(Box::new(Felt(probe.precision::<Double>()))),
             Precision::Filtered => Some(Box::new(Felt(probe))),
+            Precision::Single => None,
         }
     }
 }
@@ -58,7 +67,7 @@ fn answer(felt: &Wrench) -> Answer {
     Answer { colliding: felt.colliding, depth: felt.depth(), wrench }
 }
 
-impl<T: Senses + ?Sized> Contender for Felt<'_, T> {
+impl<T: Senses<P::Number> + ?Sized, P: precision::Precision> Contender for Felt<'_, T, P> {
     fn name(&self) -> &'static str {
         "cloud"
     }

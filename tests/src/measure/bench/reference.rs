@@ -81,7 +81,7 @@ impl Reference {
         plan: &Plan,
     ) -> Result<Reference, Failure> {
         use crate::peers::deepest::{TOLERANCE, deepest};
-        let cutter = Cutter::Fig73;
+        let cutter = Cutter::THESIS;
         let depth = |pose: &Pose| {
             let low = deepest(mesh, pose, 0.0);
             [low, low + TOLERANCE]
