@@ -12,10 +12,6 @@ use touchoff_tests::oracle::{Nearest, restated};
 
 const FOUND: &str = include_str!("found.tsv");
 
-/// Bars that are missed, and by how much at most. `Barrel`: where its flank of R 85 meets the neck, a corner of 31°, squares of 85 are
-/// rounded by half an ulp(S) of depth; a point that this gives to the neck, but that lies past the neck's end, is put outside.
-const KNOWN: [(&str, Question, f64); 1] = [("Barrel", Question::Side, 2.5)];
-
 fn found() -> Vec<Line> {
     let read = |line: &str| Line::read(line).unwrap_or_else(|| panic!("no line: {line}"));
     FOUND.lines().map(read).collect()
@@ -37,13 +33,8 @@ fn the_worst_places_keep_the_contract() {
         let ulp = scale(tool) * f64::EPSILON;
         for line in own {
             let error = line.again(&mut asked, judge.as_ref(), ulp);
-            let known = KNOWN.iter().find(|known| (known.0, known.1) == (&*name, line.question));
-            if known.is_some() && error <= line.bar {
-                broken.push(format!("no longer missed: {}", line.text()));
-            }
-            let bar = known.map_or(line.bar, |known| known.2);
             // Written so that what is no number is no pass.
-            if !matches!(error.partial_cmp(&bar), Some(order) if order.is_le()) {
+            if !matches!(error.partial_cmp(&line.bar), Some(order) if order.is_le()) {
                 broken.push(format!("{error:?}: {}", line.text()));
             }
         }
