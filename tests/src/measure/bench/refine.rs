@@ -164,7 +164,7 @@ impl<'a> Refined<'a> {
                     continue;
                 }
                 if radius > short {
-                    left.extend(halves(&corners));
+                    left.extend(shorter(&corners));
                 } else {
                     pieces.push(Piece::new(corners, face));
                 }
@@ -262,11 +262,37 @@ fn ball(corners: &Corners) -> (Vector3<f64>, f64) {
     (centre, squares.into_iter().fold(0.0, f64::max).sqrt())
 }
 
-/// Both halves, by the middle of the longest edge.
-fn halves(corners: &Corners) -> [Corners; 2] {
+/// A triangle in shorter ones. Halves of a slender one would be as slender: quarters of it are like it. So that
+/// is cut across, where the longest edge has its middle.
+fn shorter(corners: &Corners) -> Vec<Corners> {
+    const SLENDER: f64 = 3.0;
+    let [a, b, c] = from_longest(corners);
+    let edge = b - a;
+    let wide = edge.cross(&(c - a)).norm() / edge.norm();
+    if edge.norm() < SLENDER * wide {
+        return halves(corners).to_vec();
+    }
+    let m = (a + b) / 2.0;
+    let foot = (c - a).dot(&edge) / edge.norm_squared();
+    if foot >= 0.5 {
+        let p = a + (c - a) * (0.5 / foot);
+        vec![[a, m, p], [m, b, c], [m, c, p]]
+    } else {
+        let p = b + (c - b) * (0.5 / (1.0 - foot));
+        vec![[m, b, p], [a, m, c], [m, p, c]]
+    }
+}
+
+/// Its corners, the longest edge first.
+fn from_longest(corners: &Corners) -> Corners {
     let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).norm_squared();
     let k = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
-    let [a, b, c] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
+    [0, 1, 2].map(|i| corners[(k + i) % 3])
+}
+
+/// Both halves, by the middle of the longest edge.
+fn halves(corners: &Corners) -> [Corners; 2] {
+    let [a, b, c] = from_longest(corners);
     let m = (a + b) / 2.0;
     [[a, m, c], [m, b, c]]
 }
@@ -276,6 +302,22 @@ mod tests {
     use super::*;
     use crate::measure::convergence::contact::Contact;
     use crate::oracle::draw::Draw;
+
+    #[test]
+    fn what_is_cut_across_is_shorter_and_as_large_as_before() {
+        let area = |[a, b, c]: &Corners| (b - a).cross(&(c - a)).norm() / 2.0;
+        let longest = |corners: &Corners| {
+            let [a, b, _] = from_longest(corners);
+            (b - a).norm()
+        };
+        for apex in [0.0, 1.0, 6.0, 9.0, 13.0] {
+            let slender = [[0.0, 0.0, 0.0], [13.0, 0.0, 0.0], [apex, 0.0, 0.02]].map(Vector3::from);
+            let pieces = shorter(&slender);
+            let whole: f64 = pieces.iter().map(area).sum();
+            assert!((whole / area(&slender) - 1.0).abs() < 1e-12, "{apex}");
+            assert!(pieces.iter().all(|piece| longest(piece) < 7.0), "{apex} {pieces:?}");
+        }
+    }
 
     #[test]
     fn sums_are_the_closed_forms() {
