@@ -113,7 +113,7 @@ impl<'a> Judge<'a> {
             Some(answer) => format!("{p:?} in `{}`", regions[answer.region].name),
             None => format!("{p:?}"),
         };
-        let wrong = answer.is_some() != !exact.is_negative() && depth.abs() > DOUBT * self.ulp;
+        let wrong = answer.is_some() == exact.is_negative() && depth.abs() > DOUBT * self.ulp;
         ledger.count(SIDES, wrong, shown);
         let Some(answer) = answer else { return self.outside(p, &exact, ledger) };
         let [_, magnitude, niceness, ..] = answer.numbers;

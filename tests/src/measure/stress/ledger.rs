@@ -82,7 +82,7 @@ pub struct Row {
 impl Row {
     /// Whether the bar is missed.
     pub fn missed(&self) -> bool {
-        !(self.worst <= self.kind.bar)
+        self.worst.is_nan() || self.worst > self.kind.bar
     }
 
     /// The figure as a part of its bar; of what is counted 0 or infinity.

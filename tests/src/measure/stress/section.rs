@@ -164,7 +164,8 @@ fn meet(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) -> Opti
         }
         let step = [(f * v[1] - g * u[1]) / det, (u[0] * g - v[0] * f) / det];
         p = sub(p, step);
-        if !(p[0].abs() + p[1].abs() < 4.0 * size) {
+        let far = p[0].abs() + p[1].abs();
+        if far.is_nan() || far >= 4.0 * size {
             return None;
         }
         if step[0].abs().max(step[1].abs()) < 1e-15 * size {
