@@ -28,7 +28,7 @@ fn a_scene_is_measured_row_by_row_and_makes_a_page() {
     }
     let force = |sampling: &str, weights: &str| {
         let of = |row: &&Value| row["sampling"] == sampling && row["weights"] == weights;
-        let last = rows.iter().filter(of).next_back().expect("such a row");
+        let last = rows.iter().rfind(of).expect("such a row");
         last["err_force"].as_f64().expect("a number")
     };
     // With some hundred points in contact, the better spread and weighed, the nearer.
