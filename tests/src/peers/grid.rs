@@ -1,6 +1,6 @@
 //! The tool's field in space, at the corners of cubes.
 //!
-//! Cubes of [`CELL`] mm over the tool's box and [`AROUND`] mm about it: 3.2 million `f32`, 13 MB. At
+//! Cubes of `CELL` mm over the tool's box and `AROUND` mm about it: 3.2 million `f32`, 13 MB. At
 //! the corners stands the magnitude inside and by the surface, and minus the true distance elsewhere;
 //! between eight corners it is interpolated. That errs by the order of the cell's square, and by that
 //! of the cell where the tool has edges.

@@ -1,6 +1,6 @@
 //! The tool's field in the half plane through a point and the axis, at the corners of squares.
 //!
-//! Squares of [`CELL`] mm: 0.33 million `f32`, 1.3 MB, for the same tool as the grid in space, five
+//! Squares of `CELL` mm: 0.33 million `f32`, 1.3 MB, for the same tool as the grid in space, five
 //! times as fine. What stands at the corners is the same.
 
 use super::formula;

@@ -3,7 +3,7 @@
 //!
 //! Chapters 2 to 4 and 7.3: the cloud's tree never moves; the tool's volumes are bounded anew at
 //! each pose; where leaves of both overlap the points are carried into the tool's frame and asked
-//! one by one. k = 18, which Klosowski (1997) found best, and leaves of at most [`LEAF`] points.
+//! one by one. k = 18, which Klosowski (1997) found best, and leaves of at most `LEAF` points.
 //! Where the thesis turns the vertices of a volume and bounds those, here each volume is bounded
 //! tightly by its support function: better than what the thesis had. Overlap ends at the first
 //! direction that separates, and the larger of two volumes is divided first.

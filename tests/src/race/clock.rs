@@ -1,6 +1,6 @@
 //! How methods are timed: in turns, on the same poses, never the same pose twice.
 //!
-//! The path is cut into blocks of [`BLOCK`] poses. Every block is given to one method after the
+//! The path is cut into blocks of `BLOCK` poses. Every block is given to one method after the
 //! other, each time another one first. Before its turn a method is asked once, untimed, at the pose
 //! before the block: in use it would not have to share its caches with others. Even blocks are timed
 //! as a whole, for the average; odd blocks query by query, for the percentiles, which the clock makes
