@@ -5,8 +5,9 @@
 //! differ is its error; of pieces all inside, whose error falls as the square of their size, a third of the
 //! difference is taken off (Richardson). A piece whose centroid is outside may hide something: as much as
 //! the tool's distance allows, a tenth of which is taken for its error. These errors say where to go on, and
-//! far too much of the whole, since none is taken against another: how well a sum is known is by how much it
-//! changed since a quarter of the pieces had been asked.
+//! far too much of the whole, since none is taken against another: how well a sum is known is a third of how
+//! much it changed since a quarter of the pieces had been asked, which is what is left of an error that falls
+//! as they grow, and more than that of one that falls faster.
 
 use nalgebra::{Point3, Vector3, Vector6};
 use rayon::prelude::*;
@@ -46,7 +47,7 @@ pub(super) struct Sums {
     pub(super) force: Vector3<f64>,
     /// The torque.
     pub(super) torque: Vector3<f64>,
-    /// By how much force and torque changed since a quarter of the pieces had been asked.
+    /// A third of how much force and torque changed since a quarter of the pieces had been asked.
     pub(super) change: [f64; 2],
 }
 
@@ -112,7 +113,8 @@ impl<'a> Refined<'a> {
         let mut active = self.reached(pose);
         self.ask(pose, &mut active, &mut room);
         let (mut settled, mut error) = (Vector6::zeros(), [0.0; 2]);
-        let mut history = Vec::new();
+        let coarse = active.iter().map(|piece| piece.value).sum::<Vector6<f64>>();
+        let mut history = vec![(room.asked, coarse)];
         while !active.is_empty() {
             let mut groups = self.quarter(pose, &active, &mut room);
             let all = settled + groups.iter().map(|group| group.value).sum::<Vector6<f64>>();
@@ -143,7 +145,7 @@ impl<'a> Refined<'a> {
         let before = &history[..history.len().saturating_sub(1)];
         let quarter = before.iter().rfind(|(asked, _)| *asked <= room.asked / 4).or(before.first());
         let earlier = quarter.map_or(Vector6::zeros(), |(_, sums)| *sums);
-        let change = parts(&(settled - earlier)).map(|part| part.norm());
+        let change = parts(&(settled - earlier)).map(|part| part.norm() / 3.0);
         let [force, torque] = parts(&settled).map(|part| pose.rotation() * part);
         Sums { force, torque, change }
     }
