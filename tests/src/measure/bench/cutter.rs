@@ -1,8 +1,10 @@
-//! Tools as the measurement holds them: where their types are known, probes are of those types.
+//! Tools as the measurement holds them: of some the types are known, which `f32` wants.
 
 use super::methods::{Felt, Precision};
 use crate::race::contender::Contender;
 use tools_library::{Fig73, Fig73Exact, UnitSphere};
+use touchoff::precision::{Double, Single};
+use touchoff::tool::Senses;
 use touchoff::{Part, Probe, Tool};
 
 /// A tool, by its type where that is known.
@@ -62,10 +64,18 @@ impl<'t> Cutter<'t> {
     where
         't: 'p,
     {
-        match self {
-            Cutter::Fig73Exact => Some(Felt::known(Probe::new(part, &Fig73Exact), precision)),
-            Cutter::UnitSphere => Some(Felt::known(Probe::new(part, &UnitSphere), precision)),
-            Cutter::Any(tool) => Felt::any(Probe::new(part, tool), precision),
+        let probe = Probe::new(part, self.tool());
+        match (precision, self) {
+            (Precision::Double, _) => Some(Box::new(Felt(probe.precision::<Double>()))),
+            (Precision::Filtered, _) => Some(Box::new(Felt(probe))),
+            (Precision::Single, Cutter::Fig73Exact) => Some(single(part, &Fig73Exact)),
+            (Precision::Single, Cutter::UnitSphere) => Some(single(part, &UnitSphere)),
+            (Precision::Single, Cutter::Any(_)) => None,
         }
     }
+}
+
+/// A probe in `f32`.
+fn single<'p, T: Senses + Senses<f32>>(part: &'p Part, tool: &'p T) -> Box<dyn Contender + 'p> {
+    Box::new(Felt(Probe::new(part, tool).precision::<Single>()))
 }

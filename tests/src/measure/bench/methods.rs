@@ -2,7 +2,7 @@
 
 use crate::race::contender::{Answer, Contender};
 use touchoff::certify::Certifier;
-use touchoff::precision::{self, Double, Filtered, Single};
+use touchoff::precision;
 use touchoff::tool::Senses;
 use touchoff::{Graded, Pose, Probe, Wrench};
 
@@ -35,32 +35,7 @@ impl Precision {
 }
 
 /// All that is felt of a cloud's points.
-pub(super) struct Felt<'a, T: ?Sized, P: precision::Precision>(Probe<'a, T, P>);
-
-impl<'a, T: Senses + Senses<f32> + 'a> Felt<'a, T, Filtered> {
-    /// A probe of a tool whose type is known.
-    pub(super) fn known(probe: Probe<'a, T>, precision: Precision) -> Box<dyn Contender + 'a> {
-        match precision {
-            Precision::Double => Box::new(Felt(probe.precision::<Double>())),
-            Precision::Filtered => Box::new(Felt(probe)),
-            Precision::Single => Box::new(Felt(probe.precision::<Single>())),
-        }
-    }
-}
-
-impl<'a> Felt<'a, dyn touchoff::Tool + 'a, Filtered> {
-    /// A probe of a tool whose type is not known, which no `f32` is for.
-    pub(super) fn any(
-        probe: Probe<'a, dyn touchoff::Tool + 'a>,
-        precision: Precision,
-    ) -> Option<Box<dyn Contender + 'a>> {
-        match precision {
-            Precision::Double => Some(Box::new(Felt(probe.precision::<Double>()))),
-            Precision::Filtered => Some(Box::new(Felt(probe))),
-            Precision::Single => None,
-        }
-    }
-}
+pub(super) struct Felt<'a, T: ?Sized, P: precision::Precision>(pub(super) Probe<'a, T, P>);
 
 fn answer(felt: &Wrench) -> Answer {
     let wrench = Some([felt.force, felt.torque]);

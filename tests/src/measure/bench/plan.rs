@@ -58,7 +58,7 @@ impl Plan {
             points: vec![1_000, 10_000, 100_000],
             peers_every: 2,
             path: 2_000,
-            checks: 50,
+            checks: 30,
             timed: 500,
             placements: 30,
             budgets: vec![100, 1_000],

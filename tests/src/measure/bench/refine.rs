@@ -75,6 +75,9 @@ struct Quartered {
 const QUARTERS: usize = 4;
 /// Of what a piece may hide at most, its share of the error: on average it is less.
 const HIDDEN: f64 = 0.1;
+/// So many sums, the first of pieces as they come, there are at least: what changes says how well they are
+/// known.
+const ROUNDS: usize = 4;
 /// Beside the largest radius of the tool: how long a piece is that says where the tool is.
 const SHORT: f64 = 0.05;
 /// The same of an arm that makes a force a torque worth minding.
@@ -125,7 +128,7 @@ impl<'a> Refined<'a> {
             groups.sort_by(|a, b| share(&a.error).total_cmp(&share(&b.error)));
             let open: f64 = groups.iter().map(|group| share(&group.error)).sum();
             let left = enough.share - share(&error);
-            let done = open <= left || room.asked > enough.most;
+            let done = history.len() >= ROUNDS && (open <= left || room.asked > enough.most);
             // Half of what is left is for later: where there is most to gain pieces are still large.
             let mut spare = left / 2.0;
             active.clear();
