@@ -83,7 +83,7 @@ fn figure(value: f64) -> String {
 
 /// A cell's text, which has no bars and is not endless.
 fn cell(text: &str) -> String {
-    let flat: String = text.chars().map(|c| if c == '|' { '/' } else { c }).collect();
+    let flat: String = text.replace('|', "/").replace('\n', " ");
     if flat.is_empty() { String::new() } else { format!("`{}`", flat.replace('`', "'")) }
 }
 
