@@ -9,7 +9,13 @@ to=docs/measured
 
 measure() { cargo run --release --quiet -p touchoff-tests --bin "$@"; }
 
-cargo run --release --quiet --features peers -- bench --seed "$seed" --out "$to" > /dev/null
+# A real part and its program, where they are there.
+parts=../shared/data
+own=()
+if [ -e "$parts/parts/impeller.stl" ]; then
+    own=(--part "$parts/parts/impeller.stl" --unit mm --tool D2Ball --path "$parts/paths/impeller_flank.apt")
+fi
+cargo run --release --quiet --features peers -- bench --seed "$seed" --scene all "${own[@]}" --out "$to" > /dev/null
 measure accuracy -- 1000000 > "$to/accuracy.md"
 measure stress -- --seed "$seed" > "$to/stress.md"
 measure search -- --seed "$seed" > "$to/search.md"

@@ -1,5 +1,6 @@
 //! What the program is asked for.
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use nalgebra::Point3;
 use std::path::PathBuf;
@@ -25,6 +26,11 @@ pub(crate) enum Command {
     Run(Box<Run>),
     /// Take points of a part, and save them to be felt later.
     Sample(Box<Sample>),
+    /// Measure run time against error: many ways to ask, from few points to a million.
+    ///
+    /// Prints a row a method and scene as it is measured: medians and 99th percentiles of single queries,
+    /// root mean squares of errors, the share of missed contacts.
+    Bench(Box<Bench>),
     /// List the compiled tools, or those of files.
     Tools {
         /// Files to list in their place.
@@ -165,6 +171,46 @@ pub(crate) struct Run {
     #[arg(long, value_name = "TOLERANCE", value_parser = tolerance)]
     pub(crate) certify: Option<f64>,
 }
+
+#[derive(Args)]
+pub(crate) struct Bench {
+    /// A sample of it, less than a minute long.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// The same seed, the same clouds and placements.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Only these scenes [default: all, or with `--part` none but that].
+    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', value_parser = PossibleValuesParser::new(scenes()))]
+    pub(crate) scene: Vec<String>,
+    /// Where the page `work-precision.md` goes, with its diagrams and rows.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// A part of your own: a mesh in STL, PLY or OBJ.
+    #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "path"])]
+    pub(crate) part: Option<PathBuf>,
+    /// The part's unit: `mm`, `inch` or `m`.
+    #[arg(long, requires = "part")]
+    pub(crate) unit: Option<Unit>,
+    /// A compiled tool by name, or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
+    pub(crate) tool: Option<String>,
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The tool's path along the part: a table, or APT-CL.
+    #[arg(long, value_name = "FILE", requires = "part")]
+    pub(crate) path: Option<PathBuf>,
+}
+
+/// The words for scenes, and that for all of them.
+fn scenes() -> Vec<&'static str> {
+    let mut words = touchoff_tests::measure::bench::scenes();
+    words.push(ALL_SCENES);
+    words
+}
+
+/// All scenes.
+pub(crate) const ALL_SCENES: &str = "all";
 
 /// A length that is not negative.
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -19,6 +19,9 @@ impl Failure {
 /// What ends the program with exit status 1.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
+    /// Run time against error could not be measured.
+    #[error(transparent)]
+    Bench(#[from] touchoff_tests::measure::bench::Failure),
     /// A cloud could not be made.
     #[error(transparent)]
     Cloud(#[from] CloudError),

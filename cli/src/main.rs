@@ -9,6 +9,7 @@ macro_rules! say {
 }
 
 mod arguments;
+mod bench;
 mod check;
 mod demo;
 mod draw;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
         Some(Command::Sample(wanted)) => part::sample(&wanted),
+        Some(Command::Bench(wanted)) => bench::bench(&wanted, arguments.json),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),
         Some(Command::Check { files, given }) => {
             return ended(check::check(&files, &given, arguments.json));

@@ -2,4 +2,7 @@
 
 pub mod measure;
 pub mod oracle;
+#[cfg(feature = "peers")]
+pub mod peers;
 pub mod plot;
+pub mod race;

@@ -20,12 +20,6 @@ mod turns;
 mod without;
 mod world;
 
-#[path = "../peers/clock.rs"]
-#[expect(dead_code, reason = "its `Times` stand in rows of scaling, which times in passes")]
-mod clock;
-#[path = "../peers/contender.rs"]
-#[expect(dead_code, reason = "what other methods share is of no use to this one")]
-mod contender;
 #[path = "../scaling/passes.rs"]
 #[expect(dead_code, reason = "passes of one method; here several take turns")]
 mod passes;
@@ -40,6 +34,7 @@ use std::num::NonZeroUsize;
 use std::thread::available_parallelism;
 use touchoff::scenes::{POSES, Path, tube};
 use touchoff::{Cloud, Part, Pose};
+use touchoff_tests::race::{clock, contender};
 
 /// Seed of the clouds.
 const SEED: u64 = 1;

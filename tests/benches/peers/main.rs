@@ -10,20 +10,8 @@
 //! `docs/measured/peers.md`. The tool is that of fig. 7.3, the law the thesis's with area weights,
 //! torque about the tip.
 
-mod brute;
-mod clock;
-mod contender;
 mod exact;
-mod fidget;
-mod formula;
-mod grid;
-mod grid_dz;
-mod parry_bvh;
-mod parry_contact;
-mod points;
-mod shell;
 mod table;
-mod thesis;
 mod this;
 mod triangles;
 
@@ -34,6 +22,8 @@ use clap::{Parser, ValueEnum};
 use std::num::NonZeroUsize;
 use touchoff::scenes::{POSES, Path, apart, tube};
 use touchoff::{Cloud, Part, Pose};
+use touchoff_tests::peers::{brute, fidget, parry_bvh, parry_contact, shell, thesis};
+use touchoff_tests::race::{clock, contender};
 
 /// Times this project and its peers on the scenes of the figures.
 #[derive(Parser)]

@@ -18,18 +18,12 @@ mod query;
 mod row;
 mod table;
 
-#[path = "../peers/clock.rs"]
-#[expect(dead_code, reason = "longest queries are a table of peers")]
-mod clock;
-#[path = "../peers/contender.rs"]
-#[expect(dead_code, reason = "what other methods share is of no use to this one")]
-mod contender;
-
 use crate::row::Row;
 use clap::{Parser, ValueEnum};
 use std::num::NonZeroUsize;
 use touchoff::Part;
 use touchoff::scenes::POSES;
+use touchoff_tests::race::{clock, contender};
 
 /// Times this project on clouds of a thousand to ten million points.
 #[derive(Parser)]

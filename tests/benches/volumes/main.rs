@@ -9,23 +9,6 @@
 //! `--json` it prints `docs/measured/volumes.md`. Timing, scenes and the tool's formula are those of
 //! the bench `peers`.
 
-#[path = "../peers/brute.rs"]
-#[expect(dead_code, reason = "the peers' bench uses the rest")]
-mod brute;
-#[path = "../peers/clock.rs"]
-#[expect(dead_code, reason = "the peers' bench uses the rest")]
-mod clock;
-#[path = "../peers/contender.rs"]
-#[expect(dead_code, reason = "the peers' bench uses the rest")]
-mod contender;
-#[path = "../peers/formula.rs"]
-#[expect(dead_code, reason = "the peers' bench uses the rest")]
-mod formula;
-#[path = "../peers/points.rs"]
-#[expect(dead_code, reason = "the peers' bench uses the rest")]
-mod points;
-#[path = "../peers/thesis.rs"]
-mod thesis;
 #[path = "../peers/this.rs"]
 mod this;
 
@@ -52,6 +35,8 @@ use fearless_simd::Level;
 use std::num::NonZeroUsize;
 use touchoff::scenes::{POSES, Path, tube};
 use touchoff::{Cloud, Part};
+use touchoff_tests::peers::{brute, formula, points, thesis};
+use touchoff_tests::race::{clock, contender};
 
 /// Times trees that differ in one thing, or in two.
 #[derive(Parser)]

@@ -7,11 +7,11 @@ use crate::oracle::big::Big;
 use crate::oracle::reference::{At, Reference};
 use crate::oracle::restated::{self, Restated};
 use crate::oracle::{Meridian, Nearest, Oracle};
-use touchoff::tool::{Ask, Felt, Points};
+use touchoff::tool::{Ask, Card, Felt, Points};
 use touchoff::{Level, Tool};
 
 /// Nearer to the surface than so many ulp(S), either side is right; and so of two owners.
-const DOUBT: f64 = 2.0;
+pub const DOUBT: f64 = 2.0;
 
 /// Points that are evaluated at a time.
 const CHUNK: usize = 1 << 15;
@@ -142,8 +142,7 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
         points: points.len(),
         ..Row::default()
     };
-    let owners = owners(tool, &oracle);
-    let judge = Judge { tool, reference: &reference, owners, ulp: scale * f64::EPSILON };
+    let judge = Judge::new(tool, &reference, &oracle);
     for chunk in points.chunks(CHUNK) {
         let mut list = Points::default();
         chunk.iter().for_each(|p| list.push(*p));
@@ -154,7 +153,7 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
         });
         for (i, p) in chunk.iter().enumerate() {
             row.unlike += usize::from(bits(&one, i) != bits(&lanes, i));
-            judge.point(*p, &one, i, &mut row);
+            row.see(*p, &judge.judge(*p, &one, i), card);
         }
     }
     row
@@ -174,7 +173,8 @@ pub fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
     tool.card().regions.iter().map(|region| of(&region.name)).collect()
 }
 
-fn inside(felt: &Felt, i: usize) -> bool {
+/// Whether a point is inside by what is felt.
+pub fn inside(felt: &Felt, i: usize) -> bool {
     felt.inside[i / 8] >> (i % 8) & 1 == 1
 }
 
@@ -186,64 +186,129 @@ fn numbers(felt: &Felt, i: usize) -> Option<[f64; 7]> {
     })
 }
 
-fn bits(felt: &Felt, i: usize) -> Option<[u64; 10]> {
+/// The bits of everything that is felt at a point; `None` outside.
+pub fn bits(felt: &Felt, i: usize) -> Option<[u64; 10]> {
     numbers(felt, i).map(|n| {
         let g = [0, 1, 2].map(|k| felt.gradient[k][i]);
         [n[0], n[1], n[2], n[3], n[4], n[5], n[6], g[0], g[1], g[2]].map(f64::to_bits)
     })
 }
 
-/// What is right about a tool.
-struct Judge<'a> {
+/// What is right about a tool: the one statement of the contract, for whoever has points to be judged.
+pub struct Judge<'a> {
     tool: &'a dyn Tool,
     reference: &'a Reference,
     owners: Vec<Vec<usize>>,
-    ulp: f64,
+    /// ulp(S), by which errors are measured.
+    pub ulp: f64,
 }
 
-impl Judge<'_> {
-    fn point(&self, p: [f64; 3], felt: &Felt, i: usize, row: &mut Row) {
+/// What is found out about one point.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// How many ulp(S) from the surface it is put on the wrong side; 0 if the side is right.
+    pub side: f64,
+    /// Of the distance outside, in ulp(S), where the tool has it.
+    pub clearance: Option<f64>,
+    /// Of a point that the tool takes for one inside.
+    pub inside: Option<Inside>,
+}
+
+/// What is found out about a point inside.
+#[derive(Clone, Debug)]
+pub struct Inside {
+    /// The region that the evaluator gave it.
+    pub region: usize,
+    /// Whether a number is none, a depth or a niceness below 0, or the region nobody's.
+    pub senseless: bool,
+    /// Of the depth, in ulp(S).
+    pub depth: f64,
+    /// By how many ulp(S) the owner is farther than the nearest.
+    pub owner: f64,
+    /// Of the direction's length, in ε.
+    pub length: f64,
+    /// Of the direction, over its bound.
+    pub direction: f64,
+}
+
+impl<'a> Judge<'a> {
+    /// A judge of a tool by the reference of its profile.
+    pub fn new(tool: &'a dyn Tool, reference: &'a Reference, oracle: &Nearest) -> Judge<'a> {
+        let owners = owners(tool, oracle);
+        Judge { tool, reference, owners, ulp: reference.scale() * f64::EPSILON }
+    }
+
+    /// Judges the point that is felt in a place of a list.
+    pub fn judge(&self, p: [f64; 3], felt: &Felt, i: usize) -> Judged {
         let at = At::new(p);
         let exact = self.reference.depth(&at);
         let depth = exact.to_f64();
         let answer = numbers(felt, i);
-        if answer.is_some() != (depth > 0.0) && depth.abs() > DOUBT * self.ulp {
-            row.sides.see(depth.abs() / self.ulp, p, "");
-        }
-        let Some([region, found, magnitude, niceness, ux, uy, uz]) = answer else {
-            if self.tool.card().exact() {
-                let off = (self.tool.clearance(p) + depth).abs();
-                row.clearance.see(off / self.ulp, p, "");
-            }
-            return;
+        let wrong = answer.is_some() != (depth > 0.0);
+        let side = if wrong { depth.abs() / self.ulp } else { 0.0 };
+        let Some(answer) = answer else {
+            let off = || (self.tool.clearance(p) + depth).abs() / self.ulp;
+            let clearance = self.tool.card().exact().then(off);
+            return Judged { side, clearance, inside: None };
         };
-        row.inside += 1;
-        let finite = [found, magnitude, niceness, ux, uy, uz].iter().all(|v| v.is_finite());
-        row.senseless += usize::from(!finite || found < 0.0 || niceness < 0.0);
-        let region = region as usize;
-        let name = &self.tool.card().regions[region].name;
-        // Where rounding alone puts a point inside, its depth is 0.
-        let deep = if depth > 0.0 { &exact - &Big::exactly(found) } else { Big::exactly(found) };
-        row.depth.see(deep.abs().to_f64() / self.ulp, p, name);
+        Judged { side, clearance: None, inside: Some(self.inside(&at, &exact, answer)) }
+    }
 
-        let far = |owner: &usize| self.reference.distance_to(&at, *owner).to_f64();
-        let nearest = self.owners[region].iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-        let Some(owner) = nearest.copied() else {
-            row.senseless += 1;
-            return;
+    fn inside(&self, at: &At, exact: &Big, answer: [f64; 7]) -> Inside {
+        let [region, found, _, niceness, ux, uy, uz] = answer;
+        let (region, depth) = (region as usize, exact.to_f64());
+        let finite = answer.iter().all(|v| v.is_finite());
+        let far = |owner: &usize| self.reference.distance_to(at, *owner).to_f64();
+        let owner = self.owners[region].iter().min_by(|a, b| far(a).total_cmp(&far(b))).copied();
+        let mut inside = Inside {
+            region,
+            senseless: !finite || found < 0.0 || niceness < 0.0 || owner.is_none(),
+            depth: f64::NAN,
+            owner: 0.0,
+            length: 0.0,
+            direction: 0.0,
         };
-        let behind = far(&owner) - depth.abs();
-        if behind > DOUBT * self.ulp && depth > 0.0 {
-            row.owners.see(behind / self.ulp, p, name);
+        if !finite {
+            return inside;
+        }
+        // Where rounding alone puts a point inside, its depth is 0.
+        let deep = if depth > 0.0 { exact - &Big::exactly(found) } else { Big::exactly(found) };
+        inside.depth = deep.abs().to_f64() / self.ulp;
+        let Some(owner) = owner else { return inside };
+        if depth > 0.0 {
+            inside.owner = (far(&owner) - depth).max(0.0) / self.ulp;
         }
         let u = [ux, uy, uz].map(Big::exactly);
         let size = (&(&(&u[0] * &u[0]) + &(&u[1] * &u[1])) + &(&u[2] * &u[2])).sqrt();
-        row.length.see((size.to_f64() - 1.0).abs() / f64::EPSILON, p, name);
-        let expected = self.reference.direction(&at, owner);
+        inside.length = (size.to_f64() - 1.0).abs() / f64::EPSILON;
+        let expected = self.reference.direction(at, owner);
         let apart = u.iter().zip(&expected).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
-        let rho = self.reference.singular(&at, owner);
+        let rho = self.reference.singular(at, owner);
         // Exactly where no direction exists, the one that the language fixes is wanted.
-        let blur = if rho == 0.0 { 1.0 } else { (row.scale / rho).max(1.0) };
-        row.direction.see(apart.sqrt() / (8.0 * f64::EPSILON * blur), p, name);
+        let blur = if rho == 0.0 { 1.0 } else { (self.reference.scale() / rho).max(1.0) };
+        inside.direction = apart.sqrt() / (8.0 * f64::EPSILON * blur);
+        inside
+    }
+}
+
+impl Row {
+    /// Takes up what was found out about a point.
+    fn see(&mut self, p: [f64; 3], judged: &Judged, card: &Card) {
+        if judged.side > DOUBT {
+            self.sides.see(judged.side, p, "");
+        }
+        if let Some(off) = judged.clearance {
+            self.clearance.see(off, p, "");
+        }
+        let Some(inside) = &judged.inside else { return };
+        let name = &card.regions[inside.region].name;
+        self.inside += 1;
+        self.senseless += usize::from(inside.senseless);
+        self.depth.see(inside.depth, p, name);
+        if inside.owner > DOUBT {
+            self.owners.see(inside.owner, p, name);
+        }
+        self.length.see(inside.length, p, name);
+        self.direction.see(inside.direction, p, name);
     }
 }

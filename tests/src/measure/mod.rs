@@ -2,9 +2,13 @@
 
 pub mod accuracy;
 pub mod adaptive;
+pub mod bench;
 pub mod certified;
 pub mod compile;
+pub mod continuity;
 pub mod convergence;
 pub mod kernels;
 pub mod mutants;
 pub mod points;
+pub mod search;
+pub mod stress;

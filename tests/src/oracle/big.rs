@@ -40,6 +40,12 @@ impl Big {
         self.0.to_f64().value()
     }
 
+    /// Decimal digits that have all of its bits.
+    pub fn written(&self) -> String {
+        let decimal = self.0.clone().with_base_and_precision::<10>(90).value();
+        decimal.to_string()
+    }
+
     /// Whether it is below zero.
     pub fn is_negative(&self) -> bool {
         *self < Big::zero()
@@ -121,6 +127,7 @@ mod tests {
         let two = Big::exactly(2.0);
         let off = &(&two.sqrt() * &two.sqrt()) - &two;
         assert!(off.abs() < Big::exactly(2f64.powi(-250)));
+        assert_eq!(Big::decimal(-12.9).written(), "-12.9");
         let tiny = Big::exactly(5e-324);
         assert_eq!((&tiny * &tiny).sqrt().to_f64(), 5e-324);
         assert!((Big::tan_deg(45.0) - 1.0).abs() < Big::exactly(2f64.powi(-250)));

@@ -23,11 +23,16 @@ pub struct At {
 impl At {
     /// The point of these coordinates, taken as they are.
     pub fn new(p: [f64; 3]) -> Self {
-        let [x, y, z] = p.map(Big::exactly);
+        Self::of(p.map(Big::exactly))
+    }
+
+    /// The same of coordinates that are no doubles.
+    pub fn of([x, y, z]: [Big; 3]) -> Self {
+        let rough = Meridian::of([&x, &y, &z].map(Big::to_f64)).dz;
         let d = (&(&x * &x) + &(&y * &y)).sqrt();
         let radial =
             if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [&x / &d, &y / &d] };
-        Self { dz: [d, z], radial, rough: Meridian::of(p).dz }
+        Self { dz: [d, z], radial, rough }
     }
 }
 
@@ -214,6 +219,33 @@ impl Reference {
         }
     }
 
+    /// Who owns a point of the solid: the nearest, of equals a corner before the pieces that end in it, else the first listed. `None`
+    /// outside.
+    pub fn owner(&self, at: &At) -> Option<usize> {
+        let depth = self.depth(at);
+        if depth.is_negative() {
+            return None;
+        }
+        let reach = depth.to_f64() + MARGIN * self.size;
+        let near = |owner: &usize| match self.owners[*owner] {
+            Feature::Piece(piece) | Feature::Corner(piece) => {
+                self.parts[piece].rough.clamped(at.rough) <= reach
+            }
+        };
+        let mut best: Option<(Big, bool, usize)> = None;
+        for owner in (0..self.owners.len()).filter(near) {
+            let piece = matches!(self.owners[owner], Feature::Piece(_));
+            let distance = self.distance_to(at, owner);
+            let nearer = best.as_ref().is_none_or(|(least, one, _)| {
+                distance < *least || (distance == *least && *one && !piece)
+            });
+            if nearer {
+                best = Some((distance, piece, owner));
+            }
+        }
+        best.map(|(.., owner)| owner)
+    }
+
     /// The distance to what an owner consists of: a piece with its ends, or a corner.
     pub fn distance_to(&self, at: &At, owner: usize) -> Big {
         match self.owners[owner] {
@@ -246,7 +278,7 @@ impl Reference {
 
     /// The next power of two above the tool's largest coordinate, by whose rounding errors are measured.
     pub fn scale(&self) -> f64 {
-        let mut scale = 2f64.powi(-20);
+        let mut scale = 2f64.powi(self.size.log2().floor() as i32);
         while scale <= self.size {
             scale *= 2.0;
         }

@@ -98,7 +98,7 @@ impl Sheet {
             let corners: Vec<_> = corners.iter().map(|[a, b]| [x + a * r, y + b * r]).collect();
             format!("<path d=\"{}Z\" {paint}/>\n", path(&corners))
         };
-        self.0 += &match look.number % 5 {
+        self.0 += &match (look.number + look.number / COLOURS.len()) % 5 {
             0 => format!("<circle cx=\"{}\" cy=\"{}\" r=\"{r}\" {paint}/>\n", number(x), number(y)),
             1 => closed(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
             2 => closed(&[[-1.1, 0.9], [0.0, -1.1], [1.1, 0.9]]),

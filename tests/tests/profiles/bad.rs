@@ -55,6 +55,11 @@ fn each_mistake_is_shown_at_its_segment() {
         ),
         ("(0, 0); line to (0, 2), (3, 2), (3, 5), (0, 5) as a;", "lies on the axis", "(0, 2)"),
         (
+            "(0, 0); line to (3, 0), (3, 5), (3.0000000005, 9), (0, 9) as a;",
+            "turns by less than 1e-9 at (3, 5)",
+            "(3.0000000005, 9)",
+        ),
+        (
             "(0, 0); line to (3, 0), (3, 5), (0, 5) as a; line to (0, 9) as b;",
             "lies on the axis",
             "line to (0, 9)",

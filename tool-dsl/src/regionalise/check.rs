@@ -77,6 +77,15 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                     .help("a needle without an angle is no solid: move a corner"),
             );
             said.extend([index, index + 1]);
+        } else if hardly_turns(&pair[0], &pair[1]) {
+            let at = show(pair[0].ends()[1]);
+            let message = format!("this segment turns by less than {TANGENT:e} at {at}");
+            reports.push(
+                Report::error(pair[1].span, message)
+                    .and(pair[0].span, "from this one")
+                    .help("such a corner is told from none by no double: draw both as one line"),
+            );
+            said.extend([index, index + 1]);
         }
     }
     let known = |said: &[usize], index: usize| said.iter().any(|other| index.abs_diff(*other) <= 1);
@@ -105,4 +114,18 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
         }
     }
     reports
+}
+
+/// Whether a line follows another at an angle that is not 0 and yet taken for tangent: what lies between the two would be felt by the
+/// wrong one.
+fn hardly_turns(before: &Segment, after: &Segment) -> bool {
+    if before.round().is_some() || after.round().is_some() {
+        return false;
+    }
+    let (Some([ad, az]), Some([bd, bz])) = (before.direction(), after.direction()) else {
+        return false;
+    };
+    // What 256 bits round is far less.
+    let sine = (&(&ad * &bz) - &(&az * &bd)).to_f64().abs();
+    (1e-60..TANGENT).contains(&sine)
 }

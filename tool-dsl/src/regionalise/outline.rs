@@ -192,11 +192,20 @@ impl Segment {
 
     /// The expressions of [`Segment::sector`], up to a positive factor.
     pub(crate) fn sides(&self, graph: &mut Graph) -> Option<[Id; 2]> {
+        self.wider(graph, &Number::int(0))
+    }
+
+    /// The same of the segment made longer by a length at both ends.
+    pub(crate) fn wider(&self, graph: &mut Graph, by: &Number) -> Option<[Id; 2]> {
+        let before = |from: &Place, way: &[Number; 2]| -> Place {
+            [0, 1].map(|k| &from[k] - &(&way[k] * by))
+        };
         match &self.circle {
             None => {
                 let [tx, tz] = self.direction()?;
-                let back = [-&tx, -&tz];
-                Some([linear(graph, [tx, tz], &self.from)?, linear(graph, back, &self.to)?])
+                let (way, back) = ([tx.clone(), tz.clone()], [-&tx, -&tz]);
+                let (from, to) = (before(&self.from, &way), before(&self.to, &back));
+                Some([linear(graph, way, &from)?, linear(graph, back, &to)?])
             }
             Some(circle) => {
                 let radial = |place: &Place| -> Option<[Number; 2]> {
@@ -209,10 +218,9 @@ impl Segment {
                 let turn = |way: [Number; 2]| {
                     if circle.convex { way } else { way.map(|part| -&part) }
                 };
-                Some([
-                    linear(graph, turn(first), &circle.centre)?,
-                    linear(graph, turn(last), &circle.centre)?,
-                ])
+                let (first, last) = (turn(first), turn(last));
+                let (from, to) = (before(&circle.centre, &first), before(&circle.centre, &last));
+                Some([linear(graph, first, &from)?, linear(graph, last, &to)?])
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Contacts that are known in closed form, on patches of parts that are many times as large.
 
 use crate::oracle::closed_forms::{
-    ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
+    ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
 use crate::oracle::draw::Draw;
 use nalgebra::{Point3, Rotation3, Vector3};
@@ -19,7 +19,7 @@ const MIDDLE: f64 = 3.0;
 /// Half of the square that a ball touches, and half of the strip across a side.
 const SQUARE: f64 = 2.2;
 const ACROSS: f64 = 6.0;
-/// The ball that is touched, and the angle from its pole to the border of its cap.
+/// The ball or cavity that is touched, and the angle from its pole to the border of its cap.
 const PART: f64 = 4.0;
 const CAP: f64 = 0.55;
 /// The bore, and in how many flats it is made.
@@ -37,6 +37,8 @@ pub enum Contact {
     SideInPlane,
     /// CF3: a ball on a cap of a ball.
     BallOnBall,
+    /// CF4: a ball on a cap of a spherical cavity.
+    BallInCavity,
     /// CF5: the side of a cylinder in a bore.
     SideInBore,
 }
@@ -53,7 +55,7 @@ pub struct Placed {
 }
 
 impl Contact {
-    /// All of them.
+    /// Those of the page `convergence.md`.
     pub const ALL: [Contact; 4] =
         [Contact::BallInPlane, Contact::SideInPlane, Contact::BallOnBall, Contact::SideInBore];
 
@@ -63,6 +65,7 @@ impl Contact {
             Contact::BallInPlane => "CF1",
             Contact::SideInPlane => "CF2",
             Contact::BallOnBall => "CF3",
+            Contact::BallInCavity => "CF4",
             Contact::SideInBore => "CF5",
         }
     }
@@ -79,6 +82,9 @@ impl Contact {
             Contact::BallOnBall => {
                 "`UnitSphere` on a cap, 0.55 to each side of its pole, of a ball of radius 4"
             }
+            Contact::BallInCavity => {
+                "`UnitSphere` on a cap, 0.55 to each side of its pole, of a spherical cavity of radius 4"
+            }
             Contact::SideInBore => {
                 "`Fig73Exact`'s side, r = 1, in a bore of radius 3 that is 1 long, from end to end"
             }
@@ -90,13 +96,31 @@ impl Contact {
         matches!(self, Contact::SideInPlane | Contact::SideInBore)
     }
 
+    /// Whether the part is a cap of a sphere, from outside or from inside.
+    pub fn is_of_a_sphere(self) -> bool {
+        matches!(self, Contact::BallOnBall | Contact::BallInCavity)
+    }
+
+    /// Whether the patch's triangles are the true surface.
+    pub fn is_flat(self) -> bool {
+        matches!(self, Contact::BallInPlane | Contact::SideInPlane)
+    }
+
     /// Its tool.
     ///
     /// # Panics
     /// If it is not in the library any more.
     pub fn tool(self) -> &'static dyn Tool {
-        let name = if self == Contact::BallOnBall { "UnitSphere" } else { "Fig73Exact" };
+        let name = if self.is_of_a_sphere() { "UnitSphere" } else { "Fig73Exact" };
         tools_library::find(name).expect("a tool of the library")
+    }
+
+    /// From the centre of the ball or cavity that is touched to the tool's.
+    fn between_centres(self) -> f64 {
+        match self {
+            Contact::BallInCavity => PART - RADIUS + DEPTH,
+            _ => RADIUS + PART - DEPTH,
+        }
     }
 
     /// The area of the part that is inside the tool.
@@ -105,8 +129,8 @@ impl Contact {
         match self {
             Contact::BallInPlane => PI * half * half,
             Contact::SideInPlane => 2.0 * half * LONG,
-            Contact::BallOnBall => {
-                let far = RADIUS + PART - DEPTH;
+            Contact::BallOnBall | Contact::BallInCavity => {
+                let far = self.between_centres();
                 let height = PART - (PART * PART + far * far - RADIUS * RADIUS) / (2.0 * far);
                 TAU * PART * height
             }
@@ -133,13 +157,16 @@ impl Contact {
                 let corners = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
                 Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]], UNIT).expect(SOUND)
             }
-            Contact::BallOnBall => {
+            Contact::BallOnBall | Contact::BallInCavity => {
                 let ball = shapes::sphere(PART, 7, UNIT).expect(SOUND);
                 let low = PART * CAP.cos();
                 let above = |[a, b, c]: &[u32; 3]| {
                     [a, b, c].iter().all(|i| ball.vertices()[**i as usize].z > low)
                 };
-                let cap = ball.triangles().iter().copied().filter(above).collect();
+                let mut cap: Vec<_> = ball.triangles().iter().copied().filter(above).collect();
+                if self == Contact::BallInCavity {
+                    cap.iter_mut().for_each(|corners| corners.swap(1, 2));
+                }
                 Mesh::new(ball.vertices().to_vec(), cap, UNIT).expect(SOUND)
             }
             Contact::SideInBore => {
@@ -164,7 +191,7 @@ impl Contact {
     /// # Panics
     /// Never: what a cloud gives makes one.
     pub fn exact(self, cloud: Cloud) -> Cloud {
-        if matches!(self, Contact::BallInPlane | Contact::SideInPlane) {
+        if self.is_flat() {
             return cloud;
         }
         let (mut points, mut normals, mut weights) = (vec![], vec![], vec![]);
@@ -181,6 +208,7 @@ impl Contact {
             // Of a cone, or of a wedge, cut by a flat and by the true surface.
             let (radius, grows, normal) = match self {
                 Contact::SideInBore => (BORE, BORE / far, -out),
+                Contact::BallInCavity => (PART, (PART / far).powi(2), -out),
                 _ => (PART, (PART / far).powi(2), out),
             };
             points.push(point + out * (radius - far));
@@ -216,15 +244,20 @@ impl Contact {
                 let force = LONG * cylinder_in_plane(RADIUS, DEPTH).force;
                 (balance, Vector3::x(), MIDDLE, force * Vector3::z())
             }
-            Contact::BallOnBall => {
-                let most = CAP - (half + MARGIN) / PART;
+            Contact::BallOnBall | Contact::BallInCavity => {
+                // In a cavity the contact is wider than on a plane.
+                let margin = if self == Contact::BallInCavity { 2.0 * MARGIN } else { MARGIN };
+                let most = CAP - (half + margin) / PART;
                 // Evenly over the cap.
                 let z = draw.between(most.cos(), 1.0);
                 let (sin, cos) = draw.between(0.0, TAU).sin_cos();
                 let out = (1.0 - z * z).sqrt();
                 let along = Vector3::new(out * cos, out * sin, z);
-                let force = ball_on_ball(RADIUS, PART, DEPTH).force;
-                let balance = Point3::from((RADIUS + PART - DEPTH) * along);
+                let force = match self {
+                    Contact::BallInCavity => ball_in_cavity(RADIUS, PART, DEPTH).force,
+                    _ => ball_on_ball(RADIUS, PART, DEPTH).force,
+                };
+                let balance = Point3::from(self.between_centres() * along);
                 (balance, tilted(draw, along, 3.0), RADIUS, force * along)
             }
             Contact::SideInBore => {
@@ -250,14 +283,14 @@ mod tests {
         let true_area = |contact| match contact {
             Contact::BallInPlane => 4.0 * SQUARE * SQUARE,
             Contact::SideInPlane => 2.0 * ACROSS * LONG,
-            Contact::BallOnBall => TAU * PART * PART * (1.0 - CAP.cos()),
+            Contact::BallOnBall | Contact::BallInCavity => TAU * PART * PART * (1.0 - CAP.cos()),
             Contact::SideInBore => TAU * BORE * LONG,
         };
-        for contact in Contact::ALL {
+        for contact in Contact::ALL.into_iter().chain([Contact::BallInCavity]) {
             let cloud = contact.exact(Cloud::centroids(&contact.mesh()));
             let area: f64 = cloud.weights().iter().sum();
             // The cap's border is ragged by a triangle.
-            let within = if contact == Contact::BallOnBall { 0.1 } else { 1e-5 };
+            let within = if contact.is_of_a_sphere() { 0.1 } else { 1e-5 };
             assert!((area / true_area(contact) - 1.0).abs() < within, "{contact:?} {area}");
         }
     }

@@ -1,0 +1,132 @@
+//! The page `docs/measured/continuity.md` and its plots: `continuity [--quick] [--seed N] [--to FOLDER]`.
+
+use std::error::Error;
+use std::path::{Path as File, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+use touchoff::scenes::{Path, tube};
+use touchoff::{Law, Part, Tool};
+use touchoff_tests::measure::continuity::LAWS;
+use touchoff_tests::measure::continuity::drift::{self, Turn};
+use touchoff_tests::measure::continuity::energy;
+use touchoff_tests::measure::continuity::loops::{Kind, block};
+use touchoff_tests::measure::continuity::page::{Measured, page, plot};
+use touchoff_tests::measure::continuity::smooth::Fig73Smooth;
+use touchoff_tests::measure::continuity::steps::{self, Look};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let (mut quick, mut seed) = (false, 1);
+    let mut to = File::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measured");
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| format!("what is `{word}`?"));
+        match word.as_str() {
+            "--quick" => quick = true,
+            "--seed" => seed = value()?.parse()?,
+            "--to" => to = PathBuf::from(value()?),
+            _ => return Err(format!("`{word}` is not known").into()),
+        }
+    }
+    let start = Instant::now();
+    let drift = Turn::all()
+        .into_iter()
+        .map(|turn| drift::row(turn, if quick { 100_000 } else { 10_000_000 }, 97));
+    let drift = drift.collect();
+    eprintln!("drift: {} s", start.elapsed().as_secs());
+    let clouds = if quick { vec![20_000] } else { vec![20_000, 1_000_000] };
+    std::fs::create_dir_all(&to)?;
+    let mut all = Vec::new();
+    for count in clouds {
+        let part = steps::part(&tube(), count, seed);
+        all.push((count, stepped(&part, count, &to)?));
+        eprintln!("{count} points: {} s", start.elapsed().as_secs());
+    }
+    let points = if quick { 20_000 } else { 1_000_000 };
+    let measured = Measured { steps: all, energy: (points, worked(points, seed, quick)?), drift };
+    let quickly = if quick { " --quick" } else { "" };
+    let text = format!(
+        "# Continuity and energy
+
+```sh
+cargo run --release -p touchoff-tests --bin continuity --{quickly} --seed {seed}
+```
+
+{}",
+        page(&measured)?
+    );
+    std::fs::write(to.join("continuity.md"), text)?;
+    eprintln!("{} s", start.elapsed().as_secs());
+    match measured.missed().len() {
+        0 => Ok(()),
+        count => Err(format!("{count} bars were missed").into()),
+    }
+}
+
+fn tools() -> [&'static dyn Tool; 3] {
+    let of = |name: &str| tools_library::find(name).expect("a tool of the library");
+    [of("Fig73"), of("Fig73Exact"), &Fig73Smooth]
+}
+
+/// What some do with each of a list, on all cores, in order.
+fn shared<T: Sync, R: Send>(list: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::new());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(one) = list.get(place) else { break };
+                    let result = work(one);
+                    done.lock().expect("no other has failed").push((place, result));
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().expect("none has failed");
+    done.sort_by_key(|(place, _)| *place);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+/// The rows of all paths, laws and tools, and the plot around the worst of the thesis's tool.
+fn stepped(part: &Part, count: usize, to: &File) -> Result<Vec<steps::Row>, Box<dyn Error>> {
+    let look = if count > 100_000 { Look::Stations(20_000) } else { Look::All };
+    let mut asked = Vec::new();
+    for path in Path::ALL {
+        for law in LAWS {
+            asked.extend(tools().map(|tool| (path, law, tool)));
+        }
+    }
+    let rows = shared(&asked, |(path, law, tool)| steps::row(part, *tool, *path, *law, look));
+    let share = |row: &steps::Row| row.force.force / row.peaks[0];
+    let thesis = rows.iter().filter(|row| row.tool == "Fig73" && row.law == Law::Thesis);
+    if let Some(worst) = thesis.max_by(|a, b| share(a).total_cmp(&share(b))) {
+        let (path, law, at) = (worst.path, worst.law, worst.force.at);
+        let around = tools()
+            .map(|tool| (tool.card().name.to_string(), steps::around(part, tool, path, law, at)));
+        let title = format!("Force on the path {}, {law} law, {count} points", path.name());
+        let file = to.join(format!("continuity-{count}.svg"));
+        std::fs::write(file, plot(&title, around.into()).svg())?;
+    }
+    Ok(rows)
+}
+
+/// The work of all tools round all loops.
+fn worked(points: usize, seed: u64, quick: bool) -> Result<Vec<energy::Row>, Box<dyn Error>> {
+    let part = Part::from_mesh(&block(), points, seed)?;
+    let mut tools: Vec<&dyn Tool> = tools_library::TOOLS.to_vec();
+    tools.push(&Fig73Smooth);
+    tools.sort_by_key(|tool| tool.card().name.to_string());
+    let within = [if quick { 1e-7 } else { 2e-9 }, 1e-6];
+    let asked: Vec<_> = tools.iter().flat_map(|tool| Kind::ALL.map(|kind| (*tool, kind))).collect();
+    let rows = shared(&asked, |(tool, kind)| {
+        let row = energy::row(&part, *tool, *kind, within);
+        if row.is_none() {
+            eprintln!("{} cannot be brought to the block, {}", tool.card().name, kind.name());
+        }
+        row
+    });
+    Ok(rows.into_iter().flatten().collect())
+}

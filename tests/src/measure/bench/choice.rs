@@ -1,0 +1,118 @@
+//! Which setting for which tolerance.
+
+use super::row::{Label, Row};
+
+/// What is wished of a method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wish {
+    /// That the force's error, a root mean square, is no more than this share of the typical force.
+    Force(f64),
+    /// That no depth is farther off than this, in the part's unit.
+    Depth(f64),
+}
+
+impl Wish {
+    /// Those of the page.
+    pub const ALL: [Wish; 7] = [
+        Wish::Force(0.1),
+        Wish::Force(0.01),
+        Wish::Force(0.001),
+        Wish::Depth(0.1),
+        Wish::Depth(0.01),
+        Wish::Depth(0.001),
+        Wish::Depth(1e-6),
+    ];
+
+    /// By how much a row is off, in what the wish is said in.
+    fn error(self, row: &Row) -> Option<f64> {
+        match self {
+            Wish::Force(_) => row.err_force,
+            Wish::Depth(_) => row.worst_depth,
+        }
+    }
+
+    /// How much is allowed.
+    fn most(self) -> f64 {
+        match self {
+            Wish::Force(most) | Wish::Depth(most) => most,
+        }
+    }
+}
+
+/// A setting that has a wish.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// What it is.
+    pub label: Label,
+    /// The median of each scene, ns, in the order of the scenes.
+    pub p50: Vec<u64>,
+    /// The largest error of all scenes.
+    pub error: f64,
+}
+
+/// The setting that has its wish in every one of the scenes and is the fastest where it is slowest; `None`
+/// where none has.
+pub fn fastest(
+    rows: &[Row],
+    scenes: &[&str],
+    wish: Wish,
+    allowed: impl Fn(&Row) -> bool,
+) -> Option<Choice> {
+    let mut labels: Vec<Label> = Vec::new();
+    for row in rows.iter().filter(|row| allowed(row)) {
+        let label = row.label();
+        if !labels.contains(&label) {
+            labels.push(label);
+        }
+    }
+    let all = labels.into_iter().filter_map(|label| choice(rows, scenes, wish, label));
+    let slowest = |choice: &Choice| choice.p50.iter().copied().max();
+    all.min_by_key(slowest)
+}
+
+/// A setting in every scene, if it has its wish in all of them.
+fn choice(rows: &[Row], scenes: &[&str], wish: Wish, label: Label) -> Option<Choice> {
+    let (mut p50, mut error) = (Vec::new(), 0.0f64);
+    for scene in scenes {
+        let row = rows.iter().find(|row| row.scene == *scene && row.label() == label)?;
+        error = error.max(wish.error(row)?);
+        p50.push(row.p50_ns?);
+    }
+    (!p50.is_empty() && error <= wish.most()).then_some(Choice { label, p50, error })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::row::tests::row;
+    use super::*;
+
+    #[test]
+    fn the_fastest_of_those_that_have_the_wish_everywhere_is_taken() {
+        let rows = [
+            // Fast, but off in one of the scenes.
+            row("a", "quick", 100, 0.005, 0.001),
+            row("b", "quick", 100, 0.05, 0.2),
+            // Good in both; the second is faster where it is slowest.
+            row("a", "good", 200, 0.005, 0.005),
+            row("b", "good", 900, 0.008, 0.009),
+            row("a", "even", 700, 0.009, 0.002),
+            row("b", "even", 700, 0.002, 0.02),
+            // The best, and never asked in one of the scenes.
+            row("a", "elsewhere", 1, 0.0, 0.0),
+        ];
+        let found = |wish| fastest(&rows, &["a", "b"], wish, |_| true);
+        let name = |wish| found(wish).map(|choice| choice.label.method);
+        assert_eq!(name(Wish::Force(0.1)), Some("quick"));
+        assert_eq!(name(Wish::Force(0.01)), Some("even"));
+        assert_eq!(name(Wish::Depth(0.01)), Some("good"));
+        assert_eq!(name(Wish::Depth(0.001)), None);
+        let even = found(Wish::Force(0.01)).expect("there is one");
+        assert_eq!((even.p50.as_slice(), even.error), (&[700, 700][..], 0.009));
+        let only = fastest(&rows, &["a"], Wish::Force(0.1), |row| row.method != "elsewhere");
+        assert_eq!(only.map(|choice| choice.label.method), Some("quick"));
+        assert_eq!(fastest(&rows, &[], Wish::Force(0.1), |_| true), None);
+        let mut blind = rows[2].clone();
+        blind.err_force = None;
+        assert_eq!(fastest(&[blind], &["a"], Wish::Force(1.0), |_| true), None);
+    }
+}

@@ -1,0 +1,272 @@
+//! The page `work-precision.md`, its diagrams and its rows.
+
+use super::choice::{Choice, Wish, fastest};
+use super::orders::{expected, orders};
+use super::plots::{ahead, plot};
+use super::row::{Label, Quantity, Row};
+use super::table::{error, marked, micros, setting};
+use super::{Facts, Measured, Plan};
+use std::fmt::{Error, Write};
+use std::path::Path;
+
+/// What all files' names begin with.
+const NAME: &str = "work-precision";
+
+/// Writes the page, its diagrams and its rows into a folder, which is made.
+///
+/// # Errors
+/// Where they cannot be written.
+pub fn write(
+    folder: &Path,
+    measured: &Measured,
+    plan: &Plan,
+    command: &str,
+) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let text = page(measured, plan, command).map_err(std::io::Error::other)?;
+    std::fs::write(folder.join(format!("{NAME}.md")), text)?;
+    let lines: String = measured.rows.iter().map(|row| row.json() + "\n").collect();
+    std::fs::write(folder.join(format!("{NAME}.jsonl")), lines)?;
+    for facts in &measured.scenes {
+        let rows = of(measured, &facts.scene);
+        for quantity in Quantity::ALL {
+            let plot = plot(&rows, &facts.scene, quantity);
+            if !plot.is_empty() {
+                std::fs::write(folder.join(file(&facts.scene, quantity)), plot.svg())?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn file(scene: &str, quantity: Quantity) -> String {
+    format!("{NAME}-{scene}-{}.svg", quantity.name())
+}
+
+fn of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
+    measured.rows.iter().filter(|row| row.scene == scene).collect()
+}
+
+/// The page.
+///
+/// # Errors
+/// None that a text could have.
+pub fn page(measured: &Measured, plan: &Plan, command: &str) -> Result<String, Error> {
+    let mut page = String::new();
+    head(&mut page, measured, plan, command)?;
+    for facts in &measured.scenes {
+        scene(&mut page, facts, &of(measured, &facts.scene))?;
+    }
+    converging(&mut page, measured)?;
+    choices(&mut page, measured)?;
+    Ok(page)
+}
+
+fn head(page: &mut String, measured: &Measured, plan: &Plan, command: &str) -> Result<(), Error> {
+    let pinned = if measured.pinned { "kept on one core" } else { "not kept on one core" };
+    let sample = if plan.quick { "\nThis is the sample, `--quick`.\n" } else { "" };
+    writeln!(
+        page,
+        "# Run time against error
+
+```sh
+{command}
+```
+{sample}
+Methods are asked in one process, the thread {pinned}, in turns of 25 poses, those of one size against each other; half of the turns are timed query by
+query, with the clock's own 20 ns in them. No pose is asked twice of a method, but where a path has fewer than 2,000 in contact and is gone along
+again. Only poses in true contact count: errors are root mean squares over them, by the root mean square of the true force, torque about the tip, and
+depth, under the thesis's law. On patches the truth is a closed form, on paths depth is proved to 1e-9 mm (`Certifier::deepest`) and force and torque
+are sums over the part's own triangles, quartered where that changes them; no error is given below what the truth is known to (`≤`).
+Of patches each size has several clouds and {} placements on each, of paths one cloud and {} poses.
+
+All rows are in [{NAME}.jsonl]({NAME}.jsonl), one object a line. **missed** is the share of poses in contact at which nothing is felt (of
+`apart`, where nothing is in contact, at which something is). **worst** is the largest error of depth, in the part's unit.
+
+| method | what it is | setting |
+|---|---|---|
+| `cloud` | `Probe::wrench` of a cloud, `random` or `blue`; each point counts for the area over their number, `equal`, or of its cell, `cells` | points |
+| `cloud + bound` | `Probe::depth_bound`: what no place of the surface is deeper than; the error is what that is too much | points |
+| `graded` | `Graded::wrench` of the largest cloud and its levels, asked pose by pose along the path | nodes a query may look at |
+| `certified` | `Certifier::deepest`: the upper end of what is proved | tolerance |
+| `centroids` | `cloud` of the centroids of equal triangles with their areas | points |
+| others | see [peers](peers.md); they know the thesis's magnitudes, and are judged by those; clouds are blue, with cells | points |
+",
+        plan.placements, plan.checks,
+    )
+}
+
+fn scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
+    writeln!(page, "## {}\n\n{}.\n", facts.scene, facts.about)?;
+    if rows.iter().all(|row| row.err_depth.is_none()) {
+        return apart(page, rows);
+    }
+    let [force, torque, depth] = facts.typical;
+    let known = facts.known.map(|share| format!("{share:.0e}"));
+    let unit = facts.unit;
+    writeln!(
+        page,
+        "Typical: force {force:.3e} {unit}³, torque {torque:.3e} {unit}⁴, depth {depth:.3e} {unit}; known to {}, {} and {} of that.\n",
+        known[0], known[1], known[2]
+    )?;
+    for quantity in Quantity::ALL {
+        writeln!(
+            page,
+            "![{0}: {1}]({2})",
+            facts.scene,
+            quantity.name(),
+            file(&facts.scene, quantity)
+        )?;
+    }
+    for quantity in [Quantity::Force, Quantity::Depth] {
+        writeln!(page, "\nWhat nothing is faster and nearer than, by the {}:\n", quantity.name())?;
+        table(page, &beaten_by_none(rows, quantity))?;
+    }
+    writeln!(page)
+}
+
+/// Nothing touches: only times.
+fn apart(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
+    writeln!(page, "Nothing touches; this is what it takes to say so.\n")?;
+    writeln!(
+        page,
+        "| method | setting | sampling | p50 µs | p99 µs | missed |\n|---|--:|---|--:|--:|--:|"
+    )?;
+    for row in rows.iter().filter(|row| row.weights != Some("equal")) {
+        writeln!(
+            page,
+            "| {} | {} | {} | {} | {} | {:.2} % |",
+            row.method,
+            setting(row),
+            row.sampling.unwrap_or("-"),
+            micros(row.p50_ns),
+            micros(row.p99_ns),
+            100.0 * row.missed
+        )?;
+    }
+    writeln!(page)
+}
+
+/// The rows on the front of time and error, the fastest first.
+pub(super) fn beaten_by_none<'a>(rows: &[&'a Row], quantity: Quantity) -> Vec<&'a Row> {
+    let place = |row: &Row| Some([row.p50_ns? as f64, quantity.error(row)?]);
+    let all: Vec<[f64; 2]> = rows.iter().filter_map(|row| place(row)).collect();
+    let on = |corner: &[f64; 2]| rows.iter().copied().find(|row| place(row) == Some(*corner));
+    ahead(&all).iter().filter_map(on).collect()
+}
+
+fn table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
+    writeln!(
+        page,
+        "| method | setting | sampling | weights | precision | p50 µs | p99 µs | force | torque | depth | worst | missed |
+|---|--:|---|---|---|--:|--:|--:|--:|--:|--:|--:|"
+    )?;
+    for row in rows {
+        writeln!(
+            page,
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2} % |",
+            row.method,
+            setting(row),
+            row.sampling.unwrap_or("-"),
+            row.weights.unwrap_or("-"),
+            row.precision,
+            micros(row.p50_ns),
+            micros(row.p99_ns),
+            marked(row, "force", row.err_force),
+            marked(row, "torque", row.err_torque),
+            marked(row, "depth", row.err_depth),
+            error(row.worst_depth),
+            100.0 * row.missed
+        )?;
+    }
+    Ok(())
+}
+
+fn converging(page: &mut String, measured: &Measured) -> Result<(), Error> {
+    writeln!(
+        page,
+        "## Orders of convergence
+
+p in `error = c · N^p`, by least squares of the logarithms, of `cloud`; expected where the contact's border is a curve on a smooth part and it touches
+in a place. Along a line (CF2, CF5) the depth's is -2. CF8 and CF9 have no such border; a path has one cloud a size.
+
+| scene | sampling | weights | force | expected | torque | depth | expected |
+|---|---|---|--:|--:|--:|--:|--:|"
+    )?;
+    for orders in orders(&measured.rows) {
+        let [force, torque, depth] =
+            orders.slopes.map(|slope| slope.map_or("-".to_owned(), |slope| format!("{slope:.2}")));
+        let expected = |quantity| expected(orders.weights, quantity);
+        writeln!(
+            page,
+            "| {} | {} | {} | {force} | {} | {torque} | {depth} | {} |",
+            orders.scene,
+            orders.sampling,
+            orders.weights,
+            expected(Quantity::Force),
+            expected(Quantity::Depth)
+        )?;
+    }
+    writeln!(page)
+}
+
+fn choices(page: &mut String, measured: &Measured) -> Result<(), Error> {
+    let paths = measured.scenes.iter().filter(|facts| facts.path && facts.typical[2] > 0.0);
+    let scenes: Vec<&str> = paths.map(|facts| facts.scene.as_str()).collect();
+    if scenes.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        page,
+        "## Which setting for which tolerance
+
+The fastest that keeps the tolerance on every path ({}): of the force by its error, a root mean square, of the depth by its worst, in the part's
+unit. The fastest is the one whose slowest median is the shortest. *Safe* are those that answer no less than the true depth.
+
+| tolerance | of | method | setting | sampling | weights | precision | p50 µs ({}) | error |
+|--:|---|---|--:|---|---|---|--:|--:|",
+        scenes.join(", "),
+        scenes.join(", ")
+    )?;
+    for wish in Wish::ALL {
+        let found = fastest(&measured.rows, &scenes, wish, |_| true);
+        let (tolerance, what) = match wish {
+            Wish::Force(share) => (format!("{} %", 100.0 * share), "force"),
+            Wish::Depth(depth) => (format!("{depth}"), "depth"),
+        };
+        chosen(page, &tolerance, what, found)?;
+        if matches!(wish, Wish::Depth(_)) {
+            let safe = |row: &Row| matches!(row.method, "certified" | "cloud + bound");
+            let found = fastest(&measured.rows, &scenes, wish, safe);
+            chosen(page, &tolerance, "depth, safe", found)?;
+        }
+    }
+    Ok(())
+}
+
+fn chosen(
+    page: &mut String,
+    tolerance: &str,
+    what: &str,
+    found: Option<Choice>,
+) -> Result<(), Error> {
+    let Some(Choice { label, p50, error: worst }) = found else {
+        return writeln!(page, "| {tolerance} | {what} | none that was measured | | | | | | |");
+    };
+    let times: Vec<String> = p50.into_iter().map(|ns| micros(Some(ns))).collect();
+    let Label { method, points, sampling, weights, precision, tolerance: to, budget } = label;
+    let setting = match (points, budget, to) {
+        (_, Some(budget), _) => format!("≤ {budget}"),
+        (_, _, Some(to)) => format!("{to:.0e}"),
+        (Some(points), ..) => points.to_string(),
+        _ => "-".to_owned(),
+    };
+    writeln!(
+        page,
+        "| {tolerance} | {what} | {method} | {setting} | {} | {} | {precision} | {} | {} |",
+        sampling.unwrap_or("-"),
+        weights.unwrap_or("-"),
+        times.join(", "),
+        error(Some(worst))
+    )
+}

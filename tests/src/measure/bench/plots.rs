@@ -1,0 +1,124 @@
+//! Time against error as diagrams.
+
+use super::methods::Precision;
+use super::row::{Quantity, Row};
+use crate::plot::{Axis, Plot, Series, front};
+
+/// Methods that belong together, with their words and their look.
+struct Family {
+    name: String,
+    look: usize,
+    /// Peers have no line from size to size, so that ours are seen.
+    joined: bool,
+    bold: bool,
+}
+
+/// Peers, each with its place among looks.
+const PEERS: [&str; 8] =
+    ["brute-f64", "brute-f32", "thesis", "parry-bvh", "fidget", "grid", "grid-dz", "parry-contact"];
+const FIRST_PEER: usize = 10;
+
+/// Which family a row is of; `None` if it has no error of that quantity, or is shown by another.
+fn family(row: &Row, quantity: Quantity) -> Option<Family> {
+    quantity.error(row)?;
+    let usual = row.precision == Precision::USUAL.name();
+    let (sampling, weights) = (row.sampling.unwrap_or("-"), row.weights.unwrap_or("-"));
+    let depth = quantity == Quantity::Depth;
+    let ours = |name: String, look| Some(Family { name, look, joined: true, bold: false });
+    match (row.method, sampling, weights) {
+        ("cloud", "centroids", _) => ours("centroids".to_owned(), 7),
+        // Depth does not know of weights.
+        ("cloud", _, "equal") if depth => None,
+        ("cloud", "blue", "cells") => {
+            let kind = if depth { "blue" } else { "blue, cells" };
+            match Precision::ALL.iter().position(|p| p.name() == row.precision) {
+                _ if usual => {
+                    Some(Family { name: kind.to_owned(), look: 3, joined: true, bold: true })
+                }
+                at => ours(format!("{kind}, {}", row.precision), [5, 8, 9][at.unwrap_or(0) % 3]),
+            }
+        }
+        ("cloud", ..) if !usual => None,
+        ("cloud", "random", "cells") if depth => ours("random".to_owned(), 1),
+        ("cloud", ..) => {
+            let look = match (sampling, weights) {
+                ("random", "equal") => 0,
+                ("random", _) => 1,
+                _ => 2,
+            };
+            ours(format!("{sampling}, {weights}"), look)
+        }
+        ("cloud + bound", ..) => {
+            ours(format!("{sampling} + bound"), if sampling == "random" { 0 } else { 2 })
+        }
+        ("graded", ..) => ours("graded".to_owned(), 4),
+        ("certified", ..) => ours("certified".to_owned(), 6),
+        (peer, ..) => {
+            let place = PEERS.iter().position(|known| *known == peer)?;
+            let look = FIRST_PEER + place;
+            Some(Family { name: peer.to_owned(), look, joined: false, bold: false })
+        }
+    }
+}
+
+/// The points that no other beats, but for those that are nearer by less than a hundredth: the same sums
+/// in another order.
+pub(super) fn ahead(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    const NEARER: f64 = 0.99;
+    let mut corners = front(points);
+    let mut best = f64::INFINITY;
+    corners.retain(|[_, error]| {
+        let better = *error < NEARER * best;
+        best = if better { *error } else { best };
+        better
+    });
+    corners
+}
+
+/// The error of a quantity over the time of a query, and what nothing else beats.
+pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
+    let mut plot = Plot::new(
+        format!("{scene}: error of the {} against time", quantity.name()),
+        Axis::log("median time of a query, µs; of this project, dashes to the 99th percentile"),
+        Axis::log(format!("rms error of the {}, relative", quantity.name())),
+    );
+    let mut families: Vec<(Family, Vec<[f64; 2]>)> = Vec::new();
+    let mut late = Vec::new();
+    for row in rows {
+        let (Some(family), Some(micros)) = (family(row, quantity), row.micros()) else { continue };
+        let Some(error) = quantity.error(row) else { continue };
+        if let Some(p99) = row.p99_ns.filter(|_| family.joined) {
+            late.push((family.look, vec![[micros, error], [p99 as f64 / 1e3, error]]));
+        }
+        match families.iter_mut().find(|(known, _)| known.name == family.name) {
+            Some((_, points)) => points.push([micros, error]),
+            None => families.push((family, vec![[micros, error]])),
+        }
+    }
+    for (look, ends) in late {
+        plot = plot.with(Series::dashes("", ends).look(look));
+    }
+    let all: Vec<[f64; 2]> = families.iter().flat_map(|(_, points)| points.clone()).collect();
+    plot = plot.with(Series::front("front", &ahead(&all)).look(9));
+    for (family, points) in families {
+        let series = match family.joined {
+            true => Series::line(family.name, points),
+            false => Series::points(family.name, points),
+        };
+        let series = series.look(family.look);
+        plot = plot.with(if family.bold { series.bold() } else { series });
+    }
+    plot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_sums_in_another_order_are_not_ahead() {
+        let points = [[1.0, 0.5], [2.0, 0.499], [3.0, 0.498], [4.0, 0.25], [0.5, 0.9], [5.0, 0.3]];
+        assert_eq!(ahead(&points), [[0.5, 0.9], [1.0, 0.5], [4.0, 0.25]]);
+        assert_eq!(ahead(&[]), [[0.0; 2]; 0]);
+    }
+}

@@ -1,0 +1,119 @@
+//! The truth of a path: depths proved of the part's triangles, force and torque of those refined.
+
+use super::Failure;
+use super::cutter::Cutter;
+use super::plan::Plan;
+use super::refine::{Enough, Refined};
+use super::truth::{Tally, Truth};
+use crate::race::contender::Answer;
+use rayon::prelude::*;
+use touchoff::certify::{Certifier, Facets};
+use touchoff::{Mesh, Pose, Tool};
+
+/// How closely depths are proved, in the part's unit.
+const TOLERANCE: f64 = 1e-9;
+/// Poses that one core goes through with one certifier.
+const TOGETHER: usize = 64;
+
+/// What is true at some poses, and how well it is known.
+#[derive(Clone, Debug)]
+pub(super) struct Reference {
+    /// By the pose's place.
+    pub(super) truths: Vec<(usize, Truth)>,
+    /// Root mean squares of force, torque and depth.
+    pub(super) typical: [f64; 3],
+    /// To what share of those they are known.
+    pub(super) known: [f64; 3],
+    /// By how much a depth may be off at most.
+    pub(super) depth: f64,
+}
+
+/// Those of the poses at which a triangle is in the tool for certain, deeper than rounding.
+///
+/// # Errors
+/// A tool of which nothing can be certified.
+pub(super) fn in_contact(
+    facets: &Facets,
+    tool: &dyn Tool,
+    poses: &[Pose],
+) -> Result<Vec<Pose>, Failure> {
+    let depths = depths(facets, tool, poses)?;
+    let both = poses.iter().zip(depths);
+    Ok(both.filter(|(_, [low, _])| *low > 2.0 * TOLERANCE).map(|(pose, _)| *pose).collect())
+}
+
+/// Between what the depth lies at each pose.
+fn depths(facets: &Facets, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<[f64; 2]>, Failure> {
+    let some = |poses: &[Pose]| {
+        let mut certifier = Certifier::new(facets, tool)?;
+        let each = poses.iter().map(|pose| certifier.deepest(pose, TOLERANCE).depth);
+        Ok(each.collect::<Vec<_>>())
+    };
+    let all: Vec<Vec<[f64; 2]>> =
+        poses.par_chunks(TOGETHER).map(some).collect::<Result<_, Failure>>()?;
+    Ok(all.concat())
+}
+
+impl Reference {
+    /// Of poses in contact, evenly along them.
+    ///
+    /// # Errors
+    /// A tool of which nothing can be certified.
+    pub(super) fn new(
+        mesh: &Mesh,
+        facets: &Facets,
+        cutter: Cutter<'_>,
+        poses: &[Pose],
+        plan: &Plan,
+    ) -> Result<Reference, Failure> {
+        let depths = |poses: &[Pose]| depths(facets, cutter.tool(), poses);
+        Reference::of(&Refined::new(mesh, cutter.tool(), cutter.near()), poses, plan, depths)
+    }
+
+    /// The same with the thesis's magnitudes: deepest are places of their own.
+    ///
+    /// # Errors
+    /// A tool of which nothing can be certified.
+    #[cfg(feature = "peers")]
+    pub(super) fn of_the_thesis(
+        mesh: &Mesh,
+        poses: &[Pose],
+        plan: &Plan,
+    ) -> Result<Reference, Failure> {
+        use crate::peers::deepest::{TOLERANCE, deepest};
+        let cutter = Cutter::THESIS;
+        let depth = |pose: &Pose| {
+            let low = deepest(mesh, pose, 0.0);
+            [low, low + TOLERANCE]
+        };
+        let depths = |poses: &[Pose]| Ok(poses.par_iter().map(depth).collect());
+        Reference::of(&Refined::new(mesh, cutter.tool(), cutter.near()), poses, plan, depths)
+    }
+
+    fn of(
+        refined: &Refined<'_>,
+        poses: &[Pose],
+        plan: &Plan,
+        depths: impl Fn(&[Pose]) -> Result<Vec<[f64; 2]>, Failure>,
+    ) -> Result<Reference, Failure> {
+        let count = plan.checks.min(poses.len());
+        let places: Vec<usize> = (0..count).map(|k| k * poses.len() / count).collect();
+        let some: Vec<Pose> = places.iter().map(|place| poses[*place]).collect();
+        let (share, most) = plan.known;
+        let sums = refined.all(&some, Enough { share, most });
+        let depths = depths(&some)?;
+        let (mut typical, mut off) = (Tally::default(), Tally::default());
+        let mut truths = Vec::new();
+        for ((place, sums), [low, high]) in places.into_iter().zip(sums).zip(depths) {
+            let truth =
+                Truth { force: sums.force, torque: sums.torque, depth: f64::midpoint(low, high) };
+            typical.add(&Answer::default(), &truth);
+            let [force, torque] = sums.change;
+            off.add_sizes([force, torque, (high - low) / 2.0]);
+            truths.push((place, truth));
+        }
+        let (typical, change) = (typical.typical(), off.typical());
+        let known = [0, 1, 2].map(|k: usize| change[k] / typical[k]);
+        Ok(Reference { truths, typical, known, depth: off.largest_depth() })
+    }
+}

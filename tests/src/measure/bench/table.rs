@@ -1,0 +1,76 @@
+//! Rows for people.
+
+use super::row::Row;
+
+/// What stands over the lines.
+pub fn head() -> String {
+    format!(
+        "{:<9} {:<14} {:>8} {:<9} {:<6} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>7}",
+        "scene",
+        "method",
+        "points",
+        "sampling",
+        "weights",
+        "precision",
+        "p50 µs",
+        "p99 µs",
+        "force",
+        "torque",
+        "depth",
+        "worst mm",
+        "missed"
+    )
+}
+
+/// A row as a line.
+pub fn line(row: &Row) -> String {
+    format!(
+        "{:<9} {:<14} {:>8} {:<9} {:<6}  {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>6.2}%",
+        row.scene,
+        row.method,
+        setting(row),
+        row.sampling.unwrap_or("-"),
+        row.weights.unwrap_or("-"),
+        row.precision,
+        micros(row.p50_ns),
+        micros(row.p99_ns),
+        marked(row, "force", row.err_force),
+        marked(row, "torque", row.err_torque),
+        marked(row, "depth", row.err_depth),
+        error(row.worst_depth),
+        100.0 * row.missed,
+    )
+}
+
+/// What is set of a method: its points, its budget, its tolerance.
+pub(super) fn setting(row: &Row) -> String {
+    match (row.points, row.budget, row.tolerance) {
+        (_, Some(budget), _) => format!("≤ {budget}"),
+        (_, _, Some(tolerance)) => format!("{tolerance:.0e}"),
+        (Some(points), ..) => points.to_string(),
+        _ => "-".to_owned(),
+    }
+}
+
+/// A time in microseconds, three figures of it.
+pub(super) fn micros(ns: Option<u64>) -> String {
+    let Some(ns) = ns else { return "-".to_owned() };
+    let micros = ns as f64 / 1e3;
+    let decimals = match micros {
+        0.0..10.0 => 2,
+        10.0..100.0 => 1,
+        _ => 0,
+    };
+    format!("{micros:.decimals$}")
+}
+
+/// An error to two figures.
+pub(super) fn error(error: Option<f64>) -> String {
+    error.map_or("-".to_owned(), |error| format!("{error:.1e}"))
+}
+
+/// An error, with a word before it if the truth is known no better.
+pub(super) fn marked(row: &Row, quantity: &str, value: Option<f64>) -> String {
+    let floored = row.floored.contains(&quantity);
+    format!("{}{}", if floored { "≤" } else { "" }, error(value))
+}

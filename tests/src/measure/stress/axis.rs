@@ -1,0 +1,54 @@
+//! Item 4: d = 0, ±0, 5e-324, 2^-540, on the axis and beside it; of a solid the same from its planes.
+
+use super::judge::Judge;
+use super::ledger::Ledger;
+use super::truth::Subject;
+
+const CLOSE: [f64; 4] = [0.0, -0.0, 5e-324, 0.0];
+
+/// So close to the axis.
+fn close() -> [f64; 4] {
+    let mut close = CLOSE;
+    close[3] = 2f64.powi(-540);
+    close
+}
+
+/// Judges points on the axis, at every height that a corner has, an ulp from there, at 0 and at `others` more.
+pub(super) fn axis(subject: &Subject, others: usize, ledger: &mut Ledger) {
+    let judge = Judge::new(subject.tool, &*subject.truth);
+    let corners = subject.oracle.corner_points();
+    let points = if subject.oracle.revolved() {
+        let height = subject.oracle.extent()[1];
+        let mut heights: Vec<f64> = corners.into_iter().map(|[.., z]| z).collect();
+        heights.sort_by(f64::total_cmp);
+        heights.dedup();
+        let mut all: Vec<f64> =
+            heights.iter().flat_map(|z| [*z, z.next_up(), z.next_down()]).collect();
+        all.extend((0..=others).map(|k| height * k as f64 / others as f64));
+        all.extend([-0.0, 5e-324, -5e-324, 2f64.powi(-540)]);
+        all.into_iter().flat_map(on_the_axis).collect()
+    } else {
+        corners.into_iter().flat_map(from_the_planes).collect::<Vec<_>>()
+    };
+    for points in points.chunks(1024) {
+        judge.points(points, ledger);
+    }
+}
+
+fn on_the_axis(z: f64) -> Vec<[f64; 3]> {
+    let ways = |d: f64| [[d, 0.0, z], [-0.0, d, z], [-d, d, z], [-d, -0.0, z]];
+    close().into_iter().flat_map(ways).collect()
+}
+
+/// Each coordinate of a point replaced in turn.
+fn from_the_planes(p: [f64; 3]) -> Vec<[f64; 3]> {
+    let mut points = Vec::new();
+    for axis in 0..3 {
+        for d in close().into_iter().flat_map(|d| [d, -d]) {
+            let mut q = p;
+            q[axis] = d;
+            points.push(q);
+        }
+    }
+    points
+}

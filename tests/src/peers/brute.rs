@@ -1,0 +1,113 @@
+//! Every point, one after the other: in `f64` with branches, and in `f32` sixteen at a time.
+//!
+//! The first passes over points outside the tool's outline by one comparison, since a branch a
+//! region, mispredicted for points in no order, would take longer than all else. The second asks the formula of minima and maxima of all points, as wide as the machine
+//! goes; it takes its own sign for the answer, so points within some 1e-6 of the surface may fall
+//! on the wrong side.
+
+use super::formula;
+use super::points::{Point, points};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
+use touchoff::Pose;
+
+/// Every point in `f64`, with branches.
+pub struct Scalar {
+    /// Coordinates alone, since few points need more.
+    at: Vec<[f64; 3]>,
+    points: Vec<Point>,
+}
+
+impl Scalar {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> Scalar {
+        let points = points(&piece.cloud);
+        Scalar { at: points.iter().map(|point| point.at).collect(), points }
+    }
+}
+
+impl Contender for Scalar {
+    fn name(&self) -> &'static str {
+        "brute-f64"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let view = View::of(pose);
+        let mut sums = Sums::default();
+        for (at, point) in self.at.iter().zip(&self.points) {
+            let arm = view.arm(*at);
+            let p = view.turn(arm);
+            if formula::beside(p) {
+                continue;
+            }
+            if let Some(felt) = formula::sense(p) {
+                sums.add([arm, p], (point.weight, point.normal), felt);
+            }
+        }
+        sums.answer(&view)
+    }
+}
+
+const WIDTH: usize = 16;
+
+/// Every point in `f32`, sixteen at a time.
+pub struct Lanes {
+    level: Level,
+    /// Coordinates list by list; what fills the last block lies far away.
+    at: [Vec<f32>; 3],
+    points: Vec<Point>,
+}
+
+impl Lanes {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> Lanes {
+        let points = points(&piece.cloud);
+        let room = points.len().next_multiple_of(WIDTH);
+        let at = [0, 1, 2].map(|axis| {
+            let mut list: Vec<f32> = points.iter().map(|point| point.at[axis] as f32).collect();
+            list.resize(room, 1e6);
+            list
+        });
+        Lanes { level: Level::new(), at, points }
+    }
+
+    /// One point inside, in single precision but for the sums.
+    fn feel(&self, view: &View, at: usize, sums: &mut Sums) {
+        let point = &self.points[at];
+        let arm = view.arm([0, 1, 2].map(|axis| f64::from(self.at[axis][at])));
+        let p = view.turn(arm).map(|c| f64::from(c as f32));
+        // Within rounding of the surface the two forms may disagree.
+        let felt = formula::sense(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
+        sums.add([arm, p], (point.weight, point.normal), felt);
+    }
+}
+
+#[inline(always)]
+fn inside<S: Simd>(simd: S, lanes: &Lanes, view: &View, sums: &mut Sums) {
+    let rows = view.single();
+    let tip = view.tip.map(|c| c as f32);
+    let zero = f32x16::splat(simd, 0.0);
+    for block in 0..lanes.at[0].len() / WIDTH {
+        let place = block * WIDTH..(block + 1) * WIDTH;
+        let lists = [&lanes.at[0][place.clone()], &lanes.at[1][place.clone()], &lanes.at[2][place]];
+        let depth = formula::magnitude_from(simd, lists, (rows, tip));
+        let mut hits = depth.simd_ge(zero).to_bitmask();
+        while hits != 0 {
+            lanes.feel(view, block * WIDTH + hits.trailing_zeros() as usize, sums);
+            hits &= hits - 1;
+        }
+    }
+}
+
+impl Contender for Lanes {
+    fn name(&self) -> &'static str {
+        "brute-f32"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let view = View::of(pose);
+        let mut sums = Sums::default();
+        dispatch!(self.level, simd => inside(simd, self, &view, &mut sums));
+        sums.answer(&view)
+    }
+}

@@ -1,0 +1,158 @@
+//! `fidget`: the tool as an implicit surface, compiled to machine code at run time.
+//!
+//! Its own way of working: interval evaluation rules out nodes of a tree over the cloud, all points
+//! of the leaves that are left are evaluated in one slice, and the gradient in one more slice of
+//! those inside. The function is the tool's magnitude as minima and maxima, its direction
+//! `−∇m/|∇m|`. fidget computes in `f32`; points are carried to the tool's frame in `f64` first.
+//! The tape is not simplified from node to node: for so short a tape compiling a shorter one takes
+//! longer than all points together.
+
+use super::points::{Bounds, Tree};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
+use fidget::context::Tree as Formula;
+use fidget::eval::{BulkEvaluator, Function, MathFunction, Tape, TracingEvaluator};
+use fidget::jit::{JitFloatSliceEval, JitFunction, JitGradSliceEval, JitIntervalEval};
+use fidget::types::{Grad, Interval};
+use fidget::var::Var;
+use touchoff::Pose;
+
+/// Points of a leaf, tried from 16 to 128 at 20,000 points.
+const LEAF: usize = 32;
+
+/// What single precision may err on the magnitude.
+const MARGIN: f32 = 1e-4;
+
+type TapeOf<E> = <E as BulkEvaluator>::Tape;
+
+/// Where x, y and z stand among a tape's arguments.
+type Places = [usize; 3];
+
+/// The formula as machine code, over a tree of the points.
+pub struct Fidget {
+    tree: Tree<Bounds>,
+    interval: (JitIntervalEval, <JitIntervalEval as TracingEvaluator>::Tape, Places),
+    values: (JitFloatSliceEval, TapeOf<JitFloatSliceEval>, Places),
+    slopes: (JitGradSliceEval, TapeOf<JitGradSliceEval>, Places),
+    near: Vec<usize>,
+    arms: Vec<[[f64; 3]; 2]>,
+    at: [Vec<f32>; 3],
+    hits: Vec<usize>,
+    hits_at: [Vec<Grad>; 3],
+}
+
+impl Fidget {
+    /// Of a part's points.
+    ///
+    /// # Panics
+    /// Never: the formula has all three coordinates.
+    pub fn new(piece: &Workpiece) -> Fidget {
+        let mut context = fidget::Context::new();
+        let node = context.import(&magnitude());
+        let function = JitFunction::new(&context, &[node]).expect("a formula of x, y and z");
+        let interval = function.interval_tape(Default::default());
+        let values = function.float_slice_tape(Default::default());
+        let slopes = function.grad_slice_tape(Default::default());
+        let (a, b, c) = (places(&interval), places(&values), places(&slopes));
+        Fidget {
+            tree: Tree::new(&piece.cloud, LEAF, |bounds, _| bounds),
+            interval: (JitIntervalEval::default(), interval, a),
+            values: (JitFloatSliceEval::default(), values, b),
+            slopes: (JitGradSliceEval::default(), slopes, c),
+            near: Vec::new(),
+            arms: Vec::new(),
+            at: Default::default(),
+            hits: Vec::new(),
+            hits_at: Default::default(),
+        }
+    }
+
+    /// The points of leaves that the tool may touch, in the tool's frame.
+    fn gather(&mut self, view: &View) {
+        let (eval, tape, places) = &mut self.interval;
+        let (points, leaves) = self.tree.leaves(|bounds| {
+            let centre = view.turn(view.arm(bounds.centre));
+            let half = view.reach(bounds.half);
+            let mut sides = [Interval::from(0.0); 3];
+            for axis in 0..3 {
+                let [low, high] = [-1.0, 1.0].map(|sign| (centre[axis] + sign * half[axis]) as f32);
+                sides[places[axis]] = Interval::new(low, high);
+            }
+            let (found, _) = eval.eval(tape, &sides).expect("three arguments");
+            found[0].upper() >= -MARGIN
+        });
+        self.near.clear();
+        self.arms.clear();
+        self.at.iter_mut().for_each(Vec::clear);
+        for index in leaves.flatten() {
+            let arm = view.arm(points[index].at);
+            let p = view.turn(arm);
+            self.near.push(index);
+            self.arms.push([arm, p]);
+            for (coordinate, place) in p.iter().zip(self.values.2) {
+                self.at[place].push(*coordinate as f32);
+            }
+        }
+    }
+}
+
+/// Where a tape wants x, y and z.
+fn places(tape: &impl Tape) -> Places {
+    [Var::X, Var::Y, Var::Z].map(|var| tape.vars().get(&var).expect("the formula has all three"))
+}
+
+/// [`super::formula::magnitude`] as fidget's expression.
+fn magnitude() -> Formula {
+    let (x, y, up) = Formula::axes();
+    let z = super::formula::TIP as f32 - up;
+    let squared = x.square() + y.square();
+    let d = squared.sqrt();
+    let above = (z.clone() - 19.0).max(0.0);
+    let housing = 14.0 - d.min(3.0) - z.clone();
+    let spindle = (3.0 - d.clone()).min(16.0 - d.clone() - z.clone() + (1.0 - d.clone()).max(0.0));
+    let cutter = 1.0 - (squared + above.square()).sqrt();
+    z.min(5.0 - d).min(housing.max(spindle).max(cutter))
+}
+
+impl Contender for Fidget {
+    fn name(&self) -> &'static str {
+        "fidget"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let view = View::of(pose);
+        self.gather(&view);
+        let mut sums = Sums::default();
+        if self.near.is_empty() {
+            return sums.answer(&view);
+        }
+        let (eval, tape, _) = &mut self.values;
+        let values = eval.eval(tape, &self.at).expect("lists of one length");
+        self.hits.clear();
+        let inside = values[0].iter().enumerate().filter(|(_, value)| **value >= 0.0);
+        self.hits.extend(inside.map(|(index, _)| index));
+        if self.hits.is_empty() {
+            return sums.answer(&view);
+        }
+        let (eval, tape, places) = &mut self.slopes;
+        for (axis, place) in places.iter().enumerate() {
+            let mut one = [0.0; 3];
+            one[axis] = 1.0;
+            let list = &mut self.hits_at[*place];
+            list.clear();
+            let coordinate = |hit: &usize| self.at[self.values.2[axis]][*hit];
+            let grad = |hit| Grad::new(coordinate(hit), one[0], one[1], one[2]);
+            list.extend(self.hits.iter().map(grad));
+        }
+        let slopes = eval.eval(tape, &self.hits_at).expect("lists of one length");
+        for (hit, slope) in self.hits.iter().zip(&slopes[0]) {
+            let away = [slope.dx, slope.dy, slope.dz].map(|c| -f64::from(c));
+            let length = crate::race::contender::dot(away, away).sqrt();
+            // On the axis there is no slope across.
+            let way = if length > 0.0 { away.map(|c| c / length) } else { [1.0, 0.0, 0.0] };
+            let point = &self.tree.points()[self.near[*hit]];
+            let felt = (f64::from(slope.v), way);
+            sums.add(self.arms[*hit], (point.weight, point.normal), felt);
+        }
+        sums.answer(&view)
+    }
+}

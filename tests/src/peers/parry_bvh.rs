@@ -1,0 +1,108 @@
+//! `parry3d`'s tree of boxes over blocks of 64 points, the tool's formula written by hand.
+//!
+//! What someone would build who knows parry, SIMD and this one tool: [`Bvh::leaves`] with a test of
+//! a node in the tool's frame against the largest radius over its stretch of the axis; a block's 64
+//! points in `f32`, as wide as the machine goes, with a margin; what is left in `f64`.
+
+use super::formula;
+use super::points::{Bounds, Point, order, points};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::Vector;
+use parry3d::partitioning::{Bvh, BvhBuildStrategy};
+use touchoff::Pose;
+
+const BLOCK: usize = 64;
+const WIDTH: usize = 16;
+
+/// More than what single precision loses on coordinates below 100.
+const MARGIN: f64 = 1e-4;
+
+/// 64 points; what is not there lies far away.
+struct Block([[f32; BLOCK]; 3]);
+
+/// Blocks of points under `parry3d`'s tree.
+pub struct ParryBvh {
+    level: Level,
+    bvh: Bvh,
+    blocks: Vec<Block>,
+    points: Vec<Point>,
+    found: Vec<u32>,
+}
+
+impl ParryBvh {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> ParryBvh {
+        let mut points = points(&piece.cloud);
+        order(&mut points, BLOCK);
+        let boxes: Vec<Aabb> = points
+            .chunks(BLOCK)
+            .map(|some| {
+                let bounds = Bounds::of(some.iter().map(|point| Bounds::at(point.at)));
+                let corner = |sign: f64| {
+                    let at = |axis: usize| {
+                        (bounds.centre[axis] + sign * (bounds.half[axis] + MARGIN)) as f32
+                    };
+                    Vector::new(at(0), at(1), at(2))
+                };
+                Aabb::new(corner(-1.0), corner(1.0))
+            })
+            .collect();
+        let blocks = points
+            .chunks(BLOCK)
+            .map(|some| {
+                let coordinate = |axis: usize, at: usize| {
+                    some.get(at).map_or(1e6, |point| point.at[axis] as f32)
+                };
+                Block([0, 1, 2].map(|axis| std::array::from_fn(|at| coordinate(axis, at))))
+            })
+            .collect();
+        let bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        ParryBvh { level: Level::new(), bvh, blocks, points, found: Vec::new() }
+    }
+}
+
+/// Points of the found blocks that are inside.
+#[inline(always)]
+fn inside<S: Simd>(simd: S, this: &ParryBvh, view: &View, sums: &mut Sums) {
+    let rows = view.single();
+    let tip = view.tip.map(|c| c as f32);
+    let margin = f32x16::splat(simd, -MARGIN as f32);
+    for found in &this.found {
+        let Block([xs, ys, zs]) = &this.blocks[*found as usize];
+        for part in 0..BLOCK / WIDTH {
+            let place = part * WIDTH..(part + 1) * WIDTH;
+            let lists = [&xs[place.clone()], &ys[place.clone()], &zs[place]];
+            let depth = formula::magnitude_from(simd, lists, (rows, tip));
+            let mut hits = depth.simd_ge(margin).to_bitmask();
+            while hits != 0 {
+                let at = *found as usize * BLOCK + part * WIDTH + hits.trailing_zeros() as usize;
+                this.points[at].feel(view, sums);
+                hits &= hits - 1;
+            }
+        }
+    }
+}
+
+impl Contender for ParryBvh {
+    fn name(&self) -> &'static str {
+        "parry-bvh"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let view = View::of(pose);
+        self.found.clear();
+        let leaves = self.bvh.leaves(|node| {
+            let (low, high) = (node.mins(), node.maxs());
+            let ends = [(low.x, high.x), (low.y, high.y), (low.z, high.z)];
+            let centre = ends.map(|(low, high)| 0.5 * (f64::from(low) + f64::from(high)));
+            let half = ends.map(|(low, high)| 0.5 * (f64::from(high) - f64::from(low)));
+            formula::may_touch(view.turn(view.arm(centre)), view.reach(half))
+        });
+        self.found.extend(leaves);
+        let mut sums = Sums::default();
+        dispatch!(self.level, simd => inside(simd, self, &view, &mut sums));
+        sums.answer(&view)
+    }
+}

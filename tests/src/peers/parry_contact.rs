@@ -1,0 +1,71 @@
+//! `parry3d`'s own question: `contact` of the tool as a compound of convex shapes against the
+//! part's triangles.
+//!
+//! The union of the shapes is the tool exactly: housing, spindle and cutter are cylinders, the taper
+//! is a cone whose point lies inside the cutter, the ball is a ball. The spindle goes on through the
+//! housing, so that its end there is no surface that a triangle could leave it by. The answer is the pair of a
+//! shape and a triangle that overlap deepest: one depth, no sum over the contact, so no force and
+//! torque. It feels all of the surface, not points of it.
+
+use crate::race::contender::{Answer, Contender, Workpiece};
+use parry3d::math::{Pose as Place, Rotation, Vector};
+use parry3d::query::contact;
+use parry3d::shape::{Compound, SharedShape, TriMesh};
+use touchoff::Pose;
+
+/// The tool as a compound, the part as a mesh.
+pub struct ParryContact {
+    tool: Compound,
+    part: TriMesh,
+}
+
+impl ParryContact {
+    /// Of a part's triangles.
+    ///
+    /// # Panics
+    /// If there are none.
+    pub fn new(piece: &Workpiece) -> ParryContact {
+        // parry's cylinders and cones stand along y, the cone's point up; here y is from the spindle
+        // to the tip, and places are those of the centres.
+        let turn = Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2);
+        let at = |z: f32| Place::from_parts(Vector::new(0.0, 0.0, z), turn);
+        let tool = Compound::new(vec![
+            (at(14.5), SharedShape::cylinder(5.5, 5.0)),
+            (at(13.5), SharedShape::cylinder(6.5, 3.0)),
+            (at(5.5), SharedShape::cone(1.5, 3.0)),
+            (at(3.5), SharedShape::cylinder(2.5, 1.0)),
+            (at(1.0), SharedShape::ball(1.0)),
+        ]);
+        let vertices = piece.mesh.vertices().iter().map(|v| single([v.x, v.y, v.z])).collect();
+        let part = TriMesh::new(vertices, piece.mesh.triangles().to_vec())
+            .expect("the tube has triangles");
+        ParryContact { tool, part }
+    }
+}
+
+fn single(v: [f64; 3]) -> Vector {
+    Vector::new(v[0] as f32, v[1] as f32, v[2] as f32)
+}
+
+impl Contender for ParryContact {
+    fn name(&self) -> &'static str {
+        "parry-contact"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let isometry = pose.isometry();
+        let q = isometry.rotation.coords.map(|c| c as f32);
+        let place = Place::from_parts(
+            single(pose.tip().coords.into()),
+            Rotation::from_xyzw(q.x, q.y, q.z, q.w).normalize(),
+        );
+        let found = contact(&place, &self.tool, &Place::IDENTITY, &self.part, 0.0)
+            .expect("parry knows contacts of compounds and meshes");
+        let depth = found.map_or(0.0, |contact| -f64::from(contact.dist)).max(0.0);
+        Answer { colliding: usize::from(found.is_some()), depth, wrench: None }
+    }
+
+    fn feels_triangles(&self) -> bool {
+        true
+    }
+}

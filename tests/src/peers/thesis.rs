@@ -1,0 +1,219 @@
+//! The method of Ho (1999): a binary tree of k-DOPs over the cloud, nodes behind pointers, and the
+//! tool as a tree of volumes whose leaves have a tree of splits each.
+//!
+//! Chapters 2 to 4 and 7.3: the cloud's tree never moves; the tool's volumes are bounded anew at
+//! each pose; where leaves of both overlap the points are carried into the tool's frame and asked
+//! one by one. k = 18, which Klosowski (1997) found best, and leaves of at most `LEAF` points.
+//! Where the thesis turns the vertices of a volume and bounds those, here each volume is bounded
+//! tightly by its support function: better than what the thesis had. Overlap ends at the first
+//! direction that separates, and the larger of two volumes is divided first.
+
+use super::formula;
+use super::points::{Point, points};
+use crate::race::contender::{Answer, Contender, Sums, View, Workpiece, dot};
+use touchoff::Pose;
+
+/// Most points of a leaf, tried from 4 to 32 at 20,000 points.
+const LEAF: usize = 16;
+
+/// The directions of an 18-DOP: the axes, and between each two of them.
+const WAYS: usize = 9;
+const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const WAY: [[f64; 3]; WAYS] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [DIAGONAL, DIAGONAL, 0.0],
+    [DIAGONAL, -DIAGONAL, 0.0],
+    [DIAGONAL, 0.0, DIAGONAL],
+    [DIAGONAL, 0.0, -DIAGONAL],
+    [0.0, DIAGONAL, DIAGONAL],
+    [0.0, DIAGONAL, -DIAGONAL],
+];
+
+/// From where to where along every direction.
+#[derive(Clone, Copy)]
+struct Dop([[f64; 2]; WAYS]);
+
+impl Dop {
+    const NOTHING: Dop = Dop([[f64::INFINITY, f64::NEG_INFINITY]; WAYS]);
+
+    fn include(&mut self, other: &Dop) {
+        for (mine, [low, high]) in self.0.iter_mut().zip(other.0) {
+            *mine = [mine[0].min(low), mine[1].max(high)];
+        }
+    }
+
+    fn overlaps(&self, other: &Dop) -> bool {
+        self.0.iter().zip(&other.0).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
+    }
+
+    /// The longest side along the axes, and which it is.
+    fn longest(&self) -> (f64, usize) {
+        let side = |axis: usize| self.0[axis][1] - self.0[axis][0];
+        (0..3).map(|axis| (side(axis), axis)).fold((-1.0, 0), |a, b| if b.0 > a.0 { b } else { a })
+    }
+}
+
+/// A node of the cloud's tree.
+struct Node {
+    volume: Dop,
+    size: f64,
+    below: Below,
+}
+
+enum Below {
+    Nodes([Box<Node>; 2]),
+    Points(Vec<Point>),
+}
+
+fn build(points: &mut [Point]) -> Box<Node> {
+    let mut volume = Dop::NOTHING;
+    for point in &*points {
+        volume.include(&Dop(WAY.map(|way| [dot(way, point.at); 2])));
+    }
+    let (size, axis) = volume.longest();
+    let below = if points.len() <= LEAF {
+        Below::Points(points.to_vec())
+    } else {
+        let half = points.len() / 2;
+        points.select_nth_unstable_by(half, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+        let (low, high) = points.split_at_mut(half);
+        Below::Nodes([build(low), build(high)])
+    };
+    Box::new(Node { volume, size, below })
+}
+
+/// A frustum about the tool's axis: from where to where from the tip, and the radii there.
+struct Frustum {
+    ends: [f64; 2],
+    radii: [f64; 2],
+}
+
+const CUTTER: Frustum = Frustum { ends: [1.0, 5.0], radii: [1.0, 1.0] };
+const TAPER: Frustum = Frustum { ends: [5.0, 7.0], radii: [1.0, 3.0] };
+const SPINDLE: Frustum = Frustum { ends: [7.0, 9.0], radii: [3.0, 3.0] };
+const HOUSING: Frustum = Frustum { ends: [9.0, 20.0], radii: [5.0, 5.0] };
+
+/// The directions seen from the tool: how far along each the tip is, and the axis points.
+struct Ways {
+    tip: [f64; WAYS],
+    axis: [f64; WAYS],
+}
+
+impl Ways {
+    fn bound(&self, frustum: &Frustum) -> Dop {
+        Dop(std::array::from_fn(|way| {
+            let across = (1.0 - self.axis[way] * self.axis[way]).max(0.0).sqrt();
+            let disc =
+                |end: usize| (frustum.ends[end] * self.axis[way], frustum.radii[end] * across);
+            let ((a, a_reach), (b, b_reach)) = (disc(0), disc(1));
+            let (low, high) = ((a - a_reach).min(b - b_reach), (a + a_reach).max(b + b_reach));
+            [self.tip[way] + low, self.tip[way] + high]
+        }))
+    }
+
+    /// The ball of radius 1 at the tip.
+    fn ball(&self) -> Dop {
+        let centre = |way: usize| self.tip[way] + self.axis[way];
+        Dop(std::array::from_fn(|way| [centre(way) - 1.0, centre(way) + 1.0]))
+    }
+}
+
+fn both(mut a: Dop, b: &Dop) -> Dop {
+    a.include(b);
+    a
+}
+
+/// The splits of a leaf of the tool, where it begins and ends along the thesis's `z` first.
+type Splits = fn(f64, f64) -> Option<(f64, [f64; 2])>;
+
+/// The tool's tree: leaves are cutter, spindle and housing; the neck is the first two together.
+const LEAVES: [Splits; 3] = [
+    |squared, z| if z >= 15.0 { formula::cutter(squared, z) } else { None },
+    |squared, z| if z > 11.0 && z < 15.0 { formula::spindle(squared, z) } else { None },
+    |squared, z| if z <= 11.0 { formula::housing(squared, z) } else { None },
+];
+const NECK: usize = 3;
+const WHOLE: usize = 4;
+
+/// What is below a volume of the tool.
+fn below(volume: usize) -> Option<[usize; 2]> {
+    match volume {
+        WHOLE => Some([NECK, 2]),
+        NECK => Some([0, 1]),
+        _ => None,
+    }
+}
+
+/// The tool at a pose.
+struct Tool {
+    view: View,
+    volumes: [Dop; 5],
+    sums: Sums,
+}
+
+impl Tool {
+    fn at(pose: &Pose) -> Tool {
+        let view = View::of(pose);
+        let axis: [f64; 3] = pose.axis().into();
+        let ways =
+            Ways { tip: WAY.map(|way| dot(way, view.tip)), axis: WAY.map(|way| dot(way, axis)) };
+        let cutter = both(ways.ball(), &ways.bound(&CUTTER));
+        let spindle = both(ways.bound(&TAPER), &ways.bound(&SPINDLE));
+        let housing = ways.bound(&HOUSING);
+        let neck = both(cutter, &spindle);
+        let volumes = [cutter, spindle, housing, neck, both(neck, &housing)];
+        Tool { view, volumes, sums: Sums::default() }
+    }
+
+    /// Descends both trees together.
+    fn meet(&mut self, node: &Node, volume: usize) {
+        if !node.volume.overlaps(&self.volumes[volume]) {
+            return;
+        }
+        match (&node.below, below(volume)) {
+            (Below::Points(points), None) => self.feel(points, LEAVES[volume]),
+            (Below::Nodes(nodes), parts)
+                if parts.is_none() || node.size > self.volumes[volume].longest().0 =>
+            {
+                nodes.iter().for_each(|node| self.meet(node, volume));
+            }
+            (_, parts) => parts.into_iter().flatten().for_each(|part| self.meet(node, part)),
+        }
+    }
+
+    fn feel(&mut self, points: &[Point], splits: Splits) {
+        for point in points {
+            let arm = self.view.arm(point.at);
+            let p = self.view.turn(arm);
+            let squared = p[0] * p[0] + p[1] * p[1];
+            if let Some(felt) = splits(squared, formula::TIP - p[2]) {
+                let felt = formula::in_space(p, squared, felt);
+                self.sums.add([arm, p], (point.weight, point.normal), felt);
+            }
+        }
+    }
+}
+
+/// The cloud's tree.
+pub struct Thesis(Box<Node>);
+
+impl Thesis {
+    /// Of a part's points.
+    pub fn new(piece: &Workpiece) -> Thesis {
+        Thesis(build(&mut points(&piece.cloud)))
+    }
+}
+
+impl Contender for Thesis {
+    fn name(&self) -> &'static str {
+        "thesis"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let mut tool = Tool::at(pose);
+        tool.meet(&self.0, WHOLE);
+        tool.sums.answer(&tool.view)
+    }
+}

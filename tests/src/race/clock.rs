@@ -1,0 +1,128 @@
+//! How methods are timed: in turns, on the same poses, never the same pose twice.
+//!
+//! The path is cut into blocks of `BLOCK` poses. Every block is given to one method after the
+//! other, each time another one first. Before its turn a method is asked once, untimed, at the pose
+//! before the block: in use it would not have to share its caches with others. Even blocks are timed
+//! as a whole, for the average; odd blocks query by query, for the percentiles, which the clock makes
+//! longer by some 20 ns. A method too slow for its share of time sits out blocks, evenly.
+
+use super::contender::{Answer, Contender};
+use cpu_time::ThreadTime;
+use std::time::{Duration, Instant};
+use touchoff::Pose;
+
+/// Poses of a turn.
+const BLOCK: usize = 25;
+/// Poses by which a method's share is estimated.
+const TRIAL: usize = 5;
+
+/// What was measured of one method.
+#[derive(Default)]
+pub struct Times {
+    /// Even blocks: queries, wall and CPU time.
+    together: usize,
+    wall: Duration,
+    cpu: Duration,
+    /// Odd blocks: every query, ns.
+    single: Vec<u64>,
+    colliding: usize,
+    most: usize,
+}
+
+impl Times {
+    /// How many poses it was asked at.
+    pub fn poses(&self) -> usize {
+        self.together + self.single.len()
+    }
+
+    /// Wall time of a query, ns.
+    pub fn average(&self) -> f64 {
+        self.wall.as_secs_f64() * 1e9 / self.together.max(1) as f64
+    }
+
+    /// CPU time of a query, ns.
+    pub fn cpu(&self) -> f64 {
+        self.cpu.as_secs_f64() * 1e9 / self.together.max(1) as f64
+    }
+
+    /// What a part of all queries took at most, ns; `None` if there are too few of them to say.
+    pub fn percentile(&self, part: f64) -> Option<u64> {
+        let beyond = (1.0 - part) * self.single.len() as f64;
+        let at = (self.single.len() as f64 * part) as usize;
+        (beyond > 1.0 - 1e-9).then(|| self.single[at.min(self.single.len() - 1)])
+    }
+
+    /// The longest query, ns.
+    pub fn longest(&self) -> Option<u64> {
+        self.single.last().copied()
+    }
+
+    /// Points inside, on average and most.
+    pub fn colliding(&self) -> (f64, usize) {
+        (self.colliding as f64 / self.poses().max(1) as f64, self.most)
+    }
+
+    fn count(&mut self, answer: &Answer) {
+        self.colliding += answer.colliding;
+        self.most = self.most.max(answer.colliding);
+    }
+}
+
+/// Keeps the thread on the last core; whether that worked.
+pub fn pin() -> bool {
+    let cores = core_affinity::get_core_ids().unwrap_or_default();
+    cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
+}
+
+/// Times methods on a path, each for about `seconds` at most.
+pub fn race(methods: &mut [Box<dyn Contender + '_>], poses: &[Pose], seconds: f64) -> Vec<Times> {
+    let strides: Vec<usize> =
+        methods.iter_mut().map(|m| stride(&mut **m, poses, seconds)).collect();
+    let mut times: Vec<Times> = methods.iter().map(|_| Times::default()).collect();
+    for (block, some) in poses.chunks(BLOCK).enumerate() {
+        let before = &poses[(block * BLOCK).saturating_sub(1)];
+        for turn in 0..methods.len() {
+            let which = (turn + block / 2) % methods.len();
+            if (block / 2).is_multiple_of(strides[which]) {
+                methods[which].query(before);
+                round(&mut *methods[which], some, block % 2 == 0, &mut times[which]);
+            }
+        }
+    }
+    times.iter_mut().for_each(|times| times.single.sort_unstable());
+    times
+}
+
+fn round(method: &mut dyn Contender, poses: &[Pose], together: bool, times: &mut Times) {
+    if !together {
+        for pose in poses {
+            let start = Instant::now();
+            let answer = method.query(pose);
+            let taken = start.elapsed();
+            times.single.push(u64::try_from(taken.as_nanos()).unwrap_or(u64::MAX));
+            times.count(&answer);
+        }
+        return;
+    }
+    let mut counts = Times::default();
+    let (cpu, wall) = (ThreadTime::now(), Instant::now());
+    for pose in poses {
+        counts.count(&method.query(pose));
+    }
+    times.wall += wall.elapsed();
+    times.cpu += cpu.elapsed();
+    times.together += poses.len();
+    times.colliding += counts.colliding;
+    times.most = times.most.max(counts.most);
+}
+
+/// Of how many pairs of blocks a method gets one.
+fn stride(method: &mut dyn Contender, poses: &[Pose], seconds: f64) -> usize {
+    let trial = || poses.iter().step_by((poses.len() / TRIAL).max(1));
+    let start = Instant::now();
+    trial().for_each(|pose| {
+        method.query(pose);
+    });
+    let one = start.elapsed().as_secs_f64() / trial().count().max(1) as f64;
+    (one * poses.len() as f64 / seconds).ceil().max(1.0) as usize
+}
