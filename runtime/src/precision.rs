@@ -17,10 +17,14 @@ pub trait Precision: sealed::Sealed {
     /// How far rounding takes each coordinate of a point inside a tool that reaches that far from its
     /// tip, of leaves and a part with those half extents, all in one unit.
     #[doc(hidden)]
-    fn carried(size: f64, leaf: f64, part: f64) -> f64;
+    fn carried(size: f64, _leaf: f64, part: f64) -> f64 {
+        in_double(size, part)
+    }
     /// How far it takes a depth, in the unit of the tool.
     #[doc(hidden)]
-    fn felt(depth: &Depth) -> f64;
+    fn felt(depth: &Depth) -> f64 {
+        depth.rounding
+    }
 }
 
 /// All in `f64`. The same points are inside as with [`Filtered`], each with the same bits: nothing that is
@@ -54,27 +58,11 @@ fn in_double(size: f64, part: f64) -> f64 {
 impl Precision for Double {
     type Rough = f64;
     type Number = f64;
-
-    fn carried(size: f64, _: f64, part: f64) -> f64 {
-        in_double(size, part)
-    }
-
-    fn felt(depth: &Depth) -> f64 {
-        depth.rounding
-    }
 }
 
 impl Precision for Filtered {
     type Rough = f32;
     type Number = f64;
-
-    fn carried(size: f64, _: f64, part: f64) -> f64 {
-        in_double(size, part)
-    }
-
-    fn felt(depth: &Depth) -> f64 {
-        depth.rounding
-    }
 }
 
 impl Precision for Single {
