@@ -4,7 +4,7 @@ use super::choice::{Choice, Wish, fastest};
 use super::orders::{expected, orders};
 use super::plots::{ahead, plot};
 use super::row::{Label, Quantity, Row};
-use super::table::{error, marked, micros, setting};
+use super::table::{cells, error, micros, setting};
 use super::{Facts, Measured, Plan};
 use std::fmt::{Error, Write};
 use std::path::Path;
@@ -162,22 +162,7 @@ fn table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
 |---|--:|---|---|---|--:|--:|--:|--:|--:|--:|--:|"
     )?;
     for row in rows {
-        writeln!(
-            page,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.2} % |",
-            row.method,
-            setting(row),
-            row.sampling.unwrap_or("-"),
-            row.weights.unwrap_or("-"),
-            row.precision,
-            micros(row.p50_ns),
-            micros(row.p99_ns),
-            marked(row, "force", row.err_force),
-            marked(row, "torque", row.err_torque),
-            marked(row, "depth", row.err_depth),
-            error(row.worst_depth),
-            100.0 * row.missed
-        )?;
+        writeln!(page, "| {} % |", cells(row).join(" | "))?;
     }
     Ok(())
 }

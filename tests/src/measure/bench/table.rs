@@ -24,22 +24,32 @@ pub fn head() -> String {
 
 /// A row as a line.
 pub fn line(row: &Row) -> String {
+    let [method, setting, sampling, weights, precision, rest @ ..] = cells(row);
+    let [p50, p99, force, torque, depth, worst, missed] = rest;
     format!(
-        "{:<9} {:<14} {:>8} {:<9} {:<6}  {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>6.2}%",
-        row.scene,
-        row.method,
+        "{:<9} {method:<14} {setting:>8} {sampling:<9} {weights:<6}  {precision:<16} {p50:>9} {p99:>9} {force:>8} \
+         {torque:>8} {depth:>8} {worst:>8} {missed:>6}%",
+        row.scene
+    )
+}
+
+/// What a row says behind its scene: method, setting, sampling, weights, precision, times, errors, and how many
+/// contacts in a hundred were missed.
+pub(super) fn cells(row: &Row) -> [String; 12] {
+    [
+        row.method.to_owned(),
         setting(row),
-        row.sampling.unwrap_or("-"),
-        row.weights.unwrap_or("-"),
-        row.precision,
+        row.sampling.unwrap_or("-").to_owned(),
+        row.weights.unwrap_or("-").to_owned(),
+        row.precision.to_owned(),
         micros(row.p50_ns),
         micros(row.p99_ns),
         marked(row, "force", row.err_force),
         marked(row, "torque", row.err_torque),
         marked(row, "depth", row.err_depth),
         error(row.worst_depth),
-        100.0 * row.missed,
-    )
+        format!("{:.2}", 100.0 * row.missed),
+    ]
 }
 
 /// What is set of a method: its points, its budget, its tolerance.
