@@ -1,9 +1,10 @@
 //! Tools that the macros compile.
 
 use super::{
-    Ask, Card, Felt, LANES, Lane, Number, Points, Senses, Tool, Wanted, on_vectors, present,
+    Ask, Card, Felt, LANES, Lane, Number, Points, Senses, Tool, Wanted, number::Floats, on_vectors,
+    present,
 };
-use fearless_simd::{Fallback, Level, Simd};
+use fearless_simd::{Level, Simd};
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
@@ -98,7 +99,7 @@ impl<T: Evaluators> Senses for T {
     }
 }
 
-/// The nested form is of `f64`, so here the lanes are all there is.
+/// The nested form is of `f64`, so without vectors there are lanes of one.
 impl<T: Evaluators> Senses<f32> for T {
     fn feel<W: Wanted>(
         &self,
@@ -109,7 +110,7 @@ impl<T: Evaluators> Senses<f32> for T {
     ) {
         felt.reserve(points, W::ASK);
         on_vectors!(level, simd => lanes::<T, f32, _>(simd, W::ASK, points, length, felt));
-        lanes::<T, f32, _>(Fallback::new(), W::ASK, points, length, felt);
+        singly::<T>(W::ASK, points, length, felt);
     }
 }
 
@@ -196,6 +197,38 @@ fn one_by_one<T: Evaluators>(ask: Ask, points: &Points, length: f64, felt: &mut 
         }
         if ask.region {
             felt.region[at] = T::owner(p).map_or(-1.0, |region| region as f64);
+        }
+    }
+}
+
+/// The same in `f32`.
+fn singly<T: Evaluators>(ask: Ask, points: &Points<f32>, length: f64, felt: &mut Felt<f32>) {
+    let [x, y, z] = points.coordinates();
+    for at in 0..points.len() {
+        let p = [x[at], y[at], z[at]].map(Floats);
+        let here = T::feel_lanes(p, Floats(0.0).of(length), true, ask);
+        felt.inside[at / LANES] |= u8::from(here.inside) << (at % LANES);
+        if ask.depth {
+            felt.depth[at] = here.depth.0;
+        }
+        if ask.magnitude {
+            felt.magnitude[at] = here.magnitude.0;
+        }
+        if ask.niceness {
+            felt.niceness[at] = here.niceness.0;
+        }
+        if ask.direction {
+            for (list, part) in felt.direction.iter_mut().zip(here.direction) {
+                list[at] = part.0;
+            }
+        }
+        if ask.gradient {
+            for (list, part) in felt.gradient.iter_mut().zip(here.gradient) {
+                list[at] = part.0;
+            }
+        }
+        if ask.region {
+            felt.region[at] = here.region.0;
         }
     }
 }

@@ -66,18 +66,18 @@ impl Number for f64 {
 }
 
 impl Number for f32 {
-    type Eight<S: Simd> = Floats<S>;
+    type Eight<S: Simd> = Floats<f32x8<S>>;
 
     #[inline(always)]
     fn of(value: f64) -> f32 {
         value as f32
     }
     #[inline(always)]
-    fn splat<S: Simd>(simd: S, value: f64) -> Floats<S> {
+    fn splat<S: Simd>(simd: S, value: f64) -> Floats<f32x8<S>> {
         Floats(f32x8::splat(simd, constant(value)))
     }
     #[inline(always)]
-    fn load<S: Simd>(simd: S, list: &[f32], block: usize) -> Floats<S> {
+    fn load<S: Simd>(simd: S, list: &[f32], block: usize) -> Floats<f32x8<S>> {
         Floats(f32x8::from_slice(simd, &list[place(block)]))
     }
     #[inline(always)]
@@ -89,7 +89,7 @@ impl Number for f32 {
         f64x8::from_slice(simd, &wide)
     }
     #[inline(always)]
-    fn store<S: Simd>(eight: Floats<S>, list: &mut [f32], block: usize) {
+    fn store<S: Simd>(eight: Floats<f32x8<S>>, list: &mut [f32], block: usize) {
         eight.0.store_slice(&mut list[place(block)]);
     }
     #[inline(always)]
@@ -102,9 +102,9 @@ impl Number for f32 {
     }
 }
 
-/// Eight of `f32`, with constants that are written in `f64`.
+/// One of `f32`, or several, with constants that are written in `f64`.
 #[derive(Clone, Copy)]
-pub struct Floats<S: Simd>(f32x8<S>);
+pub struct Floats<V>(pub(super) V);
 
 /// Under this a square has lost digits, in `f32`; generated code knows the like of `f64`, some 2^-960, which
 /// here stands for it.
@@ -119,7 +119,7 @@ fn constant(value: f64) -> f32 {
 
 macro_rules! operator {
     ($($trait:ident $method:ident),*) => {$(
-        impl<S: Simd> $trait for Floats<S> {
+        impl<V: $trait<Output = V>> $trait for Floats<V> {
             type Output = Self;
 
             #[inline(always)]
@@ -134,7 +134,7 @@ operator!(Add add, Sub sub, Mul mul, Div div);
 
 macro_rules! by_constant {
     ($($trait:ident $method:ident),*) => {$(
-        impl<S: Simd> $trait<f64> for Floats<S> {
+        impl<V: $trait<f32, Output = V>> $trait<f64> for Floats<V> {
             type Output = Self;
 
             #[inline(always)]
@@ -147,7 +147,7 @@ macro_rules! by_constant {
 
 by_constant!(Add add, Sub sub, Mul mul);
 
-impl<S: Simd> Neg for Floats<S> {
+impl<V: Neg<Output = V>> Neg for Floats<V> {
     type Output = Self;
 
     #[inline(always)]
@@ -156,7 +156,7 @@ impl<S: Simd> Neg for Floats<S> {
     }
 }
 
-impl<S: Simd> Lane for Floats<S> {
+impl<S: Simd> Lane for Floats<f32x8<S>> {
     type Mask = mask32x8<S>;
 
     #[inline(always)]
@@ -186,5 +186,38 @@ impl<S: Simd> Lane for Floats<S> {
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
         Floats(Select::select(mask, yes.0, no.0))
+    }
+}
+
+impl Lane for Floats<f32> {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn of(self, value: f64) -> Self {
+        Floats(constant(value))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Floats(f32::sqrt(self.0))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Floats(f32::abs(self.0))
+    }
+    #[inline(always)]
+    fn le(a: Self, b: Self) -> bool {
+        a.0 <= b.0
+    }
+    #[inline(always)]
+    fn lt(a: Self, b: Self) -> bool {
+        a.0 < b.0
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
     }
 }

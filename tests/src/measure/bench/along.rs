@@ -200,6 +200,7 @@ fn facts(known: Known<'_>, mesh: &Mesh) -> Facts {
 #[cfg(test)]
 mod tests {
     use super::super::{Plan, measure};
+    use super::{CELLS, Precision};
 
     #[test]
     fn along_a_path_what_is_proved_keeps_its_tolerance_and_more_points_are_nearer() {
@@ -219,13 +220,16 @@ mod tests {
         for row in of("inside", "certified") {
             assert!(row.worst_depth <= row.tolerance.map(|t| t + 1e-9), "{row:?}");
         }
-        let cells = of("inside", "cloud");
-        let errors: Vec<f64> = cells
-            .iter()
-            .filter(|row| (row.sampling, row.weights) == (Some("blue"), Some("cells")))
-            .filter_map(|row| row.err_force)
-            .collect();
-        assert!(errors.len() == 2 && errors[1] < 0.3 * errors[0], "{errors:?}");
+        let clouds = of("inside", "cloud");
+        for precision in Precision::ALL.map(Precision::name) {
+            let errors: Vec<f64> = clouds
+                .iter()
+                .filter(|row| (row.sampling, row.weights) == (Some("blue"), Some(CELLS)))
+                .filter(|row| row.precision == precision)
+                .filter_map(|row| row.err_force)
+                .collect();
+            assert!(errors.len() == 2 && errors[1] < 0.3 * errors[0], "{precision} {errors:?}");
+        }
         assert!(of("inside", "graded").len() == 1 && of("inside", "cloud + bound").len() == 4);
         // Nothing is felt where nothing is, and nothing can be wrong with it.
         for row in measured.rows.iter().filter(|row| row.scene == "apart") {
