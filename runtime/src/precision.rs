@@ -1,12 +1,13 @@
 //! How exactly a tool feels: in which formats points are ruled out, and those that are left felt.
 
+use crate::probe::Once;
 use crate::tool::Depth;
 use crate::tree::{Carried, Rough};
 
 /// How exactly a tool feels a part; a type, given to [`Probe::precision`](crate::Probe::precision).
 ///
 /// Points are stored as they are whatever it is, and sums are taken in `f64`.
-pub trait Precision: sealed::Sealed {
+pub trait Precision: Once {
     /// What boxes and points are held to the tool's envelope in, with a margin for what it rounds.
     #[doc(hidden)]
     type Rough: Rough;
@@ -41,13 +42,6 @@ pub struct Filtered;
 /// wrong side, and so may one beside a splitting curve. Only for tools that are known by their type.
 #[derive(Clone, Copy, Debug)]
 pub struct Single;
-
-mod sealed {
-    pub trait Sealed: Send + Sync + 'static {}
-    impl Sealed for super::Double {}
-    impl Sealed for super::Filtered {}
-    impl Sealed for super::Single {}
-}
 
 /// A point inside is no farther from the tip than the tool is large, so neither is the origin but for the
 /// part's size: two sums, then three products and a change of unit.

@@ -9,9 +9,11 @@
 mod contacts;
 mod graded;
 mod law;
+mod once;
 mod posture;
 mod wrench;
 
+pub(crate) use once::Once;
 pub use contacts::{Contact, Summary, summary};
 pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
@@ -42,7 +44,7 @@ pub struct Probe<'a, T: ?Sized = dyn Tool + 'a, P: Precision = Filtered> {
 }
 
 /// What is beside a tool: a part, how it is to be felt, and room to find out.
-struct Beside<'a, P: Precision> {
+pub struct Beside<'a, P: Precision> {
     tree: &'a Tree,
     /// The part's.
     unit: Unit,
@@ -205,12 +207,12 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
         if !self.beside.look(pose) {
             return false;
         }
-        self.beside.again();
+        P::again(&mut self.beside);
         let any = self.feel::<Inside>() || {
             // Sixteen leaves at a time.
-            let nodes = self.beside.nodes();
+            let nodes = P::nodes(&mut self.beside);
             (0..nodes).any(|node| {
-                self.beside.under(node);
+                P::under(&mut self.beside, node);
                 self.feel::<Inside>()
             })
         };
@@ -238,7 +240,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
         let found = self.beside.look(pose);
         if found {
-            self.beside.all(true);
+            P::all(&mut self.beside, true);
         }
         self.sum(pose, found)
     }
@@ -246,14 +248,14 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     /// Finds the leaves of the whole part that the tool may reach, if no more nodes are looked at than
     /// that; how many were.
     fn look_within(&mut self, pose: &Pose, budget: usize) -> Option<usize> {
-        if self.beside.look(pose) { self.beside.within(budget) } else { Some(0) }
+        if self.beside.look(pose) { P::within(&mut self.beside, budget) } else { Some(0) }
     }
 
     /// [`Probe::wrench`] of the leaves that were found last.
     fn looked(&mut self, pose: &Pose) -> Wrench {
         let found = self.beside.look(pose);
         if found {
-            self.beside.found();
+            P::found(&mut self.beside);
         }
         self.sum(pose, found)
     }
@@ -267,7 +269,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
             };
         let Beside { law, weights, .. } = self.beside;
         let reach = self.tool.card().size();
-        if any { wrench::sum(&self.beside, reach, pose) } else { Wrench::nothing(law, weights) }
+        if any { P::sum(&self.beside, reach, pose) } else { Wrench::nothing(law, weights) }
     }
 
     /// Every point of the part inside the tool, with all that is felt there.
@@ -324,7 +326,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
         if !self.beside.look(pose) {
             return false;
         }
-        self.beside.all(false);
+        P::all(&mut self.beside, false);
         self.feel::<W>()
     }
 
@@ -344,36 +346,6 @@ impl<P: Precision> Beside<'_, P> {
     /// Looks from a pose; whether the tool may reach the part.
     fn look(&mut self, pose: &Pose) -> bool {
         self.sight.look(&self.tree.frame, pose, &mut self.view)
-    }
-
-    /// Finds the candidates of the whole part.
-    fn all(&mut self, skin: bool) {
-        self.search.all(self.level, (self.tree, &self.sight, &self.view), skin);
-    }
-
-    /// Finds the leaves of the whole part, looking at so many nodes at most; how many it were.
-    fn within(&mut self, budget: usize) -> Option<usize> {
-        self.search.within(self.level, (self.tree, &self.sight, &self.view), budget)
-    }
-
-    /// Finds the candidates of the leaves that were found last.
-    fn found(&mut self) {
-        self.search.found(self.level, (self.tree, &self.sight, &self.view));
-    }
-
-    /// Finds those of the leaf that was hit last.
-    fn again(&mut self) {
-        self.search.leaf(self.level, (self.tree, &self.sight, &self.view), self.hit);
-    }
-
-    /// Finds the nodes above the leaves that the tool may reach; how many there are.
-    fn nodes(&mut self) -> usize {
-        self.search.nodes(self.level, (self.tree, &self.sight, &self.view))
-    }
-
-    /// Finds the candidates under one of them.
-    fn under(&mut self, node: usize) {
-        self.search.under(self.level, (self.tree, &self.sight, &self.view), node);
     }
 
     /// Notes the leaf of a point inside.

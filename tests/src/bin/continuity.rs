@@ -1,9 +1,8 @@
 //! The page `docs/measured/continuity.md` and its plots: `continuity [--quick] [--seed N] [--to FOLDER]`.
 
+use rayon::prelude::*;
 use std::error::Error;
 use std::path::{Path as File, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 use touchoff::scenes::{Path, tube};
 use touchoff::{Law, Part, Tool};
@@ -68,28 +67,6 @@ fn tools() -> [&'static dyn Tool; 3] {
     [of("Fig73"), of("Fig73Exact"), &Fig73Smooth]
 }
 
-/// What some do with each of a list, on all cores, in order.
-fn shared<T: Sync, R: Send>(list: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::new());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(one) = list.get(place) else { break };
-                    let result = work(one);
-                    done.lock().expect("no other has failed").push((place, result));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().expect("none has failed");
-    done.sort_by_key(|(place, _)| *place);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
 /// The rows of all paths, laws and tools, and the plot around the worst of the thesis's tool.
 fn stepped(part: &Part, count: usize, to: &File) -> Result<Vec<steps::Row>, Box<dyn Error>> {
     let look = if count > 100_000 { Look::Stations(20_000) } else { Look::All };
@@ -99,7 +76,9 @@ fn stepped(part: &Part, count: usize, to: &File) -> Result<Vec<steps::Row>, Box<
             asked.extend(tools().map(|tool| (path, law, tool)));
         }
     }
-    let rows = shared(&asked, |(path, law, tool)| steps::row(part, *tool, *path, *law, look));
+    let rows = asked.par_iter().with_max_len(1);
+    let rows = rows.map(|(path, law, tool)| steps::row(part, *tool, *path, *law, look));
+    let rows: Vec<steps::Row> = rows.collect();
     let share = |row: &steps::Row| row.force.force / row.peaks[0];
     let thesis = rows.iter().filter(|row| row.tool == "Fig73" && row.law == Law::Thesis);
     if let Some(worst) = thesis.max_by(|a, b| share(a).total_cmp(&share(b))) {
@@ -121,12 +100,12 @@ fn worked(points: usize, seed: u64, quick: bool) -> Result<Vec<energy::Row>, Box
     tools.sort_by_key(|tool| tool.card().name.to_string());
     let within = [if quick { 1e-7 } else { 2e-9 }, 1e-6];
     let asked: Vec<_> = tools.iter().flat_map(|tool| Kind::ALL.map(|kind| (*tool, kind))).collect();
-    let rows = shared(&asked, |(tool, kind)| {
+    let rows = asked.par_iter().with_max_len(1).filter_map(|(tool, kind)| {
         let row = energy::row(&part, *tool, *kind, within);
         if row.is_none() {
             eprintln!("{} cannot be brought to the block, {}", tool.card().name, kind.name());
         }
         row
     });
-    Ok(rows.into_iter().flatten().collect())
+    Ok(rows.collect())
 }

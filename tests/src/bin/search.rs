@@ -1,10 +1,9 @@
 //! The page `docs/measured/search.md`: `search [--seed N] [--tool NAME] [--steps N] [--found FILE]`. What was found at points goes to the
 //! file, beside what it has of other tools and questions and where it has no worse.
 
+use rayon::prelude::*;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use touchoff_tests::measure::search::Effort;
 use touchoff_tests::measure::search::found::{Line, lines};
@@ -77,25 +76,12 @@ fn keep(file: &Path, found: Vec<Line>) -> std::io::Result<()> {
 
 /// What is found of each tool, on all cores.
 fn all(tools: &[String], effort: Effort, seed: u64) -> Vec<Hunted> {
-    let next = AtomicUsize::new(0);
-    let hunted = Mutex::new(Vec::new());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some(tool) = tools.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let start = Instant::now();
-                    let found = hunt(tool, effort, seed);
-                    eprintln!("{tool}: {:.1} s", start.elapsed().as_secs_f64());
-                    missed(std::slice::from_ref(&found))
-                        .iter()
-                        .for_each(|line| eprintln!("{line}"));
-                    hunted.lock().unwrap_or_else(PoisonError::into_inner).push(found);
-                }
-            });
-        }
+    let hunted = tools.par_iter().with_max_len(1).map(|tool| {
+        let start = Instant::now();
+        let found = hunt(tool, effort, seed);
+        eprintln!("{tool}: {:.1} s", start.elapsed().as_secs_f64());
+        missed(std::slice::from_ref(&found)).iter().for_each(|line| eprintln!("{line}"));
+        found
     });
-    let mut hunted = hunted.into_inner().unwrap_or_else(PoisonError::into_inner);
-    hunted.sort_by(|a, b| a.name.cmp(&b.name));
-    hunted
+    hunted.collect()
 }

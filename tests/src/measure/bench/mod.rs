@@ -153,7 +153,7 @@ fn along_the_tube(words: &[&str], plan: &Plan) -> Vec<Along<'static>> {
     let scene = |name: &str, about: &str, touches, pose: &dyn Fn(usize) -> Pose| Along {
         name: name.to_owned(),
         about: format!("`Fig73Exact` and the tube: {about}"),
-        cutter: Cutter::Fig73Exact,
+        cutter: Cutter::FIG_73_EXACT,
         poses: (0..count).map(pose).collect(),
         touches,
     };

@@ -84,8 +84,8 @@ impl Patch {
     /// Its tool.
     pub(super) fn cutter(self) -> Cutter<'static> {
         match self {
-            Patch::Contact(contact) if contact.is_of_a_sphere() => Cutter::UnitSphere,
-            _ => Cutter::Fig73Exact,
+            Patch::Contact(contact) if contact.is_of_a_sphere() => Cutter::UNIT_SPHERE,
+            _ => Cutter::FIG_73_EXACT,
         }
     }
 
