@@ -36,7 +36,7 @@ fn lanes((tool, points): (&'static dyn Tool, Points)) -> Felt {
 #[library_benchmark]
 #[benches::of(args = ["D2Ball", "Fig73", "Fig73Exact", "BullNoseHsk63"], setup = points)]
 fn scalar((tool, points): (&'static dyn Tool, Points)) -> Felt {
-    evaluate(tool, &points, Level::fallback())
+    evaluate(tool, &points, Level::baseline())
 }
 
 fn evaluate(tool: &dyn Tool, points: &Points, level: Level) -> Felt {

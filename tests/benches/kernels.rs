@@ -23,7 +23,7 @@ fn evaluate(criterion: &mut Criterion) {
         for name in TOOLS {
             let (tool, mut felt) = (tool(name), Felt::default());
             let points = near(tool, POINTS);
-            for (level, how) in [(Level::new(), "lanes"), (Level::fallback(), "scalar")] {
+            for (level, how) in [(Level::new(), "lanes"), (Level::baseline(), "scalar")] {
                 group.bench_function(BenchmarkId::new(how, name), |bencher| {
                     bencher.iter(|| {
                         tool.evaluate(level, ask, black_box(&points), 1.0, &mut felt);

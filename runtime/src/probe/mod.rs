@@ -13,10 +13,10 @@ mod once;
 mod posture;
 mod wrench;
 
-pub(crate) use once::Once;
 pub use contacts::{Contact, Summary, summary};
 pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
+pub(crate) use once::Once;
 pub use posture::{Deepest, Posture};
 pub use wrench::{Rounding, Wrench};
 

@@ -50,7 +50,7 @@ macro_rules! once {
             }
             fn found(beside: &mut Beside<'_, Self>) {
                 let Beside { search, level, tree, sight, view, .. } = beside;
-                search.found(*level, (tree, sight, view));
+                search.found(*level, (tree, sight, view), true);
             }
             fn again(beside: &mut Beside<'_, Self>) {
                 let Beside { search, level, tree, sight, view, hit, .. } = beside;

@@ -19,61 +19,54 @@ impl<R: Rough, N: Carried> Search<R, N> {
     /// Finds the candidates of a part. `skin` says whether what it has there, normals and weights, is
     /// wanted.
     pub(crate) fn all(&mut self, level: Level, seen: Seen<'_, R>, skin: bool) {
-        self.candidates.clear();
-        dispatch!(level, simd => self.all_on(simd, seen, skin));
-    }
-
-    // One function for one dispatch.
-    #[inline(always)]
-    fn all_on<S: Simd>(&mut self, simd: S, seen: Seen<'_, R>, skin: bool) {
-        let nodes = self.walker.find(simd, seen);
-        let leaves = self.walker.leaves(simd, seen, 0..nodes);
-        sift(simd, &mut self.some, seen, (leaves, skin), &mut self.candidates);
+        self.within(level, seen, usize::MAX);
+        self.found(level, seen, skin);
     }
 
     /// Finds the leaves of a part that the tool may reach, looking at so many nodes and leaves at most;
     /// how many it were.
     pub(crate) fn within(&mut self, level: Level, seen: Seen<'_, R>, most: usize) -> Option<usize> {
-        dispatch!(level, simd => self.walker.within(simd, seen, most))
+        self.walker.leaves(level, seen, most)
     }
 
-    /// Finds the candidates of the leaves that were found last, and what the part has there.
-    pub(crate) fn found(&mut self, level: Level, seen: Seen<'_, R>) {
+    /// Finds the candidates of the leaves that were found last.
+    pub(crate) fn found(&mut self, level: Level, seen: Seen<'_, R>, skin: bool) {
         self.candidates.clear();
-        let (leaves, some, candidates) =
-            (self.walker.found(), &mut self.some, &mut self.candidates);
-        dispatch!(level, simd => sift(simd, some, seen, (leaves, true), candidates));
+        let Search { walker, some, candidates } = self;
+        sift(level, some, seen, (walker.found(), skin), candidates);
     }
 
     /// Finds the nodes above the leaves that the tool may reach; how many there are.
     pub(crate) fn nodes(&mut self, level: Level, seen: Seen<'_, R>) -> usize {
-        dispatch!(level, simd => self.walker.find(simd, seen))
+        self.walker.nodes(level, seen)
     }
 
     /// Finds the candidates under one of them.
     pub(crate) fn under(&mut self, level: Level, seen: Seen<'_, R>, node: usize) {
-        self.candidates.clear();
-        dispatch!(level, simd => self.under_on(simd, seen, node));
-    }
-
-    #[inline(always)]
-    fn under_on<S: Simd>(&mut self, simd: S, seen: Seen<'_, R>, node: usize) {
-        let leaves = self.walker.leaves(simd, seen, node..node + 1);
-        sift(simd, &mut self.some, seen, (leaves, false), &mut self.candidates);
+        self.walker.under(level, seen, node);
+        self.found(level, seen, false);
     }
 
     /// Finds the candidates of one leaf.
     pub(crate) fn leaf(&mut self, level: Level, seen: Seen<'_, R>, leaf: u32) {
-        self.candidates.clear();
-        let leaf = self.walker.only(leaf, seen);
-        let (some, candidates) = (&mut self.some, &mut self.candidates);
-        dispatch!(level, simd => sift(simd, some, seen, (leaf, false), candidates));
+        self.walker.only(leaf, seen);
+        self.found(level, seen, false);
     }
 }
 
 /// Takes the points of some leaves that the tool's envelope reaches.
+fn sift<R: Rough, N: Carried>(
+    level: Level,
+    some: &mut Vec<(u32, u32)>,
+    seen: Seen<'_, R>,
+    leaves: (&Nodes<R>, bool),
+    candidates: &mut Candidates<N>,
+) {
+    dispatch!(level, simd => sift_on(simd, some, seen, leaves, candidates));
+}
+
 #[inline(always)]
-fn sift<R: Rough, N: Carried, S: Simd>(
+fn sift_on<R: Rough, N: Carried, S: Simd>(
     simd: S,
     some: &mut Vec<(u32, u32)>,
     (tree, sight, view): Seen<'_, R>,

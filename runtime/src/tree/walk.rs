@@ -3,15 +3,15 @@
 use super::rough::Sixteen;
 use super::view::{Reach, SLABS};
 use super::{Boxes, Rough, Shelf, Sight, Tree, View, WIDTH};
-use fearless_simd::{Select, Simd, SimdBase, SimdMask, mask32x16, u32x16};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, mask32x16, u32x16};
 use std::ops::Range;
 
 /// The descent, with its memory kept between queries: nodes of a level and of the next, in turns.
 #[derive(Default)]
 pub(crate) struct Walker<R = f32> {
     nodes: [Nodes<R>; 2],
-    /// Which of the two has the nodes above the leaves.
-    above: usize,
+    /// Which of the two has leaves; the other has the nodes above.
+    leaves: usize,
 }
 
 /// Nodes or leaves that the tool may reach, and a block of room behind them.
@@ -66,76 +66,66 @@ impl<R: Rough> Nodes<R> {
 }
 
 impl<R: Rough> Walker<R> {
-    /// Finds the nodes above the leaves that the tool may reach; how many there are.
-    #[inline(always)]
-    pub(super) fn find<S: Simd>(&mut self, simd: S, (tree, sight, view): Seen<'_, R>) -> usize {
-        let above = tree.levels.len() - 1;
-        self.above = above % 2;
-        if sight.fits {
-            descend(simd, &mut self.nodes, &tree.levels[..above], sight, view, usize::MAX);
-        } else {
-            self.nodes[self.above].all(tree.levels[above].len());
-        }
-        self.nodes[self.above].count
+    /// Finds the leaves that the tool may reach, looking at so many nodes and leaves at most; how many it
+    /// were.
+    pub(super) fn leaves(&mut self, level: Level, seen: Seen<'_, R>, most: usize) -> Option<usize> {
+        self.down(level, seen, seen.0.levels.len(), most)
     }
 
-    /// Finds the leaves of the whole part, looking at so many nodes and leaves at most; how many it
-    /// were.
-    #[inline(always)]
-    pub(super) fn within<S: Simd>(
+    /// Finds the nodes above the leaves that the tool may reach; how many there are.
+    pub(super) fn nodes(&mut self, level: Level, seen: Seen<'_, R>) -> usize {
+        self.down(level, seen, seen.0.levels.len() - 1, usize::MAX);
+        self.nodes[1 - self.leaves].count
+    }
+
+    /// Goes down so many levels.
+    fn down(
         &mut self,
-        simd: S,
+        level: Level,
         (tree, sight, view): Seen<'_, R>,
+        levels: usize,
         most: usize,
     ) -> Option<usize> {
-        self.above = (tree.levels.len() - 1) % 2;
-        if !sight.fits {
-            let leaves = tree.leaves.len();
-            return (leaves <= most).then(|| {
-                self.nodes[1 - self.above].all(leaves);
-                leaves
-            });
+        self.leaves = tree.levels.len() % 2;
+        if sight.fits {
+            return descend(level, &mut self.nodes, &tree.levels[..levels], (sight, view), most);
         }
-        descend(simd, &mut self.nodes, &tree.levels, sight, view, most)
+        let all = tree.levels.get(levels).map_or(tree.leaves.len(), |boxes| boxes.len());
+        (all <= most).then(|| {
+            self.nodes[levels % 2].all(all);
+            all
+        })
+    }
+
+    /// Finds the leaves under one of the nodes that were found.
+    pub(super) fn under(&mut self, level: Level, (tree, sight, view): Seen<'_, R>, node: usize) {
+        let [even, odd] = &mut self.nodes;
+        let (nodes, leaves) = if self.leaves == 0 { (odd, even) } else { (even, odd) };
+        if sight.fits {
+            let boxes = &tree.levels[tree.levels.len() - 1];
+            below(level, boxes, (sight, view), (nodes, node..node + 1), leaves);
+        } else {
+            leaves.all(tree.leaves.len());
+        }
+    }
+
+    /// One leaf alone.
+    pub(super) fn only(&mut self, leaf: u32, (tree, sight, view): Seen<'_, R>) {
+        let leaves = &mut self.nodes[self.leaves];
+        leaves.room(1);
+        leaves.count = 1;
+        leaves.index[0] = leaf;
+        leaves.slabs[0] = sight.reach.all;
+        let centre = tree.centre(leaf as usize);
+        let middle = view.seen(centre.map(R::of));
+        for (list, part) in leaves.middle.iter_mut().zip(middle) {
+            list[0] = part;
+        }
     }
 
     /// The leaves that were found last.
     pub(super) fn found(&self) -> &Nodes<R> {
-        &self.nodes[1 - self.above]
-    }
-
-    /// One leaf alone.
-    pub(super) fn only(&mut self, leaf: u32, (tree, sight, view): Seen<'_, R>) -> &Nodes<R> {
-        let [nodes, _] = &mut self.nodes;
-        nodes.room(1);
-        nodes.count = 1;
-        nodes.index[0] = leaf;
-        nodes.slabs[0] = sight.reach.all;
-        let centre = tree.centre(leaf as usize);
-        let middle = view.seen(centre.map(R::of));
-        for (list, part) in nodes.middle.iter_mut().zip(middle) {
-            list[0] = part;
-        }
-        nodes
-    }
-
-    /// The leaves under some of those nodes that may have a point inside the tool, in order.
-    #[inline(always)]
-    pub(super) fn leaves<S: Simd>(
-        &mut self,
-        simd: S,
-        (tree, sight, view): Seen<'_, R>,
-        some: Range<usize>,
-    ) -> &Nodes<R> {
-        let [even, odd] = &mut self.nodes;
-        let (nodes, leaves) = if self.above == 0 { (even, odd) } else { (odd, even) };
-        if sight.fits {
-            let boxes = &tree.levels[tree.levels.len() - 1];
-            below(simd, boxes, sight, view, (nodes, some), leaves);
-        } else {
-            leaves.all(tree.leaves.len());
-        }
-        leaves
+        &self.nodes[self.leaves]
     }
 }
 
@@ -213,13 +203,22 @@ pub(super) fn within<R: Rough, S: Simd>(
 
 /// Down some levels from the root, looking at so many nodes and what they lead to at most; how many it
 /// were.
+fn descend<R: Rough>(
+    level: Level,
+    nodes: &mut [Nodes<R>; 2],
+    levels: &[Shelf<Boxes>],
+    seen: (&Sight<R>, &View<R>),
+    most: usize,
+) -> Option<usize> {
+    dispatch!(level, simd => descend_on(simd, nodes, levels, seen, most))
+}
+
 #[inline(always)]
-fn descend<R: Rough, S: Simd>(
+fn descend_on<R: Rough, S: Simd>(
     simd: S,
     nodes: &mut [Nodes<R>; 2],
     levels: &[Shelf<Boxes>],
-    sight: &Sight<R>,
-    view: &View<R>,
+    (sight, view): (&Sight<R>, &View<R>),
     most: usize,
 ) -> Option<usize> {
     let [even, odd] = nodes;
@@ -233,7 +232,7 @@ fn descend<R: Rough, S: Simd>(
     }
     for (level, boxes) in levels.iter().enumerate() {
         let (from, to) = if level % 2 == 0 { (&*even, &mut *odd) } else { (&*odd, &mut *even) };
-        below(simd, boxes, sight, view, (from, 0..from.count), to);
+        below_on(simd, boxes, (sight, view), (from, 0..from.count), to);
         spent += to.count;
         if spent > most {
             return None;
@@ -244,12 +243,21 @@ fn descend<R: Rough, S: Simd>(
 
 /// The children of some nodes that the tool may reach. What lies behind the last leaf is NaN and
 /// fails.
+fn below<R: Rough>(
+    level: Level,
+    boxes: &[Boxes],
+    seen: (&Sight<R>, &View<R>),
+    nodes: (&Nodes<R>, Range<usize>),
+    kept: &mut Nodes<R>,
+) {
+    dispatch!(level, simd => below_on(simd, boxes, seen, nodes, kept));
+}
+
 #[inline(always)]
-fn below<R: Rough, S: Simd>(
+fn below_on<R: Rough, S: Simd>(
     simd: S,
     boxes: &[Boxes],
-    sight: &Sight<R>,
-    view: &View<R>,
+    (sight, view): (&Sight<R>, &View<R>),
     (nodes, some): (&Nodes<R>, Range<usize>),
     kept: &mut Nodes<R>,
 ) {

@@ -146,7 +146,7 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
     for chunk in points.chunks(CHUNK) {
         let mut list = Points::default();
         chunk.iter().for_each(|p| list.push(*p));
-        let [one, lanes] = [Level::fallback(), Level::new()].map(|level| {
+        let [one, lanes] = [Level::baseline(), Level::new()].map(|level| {
             let mut felt = Felt::default();
             tool.evaluate(level, Ask::EVERYTHING, &list, 1.0, &mut felt);
             felt

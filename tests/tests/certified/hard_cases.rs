@@ -19,7 +19,7 @@ fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> [f64; 2] {
 /// Every level of this machine.
 fn levels() -> Vec<Level> {
     let best = Level::new();
-    let mut levels = vec![best, Level::baseline(), Level::fallback()];
+    let mut levels = vec![best, Level::baseline()];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         levels.extend(best.as_sse2().map(Level::Sse2));

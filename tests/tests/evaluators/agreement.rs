@@ -41,7 +41,7 @@ pub(crate) fn of<T: Evaluators>(
                 assert_eq!(got, expected, "{}", said());
             }
         };
-        alike("tape", &everything(tape, "the tape", Level::fallback(), &list, length));
+        alike("tape", &everything(tape, "the tape", Level::baseline(), &list, length));
         for (name, level) in levels() {
             alike(name, &everything(&tool, name, level, &list, length));
         }
@@ -67,7 +67,7 @@ pub(crate) fn of<T: Evaluators>(
 /// Every level of this machine, the best among them twice.
 fn levels() -> impl Iterator<Item = (&'static str, Level)> {
     let best = Level::new();
-    let mut levels = vec![("fallback", Level::fallback()), ("best", best)];
+    let mut levels = vec![("baseline", Level::baseline()), ("best", best)];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         levels.extend(best.as_sse2().map(|token| ("sse2", Level::Sse2(token))));

@@ -30,7 +30,7 @@ fn agree(source: &Source) {
         points.push(p);
         list.push(p);
     }
-    tape.evaluate(Level::fallback(), Ask::EVERYTHING, &points, 1.0, &mut felt);
+    tape.evaluate(Level::baseline(), Ask::EVERYTHING, &points, 1.0, &mut felt);
     for (i, p) in list.iter().enumerate() {
         let inside = felt.inside[i / 8] >> (i % 8) & 1 == 1;
         let owner = inside.then_some(felt.region[i] as usize);

@@ -89,7 +89,7 @@ fn single_has_the_same_bits_at_every_level() {
     };
     let poses: Vec<Pose> = (0..200).map(|k| touchoff::scenes::Path::Outside.pose(k, 200)).collect();
     let best = Level::new();
-    let mut levels = vec![Level::baseline(), Level::fallback()];
+    let mut levels = vec![Level::baseline()];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         levels.extend(best.as_sse4_2().map(Level::Sse4_2));

@@ -36,9 +36,6 @@ pub(super) enum Border {
     Inside { piece: usize },
     /// Not beyond the normal at an end of a piece (0 its start, 1 its end).
     Before { piece: usize, end: usize },
-    /// The same, where a corner is told from the neighbour by the bisector: not beyond it by more than
-    /// rounding, so that what the bisector rounds to this side is not lost.
-    Hardly { piece: usize, end: usize },
     /// Beyond it.
     Past { piece: usize, end: usize },
     /// No nearer to another feature's line, circle or corner.
@@ -52,16 +49,11 @@ pub(super) enum Border {
 /// An arc is measured from a point of its own when its radius is so many sizes.
 const FLAT: f64 = 2.0;
 
-/// By how much of the power of two above the tool's size rounding may move a bisector: 8 ulp.
-const ROUNDED: f64 = 8.0 * f64::EPSILON;
-
 impl Border {
     pub(super) fn holds(&self, section: &Section<'_>, p: Point) -> bool {
         match *self {
             Border::Inside { piece } => section.outline[piece].signed(p) >= 0.0,
-            Border::Before { piece, end } | Border::Hardly { piece, end } => {
-                section.outline[piece].sector(p)[end] >= 0.0
-            }
+            Border::Before { piece, end } => section.outline[piece].sector(p)[end] >= 0.0,
             Border::Past { piece, end } => section.outline[piece].sector(p)[end] <= 0.0,
             Border::Nearer { this, other } => {
                 section.depth_at(this, p) <= section.depth_at(other, p)
@@ -74,9 +66,9 @@ impl Border {
     /// How far along a normal a straight border is met; NaN for others.
     pub(super) fn met(&self, section: &Section<'_>, seat: &Seat) -> f64 {
         let value = |p: Point| match *self {
-            Border::Before { piece, end }
-            | Border::Hardly { piece, end }
-            | Border::Past { piece, end } => section.outline[piece].sector(p)[end],
+            Border::Before { piece, end } | Border::Past { piece, end } => {
+                section.outline[piece].sector(p)[end]
+            }
             Border::UpTo { feature, at } | Border::From { feature, at } => {
                 section.beyond(feature, at, p)
             }
@@ -109,11 +101,6 @@ impl Border {
                 let side = section.outline[piece].sides(graph)?[end];
                 at_most(graph.neg(side))
             }
-            Border::Hardly { piece, end } => {
-                let rounding = Number::from_f64(ROUNDED * section.scale())?;
-                let side = section.outline[piece].wider(graph, &rounding)?[end];
-                at_most(graph.neg(side))
-            }
             Border::Past { piece, end } => at_most(section.outline[piece].sides(graph)?[end]),
             Border::Nearer { this, other } => section.nearer(graph, this, other),
             Border::UpTo { feature, at } => at_most(section.spoke(graph, feature, at)?),
@@ -126,11 +113,6 @@ impl Border {
 }
 
 impl Section<'_> {
-    /// The next power of two above its size.
-    fn scale(&self) -> f64 {
-        2f64.powi(self.size.log2().floor() as i32 + 1)
-    }
-
     pub(super) fn flat(&self, circle: &Circle) -> bool {
         circle.radius.to_f64() > FLAT * self.size
     }

@@ -122,9 +122,6 @@ impl Bound {
     }
 }
 
-/// A corner that turns by more, in radians, is none of two tangents.
-const SHARP: f64 = 1e-3;
-
 /// Where along a slice borders are tried.
 const PARTS: [f64; 17] = [
     0.002, 0.01, 0.04, 0.1, 0.17, 0.25, 0.33, 0.42, 0.5, 0.58, 0.67, 0.75, 0.83, 0.9, 0.96, 0.99,
@@ -272,16 +269,13 @@ impl Section<'_> {
                 for end in [0, 1] {
                     let next = if end == 1 { Some(piece + 1) } else { piece.checked_sub(1) };
                     let next = next.filter(|next| *next < self.outline.len());
-                    let mut corner = false;
                     let implied = match next {
                         Some(next) => {
                             let (low, high) = (piece.min(next), piece.max(next));
-                            let turned = turn(
+                            let convex = turn(
                                 self.outline[low].tangent(true),
                                 self.outline[high].tangent(false),
-                            );
-                            let convex = turned > 0.0;
-                            corner = turned > SHARP;
+                            ) > 0.0;
                             let lines =
                                 segment.circle.is_none() && self.outline[next].circle.is_none();
                             let compared = neighbours.iter().any(|bound| {
@@ -301,11 +295,7 @@ impl Section<'_> {
                         }
                     };
                     if !implied {
-                        bounds.push(Bound::always(if corner {
-                            Border::Hardly { piece, end }
-                        } else {
-                            Border::Before { piece, end }
-                        }));
+                        bounds.push(Bound::always(Border::Before { piece, end }));
                     }
                 }
             }

@@ -82,14 +82,8 @@ impl Section<'_> {
         let along = (&(&off[0] * &bz) - &(&off[1] * &bd)).over(&sine)?;
         let meet = [&ad, &az].map(|way| way * &along);
         let meet = [0, 1].map(|k| &first.from[k] + &meet[k]);
-        let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
         // Normals are the directions turned left.
-        let parts = [(&bz - &az, 0), (&ad - &bd, 1)].map(|(way, k)| {
-            let (way, from) = (graph.number(way), graph.number(meet[k].clone()));
-            let off = graph.sub(here[k], from);
-            graph.mul(way, off)
-        });
-        Some(graph.add(parts[0], parts[1]))
+        Some(outline::anchored(graph, [&bz - &az, &ad - &bd], &meet))
     }
 
     /// `|p - q|² - l²`. Beside a line along a coordinate one square cancels.

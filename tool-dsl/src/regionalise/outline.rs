@@ -174,13 +174,7 @@ impl Segment {
                     return linear(graph, [-&tz, tx], &self.from);
                 }
                 // From a point of the line, so that what is far from the tip does not cancel.
-                let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
-                let parts = [(-&tz, 0), (tx, 1)].map(|(way, k)| {
-                    let (way, from) = (graph.number(way), graph.number(self.from[k].clone()));
-                    let off = graph.sub(here[k], from);
-                    graph.mul(way, off)
-                });
-                Some(graph.add(parts[0], parts[1]))
+                Some(anchored(graph, [-&tz, tx], &self.from))
             }
             Some(circle) => {
                 let out = distance(graph, &circle.centre)?;
@@ -192,20 +186,11 @@ impl Segment {
 
     /// The expressions of [`Segment::sector`], up to a positive factor.
     pub(crate) fn sides(&self, graph: &mut Graph) -> Option<[Id; 2]> {
-        self.wider(graph, &Number::int(0))
-    }
-
-    /// The same of the segment made longer by a length at both ends.
-    pub(crate) fn wider(&self, graph: &mut Graph, by: &Number) -> Option<[Id; 2]> {
-        let before = |from: &Place, way: &[Number; 2]| -> Place {
-            [0, 1].map(|k| &from[k] - &(&way[k] * by))
-        };
         match &self.circle {
             None => {
                 let [tx, tz] = self.direction()?;
-                let (way, back) = ([tx.clone(), tz.clone()], [-&tx, -&tz]);
-                let (from, to) = (before(&self.from, &way), before(&self.to, &back));
-                Some([linear(graph, way, &from)?, linear(graph, back, &to)?])
+                let back = [-&tx, -&tz];
+                Some([linear(graph, [tx, tz], &self.from)?, linear(graph, back, &self.to)?])
             }
             Some(circle) => {
                 let radial = |place: &Place| -> Option<[Number; 2]> {
@@ -218,9 +203,10 @@ impl Segment {
                 let turn = |way: [Number; 2]| {
                     if circle.convex { way } else { way.map(|part| -&part) }
                 };
-                let (first, last) = (turn(first), turn(last));
-                let (from, to) = (before(&circle.centre, &first), before(&circle.centre, &last));
-                Some([linear(graph, first, &from)?, linear(graph, last, &to)?])
+                Some([
+                    linear(graph, turn(first), &circle.centre)?,
+                    linear(graph, turn(last), &circle.centre)?,
+                ])
             }
         }
     }
@@ -233,7 +219,17 @@ impl Segment {
     }
 }
 
-/// `way · (p - from)`
+/// `way · (p - from)`, the difference first: it rounds as much as `p` is far from there.
+pub(crate) fn anchored(graph: &mut Graph, way: [Number; 2], from: &Place) -> Id {
+    let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+    let [from_d, from_z] = from.clone().map(|part| graph.number(part));
+    let [off_d, off_z] = [graph.sub(d, from_d), graph.sub(z, from_z)];
+    let [way_d, way_z] = way.map(|part| graph.number(part));
+    let [d, z] = [graph.mul(way_d, off_d), graph.mul(way_z, off_z)];
+    graph.add(d, z)
+}
+
+/// The same, its constant put together.
 pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &Place) -> Option<Id> {
     let constant = -&(&(&way[0] * &from[0]) + &(&way[1] * &from[1]));
     // What cancels in 256 bits is 0.

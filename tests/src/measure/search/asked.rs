@@ -29,7 +29,7 @@ pub struct Asked<'a> {
 /// Every level of this machine, the one without vectors first.
 pub fn levels() -> Vec<Level> {
     let best = Level::new();
-    let mut levels = vec![Level::fallback(), best];
+    let mut levels = vec![Level::baseline(), best];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         levels.extend(best.as_sse2().map(Level::Sse2));

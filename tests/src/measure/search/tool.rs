@@ -45,7 +45,11 @@ pub fn hunt(name: &str, effort: Effort, seed: u64) -> Hunted {
     let tool = tools_library::find(name).expect("a tool of the library");
     let (interpreted, checked) = read(name);
     let mut asked = Asked::new(tool, &interpreted);
-    let mut draw = Draw::new(seed ^ name.bytes().fold(0, |sum, byte| 31 * sum + u64::from(byte)));
+    let mut draw = Draw::new(
+        seed ^ name
+            .bytes()
+            .fold(0, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte))),
+    );
     let restated = restated::of(name);
     let known = restated.as_ref().map(|tool| (Nearest::new(tool), Reference::new(tool)));
     let judge = known.as_ref().map(|(oracle, reference)| Judge::new(tool, reference, oracle));

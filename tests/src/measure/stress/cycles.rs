@@ -24,7 +24,7 @@ fn levels() -> Vec<(&'static str, Level)> {
         levels.extend(best.as_sse4_2().map(|level| ("SSE4.2", Level::Sse4_2(level))));
         levels.extend(best.as_sse2().map(|level| ("SSE2", Level::Sse2(level))));
     }
-    levels.push(("fallback", Level::fallback()));
+    levels.push(("baseline", Level::baseline()));
     levels
 }
 

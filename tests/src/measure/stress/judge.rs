@@ -95,7 +95,7 @@ impl<'a> Judge<'a> {
     /// Judges all points; what the tool says of them, for more.
     pub fn points(&self, points: &[[f64; 3]], ledger: &mut Ledger) -> Vec<Option<Answer>> {
         let lanes = answers(self.tool, Level::new(), points);
-        let singly = answers(self.tool, Level::fallback(), points);
+        let singly = answers(self.tool, Level::baseline(), points);
         for ((p, one), other) in points.iter().zip(&lanes).zip(&singly) {
             let bits = |answer: &Option<Answer>| answer.map(|a| (a.region, a.bits()));
             ledger.count(UNLIKE, bits(one) != bits(other), || format!("{p:?}"));
