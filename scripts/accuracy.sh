@@ -7,7 +7,9 @@ cd "$(dirname "$0")/.."
 seed="${1:-1}"
 to=docs/measured
 
-measure() { cargo run --release --quiet -p touchoff-tests --bin "$@"; }
+# What misses a bar says so and fails; the other pages are made all the same.
+missed=0
+measure() { cargo run --release --quiet -p touchoff-tests --bin "$@" || missed=1; }
 
 # A real part and its program, where they are there.
 parts=../shared/data
@@ -21,3 +23,4 @@ measure stress -- --seed "$seed" > "$to/stress.md"
 measure search -- --seed "$seed" > "$to/search.md"
 measure continuity -- --seed "$seed" --to "$to"
 measure convergence -- --seed "$seed" --to "$to"
+exit "$missed"

@@ -95,7 +95,7 @@ pub(crate) fn levels(setting: &Setting) -> Vec<Row> {
 
 /// The levels below the best.
 fn narrower(best: Level) -> Vec<(&'static str, Level)> {
-    let mut levels = vec![("wrench, no vectors", Level::baseline())];
+    let mut levels = vec![("wrench, baseline", Level::baseline())];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
         let avx2 = best.as_avx512().and(best.as_avx2()).map(Level::Avx2);

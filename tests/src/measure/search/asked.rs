@@ -26,7 +26,7 @@ pub struct Asked<'a> {
     pub unlike: Vec<Find>,
 }
 
-/// Every level of this machine, the one without vectors first.
+/// Every level of this machine, the one with the least vectors first.
 pub fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = vec![Level::baseline(), best];
