@@ -30,7 +30,7 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn direction(point: [f64; 3]) -> [f64; 3];
     /// The magnitude's gradient by the position in the part's unit.
     fn gradient(point: [f64; 3], length: f64) -> [f64; 3];
-    /// Distance from a point outside to the tool, in the file's unit.
+    /// Distance from a point outside to the tool, in the file's unit, as [`Tool::clearance`] says.
     fn clearance(point: [f64; 3]) -> f64;
 
     /// What is asked for at those of the points that are `present`, if they belong to the solid.

@@ -59,7 +59,8 @@ pub trait Tool: Send + Sync {
     fn card(&self) -> &Card;
 
     /// The distance from a point of the tool's frame to the tool, in the file's unit: 0 inside, a
-    /// lower bound unless [`Card::exact`].
+    /// lower bound unless [`Card::exact`]. Farther away than some 64 of the tool's sizes it is that to a
+    /// cylinder about the tool, and so too small by less than the size.
     fn clearance(&self, point: [f64; 3]) -> f64;
 
     /// Evaluates what is asked for at points of the tool's frame.

@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 use touchoff::{Law, Part, Probe, Tool};
 
 /// Panels that a loop is cut into at first.
-const PANELS: u32 = 512;
+const PANELS: u32 = 4096;
+/// Where in a panel the second round begins.
+const GOLDEN: f64 = 0.618;
 /// How often a panel is halved at most.
 const HALVED: u32 = 30;
 /// The work round a loop under one law.
@@ -14,7 +16,8 @@ const HALVED: u32 = 30;
 pub struct Work {
     /// By the largest energy stored on the way.
     pub share: f64,
-    /// What is not known of it, by the same: bounds of all panels, as if their signs were random.
+    /// What is not known of it, by the same: bounds of all panels, as if their signs were random, or half of
+    /// what two rounds differ by.
     pub error: f64,
     /// How many poses were asked about.
     pub poses: usize,
@@ -50,9 +53,14 @@ pub fn row(part: &Part, tool: &dyn Tool, kind: Kind, within: [f64; 2]) -> Option
         let within = within[usize::from(law != Law::Gradient)];
         let (stored, colliding) = stored(&mut probe, &looped);
         let mut round = Round { probe, looped, within: within * stored, squares: 0.0, poses: 0 };
-        let sum = round.all();
-        let (error, poses) = (round.squares.sqrt() / stored, round.poses);
-        *work = Work { share: sum / stored, error, poses };
+        // Once more from between the poses: what comes and goes within a panel is not seen by both.
+        let [once, again] = [0.0, GOLDEN].map(|from| round.all(from) / stored);
+        let error = (round.squares / 2.0).sqrt() / stored;
+        *work = Work {
+            share: f64::midpoint(once, again),
+            error: error.max((once - again).abs() / 2.0),
+            poses: round.poses,
+        };
         (row.energy, row.colliding) = (stored, colliding);
     }
     Some(row)
@@ -80,11 +88,11 @@ struct Round<'a> {
 }
 
 impl Round<'_> {
-    fn all(&mut self) -> f64 {
+    fn all(&mut self, from: f64) -> f64 {
         let step = TAU / f64::from(PANELS);
         let mut sum = 0.0;
         for k in 0..PANELS {
-            let from = step * f64::from(k);
+            let from = step * (f64::from(k) + from);
             let five = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| self.power(from + part * step));
             sum += self.panel(from, step, five, HALVED);
         }

@@ -140,7 +140,8 @@ fn energy(page: &mut String, points: usize, rows: &[Energy]) -> Result<(), Error
 Each tool of the library at the edge of a block of {points} points, 0.4 mm deep: its tip goes once round a circle of 0.3 mm
 across the edge, by its *end* or its *side*, and on some loops the tool turns by 0.02 rad about two axes. The work of force and
 torque, `∮ F·dx + τ·dω` by Boole's rule, over the largest energy `½ Σ w·m²` on the way. Stretches are
-halved where the force has a kink or a jump. *Known to*: what all of them together may be off by, as if their signs were random.\n
+halved where the force has a kink or a jump. *Known to*: what all of them together may be off by, as if their signs were random,
+or half of what two rounds from different poses differ by.\n
 | tool | loop | in contact | thesis | facing | gradient | known to | poses |\n|---|---|--:|--:|--:|--:|--:|--:|"
     )?;
     for row in rows {

@@ -20,8 +20,8 @@ const ASKED: [&str; ITEMS.len()] = [
      the scale for -40 ≤ k ≤ 160; only a gradient's last bits may differ, since a radius of 1 is simplified away. Beyond that sizes whose fourth \
      powers leave doubles are refused, and so are numbers that are not between 1e-90 and 1e90; regions by hand that are much smaller than 1e-9 \
      of their unit are divided by a tolerance that is not small beside them. By 1e-9, 25.4 and 1e6: the contract in the new ulp(S). Where an \
-     arc's radius is above S (by 25.4 those of `Barrel` and `Oval`) the distance from its centre is rounded as what is larger than S, and the \
-     bar is 2 ulp(S).",
+     arc's radius is above S (by 25.4 those of `Barrel` and `Oval`) the distance from its centre is rounded as what is larger than S: the contract's 1 ulp(S) is \
+     missed there, as the last two rows have it, and 2 are held.",
     "Points beside the tool, part and pose moved together. By powers of two, where no coordinate loses a bit: the same bits of contacts and \
      wrench. By 1e3 … 1e12 (1, -0.7, 0.3): no depth differs by more than both clouds' `Probe::error` and what the coordinates' own rounding \
      can do; each scene is also judged by itself in 256 bits.",
