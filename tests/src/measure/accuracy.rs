@@ -211,7 +211,7 @@ const HAS_DISTANCE: f64 = 16.0;
 pub struct Judged {
     /// How many ulp(S) from the surface it is put on the wrong side; 0 if the side is right.
     pub side: f64,
-    /// Of the distance outside, in ulp(S) or where it is larger than S in its own, where the tool has it.
+    /// Of the distance outside, in ulp(S), where the tool has it.
     pub clearance: Option<f64>,
     /// Of a point that the tool takes for one inside.
     pub inside: Option<Inside>,
@@ -250,9 +250,9 @@ impl<'a> Judge<'a> {
         let wrong = answer.is_some() != (depth > 0.0);
         let side = if wrong { depth.abs() / self.ulp } else { 0.0 };
         let Some(answer) = answer else {
-            let scales = -depth * f64::EPSILON / self.ulp;
-            let off = || (self.tool.clearance(p) + depth).abs() / (self.ulp * scales.max(1.0));
-            let clearance = (self.tool.card().exact() && scales < HAS_DISTANCE).then(off);
+            let off = || (self.tool.clearance(p) + depth).abs() / self.ulp;
+            let has = self.tool.card().exact() && -depth < HAS_DISTANCE * self.reference.scale();
+            let clearance = has.then(off);
             return Judged { side, clearance, inside: None };
         };
         Judged { side, clearance: None, inside: Some(self.inside(&at, &exact, answer)) }
