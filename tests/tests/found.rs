@@ -1,8 +1,5 @@
 //! The worst that was ever found of each tool, asked again: `tests/found.tsv`, written by
 //! `cargo run --release -p touchoff-tests --bin search -- --found tests/tests/found.tsv`, which keeps what is worse; and a small search in every build.
-//!
-//! One place is over the contract's bar, 2.28 ulp(S) on the wrong side, and may not get worse: at the corner of `Barrel`'s flank and neck the
-//! bisector, told by squares of 85, rounds to the flank, which ends there.
 
 use touchoff_tests::measure::accuracy::Judge;
 use touchoff_tests::measure::search::asked::Asked;

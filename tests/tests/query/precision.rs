@@ -3,7 +3,7 @@
 use crate::compare::tools;
 use crate::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use tools_library::UnitSphere;
+use tools_library::{Barrel, Fig73Exact, UnitSphere};
 use touchoff::precision::{Double, Single};
 use touchoff::tool::Senses;
 use touchoff::{Law, Level, Pose, Probe, Unit};
@@ -73,9 +73,10 @@ fn single<T: Senses + Senses<f32>>(tool: &T, seed: u64) -> f64 {
 
 #[test]
 fn single_keeps_the_error_that_is_stated() {
-    let share = single(&UnitSphere, 1);
-    // No idle statement.
-    assert!((0.001..=1.0).contains(&share), "{share}");
+    for share in [single(&UnitSphere, 1), single(&Fig73Exact, 2), single(&Barrel, 3)] {
+        // No idle statement.
+        assert!((0.001..=1.0).contains(&share), "{share}");
+    }
 }
 
 #[test]

@@ -11,6 +11,8 @@ pub struct Graph {
     /// How many operations lie between a node and its farthest leaf.
     heights: Vec<u32>,
     known: HashMap<Node, Id>,
+    /// What else expressions are written as.
+    also: HashMap<Id, Id>,
 }
 
 impl Graph {
@@ -66,6 +68,19 @@ impl Graph {
 
     fn is_int(&self, id: Id, value: i64) -> bool {
         self.constant(id).is_some_and(|c| *c == Number::int(value))
+    }
+
+    /// States that two expressions are the same function: one that is computed, since it rounds little,
+    /// and one that proofs see through.
+    pub(crate) fn also(&mut self, computed: Id, seen: Id) {
+        self.also.insert(computed, seen);
+        let opposite = [computed, seen].map(|id| self.neg(id));
+        self.also.insert(opposite[0], opposite[1]);
+    }
+
+    /// What proofs see of an expression: itself, unless [something else](Graph::also) was said.
+    pub(crate) fn seen(&self, id: Id) -> Id {
+        self.also.get(&id).copied().unwrap_or(id)
     }
 
     /// Where a node is, if it is in the graph.

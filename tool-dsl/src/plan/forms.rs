@@ -243,7 +243,7 @@ enum Squared {
 
 /// The two sides of a comparison of squares.
 fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
-    let Node::Sub(a, b) = *graph.node(value) else { return None };
+    let Node::Sub(a, b) = *graph.node(graph.seen(value)) else { return None };
     let side = |id: Id| match *graph.node(id) {
         Node::Mul(a, b) if a == b => Some(Squared::Of(a)),
         _ => Some(Squared::Root(graph.find(&Node::Sqrt(id))?)),

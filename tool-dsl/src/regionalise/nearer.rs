@@ -33,7 +33,8 @@ impl Section<'_> {
     ///
     /// With `A = |p - c|²`, `B` the same of the other, `l` the distance to a line, `r` a radius:
     /// a corner is nearer than a line where `A ≤ l²`, a concave arc where `A ≤ (l + r)²`, a convex
-    /// one where `l ≥ r` or `(r - l)² ≤ A`, an arc is nearer than a corner where
+    /// one where `l ≥ r` or `(r - l)² ≤ A` (measured from where the two meet, if they do:
+    /// [`from_their_corner`]), an arc is nearer than a corner where
     /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as [`Section::arcs`] says.
     pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
         Some(match (self.kind(this), self.kind(other)) {
@@ -48,8 +49,14 @@ impl Section<'_> {
                 let parabola = self.parabola(graph, q, line)?;
                 Test::AtMost(graph.neg(parabola))
             }
-            (Kind::Arc(arc), Kind::Line(line)) => self.arc_line(graph, arc, line, true)?,
-            (Kind::Line(line), Kind::Arc(arc)) => self.arc_line(graph, arc, line, false)?,
+            (Kind::Arc(arc), Kind::Line(line)) => {
+                let corner = self.joint(this, other);
+                self.arc_line(graph, arc, line, (corner, true))?
+            }
+            (Kind::Line(line), Kind::Arc(arc)) => {
+                let corner = self.joint(this, other);
+                self.arc_line(graph, arc, line, (corner, false))?
+            }
             (Kind::Arc(arc), Kind::Point(q)) if self.fits(arc, q) => {
                 arc_point(graph, arc, q, true)?
             }
@@ -113,18 +120,41 @@ impl Section<'_> {
         Some(graph.sub(away, square))
     }
 
-    fn arc_line(&self, graph: &mut Graph, arc: &Circle, line: usize, nearer: bool) -> Option<Test> {
+    /// Where the pieces of two features meet, if they follow each other.
+    fn joint(&self, a: usize, b: usize) -> Option<&Place> {
+        let (Feature::Piece(a), Feature::Piece(b)) = (self.features[a], self.features[b]) else {
+            return None;
+        };
+        (a.abs_diff(b) == 1).then(|| &self.outline[a.min(b)].to)
+    }
+
+    fn arc_line(
+        &self,
+        graph: &mut Graph,
+        arc: &Circle,
+        line: usize,
+        (joint, nearer): (Option<&Place>, bool),
+    ) -> Option<Test> {
         let depth = self.outline[line].depth(graph)?;
         let radius = graph.number(arc.radius.clone());
         let away = outline::squared(graph, &arc.centre);
-        if !arc.convex {
-            let sum = graph.add(depth, radius);
-            let square = graph.mul(sum, sum);
-            return Some(Test::AtMost(ordered(graph, away, square, nearer)));
-        }
-        let rest = graph.sub(radius, depth);
+        // The radius less the distance to the line, as the arc bends.
+        let rest = if arc.convex { graph.sub(radius, depth) } else { graph.add(depth, radius) };
         let square = graph.mul(rest, rest);
-        Some(either(graph, rest, (square, away), nearer))
+        let mut difference = graph.sub(away, square);
+        if let Some(joint) = joint {
+            let anchored = from_their_corner(graph, arc, self.outline[line].direction()?, joint);
+            graph.also(anchored, difference);
+            difference = anchored;
+        }
+        let opposite = graph.neg(difference);
+        let (less, more) = if nearer { (difference, opposite) } else { (opposite, difference) };
+        if !arc.convex {
+            return Some(Test::AtMost(less));
+        }
+        let edge = if nearer { rest } else { graph.neg(rest) };
+        let both = vec![Test::AtMost(edge), Test::AtMost(more)];
+        Some(if nearer { Test::Any(both) } else { Test::All(both) })
     }
 
     /// Whether squares of an arc's radius round no more than the distance to a corner beside it can
@@ -153,6 +183,20 @@ fn near_arc(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<
     let square = graph.mul(depth, depth);
     let corner = outline::squared(graph, q);
     Some(Test::AtMost(ordered(graph, square, corner, nearer)))
+}
+
+/// `A - (r ∓ l)²` of an arc, convex or not, and a line along `t` that begins or ends at its end `q`. With
+/// `w = p - q` and the line's normal `n` it is `(t · w)² + 2 (q - c ± r n) · w`: beside the corner next
+/// to nothing rounds, whatever the radius.
+fn from_their_corner(graph: &mut Graph, arc: &Circle, [td, tz]: [Number; 2], q: &Place) -> Id {
+    let radius = if arc.convex { arc.radius.clone() } else { -&arc.radius };
+    // The normal is the direction turned left.
+    let normal = [-&tz, td.clone()];
+    let rise = [0, 1].map(|k| &(&q[k] - &arc.centre[k]) + &(&radius * &normal[k]));
+    let rise = outline::anchored(graph, rise.map(|part| &part * &Number::int(2)), q);
+    let along = outline::anchored(graph, [td, tz], q);
+    let square = graph.mul(along, along);
+    graph.add(square, rise)
 }
 
 /// Expanded, so that squares which cancel are not subtracted at every point.

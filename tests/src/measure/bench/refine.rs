@@ -119,21 +119,24 @@ impl<'a> Refined<'a> {
         let coarse = active.iter().map(|piece| piece.value).sum::<Vector6<f64>>();
         let mut history = vec![(room.asked, coarse)];
         while !active.is_empty() {
-            let mut groups = self.quarter(pose, &active, &mut room);
+            let groups = self.quarter(pose, &active, &mut room);
             let all = settled + groups.iter().map(|group| group.value).sum::<Vector6<f64>>();
             history.push((room.asked, all));
             let [force, torque] = parts(&all).map(|part| part.norm());
             let sizes = [force, torque.max(force * ARM * self.tool.card().radius())];
             let share = |error: &[f64; 2]| (error[0] / sizes[0]).max(error[1] / sizes[1]);
-            groups.sort_by(|a, b| share(&a.error).total_cmp(&share(&b.error)));
-            let open: f64 = groups.iter().map(|group| share(&group.error)).sum();
+            // Groups are large, and stay where they are.
+            let shares = groups.iter().map(|group| share(&group.error));
+            let mut shares: Vec<(f64, usize)> = shares.zip(0..).collect();
+            shares.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let open: f64 = shares.iter().map(|(share, _)| share).sum();
             let left = enough.share - share(&error);
             let done = history.len() >= ROUNDS && (open <= left || room.asked > enough.most);
             // Half of what is left is for later: where there is most to gain pieces are still large.
             let mut spare = left / 2.0;
             active.clear();
-            for group in groups {
-                let mine = share(&group.error);
+            for (mine, place) in shares {
+                let group = &groups[place];
                 if done || mine <= spare {
                     spare -= mine;
                     settled += group.value;
