@@ -50,6 +50,8 @@ pub struct Beside<'a, P: Precision> {
     unit: Unit,
     /// The tool's unit of length in the part's.
     length: f64,
+    /// How far the tool reaches from its tip, in its unit.
+    reach: f64,
     law: Law,
     weights: Weights,
     centre: Point3<f64>,
@@ -109,6 +111,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
             tree,
             unit,
             length,
+            reach: tool.card().size(),
             law: Law::Thesis,
             weights: Weights::Area,
             centre: Point3::origin(),
@@ -268,8 +271,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
                 Law::Thesis | Law::Facing => self.feel::<AlongDirections>(),
             };
         let Beside { law, weights, .. } = self.beside;
-        let reach = self.tool.card().size();
-        if any { P::sum(&self.beside, reach, pose) } else { Wrench::nothing(law, weights) }
+        if any { P::sum(&self.beside, pose) } else { Wrench::nothing(law, weights) }
     }
 
     /// Every point of the part inside the tool, with all that is felt there.

@@ -31,8 +31,8 @@ pub trait Once: Send + Sync + Sized + 'static {
     fn under(beside: &mut Beside<'_, Self>, node: usize)
     where
         Self: Precision;
-    /// Sums what was felt, with a tool that reaches that far from its tip, in its unit.
-    fn sum(beside: &Beside<'_, Self>, reach: f64, pose: &Pose) -> Wrench
+    /// Sums what was felt.
+    fn sum(beside: &Beside<'_, Self>, pose: &Pose) -> Wrench
     where
         Self: Precision;
 }
@@ -64,8 +64,8 @@ macro_rules! once {
                 let Beside { search, level, tree, sight, view, .. } = beside;
                 search.under(*level, (tree, sight, view), node);
             }
-            fn sum(beside: &Beside<'_, Self>, reach: f64, pose: &Pose) -> Wrench {
-                wrench::sum(beside, reach, pose)
+            fn sum(beside: &Beside<'_, Self>, pose: &Pose) -> Wrench {
+                wrench::sum(beside, pose)
             }
         }
     )*};

@@ -142,8 +142,8 @@ struct Totals {
     deepest: f64,
 }
 
-/// Sums what the probe has just felt, with a tool that reaches that far from its tip, in its unit.
-pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, reach: f64, pose: &Pose) -> Wrench {
+/// Sums what the probe has just felt.
+pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, pose: &Pose) -> Wrench {
     let colliding = beside.felt.count();
     let totals = dispatch!(beside.level, simd => totals(simd, beside, pose));
     let rotation = pose.rotation();
@@ -165,7 +165,7 @@ pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, reach: f64, pose: &Pose)
         niceness: (colliding > 0).then_some(totals.niceness),
         integral: totals.pushes[0],
         energy: totals.pushes[1] / 2.0,
-        rounding: rounding(beside, &totals, reach, torque),
+        rounding: rounding(beside, &totals, torque),
     }
 }
 
@@ -176,7 +176,6 @@ pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, reach: f64, pose: &Pose)
 fn rounding<P: Precision>(
     beside: &Beside<'_, P>,
     totals: &Totals,
-    reach: f64,
     torque: Vector3<f64>,
 ) -> Rounding {
     let additions = totals.blocks as f64 + 7.0;
@@ -184,7 +183,7 @@ fn rounding<P: Precision>(
     let force = UNIT * ((additions + TURNED) * totals.size + terms);
     let moments = UNIT * ((additions + TURNED + 5.0) * totals.size + terms);
     let arm = beside.centre.coords.norm();
-    let torque = 2.0 * reach * beside.length * moments
+    let torque = 2.0 * beside.reach * beside.length * moments
         + arm * (force + UNIT * 12.0 * totals.size)
         + UNIT * torque.norm();
     Rounding { force, torque }

@@ -44,7 +44,7 @@ impl Plan {
             placements: 50,
             budgets: vec![100, 300, 1_000, 3_000],
             tolerances: (1..=9).map(|k| 10f64.powi(-k)).collect(),
-            known: (1e-5, 1 << 18),
+            known: (1e-5, 1 << 21),
             seconds: 0.25,
             seed,
             quick: false,
