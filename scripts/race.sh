@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Races this version of the runtime against another, in one process, in turns:
+#   scripts/race.sh COMMIT
+# Prints what a wrench takes on each scene, of blocks of 25 poses the fastest of seven passes, and its part of the
+# other's.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+other=$(git rev-parse --verify "$1^{commit}")
+here=$PWD
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+race=$folder/race
+mkdir -p "$race/src" "$folder/other"
+git archive "$other" | tar -x -C "$folder/other"
+# Packages of one name must differ by version.
+sed -i 's/"0\.1\.0"/"0.0.9"/g' "$folder/other/Cargo.toml"
+cp scripts/race/main.rs "$race/src/main.rs"
+cat > "$race/Cargo.toml" <<END
+[package]
+name = "race"
+version = "0.0.0"
+edition = "2024"
+[workspace]
+[dependencies]
+this = { package = "touchoff", path = "$here/runtime" }
+this-tools = { package = "tools-library", path = "$here/tools-library" }
+other = { package = "touchoff", path = "../other/runtime", version = "0.0.9" }
+other-tools = { package = "tools-library", path = "../other/tools-library", version = "0.0.9" }
+[profile.release]
+lto = "thin"
+END
+cargo run --release --quiet --manifest-path "$race/Cargo.toml" --target-dir target/race
