@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Remakes every table and plot of docs/accuracy.md, in about three quarters of an hour on two cores:
+# Remakes every table and plot of docs/accuracy.md, in about an hour on two cores:
 #   scripts/accuracy.sh [SEED]
 # The machine has to be quiet for the times in work-precision.md; nothing else depends on it.
 set -euo pipefail
