@@ -24,6 +24,11 @@ pub(crate) enum Command {
     Demo,
     /// Feel a part with a tool along a path.
     Run(Box<Run>),
+    /// Feel a part with a tool in a hand: the haptic loop, in real time.
+    ///
+    /// Prints how long cycles took, how many missed their time, the largest force, and what became of the
+    /// hand's energy.
+    Haptic(Box<Haptic>),
     /// Take points of a part, and save them to be felt later.
     Sample(Box<Sample>),
     /// Measure run time against error: many ways to ask, from few points to a million.
@@ -173,6 +178,54 @@ pub(crate) struct Run {
 }
 
 #[derive(Args)]
+pub(crate) struct Haptic {
+    #[command(flatten)]
+    pub(crate) part: PartFile,
+    /// A compiled tool by name, or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: String,
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// What is held: `hand`, a simulated one that presses the tool onto the part; `path FILE`, a path played once;
+    /// `spacenav`, a SpaceMouse by its daemon.
+    #[arg(long, num_args = 1..=2, value_names = ["hand|path|spacenav", "FILE"], default_value = "hand")]
+    pub(crate) device: Vec<String>,
+    /// Cycles a second.
+    #[arg(long, default_value_t = 1000.0, value_parser = rate)]
+    pub(crate) rate: f64,
+    /// How long.
+    #[arg(long, default_value_t = 10.0, value_parser = above_zero)]
+    pub(crate) seconds: f64,
+    /// Force law: `thesis`, `gradient` or `facing`.
+    #[arg(long, default_value_t = Law::Gradient)]
+    pub(crate) law: Law,
+    /// Stiffness of contact, N for each unit of the law's force: N/mm³ for a part in mm.
+    #[arg(long, default_value_t = 1.0, value_parser = above_zero)]
+    pub(crate) stiffness: f64,
+    /// The stiffest spring that the device can render, N/mm.
+    #[arg(long, default_value_t = 1.0, value_parser = above_zero)]
+    pub(crate) device_stiffness: f64,
+    /// The largest force of the device, N.
+    #[arg(long, default_value_t = 8.0, value_parser = above_zero)]
+    pub(crate) most_force: f64,
+    /// Push with what the tool feels where the device is, scaled to what that can render, without a coupling.
+    #[arg(long)]
+    pub(crate) direct: bool,
+    /// Ask the system for real-time priority and locked memory.
+    #[arg(long)]
+    pub(crate) realtime: bool,
+    /// Stay on that core.
+    #[arg(long)]
+    pub(crate) core: Option<usize>,
+    /// Stay awake for so many µs before each cycle: what the system takes to wake a thread.
+    #[arg(long, default_value_t = 60)]
+    pub(crate) awake: u64,
+    /// Write every state to a table.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) record: Option<PathBuf>,
+}
+
+#[derive(Args)]
 pub(crate) struct Bench {
     /// A sample of it, less than a minute long.
     #[arg(long)]
@@ -226,6 +279,47 @@ fn positive(text: &str) -> Result<f64, String> {
     match tolerance(text)? {
         0.0 => Err("no cloud is exact: write a length above 0, or ask for `--certify`".to_owned()),
         value => Ok(value),
+    }
+}
+
+/// A number above 0.
+fn above_zero(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err(format!("`{text}` is not a number above 0")),
+    }
+}
+
+/// Cycles a second.
+fn rate(text: &str) -> Result<f64, String> {
+    match above_zero(text)? {
+        rate @ 1.0..=100_000.0 => Ok(rate),
+        rate => Err(format!("{rate} Hz: devices take 1 to 100000")),
+    }
+}
+
+/// What is held.
+#[derive(Clone, Debug)]
+pub(crate) enum Wielded {
+    Hand,
+    Path(PathBuf),
+    Spacenav,
+}
+
+impl Haptic {
+    /// What is held; what is wrong with the words for it, if something is.
+    pub(crate) fn wielded(&self) -> Result<Wielded, String> {
+        let words: Vec<&str> = self.device.iter().map(String::as_str).collect();
+        match words[..] {
+            ["hand"] => Ok(Wielded::Hand),
+            ["spacenav"] => Ok(Wielded::Spacenav),
+            ["path", file] => Ok(Wielded::Path(file.into())),
+            ["path"] => Err("`--device path` wants a file: write `--device path FILE`".to_owned()),
+            _ => Err(format!(
+                "there is no device `{}`: write `hand`, `path FILE` or `spacenav`",
+                words.join(" ")
+            )),
+        }
     }
 }
 

@@ -28,6 +28,28 @@ pub(crate) enum Failure {
     /// A mesh could not be made.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// There is no such device.
+    #[error("{0}")]
+    Device(String),
+    /// Nobody speaks for a SpaceMouse.
+    #[error("{socket}: {source}: is `spacenavd` running?")]
+    Spacenav {
+        /// Where it would listen.
+        socket: &'static str,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// The record could not be begun.
+    #[error("{file}: {source}")]
+    Record {
+        /// The file.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A path does not say which way it goes.
+    #[error(transparent)]
+    Motion(touchoff::MotionError),
     /// The path could not be read.
     #[error(transparent)]
     Program(#[from] ProgramError),

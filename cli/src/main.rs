@@ -16,6 +16,7 @@ mod draw;
 mod failure;
 mod files;
 mod fmt;
+mod haptic;
 mod part;
 mod run;
 mod stages;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
+        Some(Command::Haptic(wanted)) => haptic::haptic(&wanted, arguments.json),
         Some(Command::Sample(wanted)) => part::sample(&wanted),
         Some(Command::Bench(wanted)) => bench::bench(&wanted, arguments.json),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),

@@ -39,6 +39,8 @@ extern crate self as touchoff;
 pub mod certify;
 pub mod cloud;
 mod cores;
+#[cfg(feature = "haptic")]
+pub mod haptic;
 pub mod mesh;
 mod motion;
 mod part;
@@ -61,8 +63,8 @@ pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
 pub use probe::{
-    BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Summary,
-    Weights, Wrench, summary,
+    BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Stiffness,
+    Summary, Weights, Wrench, summary,
 };
 pub use program::{Program, ProgramError, Stop};
 pub use saved::SavedError;

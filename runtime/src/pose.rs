@@ -132,6 +132,20 @@ impl Pose {
         Pose { rotation, tip, full: self.full && motion.full }
     }
 
+    /// The same pose shifted in the world.
+    ///
+    /// # Errors
+    /// If that is no place for a part.
+    pub fn shifted(&self, way: Vector3<f64>) -> Result<Pose, PoseError> {
+        Pose::finite(self.rotation, self.tip + way, self.full)
+    }
+
+    /// Turned by a rotation, its tip carried to there.
+    #[cfg(feature = "haptic")]
+    pub(crate) fn carried(&self, turn: Matrix3<f64>, tip: Point3<f64>) -> Pose {
+        Pose { rotation: orthonormal(turn * self.rotation), tip, full: self.full }
+    }
+
     /// The same pose seen from where something else stands: `place⁻¹ ∘ self`, the difference of the
     /// tips first. Its rotation stays one as that of [`Pose::then`] does.
     pub fn seen_from(&self, place: &Pose) -> Pose {

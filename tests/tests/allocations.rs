@@ -2,7 +2,11 @@
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
+use std::sync::atomic::AtomicBool;
 use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::haptic::{
+    Axes, Hand, Limits, Rendering, Session, Settings, Unhurried, Watch, run, watched,
+};
 use touchoff::scenes::{Path, tube};
 use touchoff::{Law, Pose, Probe};
 use touchoff_tests::measure::kernels::{part, poses};
@@ -43,6 +47,7 @@ fn a_second_round_allocates_nothing() {
         }
     }
     a_certifier();
+    a_haptic_loop();
 }
 
 /// Whether a tool that touches nothing is inside is asked of a ray, which does ask for memory.
@@ -74,3 +79,44 @@ fn a_certifier() {
         assert_eq!((again, change.allocations, change.reallocations), (true, 0, 0));
     }
 }
+
+/// Nor do cycles of the haptic loop, whatever the hand does, with somebody who looks on.
+fn a_haptic_loop() {
+    let part = part(20_000);
+    let (rate, cycles) = (1000.0, 3_000);
+    for name in ["Fig73Exact", "Block"] {
+        let tool = tools_library::find(name).expect("a tool");
+        let axes = if name == "Block" { Axes::Six } else { Axes::Five };
+        let limits = Limits { axes, ..Limits::default() };
+        for rendering in [None, Some(Rendering::Direct { scaled: true, damping: 1e-3 })] {
+            let settings = Settings { rendering, ..Settings::new(rate) };
+            let probe = Probe::new(&part, tool).law(Law::Gradient);
+            let mut session = Session::new(probe, &settings, limits);
+            let wish = |time: f64| {
+                let pose = Path::Hold.pose((3e3 * (time % 1.0)) as usize, 10_000);
+                let [x, y, z, w] = [0, 1, 2, 3].map(|k| pose.isometry().rotation.coords[k]);
+                Pose::from_quaternion(pose.tip(), [x, y, z, w]).expect("a pose")
+            };
+            let mut hand = Hand::new(limits, rate, wish);
+            let (mut watch, mut latest, samples) = watched(2 * cycles as usize);
+            let stop = AtomicBool::new(false);
+            let clock = &mut Unhurried::default();
+            let mut round = |watch: &mut Watch| {
+                let ends = (&mut session, &mut hand);
+                run(ends, (&mut *clock, cycles), watch, &stop).peak[0]
+            };
+            let first = round(&mut watch);
+            assert!(first > 0.0, "{name}");
+            let region = Region::new(COUNTED);
+            let second = round(&mut watch);
+            let change = region.change();
+            let seen = latest.read().is_some();
+            // Two histograms, before the first cycle.
+            assert_eq!((change.allocations, change.reallocations, seen), (HISTOGRAMS, 0, true));
+            assert!(second > 0.0 && samples.count() == 2 * cycles as usize);
+        }
+    }
+}
+
+/// What a report's two histograms take.
+const HISTOGRAMS: usize = 2;

@@ -1,6 +1,7 @@
 //! The program as a user meets it: what it prints, and how it refuses.
 
 mod bench;
+mod haptic;
 mod parts;
 
 use bench::{Bench, rows, shared, stderr, stdout, touchoff};

@@ -11,6 +11,7 @@ mod graded;
 mod law;
 mod once;
 mod posture;
+mod stiffness;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
@@ -18,6 +19,7 @@ pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
 pub(crate) use once::Once;
 pub use posture::{Deepest, Posture};
+pub use stiffness::Stiffness;
 pub use wrench::{Rounding, Wrench};
 
 use crate::Unit;
@@ -62,6 +64,8 @@ pub struct Beside<'a, P: Precision> {
     /// A leaf that had a point inside when it was asked last whether any has.
     hit: u32,
     felt: Felt<P::Number>,
+    /// For what tools keep between questions in `f64`.
+    room: Felt,
     contacts: Vec<Contact>,
 }
 
@@ -121,6 +125,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
             search: Search::default(),
             hit: 0,
             felt: Felt::default(),
+            room: Felt::default(),
             contacts: Vec::new(),
         };
         Probe { tool, beside }
@@ -170,6 +175,12 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     pub fn another(&self) -> Probe<'a, T, P> {
         let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
         Probe::exactly(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
+    }
+
+    /// The compliance centre in the tool's frame, and the part's unit in mm.
+    #[cfg(feature = "haptic")]
+    pub(crate) fn place(&self) -> (Point3<f64>, f64) {
+        (self.beside.centre, self.beside.unit.to(Unit::Millimetre))
     }
 
     /// How far a depth that is felt can be from that of the point that was given, in the part's unit:

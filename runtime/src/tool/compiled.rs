@@ -1,8 +1,8 @@
 //! Tools that the macros compile.
 
 use super::{
-    Ask, Card, Felt, LANES, Lane, Number, Points, Senses, Tool, Wanted, number::Floats, on_vectors,
-    present,
+    Ask, Card, Dual, Felt, LANES, Lane, Number, Points, Senses, Slopes, Tool, Wanted,
+    number::Floats, on_vectors, present,
 };
 use fearless_simd::{Level, Simd};
 
@@ -88,6 +88,12 @@ impl<T: Evaluators> Tool for T {
         felt.reserve(points, ask);
         on_vectors!(level, simd => lanes::<T, f64, _>(simd, ask, points, length, felt));
         one_by_one::<T>(ask, points, length, felt);
+    }
+
+    fn slopes(&self, point: [f64; 3], length: f64, _: &mut Felt) -> Slopes {
+        let ask = Ask { direction: true, gradient: true, ..Ask::INSIDE };
+        let here = T::feel_lanes(Dual::point(point), Dual::constant(length), true, ask);
+        Slopes::of(here.direction, here.gradient, length)
     }
 }
 

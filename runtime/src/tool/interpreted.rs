@@ -1,8 +1,8 @@
 //! Tools that are loaded at run time.
 
 use super::{
-    Ask, Card, Circle, Depth, Felt, LANES, Piece, Points, Region, Senses, Shape, Slab, Surface,
-    Tool, Wanted,
+    Ask, Card, Circle, Depth, Dual, Felt, LANES, Lane, Piece, Points, Region, Senses, Shape, Slab,
+    Slopes, Surface, Tool, Wanted,
 };
 use crate::Unit;
 use fearless_simd::{Level, Simd, dispatch};
@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::path::Path;
 use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Walk};
+use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Value, Walk};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
 use tool_dsl::{Checked, compile_with, model, report};
@@ -143,6 +143,29 @@ impl Tool for Interpreted {
             #[inline(always)]
             || self.all(ask, points, length, felt),
         ));
+    }
+
+    fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes {
+        let mut results = [Dual::default(); OUTPUTS];
+        let duals = (Dual::point(point), Dual::constant(length));
+        self.walk.run(duals.0, duals.1, &mut room.duals, &mut results);
+        let three = |from: usize| std::array::from_fn(|k| results[from + k]);
+        Slopes::of(three(4), three(7), length)
+    }
+}
+
+impl Value for Dual {
+    fn of(value: f64) -> Dual {
+        Dual::constant(value)
+    }
+    fn number(self) -> f64 {
+        self.value
+    }
+    fn sqrt(self) -> Dual {
+        Lane::sqrt(self)
+    }
+    fn abs(self) -> Dual {
+        Lane::abs(self)
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod card;
 mod compiled;
+mod dual;
 #[cfg(feature = "interpreter")]
 mod interpreted;
 mod lane;
@@ -12,6 +13,7 @@ mod number;
 
 pub use card::{Card, Circle, Depth, Piece, Region, Shape, Slab, Surface};
 pub use compiled::{Evaluators, FeltLanes};
+pub use dual::Dual;
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
@@ -68,6 +70,28 @@ pub trait Tool: Send + Sync {
     /// `length` is the length of the file's unit in the part's, by which a magnitude that is the
     /// depth is scaled. The answer has the same bits whatever the level.
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt);
+
+    /// How what is felt at a point inside changes with where it is: as the region says that it belongs to, on
+    /// borders too. `room` is kept between calls.
+    fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes;
+}
+
+/// Derivatives by the position in the part's unit, in the tool's frame: row by row of what changes, along x,
+/// y and z. What is not differentiable at a point, such as a direction on the axis, counts as unchanged.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slopes {
+    /// Of the direction to the nearest surface.
+    pub direction: [[f64; 3]; 3],
+    /// Of the magnitude's gradient.
+    pub gradient: [[f64; 3]; 3],
+}
+
+impl Slopes {
+    /// From what a tool computes at a [`Dual::point`] of its own unit.
+    pub(crate) fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Slopes {
+        let rows = |parts: [Dual; 3]| parts.map(|part| part.slope.map(|slope| slope / length));
+        Slopes { direction: rows(direction), gradient: rows(gradient) }
+    }
 }
 
 /// What a caller wants, as a type.
@@ -217,7 +241,10 @@ pub struct Felt<N = f64> {
     /// What it remembers of a point.
     #[cfg(feature = "interpreter")]
     pub(crate) scratch: tool_dsl::interpret::Scratch,
-    /// The same of a block of points
+    /// What it remembers of a point and of how all changes there.
+    #[cfg(feature = "interpreter")]
+    pub(crate) duals: tool_dsl::interpret::Scratch<Dual>,
+    /// What it remembers of a block of points.
     #[cfg(feature = "interpreter")]
     pub(crate) lanes: tool_dsl::interpret::Registers,
 }

@@ -1,7 +1,7 @@
 //! Tools with one thing changed, and all else as it is.
 
 use touchoff::Level;
-use touchoff::tool::{Ask, Card, Felt, Points, Senses, Tool, Wanted};
+use touchoff::tool::{Ask, Card, Felt, Points, Senses, Slopes, Tool, Wanted};
 
 /// A tool with another card.
 pub(crate) struct OtherCard<'a, T> {
@@ -31,6 +31,10 @@ impl<T: Tool> Tool for OtherCard<'_, T> {
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         self.tool.evaluate(level, ask, points, length, felt);
     }
+
+    fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes {
+        self.tool.slopes(point, length, room)
+    }
 }
 
 impl<T: Senses> Senses for OtherCard<'_, T> {
@@ -50,6 +54,10 @@ impl<T: Tool> Tool for Thorough<'_, T> {
 
     fn evaluate(&self, level: Level, _: Ask, points: &Points, length: f64, felt: &mut Felt) {
         self.0.evaluate(level, Ask::EVERYTHING, points, length, felt);
+    }
+
+    fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes {
+        self.0.slopes(point, length, room)
     }
 }
 

@@ -7,6 +7,7 @@ pub mod certified;
 pub mod compile;
 pub mod continuity;
 pub mod convergence;
+pub mod haptics;
 pub mod kernels;
 pub mod mutants;
 pub mod points;

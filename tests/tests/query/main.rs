@@ -15,4 +15,5 @@ mod poses;
 mod precision;
 mod scenes;
 mod solids;
+mod stiffness;
 mod sums;

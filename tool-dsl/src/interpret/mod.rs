@@ -12,7 +12,7 @@ mod tape;
 mod walk;
 
 pub use tape::{BLOCK, Lanes, Tape};
-pub use walk::{Registers, Scratch, Walk};
+pub use walk::{Registers, Scratch, Value, Walk};
 
 use crate::Checked;
 use crate::expr::value::{At, Evaluator};

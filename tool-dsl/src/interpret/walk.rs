@@ -3,9 +3,9 @@
 use super::tape::{perform as block, whole};
 use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot, roots};
 use crate::Checked;
-use crate::expr::value::{max, min, quotient};
 use crate::expr::{Coord, Id};
 use crate::plan::Tree;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Operations in the order in which they are done; the last is what is asked for.
 type List = Vec<Slot>;
@@ -32,10 +32,45 @@ pub struct Walk {
     forks: Vec<Fork>,
 }
 
+/// What a walk computes with: numbers, or what knows more of them.
+pub trait Value:
+    Copy
+    + Default
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A constant.
+    fn of(value: f64) -> Self;
+    /// The number, by which ways part.
+    fn number(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+}
+
+impl Value for f64 {
+    fn of(value: f64) -> f64 {
+        value
+    }
+    fn number(self) -> f64 {
+        self
+    }
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+}
+
 /// What a walk remembers of a point; kept between calls.
 #[derive(Clone, Debug, Default)]
-pub struct Scratch {
-    values: Vec<f64>,
+pub struct Scratch<V = f64> {
+    values: Vec<V>,
     /// When each value was computed last.
     done: Vec<u32>,
     now: u32,
@@ -79,7 +114,13 @@ impl Walk {
     /// Writes as many of a point's first outputs as there are results; all but the owner mean
     /// nothing outside. The point is of the tool's frame, in the file's unit; `length` is the
     /// file's unit of length measured in the part's.
-    pub fn run(&self, point: [f64; 3], length: f64, scratch: &mut Scratch, results: &mut [f64]) {
+    pub fn run<V: Value>(
+        &self,
+        point: [V; 3],
+        length: V,
+        scratch: &mut Scratch<V>,
+        results: &mut [V],
+    ) {
         scratch.start(self.operations.len());
         let mut at = 0;
         let owner = loop {
@@ -87,13 +128,13 @@ impl Walk {
                 Fork::Owner(owner) => break *owner,
                 Fork::Test { curve, strict, above } => {
                     let value = self.value(&self.curves[*curve], point, length, scratch);
-                    let below = if *strict { value < 0.0 } else { value <= 0.0 };
+                    let below = below(value, *strict);
                     at = if below { at + 1 } else { *above };
                 }
             }
         };
         let Some((first, rest)) = results.split_first_mut() else { return };
-        *first = owner.map_or(-1.0, |owner| owner as f64);
+        *first = V::of(owner.map_or(-1.0, |owner| owner as f64));
         let Some(owner) = owner else { return };
         self.felt_in(owner, point, length, scratch, rest);
     }
@@ -163,21 +204,21 @@ impl Walk {
         self.felt_in(owner, point, length, scratch, results);
     }
 
-    fn felt_in(
+    fn felt_in<V: Value>(
         &self,
         owner: usize,
-        point: [f64; 3],
-        length: f64,
-        scratch: &mut Scratch,
-        results: &mut [f64],
+        point: [V; 3],
+        length: V,
+        scratch: &mut Scratch<V>,
+        results: &mut [V],
     ) {
         for (result, list) in results.iter_mut().zip(&self.regions[owner]) {
             *result = self.value(list, point, length, scratch);
         }
     }
 
-    fn value(&self, list: &List, p: [f64; 3], length: f64, scratch: &mut Scratch) -> f64 {
-        let mut last = 0.0;
+    fn value<V: Value>(&self, list: &List, p: [V; 3], length: V, scratch: &mut Scratch<V>) -> V {
+        let mut last = V::default();
         for &slot in list {
             let slot = slot as usize;
             if scratch.done[slot] != scratch.now {
@@ -190,11 +231,11 @@ impl Walk {
     }
 }
 
-impl Scratch {
+impl<V: Value> Scratch<V> {
     /// Forgets the last point.
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
-            self.values.resize(slots, 0.0);
+            self.values.resize(slots, V::default());
             self.done = vec![0; self.values.len()];
             self.now = 0;
         }
@@ -227,38 +268,48 @@ fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<Fork>) {
     }
 }
 
+fn below<V: Value>(value: V, strict: bool) -> bool {
+    if strict { value.number() < 0.0 } else { value.number() <= 0.0 }
+}
+
 #[inline(always)]
-fn perform(operation: Operation, [x, y, z]: [f64; 3], length: f64, values: &[f64]) -> f64 {
+fn perform<V: Value>(operation: Operation, [x, y, z]: [V; 3], length: V, values: &[V]) -> V {
     let v = |slot: Slot| values[slot as usize];
     match operation {
-        Operation::Const(value) => value,
+        Operation::Const(value) => V::of(value),
         Operation::Coord(Coord::X) => x,
         Operation::Coord(Coord::Y) => y,
         Operation::Coord(Coord::Z) => z,
         Operation::Coord(Coord::Q) => x * x + y * y,
         Operation::Coord(Coord::D) => (x * x + y * y).sqrt(),
         Operation::Coord(Coord::Length) => length,
-        Operation::Coord(Coord::PerLength) => 1.0 / length,
+        Operation::Coord(Coord::PerLength) => V::of(1.0) / length,
         Operation::Neg(a) => -v(a),
         Operation::Add(a, b) => v(a) + v(b),
         Operation::Sub(a, b) => v(a) - v(b),
         Operation::Mul(a, b) => v(a) * v(b),
         Operation::Div(a, b) => v(a) / v(b),
-        Operation::Quotient(a, b) => quotient(v(a), v(b)),
-        Operation::Min(a, b) => min(v(a), v(b)),
-        Operation::Max(a, b) => max(v(a), v(b)),
+        Operation::Quotient(_, b) if v(b).number() == 0.0 => V::of(0.0),
+        Operation::Quotient(a, b) => v(a) / v(b),
+        Operation::Min(a, b) if v(a).number() < v(b).number() => v(a),
+        Operation::Min(_, b) => v(b),
+        Operation::Max(a, b) if v(b).number() < v(a).number() => v(a),
+        Operation::Max(_, b) => v(b),
         Operation::Abs(a) => v(a).abs(),
         Operation::Sqrt(a) => v(a).sqrt(),
         Operation::Select { low, high, then, other } => {
-            if v(low) <= v(high) {
+            if v(low).number() <= v(high).number() {
                 v(then)
             } else {
                 v(other)
             }
         }
         Operation::Side { value, strict, then, other } => {
-            let below = if strict { v(value) < 0.0 } else { v(value) <= 0.0 };
-            if below { v(then) } else { v(other) }
+            if below(v(value), strict) {
+                v(then)
+            } else {
+                v(other)
+            }
         }
     }
 }

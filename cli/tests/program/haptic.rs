@@ -1,0 +1,67 @@
+//! The haptic loop as a user starts it.
+
+use crate::bench::{Bench, rows, stderr, stdout, touchoff};
+use std::process::Output;
+
+fn haptic(bench: &Bench, more: &[&str]) -> Output {
+    let part = bench.folder.path().join("block.stl").display().to_string();
+    let mut all = vec!["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball"];
+    all.extend(["--points", "5000", "--seconds", "0.5"]);
+    all.extend(more);
+    touchoff(&all)
+}
+
+#[test]
+fn a_path_is_played_and_recorded() {
+    let bench = Bench::new();
+    let path = bench.folder.path().join("path.csv").display().to_string();
+    let table = bench.folder.path().join("record.csv").display().to_string();
+    let output = haptic(&bench, &["--device", "path", &path, "--record", &table, "--json"]);
+    let said = &rows(&output)[0];
+    let count = |key: &str| said[key].as_u64().unwrap_or_else(|| panic!("{key} in {said}"));
+    assert!(count("cycles") + count("left_out") == 500 && count("cycles") > 100, "{said}");
+    assert_eq!((count("lost"), count("stalls")), (0, 0));
+    assert!(said["peak_force"].as_f64().is_some_and(|force| force > 0.01), "{said}");
+    assert!(count("cycles") >= 1 && said["took_ns"]["p50"].as_u64().is_some_and(|ns| ns > 0));
+
+    let record = std::fs::read_to_string(&table).expect("a record");
+    let mut lines = record.lines();
+    let columns = lines.next().expect("a head").split(',').count();
+    assert_eq!(columns, 24);
+    let mut states = 0;
+    for line in lines {
+        let numbers = line.split(',').map(|cell| cell.parse::<f64>().expect("a number"));
+        assert_eq!(numbers.filter(|number| number.is_finite()).count(), columns);
+        states += 1;
+    }
+    assert_eq!(states, count("cycles"));
+}
+
+#[test]
+fn a_hand_is_told_of_in_words() {
+    let bench = Bench::new();
+    let output = haptic(&bench, &["--rate", "500"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for word in ["cycles at 500 Hz", "took, µs", "energy", "law gradient"] {
+        assert!(stdout(&output).contains(word), "{}", stdout(&output));
+    }
+}
+
+#[test]
+fn what_is_no_device_is_refused_with_a_remedy() {
+    let bench = Bench::new();
+    let nowhere = bench.folder.path().join("no/record.csv").display().to_string();
+    for (more, words) in [
+        (&["--device", "glove"][..], "write `hand`, `path FILE` or `spacenav`"),
+        (&["--device", "path"], "write `--device path FILE`"),
+        (&["--device", "path", "nowhere.csv"], "nowhere.csv"),
+        (&["--record", &nowhere], "record.csv"),
+    ] {
+        let output = haptic(&bench, more);
+        assert_eq!(output.status.code(), Some(1), "{more:?}");
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+    for wrong in [["--rate", "0"], ["--rate", "1e9"], ["--stiffness", "-1"], ["--seconds", "NaN"]] {
+        assert_eq!(haptic(&bench, &wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}

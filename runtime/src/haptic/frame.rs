@@ -1,0 +1,79 @@
+//! Poses compared about a tool's compliance centre, in millimetres and radians.
+
+use super::device::Axes;
+use crate::Pose;
+use nalgebra::{Point3, Rotation3, Vector3, Vector6};
+
+/// What poses are compared about.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    /// The compliance centre, in the tool's frame and the part's unit.
+    pub(super) centre: Point3<f64>,
+    /// The part's unit in mm.
+    pub(super) unit: f64,
+    pub(super) axes: Axes,
+}
+
+impl Frame {
+    fn centre_of(&self, pose: &Pose) -> Vector3<f64> {
+        pose.tip().coords + pose.rotation() * self.centre.coords
+    }
+
+    /// The way of the centre and the turn from one pose to another, in the world's frame. Of five axes the
+    /// turn is the shortest that takes one axis to the other.
+    pub(super) fn between(&self, from: &Pose, to: &Pose) -> Vector6<f64> {
+        let way = (self.centre_of(to) - self.centre_of(from)) * self.unit;
+        let turn = match self.axes {
+            Axes::Five => {
+                let (sine, cosine) = (from.axis().cross(&to.axis()), from.axis().dot(&to.axis()));
+                let size = sine.norm();
+                if size > 0.0 { sine * (size.atan2(cosine) / size) } else { Vector3::zeros() }
+            }
+            Axes::Six => {
+                let turn = to.rotation() * from.rotation().transpose();
+                Rotation3::from_matrix_unchecked(turn).scaled_axis()
+            }
+        };
+        join(&way, &turn)
+    }
+
+    /// A pose after such a way and turn.
+    pub(super) fn moved(&self, pose: &Pose, step: &Vector6<f64>) -> Pose {
+        let [way, turn] = halves(step);
+        let turned = Rotation3::from_scaled_axis(turn);
+        let centre = self.centre_of(pose) + way / self.unit;
+        let about = Point3::from(centre - turned * (self.centre_of(pose) - pose.tip().coords));
+        pose.carried(turned.into_inner(), about)
+    }
+}
+
+pub(super) fn join(way: &Vector3<f64>, turn: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(way.x, way.y, way.z, turn.x, turn.y, turn.z)
+}
+
+pub(super) fn halves(both: &Vector6<f64>) -> [Vector3<f64>; 2] {
+    [0, 3].map(|row| both.fixed_rows::<3>(row).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Pose;
+
+    #[test]
+    fn a_pose_moved_by_the_difference_is_the_other() {
+        let centre = Point3::new(0.3, -0.2, 4.0);
+        let a =
+            Pose::from_quaternion(Point3::new(1., 2., 3.), [0.5, 0.5, 0.5, 0.5]).expect("a pose");
+        let b =
+            Pose::from_quaternion(Point3::new(1.5, 2., 2.), [0.6, 0.0, 0.0, 0.8]).expect("a pose");
+        let frame = Frame { centre, unit: 25.4, axes: Axes::Six };
+        let moved = frame.moved(&a, &frame.between(&a, &b));
+        assert!((moved.tip() - b.tip()).norm() < 1e-13);
+        assert!((moved.rotation() - b.rotation()).norm() < 1e-13);
+        let frame = Frame { centre: Point3::origin(), axes: Axes::Five, ..frame };
+        let moved = frame.moved(&a, &frame.between(&a, &b));
+        assert!((moved.tip() - b.tip()).norm() < 1e-13);
+        assert!((moved.axis() - b.axis()).norm() < 1e-13);
+    }
+}

@@ -1,0 +1,146 @@
+//! Numbers that know how they change along x, y and z: what generated code computes of them is derived
+//! exactly, by the chain rule, operation by operation (Griewank and Walther, *Evaluating Derivatives*,
+//! 2008, section 3.1).
+
+use super::Lane;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number and its derivatives along three directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dual {
+    /// The number.
+    pub value: f64,
+    /// What it grows by.
+    pub slope: [f64; 3],
+}
+
+impl Dual {
+    /// What does not change.
+    pub fn constant(value: f64) -> Dual {
+        Dual { value, slope: [0.0; 3] }
+    }
+
+    /// A point's coordinates, each of which grows along its own axis.
+    pub fn point(point: [f64; 3]) -> [Dual; 3] {
+        [0, 1, 2].map(|axis| {
+            let mut slope = [0.0; 3];
+            slope[axis] = 1.0;
+            Dual { value: point[axis], slope }
+        })
+    }
+
+    /// A function of one number, with its value and derivative there.
+    #[inline(always)]
+    fn chain(self, value: f64, derivative: f64) -> Dual {
+        Dual { value, slope: self.slope.map(|part| derivative * part) }
+    }
+
+    /// A function of two.
+    #[inline(always)]
+    fn both(self, other: Dual, value: f64, by: [f64; 2]) -> Dual {
+        let slope = [0, 1, 2].map(|k| by[0] * self.slope[k] + by[1] * other.slope[k]);
+        Dual { value, slope }
+    }
+}
+
+impl Add for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn add(self, other: Dual) -> Dual {
+        self.both(other, self.value + other.value, [1.0, 1.0])
+    }
+}
+
+impl Sub for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn sub(self, other: Dual) -> Dual {
+        self.both(other, self.value - other.value, [1.0, -1.0])
+    }
+}
+
+impl Mul for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn mul(self, other: Dual) -> Dual {
+        self.both(other, self.value * other.value, [other.value, self.value])
+    }
+}
+
+impl Div for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn div(self, other: Dual) -> Dual {
+        let value = self.value / other.value;
+        self.both(other, value, [1.0 / other.value, -value / other.value])
+    }
+}
+
+impl Neg for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn neg(self) -> Dual {
+        self.chain(-self.value, -1.0)
+    }
+}
+
+impl Add<f64> for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn add(self, other: f64) -> Dual {
+        Dual { value: self.value + other, ..self }
+    }
+}
+
+impl Sub<f64> for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn sub(self, other: f64) -> Dual {
+        Dual { value: self.value - other, ..self }
+    }
+}
+
+impl Mul<f64> for Dual {
+    type Output = Dual;
+    #[inline(always)]
+    fn mul(self, other: f64) -> Dual {
+        self.chain(self.value * other, other)
+    }
+}
+
+/// A root at 0 and an absolute value at 0 have no derivative; 0 is taken. So is that of a quotient by 0,
+/// which is 0 itself.
+impl Lane for Dual {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn of(self, value: f64) -> Dual {
+        Dual::constant(value)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Dual {
+        let root = self.value.sqrt();
+        self.chain(root, if root > 0.0 { 0.5 / root } else { 0.0 })
+    }
+    #[inline(always)]
+    fn abs(self) -> Dual {
+        let sign = if self.value == 0.0 { 0.0 } else { self.value.signum() };
+        self.chain(self.value.abs(), sign)
+    }
+    #[inline(always)]
+    fn le(a: Dual, b: Dual) -> bool {
+        a.value <= b.value
+    }
+    #[inline(always)]
+    fn lt(a: Dual, b: Dual) -> bool {
+        a.value < b.value
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Dual, no: Dual) -> Dual {
+        if mask { yes } else { no }
+    }
+}

@@ -1,0 +1,127 @@
+//! Devices that say nonsense, jump, vanish and come back.
+
+use touchoff::haptic::{Device, DeviceError, Limits, Push, Scripted, Session, Settings};
+use touchoff::{Law, Pose, PoseError, Probe};
+use touchoff_tests::measure::haptics::wall::LIMITS;
+use touchoff_tests::measure::haptics::{block, tool, upright};
+
+fn session(part: &touchoff::Part) -> Session<'_> {
+    Session::new(Probe::new(part, tool("Flat")).law(Law::Gradient), &Settings::new(1000.0), LIMITS)
+}
+
+/// Half a millimetre deep, but for what a function puts in its place.
+fn deep(
+    instead: impl Fn(u64) -> Option<Result<Pose, DeviceError>>,
+) -> Scripted<impl FnMut(u64) -> Result<Pose, DeviceError>> {
+    Scripted::new(LIMITS, move |cycle| instead(cycle).unwrap_or(Ok(upright(-0.5))))
+}
+
+fn gone() -> DeviceError {
+    DeviceError::Gone(std::io::Error::from(std::io::ErrorKind::NotConnected))
+}
+
+#[test]
+fn what_is_no_pose_is_held_and_counted() {
+    let part = block(20_000);
+    let mut session = session(&part);
+    let nan = |cycle| (300..320).contains(&cycle).then_some(Err(PoseError::NotFinite.into()));
+    let mut device = deep(nan);
+    let states: Vec<_> =
+        (0..600).map(|_| session.cycle(&mut device).expect("it was somewhere")).collect();
+    for state in &states[200..] {
+        assert!((state.push.force - states[199].push.force).norm() < 1e-9, "{state:?}");
+        assert_eq!(state.held, (300..320).contains(&state.cycle));
+    }
+    assert_eq!(session.faults().no_pose, 20);
+}
+
+#[test]
+fn a_device_that_vanishes_and_returns_is_held_meanwhile() {
+    let part = block(20_000);
+    let mut session = session(&part);
+    let mut device = deep(|cycle| (300..400).contains(&cycle).then(|| Err(gone())));
+    for cycle in 0..600 {
+        let state = session.cycle(&mut device).expect("it was somewhere");
+        assert_eq!(state.held, (300..400).contains(&cycle));
+    }
+    assert_eq!(session.faults().gone, 100);
+}
+
+#[test]
+fn before_it_is_anywhere_nothing_is_pushed() {
+    let part = block(20_000);
+    let mut session = session(&part);
+    let mut device = deep(|cycle| (cycle < 10).then(|| Err(gone())));
+    for cycle in 0..12 {
+        assert_eq!(session.cycle(&mut device).is_some(), cycle >= 10);
+    }
+}
+
+/// One wild pose is not followed; where the device stays, the hand begins anew, gently.
+#[test]
+fn a_jump_is_not_followed_unless_it_stays() {
+    let part = block(20_000);
+    let mut session = session(&part);
+    let far = || Some(Ok(upright(500.0)));
+    let mut device = deep(|cycle| match cycle {
+        300 => far(),
+        400..500 => far(),
+        _ => None,
+    });
+    let mut largest = 0.0f64;
+    let mut before: Option<Push> = None;
+    for cycle in 0..800 {
+        let state = session.cycle(&mut device).expect("it was somewhere");
+        let stayed = (400..450).contains(&cycle) || (500..550).contains(&cycle);
+        assert_eq!(state.held, cycle == 300 || stayed, "{cycle}");
+        // Torn away, it lets go at once.
+        if let Some(before) = before.filter(|_| cycle != 450) {
+            largest = largest.max((state.push.force - before.force).norm());
+        }
+        before = Some(state.push);
+    }
+    // 0.5 N come on in a tenth of a second.
+    assert!(largest < 0.02, "{largest}");
+    assert_eq!(session.faults().jumps, 1 + 51 + 51);
+}
+
+/// A device that cannot push.
+struct Deaf;
+
+impl Device for Deaf {
+    fn pose(&mut self) -> Result<Pose, DeviceError> {
+        Ok(upright(-0.1))
+    }
+    fn push(&mut self, _: &Push) -> Result<(), DeviceError> {
+        Err(gone())
+    }
+    fn limits(&self) -> Limits {
+        LIMITS
+    }
+}
+
+#[test]
+fn a_push_that_fails_is_counted() {
+    let part = block(20_000);
+    let mut session = session(&part);
+    for _ in 0..5 {
+        session.cycle(&mut Deaf);
+    }
+    assert_eq!(session.faults().not_pushed, 5);
+}
+
+#[test]
+fn never_more_than_the_device_can_push() {
+    let part = block(20_000);
+    for stiffness in [1.0, 1e3, 1e9] {
+        let settings = Settings { stiffness, ..Settings::new(1000.0) };
+        let probe = Probe::new(&part, tool("Flat")).law(Law::Gradient);
+        let mut session = Session::new(probe, &settings, LIMITS);
+        let mut device = Scripted::new(LIMITS, |cycle| Ok(upright(0.1 - 0.005 * cycle as f64)));
+        for _ in 0..4000 {
+            let push = session.cycle(&mut device).expect("it was somewhere").push;
+            assert!(push.force.norm() <= LIMITS.force * (1.0 + 1e-12));
+            assert!(push.torque.norm() <= LIMITS.torque * (1.0 + 1e-12));
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The haptic loop: against theory, and against what devices, clocks and hands do wrong.
+
+mod energy;
+mod faults;
+mod sheet;
+mod solid;
+#[cfg(unix)]
+mod spacenav;
+mod time;
+mod wall;

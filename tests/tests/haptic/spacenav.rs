@@ -1,0 +1,95 @@
+//! A SpaceMouse, from a daemon that speaks the protocol.
+
+use nalgebra::Vector3;
+use std::io::Write;
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::time::{Duration, Instant};
+use touchoff::haptic::spacenav::{Flight, Spacenav};
+use touchoff::haptic::{Device, DeviceError};
+use touchoff::{Pose, Unit};
+use touchoff_tests::measure::haptics::upright;
+
+fn event(kind: i32, pushed: [i32; 6]) -> [u8; 32] {
+    let mut bytes = [0; 32];
+    let numbers = std::iter::once(kind).chain(pushed).chain([16]);
+    for (place, number) in bytes.chunks_exact_mut(4).zip(numbers) {
+        place.copy_from_slice(&number.to_ne_bytes());
+    }
+    bytes
+}
+
+const FLIGHT: Flight = Flight { way: 100.0, turn: 1.0 };
+
+fn opened(folder: &tempfile::TempDir) -> (UnixListener, UnixStream, Spacenav) {
+    let socket = folder.path().join("spnav.sock");
+    let listener = UnixListener::bind(&socket).expect("a socket");
+    let start = (upright(10.0), Unit::Millimetre);
+    let device = Spacenav::open(&socket, start, (1000.0, FLIGHT)).expect("a daemon");
+    let (stream, _) = listener.accept().expect("a client");
+    (listener, stream, device)
+}
+
+/// Asks until something is so, or a second is over.
+fn until(
+    device: &mut Spacenav,
+    so: impl Fn(&Result<Pose, DeviceError>) -> bool,
+) -> Result<Pose, DeviceError> {
+    let start = Instant::now();
+    loop {
+        let said = device.pose();
+        if so(&said) || start.elapsed() > Duration::from_secs(2) {
+            return said;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn moves(device: &mut Spacenav) -> Vector3<f64> {
+    let [before, after] = [0, 1].map(|_| device.pose().expect("a pose").tip());
+    after - before
+}
+
+#[test]
+fn the_cap_is_the_tools_speed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_listener, mut stream, mut device) = opened(&folder);
+    assert_eq!(device.pose().expect("a pose"), upright(10.0));
+    // In two pieces, with a button between two motions.
+    let right = event(0, [350, 0, 0, 0, 0, 0]);
+    stream.write_all(&right[..13]).expect("sent");
+    stream.flush().expect("sent");
+    stream.write_all(&right[13..]).expect("sent");
+    stream.write_all(&event(1, [3, 0, 0, 0, 0, 0])).expect("sent");
+    until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().x > 0.0)).expect("a pose");
+    assert!((moves(&mut device) - Vector3::new(0.1, 0.0, 0.0)).norm() < 1e-12);
+    stream.write_all(&event(0, [0, 175, 0, 0, 0, 0])).expect("sent");
+    let x = device.pose().expect("a pose").tip().z;
+    until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().z > x + 0.04)).expect("up");
+    assert!((moves(&mut device) - Vector3::new(0.0, 0.0, 0.05)).norm() < 1e-12);
+    // A cap that is let go says so; one that says nothing is not pushed either.
+    std::thread::sleep(Duration::from_millis(600));
+    device.pose().expect("a pose");
+    assert_eq!(moves(&mut device), Vector3::zeros());
+}
+
+#[test]
+fn a_daemon_that_goes_away_is_called_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (listener, stream, mut device) = opened(&folder);
+    drop(stream);
+    let said = until(&mut device, Result::is_err);
+    assert!(matches!(said, Err(DeviceError::Gone(_))), "{said:?}");
+    let (mut stream, _) = listener.accept().expect("it calls again");
+    until(&mut device, Result::is_ok).expect("it is there again");
+    stream.write_all(&event(0, [0, 0, 350, 0, 0, 0])).expect("sent");
+    let away = until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().y > 0.0));
+    assert!(away.expect("a pose").tip().y > 0.0);
+}
+
+#[test]
+fn nobody_there_is_an_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = (upright(10.0), Unit::Millimetre);
+    let nobody = folder.path().join("nobody.sock");
+    assert!(Spacenav::open(&nobody, start, (1000.0, FLIGHT)).is_err());
+}

@@ -1,0 +1,137 @@
+//! Cycles at their time, by clocks of every kind.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use touchoff::haptic::{
+    Clock, DeviceError, Monotonic, Recorded, Report, Scripted, Session, Settings, Unhurried, run,
+    watched,
+};
+use touchoff::{Law, Part, Pose, Probe};
+use touchoff_tests::measure::haptics::wall::LIMITS;
+use touchoff_tests::measure::haptics::{block, tool, upright};
+
+fn session(part: &Part) -> Session<'_> {
+    Session::new(Probe::new(part, tool("Flat")).law(Law::Gradient), &Settings::new(1000.0), LIMITS)
+}
+
+/// Cycles.
+const SECOND: u64 = 1000;
+
+fn ran(clock: &mut impl Clock) -> Report {
+    let part = block(5_000);
+    let mut device = Scripted::new(LIMITS, |_| Ok(upright(-0.2)));
+    let (mut watch, _latest, _samples) = watched(16);
+    let stop = AtomicBool::new(false);
+    run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop)
+}
+
+#[test]
+fn a_second_takes_a_second() {
+    let mut clock = Monotonic::new(Duration::from_micros(100));
+    let report = ran(&mut clock);
+    assert_eq!(report.cycles + report.left_out, 1000);
+    assert!(clock.now() >= Duration::from_millis(999));
+    assert_eq!(report.stalls, 0);
+    assert_eq!(report.took.len(), report.cycles);
+    assert!(report.peak[0] > 0.1);
+}
+
+/// A clock by a list of what happens at which cycle.
+struct Wrong {
+    time: Duration,
+    waited: u64,
+    at: u64,
+    jump: fn(Duration) -> Duration,
+}
+
+impl Clock for Wrong {
+    fn now(&mut self) -> Duration {
+        self.time
+    }
+    fn wait_until(&mut self, time: Duration) {
+        self.waited += 1;
+        self.time = self.time.max(time);
+        if self.waited == self.at {
+            self.time = (self.jump)(self.time);
+        }
+    }
+}
+
+fn wrong(jump: fn(Duration) -> Duration) -> Report {
+    ran(&mut Wrong { time: Duration::from_secs(100), waited: 0, at: 500, jump })
+}
+
+#[test]
+fn a_clock_that_jumps_is_survived() {
+    let ahead = wrong(|time| time + Duration::from_secs(3600));
+    assert_eq!((ahead.cycles, ahead.left_out, ahead.stalls), (1000, 0, 1));
+    let back = wrong(|time| time - Duration::from_secs(50));
+    assert_eq!((back.cycles, back.left_out, back.stalls), (1000, 0, 1));
+}
+
+#[test]
+fn a_starved_thread_leaves_cycles_out() {
+    let late = wrong(|time| time + Duration::from_micros(7_500));
+    assert_eq!((late.cycles, late.missed, late.left_out, late.stalls), (994, 1, 6, 0));
+    // To three digits.
+    assert!((late.late.max() as f64 / 7.5e6 - 1.0).abs() < 1e-3, "{}", late.late.max());
+}
+
+#[test]
+fn it_stops_when_it_is_told_or_nothing_is_left() {
+    let part = block(5_000);
+    let (mut watch, _latest, _samples) = watched(16);
+    let stop = AtomicBool::new(false);
+    let stops = |cycle: u64| {
+        if cycle == 99 {
+            stop.store(true, Ordering::Relaxed);
+        }
+        Ok(upright(1.0))
+    };
+    let clock = &mut Unhurried::default();
+    let mut device = Scripted::new(LIMITS, stops);
+    let report = run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop);
+    assert_eq!(report.cycles, 100);
+
+    let never = AtomicBool::new(false);
+    let path = vec![upright(1.0), upright(-1.0), upright(1.0)];
+    let mut played = Recorded::new(path, 50, LIMITS).expect("no axis turns over");
+    let report = run((&mut session(&part), &mut played), (clock, SECOND), &mut watch, &never);
+    assert_eq!(report.cycles, 51);
+}
+
+/// Whoever watches sees states in order, and a record has all of them; one that is not emptied loses some
+/// and says how many.
+#[test]
+fn others_see_it() {
+    let part = block(5_000);
+    let script = |cycle: u64| -> Result<Pose, DeviceError> { Ok(upright(-1e-4 * cycle as f64)) };
+    let (mut watch, mut latest, samples) = watched(1000);
+    assert!(latest.read().is_none());
+    let stop = AtomicBool::new(false);
+    let report = std::thread::scope(|scope| {
+        let looped = scope.spawn(|| {
+            let mut device = Scripted::new(LIMITS, script);
+            let clock = &mut Monotonic::new(Duration::ZERO);
+            run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop)
+        });
+        let mut seen = 0;
+        while !looped.is_finished() {
+            if let Some(state) = latest.read() {
+                assert!(state.cycle >= seen);
+                seen = state.cycle;
+            }
+        }
+        looped.join().expect("the loop panics at nothing")
+    });
+    assert_eq!(report.lost, 0);
+    let cycles: Vec<u64> = samples.map(|state| state.cycle).collect();
+    assert_eq!(cycles, (0..report.cycles).collect::<Vec<u64>>());
+    assert_eq!(latest.read().map(|state| state.cycle), report.last.map(|state| state.cycle));
+
+    let (mut watch, _latest, _full) = watched(10);
+    let clock = &mut Unhurried::default();
+    let mut device = Scripted::new(LIMITS, script);
+    let report = run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop);
+    assert_eq!(report.lost, 990);
+}
