@@ -45,7 +45,7 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
     let sheet = |what: &str, title: &str, row: usize| {
         let (x, y) = axes(what);
         measured.sheet.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
-            let points = points.iter().map(|point| [point[0], point[row]]).collect();
+            let points = points.iter().step_by(20).map(|point| [point[0], point[row]]).collect();
             plot.with(Series::line(*name, points))
         })
     };
@@ -59,7 +59,7 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
             let point = |(cycle, energy): (usize, &Energy)| {
                 [cycle as f64 / 1000.0, energy.put_in - energy.held]
             };
-            let points = energies.iter().enumerate().step_by(10).map(point).collect();
+            let points = energies.iter().enumerate().step_by(25).map(point).collect();
             plot.with(Series::line(*name, points))
         },
     );
