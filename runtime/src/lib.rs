@@ -45,6 +45,8 @@ pub mod mesh;
 mod motion;
 mod part;
 mod pose;
+#[cfg(feature = "postures")]
+pub mod postures;
 pub mod precision;
 mod probe;
 pub mod program;
