@@ -34,6 +34,8 @@ use body::Body;
 use body::field::Field;
 use body::section::Section;
 use fearless_simd::Level;
+#[cfg(feature = "postures")]
+use nalgebra::{Point3, Vector3};
 use question::Question;
 use std::slice;
 use sweep::{Stop, Sweeper, Task};
@@ -46,8 +48,7 @@ use work::{Setting, Work};
 /// is asked about is the tool's surface as its profile draws it.
 ///
 /// ```
-/// use nalgebra::{Point3, Vector3};
-/// use touchoff::certify::{Certifier, Facets};
+/// /// use touchoff::certify::{Certifier, Facets};
 /// use touchoff::{Pose, Unit, mesh::shapes};
 ///
 /// touchoff::tool! {
@@ -209,6 +210,51 @@ impl<'a> Certifier<'a> {
     /// Whether the tool is clear of the part, or no deeper in it than is [allowed](Certifier::allow). It
     /// stops at the first point that is.
     pub fn clear(&mut self, pose: &Pose) -> Clear {
+        match self.touches(pose) {
+            Touch::Yes(witness) => Clear::Touching(witness),
+            Touch::Undecided(high) => Clear::Undecided(high),
+            Touch::No => {
+                let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
+                match self.setting.within(rules, pose, 4.0 * self.setting.error) {
+                    Some(true) => Clear::Inside,
+                    Some(false) => Clear::Clear,
+                    None => Clear::Untouched,
+                }
+            }
+        }
+    }
+
+    /// Whether what may not be in the part is wholly inside it, where no triangle touches it.
+    #[cfg(feature = "postures")]
+    pub(crate) fn is_inside(&self, pose: &Pose) -> bool {
+        let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
+        self.setting.within(rules, pose, 4.0 * self.setting.error) == Some(true)
+    }
+
+    /// Whether the axis passes all of what may not be in the part in one stretch.
+    #[cfg(feature = "postures")]
+    pub(crate) fn is_one_piece(&self) -> bool {
+        let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
+        match &self.setting.body {
+            Body::Profile(section) => Question::are_one_piece(rules, section),
+            Body::Field(_) => false,
+        }
+    }
+
+    /// Begins as if nothing had been asked yet.
+    #[cfg(feature = "postures")]
+    pub(crate) fn forget(&mut self) {
+        self.work.forget();
+    }
+
+    #[cfg(feature = "postures")]
+    /// proto
+    pub(crate) fn clearance_of_rest(&mut self, pose: &Pose) -> f64 {
+        self.clearance(pose, 1.0).distance[0]
+    }
+
+    /// Whether a triangle of the part is in the tool, deeper than is allowed.
+    pub(crate) fn touches(&mut self, pose: &Pose) -> Touch {
         let Certifier { setting, whole, rules, work, budget, .. } = self;
         let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
         let touch = 2.0 * setting.error;
@@ -226,21 +272,33 @@ impl<'a> Certifier<'a> {
             if let Some(best) = &work.best
                 && work.search.best > goal.enough + work.skew
             {
-                return Clear::Touching(setting.witness(best, pose));
+                return Touch::Yes(setting.witness(best, pose));
             }
             if work.best.is_some() || work.search.open() {
                 let high = work.search.most.max(work.search.wanted()) + touch + work.skew;
                 open = Some(open.unwrap_or(0.0).max(high - rule.limit));
             }
         }
-        match open {
-            Some(high) => Clear::Undecided(high * setting.length),
-            None => match setting.within(rules, pose, 2.0 * touch) {
-                Some(true) => Clear::Inside,
-                Some(false) => Clear::Clear,
-                None => Clear::Untouched,
-            },
-        }
+        open.map_or(Touch::No, |high| Touch::Undecided(high * setting.length))
+    }
+
+    /// Whether a place of the part, in the world, is surely deeper than is [allowed](Certifier::allow).
+    #[cfg(feature = "postures")]
+    pub(crate) fn is_too_deep(
+        &mut self,
+        pose: (&Point3<f64>, &Vector3<f64>),
+        place: &Point3<f64>,
+    ) -> bool {
+        let Certifier { setting, whole, rules, work, .. } = self;
+        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
+        let (tip, axis) = pose;
+        let way = (place - tip) / setting.length;
+        let z = way.dot(axis);
+        let d = (way.norm_squared() - z * z).max(0.0).sqrt();
+        rules.iter().any(|rule| {
+            rule.limit >= 0.0
+                && work.depth(setting, rule, [d, 0.0, z]) > rule.limit + 2.0 * setting.error
+        })
     }
 
     /// Whether the tool stays clear of the part all along a motion, or no deeper in it than is
@@ -250,8 +308,7 @@ impl<'a> Certifier<'a> {
     /// A motion says nothing of spin, so that of a solid without an axis all is undecided.
     ///
     /// ```
-    /// # use nalgebra::{Point3, Vector3};
-    /// # use touchoff::certify::{Certifier, Facets, Sweep};
+    /// #     /// # use touchoff::certify::{Certifier, Facets, Sweep};
     /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
     /// touchoff::tool! {
     ///     tool EndMill "12 mm across, 20 mm of it cut" {
@@ -346,6 +403,14 @@ impl<'a> Certifier<'a> {
             witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
         }
     }
+}
+
+/// Whether a triangle is deeper than is allowed.
+pub(crate) enum Touch {
+    No,
+    Yes(Witness),
+    /// By no more than this, in the part's unit.
+    Undecided(f64),
 }
 
 /// The deepest place that owners have.

@@ -83,6 +83,28 @@ impl Question {
         }
     }
 
+    /// Whether the places of the axis that are deeper than may be are one stretch.
+    #[cfg(feature = "postures")]
+    pub(crate) fn are_one_piece(rules: &[Question], section: &Section) -> bool {
+        let part = |k: u32| f64::from(2 * k + 1) / f64::from(2 * PLACES);
+        let heights = section
+            .slabs
+            .iter()
+            .flat_map(|slab| (0..PLACES).map(|k| slab.low + (slab.high - slab.low) * part(k)));
+        let deep = heights.map(|z| {
+            rules.iter().filter(|rule| rule.limit >= 0.0).any(|rule| {
+                let depth = section.depth_at(&rule.owners, [0.0, z]);
+                depth.is_some_and(|depth| depth.value > rule.limit)
+            })
+        });
+        let (mut stretches, mut before) = (0, false);
+        for deep in deep {
+            stretches += u32::from(deep && !before);
+            before = deep;
+        }
+        stretches == 1
+    }
+
     /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.
     pub(crate) fn of_field(card: &Card, field: &Field<'_>, errors: [f64; 2]) -> Question {
         let [low, high] = card.reach();

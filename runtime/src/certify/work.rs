@@ -7,6 +7,8 @@ use crate::certify::bounds::batch::Batch;
 use crate::certify::bounds::descent::Descent;
 use crate::certify::part::{Facets, flat};
 use crate::certify::question::Question;
+#[cfg(feature = "postures")]
+use crate::certify::space::Point;
 use crate::certify::triangle::course::{Best, Found, Goal, Search};
 use crate::certify::triangle::facet::Facet;
 use crate::pose::Pose;
@@ -184,6 +186,19 @@ impl Work {
             self.beside(of, question);
         }
         self.descend(of, question, pose, Side::Outside, margin);
+    }
+
+    /// Begins as if nothing had been asked yet.
+    #[cfg(feature = "postures")]
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// How deep owners are at a place of the tool's frame, or less than 0.
+    #[cfg(feature = "postures")]
+    pub(crate) fn depth(&mut self, of: &Setting<'_>, question: &Question, place: Point) -> f64 {
+        let depth = of.body.depth(&mut self.scratch, &question.owners, place);
+        depth.map_or(f64::NEG_INFINITY, |depth| depth.value)
     }
 
     /// How far the part's middle is at most.

@@ -1,5 +1,7 @@
 //! What is known of a triangle.
 
+use std::cmp::Ordering;
+
 /// A posture on record: how a tool stands at a triangle, and what is proved of it. Lengths are in the
 /// part's unit, places in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +18,22 @@ pub struct Record {
     pub depth: f64,
     /// What of the tool does not cut is no nearer to the part; 0 where it touches as deep as is allowed.
     pub clearance: f64,
+}
+
+impl Record {
+    /// Which of two is better: the nicer, then that with more clearance, then the less deep, then the
+    /// earlier tool; where all is the same, the order of their numbers.
+    pub fn order(&self, other: &Record) -> Ordering {
+        let numbers = |record: &Record| [record.tip, record.axis].concat();
+        let (mine, others) = (numbers(self), numbers(other));
+        let by_number = mine.iter().zip(&others).map(|(a, b)| a.total_cmp(b));
+        (other.niceness as f32)
+            .total_cmp(&(self.niceness as f32))
+            .then(other.clearance.total_cmp(&self.clearance))
+            .then(self.depth.total_cmp(&other.depth))
+            .then(self.tool.cmp(&other.tool))
+            .then_with(|| by_number.fold(Ordering::Equal, Ordering::then))
+    }
 }
 
 /// From where a tool reaches a triangle.
