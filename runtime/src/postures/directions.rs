@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
     list: Vec<[f64; 3]>,
-    /// Of each the others, the nearest first.
+    /// Of each all of them, the nearest first.
     beside: Vec<Vec<u16>>,
 }
 
@@ -41,12 +41,16 @@ impl Directions {
         self.list.len().div_ceil(64)
     }
 
+    /// All directions, the nearest to one of them first, that is itself.
+    pub(crate) fn beside(&self, direction: usize) -> impl Iterator<Item = usize> {
+        self.beside[direction].iter().map(|other| usize::from(*other))
+    }
+
     /// How far a direction of a set is from the nearest that is not, as the cosine of that angle; -1 if all
     /// are.
     pub(crate) fn margin(&self, set: &[u64], direction: usize) -> f64 {
         let way = Vector3::from(self.list[direction]);
-        let mut others = self.beside[direction].iter().map(|other| usize::from(*other));
-        let out = others.find(|other| !has(set, *other));
+        let out = self.beside(direction).find(|other| !has(set, *other));
         out.map_or(-1.0, |other| way.dot(&Vector3::from(self.list[other])))
     }
 

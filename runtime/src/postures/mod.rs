@@ -3,6 +3,7 @@
 mod contact;
 mod directions;
 mod holder;
+pub mod path;
 mod row;
 mod rules;
 pub mod sweep;
