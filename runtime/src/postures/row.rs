@@ -1,8 +1,12 @@
 //! What is known of a triangle.
 
+use crate::{Pose, PoseError};
+use nalgebra::Point3;
+use serde::{Deserialize, Serialize};
+
 /// A posture on record: how a tool stands at a triangle, and what is proved of it. Lengths are in the
 /// part's unit, places in its frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// The tool, by its place in the map's list.
     pub tool: u16,
@@ -18,8 +22,18 @@ pub struct Record {
     pub clearance: f64,
 }
 
+impl Record {
+    /// The pose that was judged, bit for bit.
+    ///
+    /// # Errors
+    /// If tip and axis are none; those of a map are.
+    pub fn pose(&self) -> Result<Pose, PoseError> {
+        Pose::from_axis(Point3::from(self.tip), self.axis.into())
+    }
+}
+
 /// From where a tool reaches a triangle.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Access {
     /// The tool, by its place in the map's list.
     pub tool: u16,
@@ -31,7 +45,7 @@ pub struct Access {
 }
 
 /// What a map knows of a triangle.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The best postures on record, the nicest first.
     pub best: Vec<Record>,
