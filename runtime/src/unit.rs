@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 /// A unit of length, by the words that `.tool` files and the program use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "postures", derive(serde::Serialize, serde::Deserialize))]
 pub enum Unit {
     /// `mm`
     Millimetre,

@@ -10,6 +10,7 @@
 //! cannot fail.
 
 pub mod bound;
+mod digest;
 pub mod domain;
 pub mod draw;
 pub mod emit;
@@ -27,6 +28,8 @@ pub mod report;
 pub mod resolve;
 pub mod source;
 pub mod syntax;
+
+pub use digest::digest;
 
 use bound::{Extent, Slab};
 use model::Model;

@@ -14,6 +14,7 @@
 //! answers are widened by that. Thin triangles are known less well: their *skew* is added.
 
 mod answer;
+mod apart;
 mod body;
 mod bounds;
 mod part;
@@ -30,6 +31,7 @@ use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tool::{Card, Shape, Tool};
 use crate::tree::Sight;
+use apart::Apart;
 use body::Body;
 use body::field::Field;
 use body::section::Section;
@@ -83,6 +85,8 @@ pub struct Certifier<'a> {
     /// allowed.
     allowed: Vec<f64>,
     rules: Option<Vec<Question>>,
+    /// Of the surfaces whose distance was asked for last, what to ask for it.
+    apart: Option<Apart>,
     budget: u32,
     work: Work,
     sweeper: Sweeper,
@@ -121,6 +125,7 @@ impl<'a> Certifier<'a> {
             each: (0..surfaces).map(|_| None).collect(),
             allowed: vec![0.0; surfaces],
             rules: None,
+            apart: None,
             budget: 1 << 20,
             work: Work::default(),
             sweeper: Sweeper::default(),
@@ -247,12 +252,6 @@ impl<'a> Certifier<'a> {
         self.work.forget();
     }
 
-    #[cfg(feature = "postures")]
-    /// proto
-    pub(crate) fn clearance_of_rest(&mut self, pose: &Pose) -> f64 {
-        self.clearance(pose, 1.0).distance[0]
-    }
-
     /// Whether a triangle of the part is in the tool, deeper than is allowed.
     pub(crate) fn touches(&mut self, pose: &Pose) -> Touch {
         let Certifier { setting, whole, rules, work, budget, .. } = self;
@@ -369,38 +368,6 @@ impl<'a> Certifier<'a> {
                 Some(false) => Sweep::Clear,
                 None => Sweep::Untouched,
             },
-        }
-    }
-
-    /// How far the part's triangles are from the tool: an interval no wider than the tolerance, in the
-    /// part's unit, and what rounding adds; 0 where they touch. A tool wholly inside the material is as
-    /// far from its surface.
-    pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
-        let Certifier { setting, whole, work, budget, .. } = self;
-        let touch = 2.0 * setting.error;
-        let goal = Goal { least: -touch, tolerance: touch, enough: touch, budget: *budget };
-        work.inside(setting, whole, pose, goal);
-        if let Some(best) = &work.best {
-            let witness = setting.witness(best, pose);
-            let high = if work.search.best > touch { 0.0 } else { 2.0 * touch + work.skew };
-            let distance = [0.0, high * setting.length];
-            return Clearance { distance, witness: Some(witness) };
-        }
-        let unsure = work.search.open();
-        // Rounding grows with the distance.
-        let error = setting.error + 64.0 * f64::EPSILON * work.far();
-        // Written so that what is not a number is no tolerance.
-        let tolerance = (4.0 * error).max(tolerance / setting.length);
-        let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];
-        work.outside(setting, whole, pose, Goal { least, tolerance, enough, budget: *budget });
-        let more = error + work.skew;
-        let low = -work.search.wanted().max(work.search.most) - more;
-        let low = if unsure { 0.0 } else { low.max(0.0) };
-        // What a field says of places outside is no more than the distance.
-        let high = if setting.exact { -work.search.best + more } else { f64::INFINITY };
-        Clearance {
-            distance: [low, high].map(|distance| distance * setting.length),
-            witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
         }
     }
 }

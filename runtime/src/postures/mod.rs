@@ -3,11 +3,19 @@
 mod contact;
 mod directions;
 mod holder;
+mod judge;
+mod map;
 pub mod path;
+mod ramp;
+#[cfg(feature = "haptic")]
+mod recorder;
 mod row;
-mod rules;
 pub mod sweep;
 
 pub use directions::Directions;
+pub use judge::{Judge, JudgeError, Rules, RulesError};
+pub use map::{Coverage, Difference, Identity, MapError, PartStamp, PostureMap, Rows, ToolStamp};
+pub use ramp::colour;
+#[cfg(feature = "haptic")]
+pub use recorder::{Recorded, Recorder, RecorderError};
 pub use row::{Access, Record, Row};
-pub use rules::{Rules, RulesError};

@@ -1,10 +1,12 @@
 //! What is known of a triangle.
 
-use std::cmp::Ordering;
+use crate::{Pose, PoseError};
+use nalgebra::Point3;
+use serde::{Deserialize, Serialize};
 
 /// A posture on record: how a tool stands at a triangle, and what is proved of it. Lengths are in the
 /// part's unit, places in its frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// The tool, by its place in the map's list.
     pub tool: u16,
@@ -21,23 +23,17 @@ pub struct Record {
 }
 
 impl Record {
-    /// Which of two is better: the nicer, then that with more clearance, then the less deep, then the
-    /// earlier tool; where all is the same, the order of their numbers.
-    pub fn order(&self, other: &Record) -> Ordering {
-        let numbers = |record: &Record| [record.tip, record.axis].concat();
-        let (mine, others) = (numbers(self), numbers(other));
-        let by_number = mine.iter().zip(&others).map(|(a, b)| a.total_cmp(b));
-        (other.niceness as f32)
-            .total_cmp(&(self.niceness as f32))
-            .then(other.clearance.total_cmp(&self.clearance))
-            .then(self.depth.total_cmp(&other.depth))
-            .then(self.tool.cmp(&other.tool))
-            .then_with(|| by_number.fold(Ordering::Equal, Ordering::then))
+    /// The pose that was judged, bit for bit.
+    ///
+    /// # Errors
+    /// If tip and axis are none; those of a map are.
+    pub fn pose(&self) -> Result<Pose, PoseError> {
+        Pose::from_axis(Point3::from(self.tip), self.axis.into())
     }
 }
 
 /// From where a tool reaches a triangle.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Access {
     /// The tool, by its place in the map's list.
     pub tool: u16,
@@ -49,7 +45,7 @@ pub struct Access {
 }
 
 /// What a map knows of a triangle.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The best postures on record, the nicest first.
     pub best: Vec<Record>,

@@ -26,6 +26,10 @@ pub struct Card {
     pub outline: Cow<'static, [Piece]>,
     /// What is proved of depth.
     pub depth: Depth,
+    /// A number that changes whenever anything that the tool answers may: its versions are told apart by it.
+    /// How its file is laid out, comments, its name and its title do not matter. A tool of one's own that is
+    /// kept account of by its digest has to change it likewise.
+    pub digest: u64,
 }
 
 /// What is proved of a tool's depth and the distance to its surface, of all points inside.
@@ -62,6 +66,7 @@ impl Card {
         (surfaces, regions): (&'static [Surface], &'static [Region]),
         (shape, envelope): (Shape, &'static [Slab]),
         (outline, depth): (&'static [Piece], Depth),
+        digest: u64,
     ) -> Card {
         Card {
             name: Cow::Borrowed(name),
@@ -73,6 +78,7 @@ impl Card {
             shape,
             outline: Cow::Borrowed(outline),
             depth,
+            digest,
         }
     }
 

@@ -13,7 +13,7 @@ use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Value, Walk};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile_with, model, report};
+use tool_dsl::{Checked, compile_with, digest, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
@@ -111,6 +111,7 @@ fn card(tool: &Checked) -> Card {
             let Bounds { least, lipschitz, rounding } = tool.bounds;
             Depth { least, lipschitz, rounding: rounding[0], rounding_single: rounding[1] }
         },
+        digest: digest(tool),
     }
 }
 

@@ -12,6 +12,7 @@ pub use listing::{model, regions, tree};
 
 use crate::Checked;
 use crate::bound::across;
+use crate::digest;
 use crate::domain::Domain;
 use crate::draw::{self, Lettering};
 use crate::expr::Id;
@@ -19,7 +20,7 @@ use crate::model::Outputs;
 use crate::plan::Tree;
 use crate::report::figure;
 use code::{Form, Writer};
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::fmt::Write;
 use tokens::{Tokens, literal};
@@ -166,6 +167,7 @@ fn card(tool: &Checked) -> TokenStream {
             }
         }
     });
+    let digest = Literal::u64_suffixed(digest(tool));
     let [rounding, single] = tool.bounds.rounding.map(literal);
     let [least, lipschitz] = [tool.bounds.least, tool.bounds.lipschitz].map(|bound| match bound {
         Some(bound) => {
@@ -196,6 +198,7 @@ fn card(tool: &Checked) -> TokenStream {
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
                 (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding, rounding_single: #single }),
+                #digest,
             );
             &CARD
         }

@@ -15,9 +15,8 @@ mod axes;
 mod link;
 mod slice;
 
-use super::Directions;
+use super::{Directions, Judge, JudgeError, Rules};
 use super::contact::Sites;
-use super::rules::{Rules, RulesError};
 use crate::certify::{Certifier, Facets, Sweep, Touch};
 use crate::tool::{Ask, Felt, Points};
 use crate::{Level, Mesh, Motion, Pose, Stop, Tool, cores};
@@ -59,9 +58,9 @@ pub enum PathError {
         /// How many may be.
         most: usize,
     },
-    /// Nothing of the tool can be held to the rules.
+    /// The rules mean nothing, or nothing of the tool can be held to them.
     #[error(transparent)]
-    Rules(#[from] RulesError),
+    Judge(#[from] JudgeError),
     /// There is no posture to go through.
     #[error(
         "the tool reaches none of the places where the planes cut the part: sweep with it first, or take \
@@ -176,14 +175,14 @@ impl<'a> Leader<'a> {
         facets: &'a Facets,
         tool: &'a dyn Tool,
         rules: &'a Rules,
-    ) -> Result<Leader<'a>, RulesError> {
+    ) -> Result<Leader<'a>, JudgeError> {
         let length = tool.card().unit.to(facets.unit());
         let at_stops = Rules { tolerance: rules.tolerance * (1.0 - BETWEEN), ..rules.clone() };
         Ok(Leader {
             tool,
             length,
             sites: Sites::new(tool.card(), length),
-            certifier: at_stops.certifier(facets, tool)?.budget(BUDGET),
+            certifier: Judge::new(facets, tool, &at_stops)?.certifier.budget(BUDGET),
             rules,
             points: Points::default(),
             felt: Felt::default(),

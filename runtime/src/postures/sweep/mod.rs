@@ -11,10 +11,10 @@ mod worker;
 
 pub use tally::Tally;
 
-use super::rules::{Rules, RulesError};
-use super::{Directions, Row};
+use super::{Directions, JudgeError, Row, Rules, RulesError};
 use crate::certify::Facets;
 use crate::{Mesh, Tool};
+use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
@@ -30,7 +30,7 @@ pub struct Sweep<'a> {
     tools: Vec<&'a dyn Tool>,
     directions: &'a Directions,
     rules: Rules,
-    keep: usize,
+    keep: NonZeroU16,
 }
 
 /// Why a sweep cannot be done.
@@ -39,17 +39,12 @@ pub enum SweepError {
     /// A tool has no surface that cuts.
     #[error("nothing of {0} cuts: write `cutting` behind the surface in its file")]
     Blunt(String),
-    /// A name that no tool has a surface of.
-    #[error("no tool has a surface `{surface}`; they have {known}")]
-    NoSurface {
-        /// The name.
-        surface: String,
-        /// Those that there are.
-        known: String,
-    },
-    /// The rules mean nothing, or nothing of a tool can be held to them.
+    /// The rules mean nothing.
     #[error(transparent)]
     Rules(#[from] RulesError),
+    /// Nothing of a tool can be held to them.
+    #[error(transparent)]
+    Judge(#[from] JudgeError),
 }
 
 /// Rows of neighbours, by the ids of their triangles, and what they took.
@@ -62,7 +57,7 @@ pub struct Batch {
 }
 
 impl<'a> Sweep<'a> {
-    /// A sweep of a mesh and its triangles, keeping so many of the best postures of each, one at least.
+    /// A sweep of a mesh and its triangles, keeping so many of the best postures of each.
     ///
     /// # Errors
     /// If the rules or the tools mean nothing; see [`SweepError`].
@@ -71,21 +66,10 @@ impl<'a> Sweep<'a> {
         tools: Vec<&'a dyn Tool>,
         directions: &'a Directions,
         rules: Rules,
-        keep: usize,
+        keep: NonZeroU16,
     ) -> Result<Sweep<'a>, SweepError> {
-        let surfaces = || tools.iter().flat_map(|tool| tool.card().surfaces.iter());
-        for (surface, _) in &rules.allowed {
-            if !surfaces().any(|known| known.name == *surface) {
-                let mut known: Vec<String> = surfaces().map(|s| format!("`{}`", s.name)).collect();
-                known.sort();
-                known.dedup();
-                return Err(SweepError::NoSurface {
-                    surface: surface.clone(),
-                    known: known.join(", "),
-                });
-            }
-        }
-        let sweep = Sweep { mesh, facets, tools, directions, rules, keep: keep.max(1) };
+        rules.check(&tools)?;
+        let sweep = Sweep { mesh, facets, tools, directions, rules, keep };
         for tool in &sweep.tools {
             if !tool.card().surfaces.iter().any(|surface| surface.cutting) {
                 return Err(SweepError::Blunt(tool.card().name.to_string()));

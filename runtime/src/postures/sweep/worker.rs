@@ -2,11 +2,12 @@
 
 use super::tally::Decided;
 use super::{Batch, Sweep, SweepError, Tally};
-use crate::certify::{Certifier, Touch};
+use crate::certify::Touch;
 use crate::pose::Pose;
 use crate::postures::contact::Sites;
 use crate::postures::holder::Holder;
-use crate::postures::{Access, Record, Row};
+use crate::postures::map::merge;
+use crate::postures::{Access, Judge, Record, Row};
 use crate::tool::{Ask, Felt, Points};
 use crate::{Level, Tool};
 use nalgebra::{Point3, Vector3};
@@ -27,7 +28,7 @@ struct Tried<'a> {
     length: f64,
     sites: Sites,
     holder: Option<Holder>,
-    certifier: Certifier<'a>,
+    judge: Judge<'a>,
     /// Whether what of it may not be in the part is one piece: if one place of it is outside the part, and no
     /// triangle touches it, all of it is.
     one_piece: bool,
@@ -79,8 +80,7 @@ impl<'a> Worker<'a> {
             }
         }
         for (_, row) in &mut rows {
-            row.best.sort_by(Record::order);
-            row.best.truncate(self.of.keep);
+            merge(&mut row.best, &[], self.of.keep);
         }
         Batch { rows, tally }
     }
@@ -89,15 +89,15 @@ impl<'a> Worker<'a> {
 impl<'a> Tried<'a> {
     fn new(of: &Sweep<'a>, tool: &'a dyn Tool, index: u16) -> Result<Tried<'a>, SweepError> {
         let (card, length) = (tool.card(), tool.card().unit.to(of.facets.unit()));
-        let certifier = of.rules.certifier(of.facets, tool)?;
+        let judge = Judge::new(of.facets, tool, &of.rules)?;
         Ok(Tried {
             tool,
             index,
             length,
             sites: Sites::new(card, length),
             holder: Holder::new(card, length),
-            one_piece: certifier.is_one_piece(),
-            certifier,
+            one_piece: judge.certifier.is_one_piece(),
+            judge,
             known: vec![Vec::new(); of.directions.list().len()],
             postures: Vec::new(),
             points: Points::default(),
@@ -107,7 +107,7 @@ impl<'a> Tried<'a> {
 
     /// Begins anew, so that a batch does not depend on the one before.
     fn forget(&mut self) {
-        self.certifier.forget();
+        self.judge.certifier.forget();
         self.known.iter_mut().for_each(Vec::clear);
     }
 
@@ -132,7 +132,7 @@ impl<'a> Tried<'a> {
         for contacts in postures.chunk_by(|a, b| a.direction == b.direction) {
             let mut decided = Decided::Plain;
             for posture in contacts.iter().filter(|contact| contact.niceness > of.rules.niceness) {
-                decided = self.judge(of, posture, spot, &mut outside);
+                decided = self.decide(of, posture, spot, &mut outside);
                 if decided == Decided::Acceptable {
                     directions[posture.direction / 64] |= 1 << (posture.direction % 64);
                     reached.push(*posture);
@@ -151,10 +151,10 @@ impl<'a> Tried<'a> {
         ranked.sort_by(|((nice, margin), _), ((other, wide), _)| {
             other.total_cmp(nice).then(wide.total_cmp(margin))
         });
-        for (_, posture) in ranked.into_iter().take(of.keep) {
+        for (_, posture) in ranked.into_iter().take(of.keep.get().into()) {
             let axis = of.directions.list()[posture.direction];
             if let Ok(pose) = Pose::from_axis(posture.tip, axis.into()) {
-                best.push(self.record(of, &pose, posture.niceness));
+                best.push(self.record(&pose, posture.niceness));
             }
         }
         Access { tool: self.index, directions, stickout }
@@ -182,7 +182,7 @@ impl<'a> Tried<'a> {
             .sort_by(|a, b| a.direction.cmp(&b.direction).then(b.niceness.total_cmp(&a.niceness)));
     }
 
-    fn judge(
+    fn decide(
         &mut self,
         of: &Sweep<'a>,
         posture: &Posture,
@@ -191,7 +191,7 @@ impl<'a> Tried<'a> {
     ) -> Decided {
         let axis = Vector3::from(of.directions.list()[posture.direction]);
         let known = &mut self.known[posture.direction];
-        let certifier = &mut self.certifier;
+        let certifier = &mut self.judge.certifier;
         let stands = (&posture.tip, &axis);
         if let Some(at) = known.iter().position(|place| certifier.is_too_deep(stands, place)) {
             known[..=at].rotate_right(1);
@@ -219,18 +219,12 @@ impl<'a> Tried<'a> {
     }
 
     /// What is proved of a posture.
-    fn record(&mut self, of: &Sweep<'a>, pose: &Pose, niceness: f64) -> Record {
-        let [_, depth] = self.certifier.deepest(pose, of.rules.tolerance / 16.0).depth;
-        let clearance = self.certifier.clearance_of_rest(pose);
-        let (tip, axis) = (pose.tip(), pose.axis());
-        Record {
-            tool: self.index,
-            tip: [tip.x, tip.y, tip.z],
-            axis: [axis.x, axis.y, axis.z],
-            niceness,
-            depth,
-            clearance,
-        }
+    fn record(&mut self, pose: &Pose, niceness: f64) -> Record {
+        let (tip, axis) = (pose.tip().into(), pose.axis().into());
+        let mut record =
+            Record { tool: self.index, tip, axis, niceness, depth: 0.0, clearance: 0.0 };
+        self.judge.measure(&mut record, pose);
+        record
     }
 
     /// The least stick-out of all postures.

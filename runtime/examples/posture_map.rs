@@ -1,0 +1,79 @@
+//! A hand leads a tool along a block and leans it this way and that; what stands well there is kept, triangle by
+//! triangle: `cargo run --release --features haptic,postures --example posture_map`.
+
+use nalgebra::{Point3, Vector3};
+use std::fs::File;
+use std::io::BufWriter;
+use std::sync::atomic::AtomicBool;
+use touchoff::certify::Facets;
+use touchoff::haptic::{Limits, Scripted, Session, Settings, Unhurried, run, watched};
+use touchoff::mesh::shapes;
+use touchoff::postures::{Identity, PostureMap, Recorder, Rules, colour};
+use touchoff::{Part, Pose, Probe, Unit};
+
+touchoff::tool! {
+    tool BallMill "a ball on a shank, in a holder" {
+        units mm;
+        profile {
+            start (0, 0);
+            arc to (3, 3) center (0, 3) as ball cutting;
+            line to (3, 30) as shank;
+            line to (12, 30), (12, 50), (0, 50) as holder;
+        }
+        niceness cutting: 1 - depth/3;
+    }
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mesh = shapes::sphere(20.0, 3, Unit::Millimetre)?;
+    let (part, facets) = (Part::from_mesh(&mesh, 50_000, 1)?, Facets::new(&mesh));
+
+    // The ball may be 0.05 mm deep; shank and holder not at all.
+    let rules = Rules { tolerance: 0.05, niceness: 0.5, allowed: Vec::new() };
+    let identity = Identity::new(&mesh, &[&BallMill], rules)?;
+    let folder = tempfile::tempdir()?;
+    let map = PostureMap::open(folder.path().join("sphere.postures"), &identity)?;
+
+    // A device that plays a way round the sphere, the ball 0.05 mm in it at most.
+    let limits = Limits { force: 1e3, stiffness: 1e3, ..Limits::default() };
+    let (rate, cycles) = (1000.0, 20_000);
+    let mut device = Scripted::new(limits, |cycle| {
+        let time = cycle as f64 / rate;
+        let (sin, cos) = (3.0 * time).sin_cos();
+        let high = 0.1 * time - 1.0;
+        let flat = (1.0 - high * high).max(0.0).sqrt();
+        let out = Vector3::new(flat * cos, flat * sin, high);
+        let axis = (out + 0.4 * Vector3::new(sin, cos, (5.0 * time).sin())).normalize();
+        let tip = Point3::from(out * (20.0 + 3.0 - 0.05) - axis * 3.0);
+        Ok(Pose::from_axis(tip, axis)?)
+    });
+    let mut session = Session::new(Probe::new(&part, &BallMill), &Settings::new(rate), limits);
+
+    let (mut watch, _, mut samples) = watched(cycles as usize);
+    let (report, recorded) = std::thread::scope(|scope| {
+        // The watch goes with the thread: when it is dropped, the recorder knows that all is over.
+        let looped = scope.spawn(move || {
+            let (clock, stop) = (&mut Unhurried::default(), AtomicBool::new(false));
+            run((&mut session, &mut device), (clock, cycles), &mut watch, &stop)
+        });
+        let recorded = Recorder::new(&map, (&part, &facets), &BallMill)
+            .map_err(Box::<dyn std::error::Error>::from)
+            .and_then(|mut recorder| Ok(recorder.follow(&mut samples)?));
+        (looped.join().expect("the loop panics at nothing"), recorded)
+    });
+    let recorded = recorded?;
+    println!(
+        "{} cycles; {} poses judged, {} of them acceptable",
+        report.cycles, recorded.judged, recorded.accepted
+    );
+    let coverage = map.coverage()?;
+    println!("{} of {} triangles have a posture", coverage.covered, coverage.triangles);
+
+    let csv = folder.path().join("sphere.csv");
+    map.write_csv(&mut BufWriter::new(File::create(&csv)?))?;
+    let text = std::fs::read_to_string(&csv)?;
+    text.lines().take(4).for_each(|line| println!("{line}"));
+    let ply = File::create(folder.path().join("sphere.ply"))?;
+    map.write_ply(&mut BufWriter::new(ply), &mesh, colour)?;
+    Ok(())
+}

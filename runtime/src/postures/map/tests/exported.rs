@@ -1,0 +1,139 @@
+//! Exports say what the map has, to the bit.
+
+use super::*;
+use crate::mesh::Shape;
+use crate::postures::colour;
+use serde_json::Value;
+
+fn known() -> (Place, PostureMap) {
+    let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(7));
+    let map = place.open();
+    let mut given: Vec<(u32, Row)> = (0..10).map(|k| (k, any_row(&mut random))).collect();
+    given[2].1.access.clear();
+    given[3].1.best[..].iter_mut().for_each(|record| record.depth = 5e-324);
+    map.record(&given).expect("recorded");
+    (place, map)
+}
+
+fn same(one: f64, text: &str) {
+    let other: f64 = text.parse().expect("a number");
+    assert_eq!(one.to_bits(), other.to_bits(), "{one} {text}");
+}
+
+#[test]
+fn csv_reads_back() {
+    let (_place, map) = known();
+    let mut bytes = Vec::new();
+    map.write_csv(&mut bytes).expect("written");
+    let text = String::from_utf8(bytes).expect("text");
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    let lines: Vec<Vec<&str>> = lines.collect();
+    assert!(lines.iter().all(|line| line.len() == header.len()));
+    for (triangle, row) in rows(&map) {
+        let own = lines.iter().filter(|line| line[0] == triangle.to_string());
+        let own: Vec<_> = own.collect();
+        type Lines<'a> = Vec<&'a Vec<&'a str>>;
+        let (nice, bare): (Lines<'_>, Lines<'_>) =
+            own.into_iter().partition(|line| !line[8].is_empty());
+        assert_eq!(nice.len(), row.best.len());
+        for (line, record) in nice.iter().zip(&row.best) {
+            assert_eq!(line[1], ["Ball", "Flat"][usize::from(record.tool)]);
+            let ([x, y, z], [i, j, k]) = (record.tip, record.axis);
+            let rest = [record.niceness, record.depth, record.clearance];
+            let numbers = [x, y, z, i, j, k].into_iter().chain(rest);
+            numbers.zip(&line[2..]).for_each(|(number, text)| same(number, text));
+        }
+        for access in &row.access {
+            let name = ["Ball", "Flat"][usize::from(access.tool)];
+            let mut all = nice.iter().chain(&bare).filter(|line| line[1] == name).peekable();
+            assert!(all.peek().is_some());
+            for line in all {
+                let count: u32 = access.directions.iter().map(|word| word.count_ones()).sum();
+                assert_eq!(line[11], count.to_string());
+                match access.stickout {
+                    Some(stickout) => same(stickout, line[12]),
+                    None => assert_eq!(line[12], ""),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn json_reads_back() {
+    let (_place, map) = known();
+    let mut bytes = Vec::new();
+    map.write_json(&mut bytes).expect("written");
+    let json: Value = serde_json::from_slice(&bytes).expect("JSON");
+    assert_eq!(json["map"]["triangles"], 12);
+    assert_eq!(json["map"]["tools"][1]["name"], "Flat");
+    assert_eq!(json["map"]["rules"]["tolerance"], 0.01);
+    let known = rows(&map);
+    let text = String::from_utf8(bytes).expect("text");
+    assert_eq!(json["rows"].as_array().map(Vec::len), Some(known.len()));
+    let lines = text.lines().filter(|line| line.starts_with("{\"triangle\""));
+    for ((triangle, row), line) in known.iter().zip(lines) {
+        let value: Value = serde_json::from_str(line.trim_end_matches(',')).expect("a row");
+        assert_eq!(value["triangle"], *triangle);
+        assert_eq!(value["access"].as_array().map(Vec::len), Some(row.access.len()));
+        for (record, value) in row.best.iter().zip(value["best"].as_array().expect("a list")) {
+            // As it is written, whatever a reader makes of it.
+            let tip = record.tip.map(|number| serde_json::to_string(&number).expect("a number"));
+            tip.iter().zip(record.tip).for_each(|(text, number)| same(number, text));
+            assert!(line.contains(&tip.join(",")));
+            assert_eq!(value["clearance"].is_null(), record.clearance.is_infinite());
+        }
+    }
+}
+
+#[test]
+fn ply_reads_back() {
+    let (place, map) = known();
+    let (mesh, path) = (block(), place.0.path().join("a.ply"));
+    let mut bytes = Vec::new();
+    map.write_ply(&mut bytes, &mesh, colour).expect("written");
+    fs::write(&path, &bytes).expect("written");
+    let Shape::Mesh(read) = Shape::read(&path, Unit::Millimetre).expect("a PLY") else {
+        panic!("no mesh")
+    };
+    assert_eq!(PartStamp::of(&read), PartStamp::of(&mesh));
+    // A face is a count, three corners, three bytes of colour and a double.
+    let faces = &bytes[bytes.len() - 12 * 24..];
+    for (triangle, face) in (0..).zip(faces.chunks(24)) {
+        let niceness = f64::from_le_bytes(face[16..].try_into().expect("8 bytes"));
+        let row = map.row(triangle).expect("read").unwrap_or_default();
+        match row.best.first() {
+            Some(best) => {
+                assert_eq!(niceness.to_bits(), best.niceness.to_bits());
+                assert_eq!(face[13..16], colour(niceness));
+            }
+            None => assert!(niceness.is_nan() && face[13..16] == [0x80; 3]),
+        }
+    }
+    let other = shapes::sphere(3.0, 1, Unit::Millimetre).expect("a sphere");
+    let error = map.write_ply(&mut Vec::new(), &other, colour).expect_err("another part");
+    assert!(matches!(error, MapError::Differs { .. }), "{error:?}");
+}
+
+#[test]
+fn an_export_that_cannot_be_written_says_so() {
+    struct Full;
+    impl io::Write for Full {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(io::ErrorKind::StorageFull.into())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let (_place, map) = known();
+    let said = [
+        map.write_csv(&mut Full),
+        map.write_json(&mut Full),
+        map.write_ply(&mut Full, &block(), colour),
+    ];
+    for said in said {
+        assert!(matches!(said, Err(MapError::Export { .. })), "{said:?}");
+    }
+}

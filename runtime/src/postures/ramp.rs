@@ -1,0 +1,48 @@
+//! Numbers as colours.
+
+/// Viridis (Smith and van der Walt 2015) at tenths: as bright a step as any other, in grey and to eyes that
+/// do not tell red from green too.
+const VIRIDIS: [[u8; 3]; 11] = [
+    [0x44, 0x01, 0x54],
+    [0x48, 0x25, 0x76],
+    [0x41, 0x44, 0x87],
+    [0x35, 0x60, 0x8d],
+    [0x2a, 0x78, 0x8e],
+    [0x21, 0x90, 0x8c],
+    [0x22, 0xa8, 0x84],
+    [0x43, 0xbf, 0x71],
+    [0x7a, 0xd1, 0x51],
+    [0xbb, 0xdf, 0x27],
+    [0xfd, 0xe7, 0x25],
+];
+
+/// The colour, sRGB, of a part of the whole, from dark violet at 0 to yellow at 1; what is beyond is as its
+/// end, and what is not a number as 0.
+pub fn colour(part: f64) -> [u8; 3] {
+    // The larger of 0 and what is not a number is 0.
+    let at = part.max(0.0).min(1.0) * (VIRIDIS.len() - 1) as f64;
+    let below = (at as usize).min(VIRIDIS.len() - 2);
+    let over = at - below as f64;
+    [0, 1, 2].map(|k| {
+        let [from, to] = [below, below + 1].map(|stop| f64::from(VIRIDIS[stop][k]));
+        (from + (to - from) * over).round() as u8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::colour;
+
+    #[test]
+    fn it_grows_brighter_from_end_to_end() {
+        let bright = |part: f64| {
+            let [r, g, b] = colour(part).map(f64::from);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let steps: Vec<f64> = (0..=100).map(|k| bright(f64::from(k) / 100.0)).collect();
+        assert!(steps.is_sorted(), "{steps:?}");
+        assert_eq!(colour(-1.0), colour(0.0));
+        assert_eq!(colour(f64::NAN), colour(0.0));
+        assert_eq!(colour(f64::INFINITY), [0xfd, 0xe7, 0x25]);
+    }
+}

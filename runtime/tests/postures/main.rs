@@ -1,0 +1,121 @@
+//! Postures judged and recorded: against places of triangles, and in a loop that runs.
+
+mod apart;
+mod judged;
+mod recorded;
+
+use nalgebra::Point3;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Pose, Tool, Unit};
+
+touchoff::tool! {
+    tool Mill "a ball on a neck, in a wider holder" {
+        units mm;
+        profile {
+            start (0, 0);
+            arc to (3, 3) center (0, 3) as ball cutting;
+            line to (3, 12) as flute cutting;
+            line to (2.5, 12), (2.5, 20) as neck;
+            line to (9, 20), (9, 40), (0, 40) as holder;
+        }
+        niceness cutting: 1 - depth/3;
+    }
+}
+
+touchoff::tool! {
+    tool Ball "nothing but a ball" {
+        units mm;
+        profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+        niceness cutting: 1;
+    }
+}
+
+touchoff::tool! {
+    tool Plain "a ball without a profile" {
+        units mm;
+        region ball as ball cutting where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+        niceness cutting: 1;
+    }
+}
+
+/// Pieces of a profile that do not cut, as `[d, z]`: of [`Mill`] its neck and holder.
+const NECK: [[f64; 2]; 3] = [[3.0, 12.0], [2.5, 12.0], [2.5, 20.0]];
+const HOLDER: [[f64; 2]; 4] = [[2.5, 20.0], [9.0, 20.0], [9.0, 40.0], [0.0, 40.0]];
+
+/// How far a place is from pieces of a profile.
+fn away(line: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
+    let one = |ends: &[[f64; 2]]| {
+        let [[fd, fz], [td, tz]] = [ends[0], ends[1]];
+        let (wd, wz) = (td - fd, tz - fz);
+        let t = (((d - fd) * wd + (z - fz) * wz) / (wd * wd + wz * wz)).clamp(0.0, 1.0);
+        (d - fd - t * wd).hypot(z - fz - t * wz)
+    };
+    line.windows(2).map(one).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether a place is in a [`Mill`], and how deep in what of it cuts, and in what does not.
+fn inside([d, z]: [f64; 2]) -> bool {
+    let ball = z <= 3.0 && d.hypot(z - 3.0) <= 3.0;
+    let stem = |radius: f64, low: f64, high: f64| d <= radius && low <= z && z <= high;
+    ball || stem(3.0, 3.0, 12.0) || stem(2.5, 12.0, 20.0) || stem(9.0, 20.0, 40.0)
+}
+
+/// How far a place is from what of a [`Mill`] cuts.
+fn from_cutting([d, z]: [f64; 2]) -> f64 {
+    let ball = if z <= 3.0 { (d.hypot(z - 3.0) - 3.0).abs() } else { f64::INFINITY };
+    ball.min(away(&[[3.0, 3.0], [3.0, 12.0]], [d, z]))
+}
+
+fn parts() -> Vec<Mesh> {
+    let low = Point3::new(-12.0, -10.0, -8.0);
+    vec![
+        shapes::cuboid(low, Point3::origin(), Unit::Millimetre).expect("a cuboid"),
+        shapes::sphere(8.0, 2, Unit::Millimetre).expect("a sphere"),
+        shapes::tube(4.0, 6.0, 25.0, 24, 3, Unit::Millimetre).expect("a tube"),
+    ]
+}
+
+fn draws(seed: u64) -> impl FnMut(f64, f64) -> f64 {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    move |low, high| low + (high - low) * (random.next_u64() as f64 / u64::MAX as f64)
+}
+
+fn any_pose(draw: &mut impl FnMut(f64, f64) -> f64, size: f64) -> Pose {
+    loop {
+        let axis = nalgebra::Vector3::from_fn(|_, _| draw(-1.0, 1.0));
+        let tip = Point3::from(nalgebra::Vector3::from_fn(|_, _| draw(-size, size)));
+        if axis.norm() > 0.1
+            && let Ok(pose) = Pose::from_axis(tip, axis.normalize())
+        {
+            return pose;
+        }
+    }
+}
+
+/// Into how many parts sides of triangles are cut.
+const RASTER: u32 = 16;
+
+/// Places of a mesh in the half plane of a tool at a pose, and how far one is from the next at most.
+fn places(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
+    let back = pose.rotation().transpose();
+    let (mut all, mut apart) = (Vec::new(), 0f64);
+    for id in 0..mesh.triangles().len() as u32 {
+        let [a, b, c] = mesh.triangle(id);
+        let (u, v) = ((b - a) / f64::from(RASTER), (c - a) / f64::from(RASTER));
+        apart = apart.max(u.norm()).max(v.norm()).max((v - u).norm());
+        for i in 0..=RASTER {
+            for j in 0..=RASTER - i {
+                let p = back * (a + u * f64::from(i) + v * f64::from(j) - pose.tip());
+                all.push([p.x.hypot(p.y), p.z]);
+            }
+        }
+    }
+    (all, apart)
+}
+
+fn surface(tool: &dyn Tool, name: &str) -> usize {
+    let surfaces = &tool.card().surfaces;
+    surfaces.iter().position(|surface| surface.name == name).expect("a surface")
+}

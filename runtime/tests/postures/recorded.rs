@@ -1,0 +1,227 @@
+//! A loop that is recorded: what it finds is in the map, and it does not notice.
+
+use crate::{Ball, Mill};
+use nalgebra::{Point3, Vector3};
+use std::num::NonZeroU16;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::haptic::{
+    DeviceError, Limits, Report, Scripted, Session, Settings, State, Unhurried, run, watched,
+};
+use touchoff::mesh::shapes;
+use touchoff::postures::{Identity, PostureMap, Recorded, Recorder, RecorderError, Row, Rules};
+use touchoff::tool::Interpreted;
+use touchoff::{Law, Mesh, Part, Pose, Probe, Tool, Unit};
+
+const CYCLES: u64 = 4000;
+
+fn sphere() -> Mesh {
+    shapes::sphere(12.0, 3, Unit::Millimetre).expect("a sphere")
+}
+
+fn identity() -> Identity {
+    let rules = Rules { tolerance: 0.2, niceness: 0.5, allowed: Vec::new() };
+    let keep = NonZeroU16::new(2).expect("not 0");
+    Identity::new(&sphere(), &[&Ball, &Mill], rules).expect("rules").keeping(keep)
+}
+
+/// A hand that winds about the sphere and leans this way and that, at times too deep.
+fn pose(cycle: u64) -> Result<Pose, DeviceError> {
+    let time = cycle as f64 / 1000.0;
+    let (high, round) = (0.9 * (0.7 * time).sin(), 1.3 * time);
+    let flat = (1.0 - high * high).sqrt();
+    let out = Vector3::new(flat * round.cos(), flat * round.sin(), high);
+    let lean = Vector3::new((2.0 * time).sin(), (3.0 * time).cos(), (5.0 * time).sin()) * 0.6;
+    let deep = 0.15 + 0.3 * (9.0 * time).sin();
+    let axis = (out + lean).normalize();
+    let tip = Point3::from(out * (12.0 - deep + 3.0) - axis * 3.0);
+    Ok(Pose::from_axis(tip, axis)?)
+}
+
+/// Runs the loop over some cycles as fast as it can, with a recorder beside it, and gives all states.
+fn looped(
+    (part, facets): (&Part, &Facets),
+    cycles: std::ops::Range<u64>,
+    (map, room): (Option<&PostureMap>, usize),
+) -> (Vec<State>, Report, Option<Recorded>) {
+    let limits = Limits::default();
+    let mut device = Scripted::new(limits, move |cycle| pose(cycles.start + cycle));
+    let probe = Probe::new(part, &Mill).law(Law::Gradient);
+    let mut session = Session::new(probe, &Settings::new(1000.0), limits);
+    let (mut watch, _, mut samples) = watched(room);
+    let mut states = Vec::new();
+    let count = cycles.end - cycles.start;
+    std::thread::scope(|scope| {
+        let running = scope.spawn(move || {
+            let (clock, stop) = (&mut Unhurried::default(), AtomicBool::new(false));
+            run((&mut session, &mut device), (clock, count), &mut watch, &stop)
+        });
+        let recorded = match map {
+            Some(map) => {
+                let mut recorder = Recorder::new(map, (part, facets), &Mill).expect("a recorder");
+                Some(recorder.follow(&mut samples).expect("recorded"))
+            }
+            None => {
+                while !samples.are_all() {
+                    states.extend(samples.by_ref());
+                }
+                states.extend(samples.by_ref());
+                None
+            }
+        };
+        (states, running.join().expect("it ends"), recorded)
+    })
+}
+
+fn rows(map: &PostureMap) -> Vec<(u32, Row)> {
+    map.rows().expect("rows").collect::<Result<_, _>>().expect("whole")
+}
+
+fn open(folder: &Path, name: &str) -> PostureMap {
+    PostureMap::open(folder.join(name), &identity()).expect("a map")
+}
+
+#[test]
+fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
+    let mesh = sphere();
+    let (part, facets) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), Facets::new(&mesh));
+    let folder = tempfile::tempdir().expect("a folder");
+    let (beside, room) = ((&part, &facets), CYCLES as usize);
+    let map = open(folder.path(), "whole");
+    let (_, report, recorded) = looped(beside, 0..CYCLES, (Some(&map), room));
+    let recorded = recorded.expect("what it saw");
+    assert_eq!((report.lost, recorded.skipped, recorded.states), (0, 0, report.cycles));
+    assert!(recorded.accepted > 100 && recorded.judged > recorded.accepted, "{recorded:?}");
+    let whole = rows(&map);
+    assert!(whole.len() > 50, "{} of {}", whole.len(), mesh.triangles().len());
+
+    // What is on record is acceptable, and as nice as is said.
+    let mut probe = Probe::new(&part, &Mill);
+    let mut certifier = Certifier::new(&facets, &Mill).expect("a profile");
+    for surface in ["ball", "flute"] {
+        certifier = certifier.allow(surface, 0.2).expect("a surface");
+    }
+    for (triangle, row) in &whole {
+        assert!((1..=2).contains(&row.best.len()) && row.access.is_empty());
+        for record in &row.best {
+            let pose = record.pose().expect("a pose");
+            assert_eq!(record.tool, 1);
+            assert_eq!(probe.posture(&pose).niceness, Some(record.niceness));
+            assert!(probe.contacts(&pose).iter().any(|contact| contact.triangle == *triangle));
+            assert_eq!(certifier.clear(&pose), Clear::Clear);
+        }
+    }
+
+    // The same in pieces, each in a map that is opened again: nothing is lost, nothing is there twice.
+    for cycles in [0..1500, 1500..1600, 1600..CYCLES] {
+        let map = open(folder.path(), "pieces");
+        looped(beside, cycles, (Some(&map), room));
+    }
+    let pieces = rows(&open(folder.path(), "pieces"));
+    let covered = |rows: &[(u32, Row)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+    let shared = covered(&pieces).iter().filter(|id| covered(&whole).contains(id)).count();
+    // Where a hand begins anew the loop's springs do too: some cycles are others.
+    assert!(shared * 10 > 9 * whole.len(), "{shared} of {}", whole.len());
+    let before = rows(&map);
+    looped(beside, 0..CYCLES, (Some(&map), room));
+    assert_eq!(rows(&map), before);
+}
+
+#[test]
+fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
+    let mesh = sphere();
+    let (part, facets) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), Facets::new(&mesh));
+    let folder = tempfile::tempdir().expect("a folder");
+    let (beside, room) = ((&part, &facets), CYCLES as usize);
+    let (alone, ..) = looped(beside, 0..CYCLES, (None, room));
+    assert_eq!(alone.len() as u64, CYCLES);
+
+    // With a recorder the states are seen by it; what it had them from is seen by cycles taken by hand.
+    let map = open(folder.path(), "map");
+    let limits = Limits::default();
+    let mut device = Scripted::new(limits, pose);
+    let probe = Probe::new(&part, &Mill).law(Law::Gradient);
+    let mut session = Session::new(probe, &Settings::new(1000.0), limits);
+    let mut recorder = Recorder::new(&map, beside, &Mill).expect("a recorder");
+    for (cycle, before) in alone.iter().enumerate() {
+        let state = session.cycle(&mut device).expect("a state");
+        recorder.take(&state).expect("recorded");
+        assert!(bits(&state) == bits(before), "cycle {cycle}");
+    }
+    recorder.write().expect("recorded");
+    let (_, report, recorded) =
+        looped(beside, 0..CYCLES, (Some(&open(folder.path(), "other")), room));
+    assert_eq!(recorded.map(|seen| seen.states), Some(CYCLES));
+    let last = report.last.expect("a state");
+    assert!(bits(&last) == bits(&alone[CYCLES as usize - 1]));
+    assert_eq!(rows(&map), rows(&open(folder.path(), "other")));
+}
+
+/// All numbers of a state that a hand or a map has anything of.
+fn bits(state: &State) -> Vec<u64> {
+    let vectors = [
+        state.tool.tip().coords,
+        state.tool.axis(),
+        state.device.tip().coords,
+        state.push.force,
+        state.push.torque,
+        state.wrench.force,
+        state.wrench.torque,
+    ];
+    let numbers = [state.stiffest, state.wrench.integral, state.wrench.energy];
+    let all = vectors.iter().flat_map(|vector| vector.iter().copied()).chain(numbers);
+    all.map(f64::to_bits).collect()
+}
+
+#[test]
+fn a_loop_that_is_too_fast_is_not_waited_for() {
+    let mesh = sphere();
+    let (part, facets) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), Facets::new(&mesh));
+    let folder = tempfile::tempdir().expect("a folder");
+    let map = open(folder.path(), "map");
+    // Room for four states: most are lost, and all that are not are seen.
+    let (_, report, recorded) = looped((&part, &facets), 0..CYCLES, (Some(&map), 4));
+    let recorded = recorded.expect("what it saw");
+    assert_eq!(report.cycles, CYCLES);
+    assert_eq!(recorded.states + report.lost, CYCLES);
+    // Those after the last that was seen are skipped by nobody.
+    assert!(recorded.skipped <= report.lost, "{recorded:?}, {} lost", report.lost);
+}
+
+#[test]
+fn a_tool_of_another_version_or_a_part_in_another_unit_is_refused() {
+    let mesh = sphere();
+    let (part, facets) = (Part::from_mesh(&mesh, 1000, 1).expect("a part"), Facets::new(&mesh));
+    let folder = tempfile::tempdir().expect("a folder");
+    let map = open(folder.path(), "map");
+    let other = interpreted("1 - depth/2");
+    let refused = Recorder::new(&map, (&part, &facets), &other).err().expect("another version");
+    assert!(matches!(refused, RecorderError::Tool { .. }), "{refused:?}");
+    assert!(refused.to_string().contains("Mill is no tool of the map, which has `Ball`, `Mill`"));
+    let inch = part.to(Unit::Inch);
+    let refused = Recorder::new(&map, (&inch, &facets), &Mill).err().expect("another unit");
+    assert!(matches!(refused, RecorderError::Unit { .. }), "{refused:?}");
+}
+
+#[test]
+fn a_tool_that_is_interpreted_is_the_one_that_is_compiled() {
+    let same = interpreted("1 - depth/3");
+    assert_eq!(same.card().digest, Mill.card().digest);
+    assert_eq!(identity().tool(same.card()), Some(1));
+    assert_ne!(interpreted("1 - depth/4").card().digest, Mill.card().digest);
+    assert_ne!(Ball.card().digest, Mill.card().digest);
+}
+
+/// The same as [`Mill`], but for its niceness, its layout and what it says of itself.
+fn interpreted(niceness: &str) -> Interpreted {
+    let text = format!(
+        "tool Mill \"another title\" {{ units mm; // in millimetres
+         profile {{ start (0, 0); arc to (3, 3) center (0, 3) as ball cutting;
+         line to (3, 12) as flute cutting; line to (2.5, 12), (2.5, 20) as neck;
+         line to (9, 20), (9, 40), (0, 40) as holder; }}
+         niceness cutting: {niceness}; }}"
+    );
+    let source = tool_dsl::source::Source::new("mill.tool", text);
+    Interpreted::parse(&source).expect("a tool")
+}

@@ -1,0 +1,144 @@
+//! A tool's meaning as one number, by which its versions are told apart.
+
+use crate::Checked;
+use crate::expr::{Id, Node};
+use crate::interpret::roots;
+use crate::plan::Tree;
+use siphasher::sip::SipHasher24;
+use std::collections::HashMap;
+use std::fmt::{Debug, Write};
+
+/// A number that changes whenever anything that the tool answers may: where it is, what is felt there, how far
+/// it reaches, its surfaces and regions by name, and what is proved of it. How the file is laid out, its
+/// comments, the tool's name and its title do not matter; nor does it matter whether a number is written, given
+/// to a param or mounted. It is the same on every machine, and of the same compiler: one that computes otherwise
+/// gives another.
+///
+/// It is SipHash-2-4, without a key, of the tool as text.
+pub fn digest(tool: &Checked) -> u64 {
+    SipHasher24::new().hash(meaning(tool).as_bytes())
+}
+
+/// All that code is made of. Expressions are told by their places among those that are needed, so that it
+/// does not matter what else the file defines.
+fn meaning(tool: &Checked) -> String {
+    let model = &tool.model;
+    let mut needed: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
+    needed.extend(model.regions.iter().flat_map(|region| roots(&region.outputs)));
+    leaves(&tool.plan.outside, &mut needed);
+    let needed = model.graph.needed(needed);
+    let places: HashMap<Id, usize> =
+        needed.iter().enumerate().map(|(place, id)| (*id, place)).collect();
+    let place = |id: Id| places[&id];
+
+    let mut text = String::new();
+    // Writing to a String does not fail.
+    let mut line = |what: &dyn Debug| {
+        let _ = writeln!(text, "{what:?}");
+    };
+    line(&(model.domain, model.unit, tool.extent.cell().sides));
+    line(&(&tool.envelope, tool.bounds));
+    model.outline().for_each(|piece| line(&piece));
+    model.surfaces.iter().for_each(|surface| line(&(&surface.name, surface.cutting)));
+    for region in &model.regions {
+        let outputs: Vec<usize> = roots(&region.outputs).into_iter().map(place).collect();
+        line(&(&region.name, region.surface, outputs));
+    }
+    model.curves.iter().for_each(|curve| line(&place(curve.value)));
+    line(&(&tool.plan.owner, &tool.plan.inside));
+    line(&tool.plan.outside.map(&|id: &Id| Some(place(*id))));
+    for id in &needed {
+        match model.graph.node(*id) {
+            // As code has it.
+            Node::Const(value) => line(&value.to_f64()),
+            Node::Coord(coord) => line(coord),
+            node => {
+                let operands: Vec<usize> = node.operands().map(place).collect();
+                let kind = format!("{node:?}");
+                line(&(kind.split(['(', ' ']).next(), operands));
+            }
+        }
+    }
+    text
+}
+
+fn leaves(tree: &Tree<Id>, all: &mut Vec<Id>) {
+    match tree {
+        Tree::Leaf(id) => all.push(*id),
+        Tree::Split { below, above, .. } => {
+            leaves(below, all);
+            leaves(above, all);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digest;
+    use crate::compile_with;
+    use crate::source::Source;
+
+    const BALL: &str = "tool Ball \"a ball\" {
+        units mm;
+        param D = 6;
+        profile { start (0, 0); arc to (0, D) center (0, D/2) as ball cutting; }
+        niceness cutting: 1 - depth/3;
+    }";
+
+    fn of(text: &str, given: &str) -> u64 {
+        let given = if given.is_empty() { vec![] } else { vec![Source::new("given", given)] };
+        let compiled = compile_with(&Source::new("ball.tool", text), &given);
+        digest(&compiled.tool.expect("a tool without errors"))
+    }
+
+    #[test]
+    fn words_for_people_do_not_matter() {
+        let own = of(BALL, "");
+        let others = [
+            BALL.replace("\n", " "),
+            BALL.replace("units", "// in millimetres\n units"),
+            BALL.replace("a ball", "the ball"),
+            BALL.replace("tool Ball", "tool Sphere"),
+            BALL.replace("D = 6", "D = 12/2"),
+            BALL.replace("D = 6", "D = 6mm"),
+        ];
+        for other in others {
+            assert_eq!(of(&other, ""), own, "{other}");
+        }
+        assert_eq!(of(BALL, "D = 6"), own);
+        assert_eq!(of(&BALL.replace("D = 6", "D = 8"), "D = 6"), own);
+    }
+
+    #[test]
+    fn what_the_tool_answers_does() {
+        let mut all = vec![of(BALL, ""), of(BALL, "D = 6.000000000000001")];
+        for (from, to) in [
+            ("mm", "inch"),
+            ("D = 6", "D = 7"),
+            ("1 - depth/3", "1 - depth/4"),
+            ("as ball", "as sphere"),
+            ("niceness", "magnitude: 2*depth; niceness"),
+        ] {
+            let other = BALL.replacen(from, to, 1);
+            assert_ne!(other, BALL);
+            all.push(of(&other, ""));
+        }
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+
+    #[test]
+    fn a_tool_without_a_profile_has_one_too() {
+        let text = |depth: &str| {
+            format!(
+                "tool Ball {{ units mm; region ball as ball cutting where hypot(d, z - 3) <= 3 {{ \
+                 depth: {depth}; }} niceness cutting: 1; }}"
+            )
+        };
+        let [one, other] = ["3 - hypot(d, z - 3)", "2*(3 - hypot(d, z - 3))"].map(text);
+        assert_eq!(of(&one, ""), of(&one, ""));
+        assert_ne!(of(&one, ""), of(&other, ""));
+    }
+}
