@@ -59,6 +59,57 @@ pub(crate) enum Failure {
     /// What was asked to be proved cannot be.
     #[error(transparent)]
     Uncertified(#[from] touchoff::certify::Uncertified),
+    /// A sweep could not be done.
+    #[error(transparent)]
+    Sweep(#[from] touchoff::postures::sweep::SweepError),
+    /// Rules mean nothing.
+    #[error(transparent)]
+    Rules(#[from] touchoff::postures::RulesError),
+    /// A posture map could not be read or written.
+    #[error(transparent)]
+    Map(#[from] touchoff::postures::MapError),
+    /// There is no path.
+    #[error(transparent)]
+    Path(#[from] touchoff::postures::path::PathError),
+    /// A program could not be written.
+    #[error(transparent)]
+    Write(#[from] touchoff::program::WriteError),
+    /// A map is written in a form that there is none of.
+    #[error("a map is written as `.csv`, `.json`, `.ply` or `.png`, `{file}` is none of them")]
+    MapForm {
+        /// What was asked for.
+        file: String,
+    },
+    /// A program is written in a form that there is none of.
+    #[error("a program is written as `.apt` or `.csv`, `{file}` is neither")]
+    ProgramForm {
+        /// What was asked for.
+        file: String,
+    },
+    /// A form of a map that shows the part.
+    #[error("`{file}` shows the part: give it with `--part`")]
+    WantsPart {
+        /// The file.
+        file: String,
+    },
+    /// A map of another part.
+    #[error("{map} is of another part than {part}: give the mesh that was swept")]
+    OtherPart {
+        /// The map.
+        map: String,
+        /// The part.
+        part: String,
+    },
+    /// A tool that a map does not have.
+    #[error(
+        "{map} has no `{tool}`, or that of another version: sweep with it first, into another map"
+    )]
+    OtherTool {
+        /// The map.
+        map: String,
+        /// The tool.
+        tool: String,
+    },
     /// The part's file could not be read.
     #[error(transparent)]
     Shape(#[from] touchoff::mesh::ShapeError),

@@ -18,6 +18,7 @@ mod files;
 mod fmt;
 mod haptic;
 mod part;
+mod postures;
 mod run;
 mod stages;
 mod timing;
@@ -32,6 +33,9 @@ fn main() -> ExitCode {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
         Some(Command::Haptic(wanted)) => haptic::haptic(&wanted, arguments.json),
+        Some(Command::Sweep(wanted)) => postures::sweep::sweep(&wanted, arguments.json),
+        Some(Command::Map(wanted)) => postures::map::map(&wanted, arguments.json),
+        Some(Command::Path(wanted)) => postures::path::path(&wanted, arguments.json),
         Some(Command::Sample(wanted)) => part::sample(&wanted),
         Some(Command::Bench(wanted)) => bench::bench(&wanted, arguments.json),
         Some(Command::Tools { files, given }) => files::tools(&files, &given, arguments.json),

@@ -13,13 +13,13 @@ const GAP: f32 = 3.4;
 const UNKNOWN: &[Stroke] = &[(0.0, 0.0, "v-14h8v14z")];
 
 /// How wide a line of text is whose capitals are `size` high.
-pub(super) fn width(text: &str, size: f64) -> f64 {
+pub fn width(text: &str, size: f64) -> f64 {
     let letters = text.chars().map(|letter| advance(letter) + GAP).sum::<f32>();
     f64::from((letters - GAP).max(0.0)) * size / HEIGHT
 }
 
 /// The path data of a line of text in the alphabet's units, from (0, 0) to the right.
-pub(super) fn strokes(text: &str) -> String {
+pub fn strokes(text: &str) -> String {
     let mut data = String::new();
     let mut pen = 0.0;
     for letter in text.chars() {
@@ -39,7 +39,7 @@ pub(super) fn strokes(text: &str) -> String {
 }
 
 /// The factor from the alphabet's units to text whose capitals are `size` high.
-pub(super) fn scale(size: f64) -> f64 {
+pub fn scale(size: f64) -> f64 {
     size / HEIGHT
 }
 

@@ -16,7 +16,7 @@ mod contour;
 mod curves;
 mod glyphs;
 mod legend;
-mod lettering;
+pub mod lettering;
 mod map;
 mod marks;
 mod notes;

@@ -15,11 +15,11 @@ mod axes;
 mod link;
 mod slice;
 
-use super::{Directions, Judge, JudgeError, Rules};
 use super::contact::Sites;
+use super::{Directions, Judge, JudgeError, Rules};
 use crate::certify::{Certifier, Facets, Sweep, Touch};
 use crate::tool::{Ask, Felt, Points};
-use crate::{Level, Mesh, Motion, Pose, Stop, Tool, cores};
+use crate::{Level, Mesh, Motion, Pose, Tool, cores};
 use axes::{Run, Spot, Way};
 use link::{Around, Leg};
 use nalgebra::{Point3, Vector3};
@@ -72,8 +72,9 @@ pub enum PathError {
 /// A path, and what it is made of.
 #[derive(Clone, Debug)]
 pub struct Path {
-    /// Its stops, the first and the last away from the part.
-    pub stops: Vec<Stop>,
+    /// Its stops, the first and the last away from the part, each with whether the tool comes there in rapid
+    /// traverse.
+    pub stops: Vec<(Pose, bool)>,
     /// Places at which the part is touched.
     pub places: usize,
     /// Places on the lines that it leaves out: the tool does not reach them, or no way to them was proved.
@@ -225,7 +226,7 @@ impl<'a> Leader<'a> {
 /// What is drawn of a path.
 #[derive(Default)]
 struct Drawn {
-    stops: Vec<Stop>,
+    stops: Vec<(Pose, bool)>,
     /// Where the surface was come to last: the stop, and the way.
     came: Option<(usize, Leg)>,
     /// The last place on the surface.
@@ -259,7 +260,7 @@ impl Drawn {
     }
 
     fn stop(&mut self, pose: Pose, rapid: bool) {
-        self.stops.push(Stop { line: self.stops.len() + 1, pose, rapid });
+        self.stops.push((pose, rapid));
     }
 
     /// Goes to a run and along it; where two places cannot be joined on the surface, around the part.
@@ -312,11 +313,11 @@ impl Drawn {
             if at == first {
                 break came;
             }
-            if let Some(leg) = around.leg(leader, &self.stops[at].pose) {
+            if let Some(leg) = around.leg(leader, &self.stops[at].0) {
                 break leg;
             }
             at -= 1;
-            self.stop(self.stops[at].pose, false);
+            self.stop(self.stops[at].0, false);
         };
         self.stop(leg.near, false);
         self.stop(leg.far, true);

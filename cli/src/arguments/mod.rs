@@ -1,5 +1,7 @@
 //! What the program is asked for.
 
+pub(crate) mod postures;
+
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use nalgebra::Point3;
@@ -29,6 +31,15 @@ pub(crate) enum Command {
     /// Prints how long cycles took, how many missed their time, the largest force, and what became of the
     /// hand's energy.
     Haptic(Box<Haptic>),
+    /// Try tools at every triangle of a part, from every direction: which reach it, and which stands best?
+    ///
+    /// Every posture that counts is proved. With `--out` the map of them is kept, and gone on with.
+    Sweep(Box<postures::Sweep>),
+    /// Say what a map of postures knows, and write it as a table, JSON, a coloured mesh, or pictures.
+    Map(Box<postures::Map>),
+    /// Lead a tool over all that it reaches of a part, and write the 5-axis program, proved at and between its
+    /// stops.
+    Path(Box<postures::Path>),
     /// Take points of a part, and save them to be felt later.
     Sample(Box<Sample>),
     /// Measure run time against error: many ways to ask, from few points to a million.
@@ -94,7 +105,7 @@ pub(crate) enum Command {
 }
 
 /// What a file's params are given.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub(crate) struct Given {
     /// A value for a `param` of the `.tool` file, as the language writes it: `--set D=0.25inch`.
     #[arg(long, value_name = "PARAM=VALUE", allow_hyphen_values = true)]

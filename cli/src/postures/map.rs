@@ -1,0 +1,120 @@
+//! What a map knows, and where else it goes.
+
+use super::picture;
+use crate::arguments::postures::Map as Wanted;
+use crate::failure::Failure;
+use crate::part;
+use serde::Serialize;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use touchoff::Mesh;
+use touchoff::postures::{Directions, PartStamp, PostureMap};
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    triangles: u32,
+    unit: &'static str,
+    tools: Vec<&'a str>,
+    directions: usize,
+    tolerance: f64,
+    niceness: f64,
+    covered: u32,
+    swept: u32,
+}
+
+/// Says what a map is, and writes it in other forms.
+pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
+    let map = PostureMap::read(&wanted.map)?;
+    let mesh = match &wanted.part {
+        Some(part) => Some(belonging(&map, &wanted.map, part)?),
+        None => None,
+    };
+    // What is wrong with a name is said before anything is written.
+    let forms: Vec<Form> = wanted.to.iter().map(|file| Form::of(file)).collect::<Result<_, _>>()?;
+    for (form, file) in forms.iter().zip(&wanted.to) {
+        if mesh.is_none() && matches!(form, Form::Ply | Form::Png) {
+            return Err(Failure::WantsPart { file: file.display().to_string() });
+        }
+    }
+    for (form, file) in forms.iter().zip(&wanted.to) {
+        let unwritable = |source| Failure::Unwritable { file: file.display().to_string(), source };
+        let mut out = BufWriter::new(File::create(file).map_err(unwritable)?);
+        match (form, &mesh) {
+            (Form::Csv, _) => map.write_csv(&mut out)?,
+            (Form::Json, _) => map.write_json(&mut out)?,
+            (Form::Ply, Some(mesh)) => map.write_ply(&mut out, mesh)?,
+            (Form::Png, Some(mesh)) => {
+                let directions = Directions::from(map.identity().directions.clone());
+                let picture = picture::of(&map, &directions, mesh, wanted.by)?;
+                out.write_all(&picture).map_err(unwritable)?;
+            }
+            (Form::Ply | Form::Png, None) => (),
+        }
+        out.flush().map_err(unwritable)?;
+        say!("{}", file.display());
+    }
+    told(&map, json)
+}
+
+/// The part that a map is of.
+pub(super) fn belonging(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
+    let PartStamp { unit, digest, .. } = map.identity().part;
+    let mesh = part::mesh(part, unit, "--part")?;
+    if PartStamp::of(&mesh).digest == digest {
+        Ok(mesh)
+    } else {
+        let [map, part] = [file, part].map(|file| file.display().to_string());
+        Err(Failure::OtherPart { map, part })
+    }
+}
+
+fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
+    let (identity, coverage) = (map.identity(), map.coverage()?);
+    let summary = Summary {
+        triangles: coverage.triangles,
+        unit: identity.part.unit.word(),
+        tools: identity.tools.iter().map(|tool| &*tool.name).collect(),
+        directions: identity.directions.len(),
+        tolerance: identity.rules.tolerance,
+        niceness: identity.rules.niceness,
+        covered: coverage.covered,
+        swept: coverage.swept,
+    };
+    let mut out = std::io::stdout().lock();
+    if json {
+        serde_json::to_writer(&mut out, &summary)?;
+        writeln!(out)?;
+    } else {
+        writeln!(out, "{}, in {}", summary.tools.join(", "), summary.unit)?;
+        writeln!(out, "{}; {} directions", identity.rules, summary.directions)?;
+        writeln!(
+            out,
+            "{} of {} triangles have a posture; a sweep came to {}",
+            summary.covered, summary.triangles, summary.swept
+        )?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// What a file's name asks for.
+enum Form {
+    Csv,
+    Json,
+    Ply,
+    Png,
+}
+
+impl Form {
+    fn of(file: &Path) -> Result<Form, Failure> {
+        let form = file.extension().map(|extension| extension.to_ascii_lowercase());
+        match form.as_ref().and_then(|form| form.to_str()) {
+            Some("csv") => Ok(Form::Csv),
+            Some("json") => Ok(Form::Json),
+            Some("ply") => Ok(Form::Ply),
+            Some("png") => Ok(Form::Png),
+            _ => Err(Failure::MapForm { file: file.display().to_string() }),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Where tools stand well at a part: found without a hand, looked at, led over.
+
+pub(crate) mod map;
+pub(crate) mod path;
+mod picture;
+mod render;
+pub(crate) mod sweep;
+
+use touchoff::Mesh;
+
+/// A share of the whole.
+fn percent(part: f64, whole: f64) -> String {
+    format!("{:.1} %", 100.0 * part / if whole > 0.0 { whole } else { 1.0 })
+}
+
+/// Of some triangles how many there are, and their area as a share of the part's.
+#[derive(Clone, Copy, Default)]
+struct Share {
+    triangles: usize,
+    area: f64,
+}
+
+impl Share {
+    fn add(&mut self, area: f64) {
+        self.triangles += 1;
+        self.area += area;
+    }
+
+    fn all(mesh: &Mesh) -> Share {
+        let mut all = Share::default();
+        (0..mesh.triangles().len() as u32).for_each(|id| all.add(mesh.area(id)));
+        all
+    }
+
+    fn of(self, all: Share) -> String {
+        let triangles = percent(self.triangles as f64, all.triangles as f64);
+        format!("{triangles} of the triangles, {} of the area", percent(self.area, all.area))
+    }
+}

@@ -1,0 +1,111 @@
+//! A program over all that a tool reaches.
+
+use super::map::belonging;
+use crate::arguments::Given;
+use crate::arguments::postures::Path as Wanted;
+use crate::failure::Failure;
+use crate::files::Found;
+use serde::Serialize;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use touchoff::certify::Facets;
+use touchoff::postures::path::{Pattern, path as lead};
+use touchoff::postures::{Directions, PostureMap, Rules};
+use touchoff::program::{Cutter, Heading};
+use touchoff::{Motion, Pose, Program};
+
+#[derive(Serialize)]
+struct Summary {
+    stops: usize,
+    places: usize,
+    left_out: usize,
+    lifts: usize,
+    /// The root mean square turn of the axis from place to place, in degrees, before and after.
+    turns: [f64; 2],
+    /// How far the tip goes in feed, and in rapid traverse, in the part's unit.
+    way: [f64; 2],
+}
+
+/// Leads a tool over a part, and writes the program.
+pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
+    let form = wanted.to.extension().map(|extension| extension.to_ascii_lowercase());
+    let apt = match form.as_ref().and_then(|form| form.to_str()) {
+        Some("apt") => true,
+        Some("csv") => false,
+        _ => return Err(Failure::ProgramForm { file: wanted.to.display().to_string() }),
+    };
+    let map = PostureMap::read(&wanted.map)?;
+    let found = Found::find(&wanted.tool, &Given::default())?;
+    let (tool, identity) = (found.tool(), map.identity());
+    let index = identity.tool(tool.card()).ok_or_else(|| Failure::OtherTool {
+        map: wanted.map.display().to_string(),
+        tool: tool.card().name.to_string(),
+    })?;
+    let mesh = belonging(&map, &wanted.map, &wanted.part)?;
+    let mut access = vec![Vec::new(); mesh.triangles().len()];
+    for entry in map.rows()? {
+        let (triangle, row) = entry?;
+        if let Some(reach) = row.access.into_iter().find(|access| access.tool == index) {
+            access[triangle as usize] = reach.directions;
+        }
+    }
+    let tolerance = wanted.tolerance.unwrap_or(identity.rules.tolerance);
+    let rules = Rules { tolerance, ..identity.rules.clone() };
+    let pattern = Pattern {
+        normal: wanted.planes.coords.into(),
+        stepover: wanted.stepover,
+        step: wanted.step.unwrap_or(0.5 * wanted.stepover),
+    };
+    let facets = Facets::new(&mesh);
+    let directions = Directions::from(identity.directions.clone());
+    let led = lead((&mesh, &facets), (tool, &rules), (&directions, &access), &pattern)?;
+    let summary = Summary {
+        stops: led.stops.len(),
+        places: led.places,
+        left_out: led.left_out,
+        lifts: led.lifts,
+        turns: led.turns.map(f64::to_degrees),
+        way: ways(&led.stops),
+    };
+    let unit = identity.part.unit;
+    let name = wanted.to.display().to_string();
+    let program = Program::new(&name, Some(unit), led.stops)?;
+    let unwritable = |source| Failure::Unwritable { file: wanted.to.display().to_string(), source };
+    let mut out = BufWriter::new(File::create(&wanted.to).map_err(unwritable)?);
+    if apt {
+        let part = wanted.part.file_stem().unwrap_or_default().to_string_lossy();
+        let heading = Heading { part: &part, cutter: Cutter::of(tool.card(), unit) };
+        program.write_apt(&mut out, &heading)?;
+    } else {
+        program.write_csv(&mut out).map_err(unwritable)?;
+    }
+    out.flush().map_err(unwritable)?;
+    let mut out = std::io::stdout().lock();
+    if json {
+        serde_json::to_writer(&mut out, &summary)?;
+        writeln!(out)?;
+    } else {
+        let Summary { stops, places, left_out, lifts, turns: [before, after], way } = summary;
+        writeln!(out, "{}: {stops} stops, {places} of them on the surface", wanted.to.display())?;
+        writeln!(out, "{left_out} places left out; leaves the surface {lifts} times")?;
+        writeln!(out, "{:.1} {unit} in feed, {:.1} {unit} in rapid traverse", way[0], way[1])?;
+        writeln!(
+            out,
+            "turns by {after:.2}° from place to place (root mean square; {before:.2}° unsmoothed)"
+        )?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// How far the tip goes in feed, and in rapid traverse.
+fn ways(stops: &[(Pose, bool)]) -> [f64; 2] {
+    let mut ways = [0.0; 2];
+    for pair in stops.windows(2) {
+        let [(from, _), (to, rapid)] = [pair[0], pair[1]];
+        if let Ok(motion) = Motion::new(&from, &to) {
+            ways[usize::from(rapid)] += motion.way().norm();
+        }
+    }
+    ways
+}

@@ -1,0 +1,138 @@
+//! A map on its part, in a fixed set of views.
+
+use super::render::{VIEWS, render};
+use crate::arguments::postures::Shown;
+use crate::failure::Failure;
+use crate::files::figure;
+use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
+use resvg::usvg::{Options, Tree};
+use std::fmt::Write;
+use tool_dsl::draw::lettering::{scale, strokes, width};
+use touchoff::postures::{Directions, PostureMap, Row, colour};
+use touchoff::{Mesh, Unit};
+
+/// Of a view, pixels a side.
+const SIDE: usize = 700;
+/// Of the legend, pixels from top to bottom.
+const LEGEND: usize = 110;
+/// How high capitals are.
+const LETTER: f64 = 15.0;
+/// What nothing is known of.
+const NOTHING: [u8; 3] = [200, 200, 200];
+
+/// A map on its part as a PNG.
+pub(super) fn of(
+    map: &PostureMap,
+    directions: &Directions,
+    mesh: &Mesh,
+    by: Shown,
+) -> Result<Vec<u8>, Failure> {
+    let mut values = vec![None; mesh.triangles().len()];
+    for entry in map.rows()? {
+        let (triangle, row) = entry?;
+        values[triangle as usize] = value(&row, directions, by);
+    }
+    let known = || values.iter().copied().flatten();
+    let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));
+    // From nothing at all, but for stick-outs, of which the least is what the tool has.
+    let low = if by == Shown::Stickout { low.min(high) } else { 0.0 };
+    let share = |value: f64| if high > low { (value - low) / (high - low) } else { 1.0 };
+    let colours: Vec<[u8; 3]> =
+        values.iter().map(|value| value.map_or(NOTHING, |value| colour(share(value)))).collect();
+    let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
+    let (wide, tall) = (2 * SIDE, 2 * SIDE + LEGEND);
+    let mut sheet =
+        Pixmap::new(wide as u32, tall as u32).ok_or_else(|| pixels(&"it has no size"))?;
+    let paper = sheet.pixels_mut();
+    for (index, view) in VIEWS.iter().enumerate() {
+        let image = render(mesh, &colours, view, SIDE);
+        let (left, top) = (index % 2 * SIDE, index / 2 * SIDE);
+        for (at, [r, g, b]) in image.pixels.iter().enumerate() {
+            let place = (top + at / image.side) * wide + left + at % image.side;
+            paper[place] = opaque([*r, *g, *b]);
+        }
+    }
+    paper[wide * 2 * SIDE..].fill(opaque([255; 3]));
+    let legend = legend(by, [low, high], map.identity().part.unit, known().count() > 0);
+    let tree = Tree::from_str(&legend, &Options::default()).map_err(|error| pixels(&error))?;
+    resvg::render(&tree, Transform::identity(), &mut sheet.as_mut());
+    sheet.encode_png().map_err(|error| pixels(&error))
+}
+
+fn opaque([r, g, b]: [u8; 3]) -> PremultipliedColorU8 {
+    PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(PremultipliedColorU8::TRANSPARENT)
+}
+
+/// What is shown of a triangle.
+fn value(row: &Row, directions: &Directions, by: Shown) -> Option<f64> {
+    match by {
+        Shown::Niceness => row.best.first().map(|best| best.niceness),
+        Shown::Access => {
+            // From where any tool comes.
+            let mut all = vec![0u64; row.access.first()?.directions.len()];
+            for access in &row.access {
+                all.iter_mut().zip(&access.directions).for_each(|(all, word)| *all |= word);
+            }
+            let angle = directions.solid_angle(&all);
+            (angle > 0.0).then_some(angle)
+        }
+        Shown::Stickout => {
+            let stickouts = row.access.iter().filter_map(|access| access.stickout);
+            stickouts.reduce(f64::min)
+        }
+    }
+}
+
+/// The colours and what they mean, and the names of the views, as SVG the size of the sheet.
+fn legend(by: Shown, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
+    let (wide, tall) = (2 * SIDE, 2 * SIDE + LEGEND);
+    let mut svg =
+        format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{tall}\">");
+    let mut text = |[x, y]: [f64; 2], text: &str| {
+        // Writing to a String does not fail.
+        let _ = write!(
+            svg,
+            "<path transform=\"translate({x} {y})scale({})\" d=\"{}\" fill=\"none\" stroke=\"#222\" \
+             stroke-width=\"1.4\" stroke-linecap=\"round\" stroke-linejoin=\"round\"/>",
+            scale(LETTER),
+            strokes(text),
+        );
+    };
+    for (index, view) in VIEWS.iter().enumerate() {
+        text([(index % 2 * SIDE) as f64 + 16.0, (index / 2 * SIDE) as f64 + 32.0], view.name);
+    }
+    let base = 2 * SIDE;
+    let (left, right) = (SIDE as f64 * 0.4, SIDE as f64 * 1.6);
+    let (words, ends) = match by {
+        Shown::Niceness => ("niceness of the best posture", [low, high].map(|v| format!("{v:.3}"))),
+        Shown::Access => {
+            ("solid angle of access, steradians", [low, high].map(|v| format!("{v:.2}")))
+        }
+        Shown::Stickout => {
+            ("least stick-out", [low, high].map(|value| format!("{} {unit}", figure(value, unit))))
+        }
+    };
+    let below = base as f64 + 92.0;
+    if any {
+        text([left, below], &ends[0]);
+        text([right - width(&ends[1], LETTER), below], &ends[1]);
+    }
+    text([(SIDE as f64) - 0.5 * width(words, LETTER), base as f64 + 28.0], words);
+    let none = "none";
+    text([32.0 + 26.0, base as f64 + 60.0], none);
+    let swatch = |[x, wide]: [f64; 2], [r, g, b]: [u8; 3]| {
+        let y = base as f64 + 40.0;
+        format!(
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{wide}\" height=\"26\" fill=\"rgb({r},{g},{b})\"/>"
+        )
+    };
+    svg += &swatch([24.0, 26.0], NOTHING);
+    const STEPS: usize = 120;
+    let step = (right - left) / STEPS as f64;
+    for k in 0..STEPS {
+        // A little wider, so that nothing shows between.
+        let place = [left + step * k as f64, step + 0.5];
+        svg += &swatch(place, colour((k as f64 + 0.5) / STEPS as f64));
+    }
+    svg + "</svg>"
+}

@@ -1,0 +1,103 @@
+//! A mesh seen from far away, a colour a triangle.
+
+use nalgebra::Vector3;
+use touchoff::Mesh;
+
+/// From where a part is looked at.
+#[derive(Clone, Copy)]
+pub(super) struct View {
+    pub(super) name: &'static str,
+    /// From the part to the eye.
+    pub(super) toward: [f64; 3],
+    /// What is up; not along the other.
+    pub(super) up: [f64; 3],
+}
+
+/// The views that a part is shown in.
+pub(super) const VIEWS: [View; 4] = [
+    View { name: "from above", toward: [1.0, -1.5, 1.3], up: [0.0, 0.0, 1.0] },
+    View { name: "from below", toward: [1.0, -1.5, -1.3], up: [0.0, 0.0, 1.0] },
+    View { name: "top", toward: [0.0, 0.0, 1.0], up: [0.0, 1.0, 0.0] },
+    View { name: "bottom", toward: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0] },
+];
+
+/// A picture, row by row from the top, as red, green and blue.
+pub(super) struct Image {
+    pub(super) side: usize,
+    pub(super) pixels: Vec<[u8; 3]>,
+}
+
+/// Every pixel is so many squared.
+const FINER: usize = 2;
+/// How much of a picture is left free on each side.
+const MARGIN: f64 = 0.04;
+/// How bright what lies in the shade is.
+const SHADE: f64 = 0.45;
+
+/// Draws a mesh in a square of so many pixels a side on white; what is turned away is seen from behind.
+pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize) -> Image {
+    let toward = Vector3::from(view.toward).normalize();
+    let right = Vector3::from(view.up).cross(&toward).normalize();
+    let up = toward.cross(&right);
+    let light = (toward + 0.5 * up - 0.4 * right).normalize();
+    let [low, high] = mesh.bounds();
+    let (middle, reach) = (low + 0.5 * (high - low), 0.5 * (high - low).norm());
+    let fine = side * FINER;
+    let scale = fine as f64 * (0.5 - MARGIN) / reach;
+    let mut depth = vec![f64::NEG_INFINITY; fine * fine];
+    let mut pixels = vec![[255.0; 3]; fine * fine];
+    for id in 0..mesh.triangles().len() as u32 {
+        let Some(normal) = mesh.normal(id) else { continue };
+        let corners = mesh.triangle(id).map(|corner| {
+            let from = corner - middle;
+            let half = 0.5 * fine as f64;
+            [half + scale * from.dot(&right), half - scale * from.dot(&up), from.dot(&toward)]
+        });
+        let facing = if normal.dot(&toward) < 0.0 { -normal } else { normal };
+        let bright = SHADE + (1.0 - SHADE) * facing.dot(&light).max(0.0);
+        let colour = colours[id as usize].map(|part| f64::from(part) * bright);
+        fill(corners, fine, |at, near| {
+            if near > depth[at] {
+                depth[at] = near;
+                pixels[at] = colour;
+            }
+        });
+    }
+    let mean = |x: usize, y: usize| {
+        let mut sum = [0.0; 3];
+        for k in 0..FINER * FINER {
+            let pixel = pixels[(y * FINER + k / FINER) * fine + x * FINER + k % FINER];
+            sum = [0, 1, 2].map(|part| sum[part] + pixel[part]);
+        }
+        sum.map(|part| (part / (FINER * FINER) as f64).round() as u8)
+    };
+    let pixels = (0..side * side).map(|at| mean(at % side, at / side)).collect();
+    Image { side, pixels }
+}
+
+/// Visits the pixels whose middles lie in a triangle, with how near they are there.
+fn fill([a, b, c]: [[f64; 3]; 3], side: usize, mut visit: impl FnMut(usize, f64)) {
+    let cross = |p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]| {
+        (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
+    };
+    let area = cross(a, b, [c[0], c[1]]);
+    if area == 0.0 {
+        return;
+    }
+    let span = |axis: usize| {
+        let parts = [a[axis], b[axis], c[axis]];
+        let low = parts.into_iter().fold(f64::INFINITY, f64::min).floor().max(0.0) as usize;
+        let high = parts.into_iter().fold(0.0, f64::max).ceil() as usize;
+        low..high.min(side)
+    };
+    for y in span(1) {
+        for x in span(0) {
+            let at = [x as f64 + 0.5, y as f64 + 0.5];
+            let shares =
+                [cross(b, c, at), cross(c, a, at), cross(a, b, at)].map(|part| part / area);
+            if shares.iter().all(|share| *share >= 0.0) {
+                visit(y * side + x, shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2]);
+            }
+        }
+    }
+}

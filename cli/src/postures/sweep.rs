@@ -1,0 +1,233 @@
+//! A part and tools, every triangle in every direction.
+
+use super::{Share, percent};
+use crate::arguments::Given;
+use crate::arguments::postures::Sweep as Wanted;
+use crate::failure::Failure;
+use crate::files::{Found, length};
+use crate::part;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::time::Instant;
+use touchoff::certify::Facets;
+use touchoff::postures::sweep::{Batch, Sweep, Tally};
+use touchoff::postures::{Directions, Identity, PostureMap, Row, Rules};
+use touchoff::{Mesh, Tool, Unit};
+
+/// What is told of all of it.
+#[derive(Serialize)]
+struct Summary {
+    triangles: usize,
+    directions: usize,
+    tools: Vec<OfTool>,
+    /// Triangles that have an acceptable posture.
+    reached: usize,
+    /// Their part of the area.
+    area: f64,
+    /// Batches that an earlier sweep had done.
+    before: usize,
+    batches: usize,
+    seconds: f64,
+    tally: Told,
+}
+
+/// How postures of this run were decided.
+#[derive(Serialize)]
+struct Told {
+    postures: u64,
+    facing: u64,
+    plain: u64,
+    known: u64,
+    found: u64,
+    undecided: u64,
+    acceptable: u64,
+}
+
+#[derive(Serialize)]
+struct OfTool {
+    name: String,
+    /// Triangles that it reaches.
+    reached: usize,
+    /// Triangles of which it has the best posture.
+    best: usize,
+    /// How far it sticks out at least: for the triangle that asks for the least, and the one that asks for
+    /// the most.
+    stickout: Option<[f64; 2]>,
+}
+
+/// What is known of the part, row by row.
+struct Count {
+    reached: Share,
+    tools: Vec<OfTool>,
+}
+
+impl Count {
+    fn new(tools: &[&dyn Tool]) -> Count {
+        let none = |tool: &&dyn Tool| OfTool {
+            name: tool.card().name.to_string(),
+            reached: 0,
+            best: 0,
+            stickout: None,
+        };
+        Count { reached: Share::default(), tools: tools.iter().map(none).collect() }
+    }
+
+    fn add(&mut self, mesh: &Mesh, triangle: u32, row: &Row) {
+        if let Some(best) = row.best.first() {
+            self.reached.add(mesh.area(triangle));
+            self.tools[usize::from(best.tool)].best += 1;
+        }
+        for access in &row.access {
+            let tool = &mut self.tools[usize::from(access.tool)];
+            tool.reached += usize::from(access.directions.iter().any(|word| *word != 0));
+            if let Some(stickout) = access.stickout {
+                let [least, most] = tool.stickout.unwrap_or([stickout; 2]);
+                tool.stickout = Some([least.min(stickout), most.max(stickout)]);
+            }
+        }
+    }
+}
+
+/// Sweeps, and tells what came of it.
+pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
+    let nothing = Given::default();
+    let found: Vec<Found> =
+        wanted.tools.iter().map(|name| Found::find(name, &nothing)).collect::<Result<_, _>>()?;
+    let tools: Vec<&dyn Tool> = found.iter().map(Found::tool).collect();
+    let unit = wanted.mesh.unit;
+    let mesh = part::mesh(&wanted.mesh.part, unit, "sweep")?;
+    let facets = Facets::new(&mesh);
+    let rules = Rules {
+        tolerance: wanted.tolerance.unwrap_or_else(|| usual(unit)),
+        niceness: wanted.niceness,
+        allowed: wanted.allow.clone(),
+    };
+    let directions = Directions::spread(wanted.directions.into());
+    let sweep =
+        Sweep::new((&mesh, &facets), tools.clone(), &directions, rules.clone(), wanted.keep)?;
+    let map = match &wanted.out {
+        Some(file) => {
+            let identity = Identity::new(&mesh, &tools, rules)?
+                .directions(directions.list().to_vec())
+                .keeping(wanted.keep);
+            Some(PostureMap::open(file, &identity)?)
+        }
+        None => None,
+    };
+    let mut count = Count::new(&tools);
+    let open = left(&sweep, map.as_ref())?;
+    let bar = bar(open.len());
+    let start = Instant::now();
+    let mut tally = Tally::default();
+    let stopped = sweep.run(&open, |batch: Batch| {
+        tally += batch.tally;
+        bar.inc(1);
+        match &map {
+            Some(map) => {
+                if let Err(error) = map.record(&batch.rows) {
+                    return ControlFlow::Break(error);
+                }
+            }
+            None => batch.rows.iter().for_each(|(id, row)| count.add(&mesh, *id, row)),
+        }
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    if let ControlFlow::Break(error) = stopped {
+        return Err(error.into());
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    if let Some(map) = &map {
+        for entry in map.rows()? {
+            let (triangle, row) = entry?;
+            count.add(&mesh, triangle, &row);
+        }
+    }
+    let all = Share::all(&mesh);
+    let summary = Summary {
+        triangles: mesh.triangles().len(),
+        directions: directions.list().len(),
+        reached: count.reached.triangles,
+        area: count.reached.area / all.area,
+        tools: count.tools,
+        before: sweep.batches() - open.len(),
+        batches: sweep.batches(),
+        seconds,
+        tally: Told {
+            postures: tally.postures(),
+            facing: tally.facing,
+            plain: tally.plain,
+            known: tally.known,
+            found: tally.found,
+            undecided: tally.undecided,
+            acceptable: tally.acceptable,
+        },
+    };
+    let mut out = std::io::stdout().lock();
+    if json {
+        serde_json::to_writer(&mut out, &summary)?;
+        writeln!(out)?;
+    } else {
+        summary.print(&mut out, unit, count.reached.of(all))?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// The tolerance if none is given: a hundredth of a millimetre.
+fn usual(unit: Unit) -> f64 {
+    0.01 * Unit::Millimetre.to(unit)
+}
+
+/// The batches that are not in the map.
+fn left(sweep: &Sweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
+    let Some(map) = map else { return Ok((0..sweep.batches()).collect()) };
+    let swept = map.swept()?;
+    let is_open = |batch: &usize| sweep.triangles(*batch).iter().any(|id| !swept[*id as usize]);
+    Ok((0..sweep.batches()).filter(is_open).collect())
+}
+
+fn bar(batches: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {percent} %, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(batches as u64).with_style(style)
+}
+
+impl Summary {
+    fn print(&self, out: &mut impl Write, unit: Unit, reached: String) -> std::io::Result<()> {
+        let Summary { triangles, directions, tally, seconds, .. } = self;
+        if self.before > 0 {
+            writeln!(out, "{} of {} batches were there already", self.before, self.batches)?;
+        }
+        let tools = self.tools.len();
+        writeln!(
+            out,
+            "{triangles} triangles, {directions} directions, {tools} tools: {} postures in {seconds:.1} s",
+            tally.postures
+        )?;
+        let rules = [
+            (tally.facing, "nothing that cuts faces the triangle"),
+            (tally.plain, "not nice enough"),
+            (tally.known, "in the way is what was in a neighbour's"),
+            (tally.found, "searched for, and something is in the way"),
+            (tally.undecided, "rounding decides: not taken"),
+            (tally.acceptable, "proved acceptable"),
+        ];
+        for (count, words) in rules.into_iter().filter(|(count, _)| *count > 0) {
+            let part = percent(count as f64, tally.postures as f64);
+            writeln!(out, "{count:>12} {part:>7}  {words}")?;
+        }
+        writeln!(out, "reached: {reached}")?;
+        for tool in &self.tools {
+            let stickout = tool.stickout.map_or(String::new(), |[least, most]| {
+                let [least, most] = [least, most].map(|value| length(value, unit));
+                format!("; sticks out at least {least} to {most}")
+            });
+            let OfTool { name, reached, best, .. } = tool;
+            writeln!(out, "  {name:<20} reaches {reached:>7}, best at {best:>7}{stickout}")?;
+        }
+        Ok(())
+    }
+}
