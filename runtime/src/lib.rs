@@ -56,6 +56,7 @@ pub mod scenes;
 pub mod tool;
 mod tree;
 mod unit;
+pub mod verify;
 mod words;
 
 pub use cloud::{Cloud, CloudError, Cover, Sampling};

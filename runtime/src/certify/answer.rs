@@ -102,6 +102,31 @@ pub enum Sweep {
     Undecided(f64),
 }
 
+/// How deep a surface of a tool gets in a part on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Along {
+    /// At no time deeper than is allowed by more than the tolerance, and what of the tool the surface owns is
+    /// not wholly inside the material, if that can be known.
+    Within,
+    /// Deeper than is allowed, or nearer.
+    Deeper {
+        /// The part of the way, from 0 to 1, at which it is deepest as far as was found.
+        at: f64,
+        /// Between what its depth lies then, in the part's unit; below 0 how far it is from the part.
+        depth: [f64; 2],
+        /// What it is no deeper than on the whole motion: seldom more than the lower of them by an eighth of
+        /// what is too much, or by the tolerance.
+        most: f64,
+        /// Where it is that deep then.
+        witness: Witness,
+    },
+    /// No triangle is so deep, but what the surface owns is wholly inside the material when the motion begins.
+    Inside,
+    /// The budget was spent, or rounding decides: until this part of the way it is no deeper, and what comes
+    /// then is not known.
+    Undecided(f64),
+}
+
 /// How far a tool is from a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {

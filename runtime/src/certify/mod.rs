@@ -13,6 +13,7 @@
 //! **Rounding.** Every place is known to within a part in 2^46 of the tool's and the part's size, and
 //! answers are widened by that. Thin triangles are known less well: their *skew* is added.
 
+mod along;
 mod answer;
 mod apart;
 mod body;
@@ -24,7 +25,9 @@ mod sweep;
 mod triangle;
 mod work;
 
-pub use answer::{AllowanceError, Clear, Clearance, Penetration, Sweep, Uncertified, Witness};
+pub use answer::{
+    AllowanceError, Along, Clear, Clearance, Penetration, Sweep, Uncertified, Witness,
+};
 pub use part::Facets;
 
 use crate::motion::Motion;
@@ -342,8 +345,7 @@ impl<'a> Certifier<'a> {
         }
         let Certifier { setting, whole, rules, budget, sweeper, .. } = self;
         let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
-        // Rounding grows with the way.
-        let error = setting.error + 64.0 * f64::EPSILON * motion.way().norm() / setting.length;
+        let error = along::error(setting, motion);
         // Written so that what is not a number is no tolerance.
         let tolerance = (16.0 * error).max(tolerance / setting.length);
         let mut first: Option<Stop> = None;
@@ -351,7 +353,8 @@ impl<'a> Certifier<'a> {
         for question in
             rules.iter().filter(|rule| rule.limit >= 0.0 || rule.limit + tolerance < 0.0)
         {
-            let task = Task { setting, question, motion, error, tolerance };
+            let limit = question.limit;
+            let task = Task { setting, question, motion, limit, error, tolerance };
             let stop = sweeper.run(&task, *budget);
             first = match (first, stop) {
                 (Some(first), Some(stop)) if stop.before(&first) => Some(stop),

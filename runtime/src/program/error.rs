@@ -37,14 +37,14 @@ pub enum ProgramError {
     },
     /// The program states another unit than the part's.
     #[error(
-        "{file}:{line}: UNITS says {said}, but the part is in {part}: load the part in {said}, or \
-         post the program in {part}"
+        "{file}{}: UNITS says {said}, but the part is in {part}: load the part in {said}, or \
+         post the program in {part}", .line.map(|line| format!(":{line}")).unwrap_or_default()
     )]
     Unit {
         /// The file.
         file: String,
-        /// The line of `UNITS`, 1-based.
-        line: usize,
+        /// The line of `UNITS`, 1-based, of a program that was read.
+        line: Option<usize>,
         /// The program's unit.
         said: Unit,
         /// The part's unit.

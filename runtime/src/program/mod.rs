@@ -1,5 +1,5 @@
 //! 5-axis programs: where the tip goes and which way the tool stands, read from a table of
-//! `x,y,z,i,j,k` or from APT-CL.
+//! `x,y,z,i,j,k` or from APT-CL, and written as either.
 //!
 //! The format is decided by the content, never by the file's ending. The first line that is
 //! neither blank nor a comment (`#`, `$$`) says which it is:
@@ -15,8 +15,10 @@
 mod apt;
 mod csv;
 mod error;
+mod write;
 
 pub use error::{Fault, ProgramError};
+pub use write::{Cutter, Heading, WriteError};
 
 use std::fs;
 use std::path::Path;
@@ -36,13 +38,14 @@ pub struct Program {
     /// 1-based line.
     pub ignored: Vec<(usize, String)>,
     file: String,
-    unit_line: usize,
+    /// Of a program that was read.
+    unit_line: Option<usize>,
 }
 
 /// One position of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// The line it begins on, 1-based.
+    /// The line it begins on, 1-based; of a program that was not read, its place in that.
     pub line: usize,
     /// The tool there, in the program's coordinates.
     pub pose: Pose,
@@ -51,6 +54,25 @@ pub struct Stop {
 }
 
 impl Program {
+    /// A program of these poses, each with whether the tool comes there in rapid traverse; `name` is what
+    /// errors call it. Poses are in the unit that is stated, or in the part's.
+    ///
+    /// # Errors
+    /// If there is no pose.
+    pub fn new(
+        name: &str,
+        unit: Option<Unit>,
+        poses: impl IntoIterator<Item = (Pose, bool)>,
+    ) -> Result<Program, ProgramError> {
+        let stop = |(line, (pose, rapid))| Stop { line, pose, rapid };
+        let stops: Vec<Stop> = (1..).zip(poses).map(stop).collect();
+        let file = name.to_owned();
+        if stops.is_empty() {
+            return Err(ProgramError::NoPosition { file });
+        }
+        Ok(Program { unit, stops, ignored: Vec::new(), file, unit_line: None })
+    }
+
     /// Reads a program from a file.
     pub fn read(path: impl AsRef<Path>) -> Result<Program, ProgramError> {
         let file = path.as_ref().display().to_string();
@@ -68,7 +90,7 @@ impl Program {
             Ok(tape) if tape.stops.is_empty() => Err(ProgramError::NoPosition { file }),
             Ok(tape) => Ok(Program {
                 unit: tape.unit.map(|(unit, _)| unit),
-                unit_line: tape.unit.map_or(0, |(_, line)| line),
+                unit_line: tape.unit.map(|(_, line)| line),
                 stops: tape.stops,
                 ignored: tape.ignored,
                 file,

@@ -232,7 +232,7 @@ impl Sweeper {
     fn passes(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
         let Task { setting, question, .. } = *task;
         match &setting.body {
-            Body::Profile(section) if question.owners.all() || question.limit < 0.0 => {
+            Body::Profile(section) if question.owners.all() || task.limit < 0.0 => {
                 self.along(task, section, &Facet::new(corners), goes)
             }
             _ => self.halved(task, corners, goes),

@@ -13,6 +13,9 @@ pub(crate) struct Task<'a> {
     pub(crate) setting: &'a Setting<'a>,
     pub(crate) question: &'a Question,
     pub(crate) motion: &'a Motion,
+    /// How deep the question's owners may be; below 0, how far they have to keep. That is the question's own
+    /// limit, or, where it is not below 0, any that is larger.
+    pub(crate) limit: f64,
     /// How far a place is known on this way.
     pub(crate) error: f64,
     /// How much deeper than its limit is not worth telling.
@@ -22,7 +25,7 @@ pub(crate) struct Task<'a> {
 impl Task<'_> {
     /// What is no deeper need not be looked at.
     pub(super) fn wanted(&self) -> f64 {
-        self.question.limit + self.tolerance
+        self.limit + self.tolerance
     }
 
     /// The same of what has grown by as much as is to be kept.
@@ -38,7 +41,7 @@ impl Task<'_> {
     /// How deep a place is, or how near, as depth less than 0.
     pub(super) fn depth(&self, scratch: &mut Scratch, point: Point) -> Place {
         let (body, owners) = (&self.setting.body, &self.question.owners);
-        let inside = if self.question.limit < 0.0 {
+        let inside = if self.limit < 0.0 {
             Some(body.distance(scratch, owners, point))
         } else {
             body.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
@@ -49,7 +52,7 @@ impl Task<'_> {
 
     /// Whether a place is deeper than is allowed, whatever was rounded.
     pub(super) fn too_deep(&self, found: &Place) -> bool {
-        found.depth > self.question.limit + 2.0 * self.error
+        found.depth > self.limit + 2.0 * self.error
     }
 }
 

@@ -1,0 +1,242 @@
+//! How deep a surface is at most on a motion, proved.
+//!
+//! A sweep finds some place that is too deep, or proves that there is none. So the greatest depth is bounded by
+//! asking it again and again what is deeper than the deepest that is known; that is found by climbing, in
+//! time, from a few times of the motion and from where sweeps point. A sweep goes by time, and takes long
+//! about places that are just as deep as it asks: so it is asked last, and not more closely than it pays.
+
+use super::answer::{Along, Witness};
+use super::body::Body;
+use super::question::Question;
+use super::sweep::{Stop, Sweeper, Task};
+use super::triangle::course::Goal;
+use super::work::{Setting, Work};
+use super::{Certifier, penetration};
+use crate::motion::Motion;
+use crate::tool::Shape;
+use std::slice;
+
+/// How far a place is known on a way, in the tool's unit: rounding grows with the way.
+pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
+    setting.error + 64.0 * f64::EPSILON * motion.way().norm() / setting.length
+}
+
+/// How often a sweep is asked for something deeper than what is known.
+const ROUNDS: u32 = 16;
+
+/// At so many times of a motion, and at its beginning, it is asked before it is swept.
+const TIMES: u32 = 8;
+
+/// The greatest depth of a motion is bounded to this part of what is too much.
+const CLOSE: f64 = 0.125;
+
+/// And with this part of the budget, since it costs no proof of what is clear.
+const PART: u32 = 16;
+
+/// A shorter time than this part of a motion is not told apart.
+const SHORTEST: f64 = 1e-12;
+
+impl Certifier<'_> {
+    /// How deep a surface, by its place in the card's list, gets all along a motion where it is the nearest:
+    /// whether deeper than it may be by more than a tolerance, where it is deepest as far as was found, and how
+    /// deep at most. Both are in the part's unit; a tolerance below what rounding adds is taken as that. Below
+    /// 0 what is allowed is a margin: how far the surface has to keep from all of the part.
+    ///
+    /// Allowances that were [set](Certifier::allow) do not count, and what is not a number allows nothing. Where it is not known which surface is the
+    /// nearest, all is undecided.
+    ///
+    /// ```
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::certify::{Along, Certifier, Facets};
+    /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
+    /// # touchoff::tool! {
+    /// #     tool Ball "6 mm" {
+    /// #         units mm;
+    /// #         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+    /// #         niceness cutting: 1;
+    /// #     }
+    /// # }
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let (low, high) = (Point3::new(-5., -5., -9.), Point3::new(5., 5., 0.));
+    /// let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    /// let pose = |x: f64| Pose::from_axis(Point3::new(x, 0.0, -0.5), Vector3::z());
+    /// // Both ends are clear of the block; between them the ball is 0.5 deep.
+    /// let motion = Motion::new(&pose(-20.0)?, &pose(20.0)?)?;
+    /// let found = Certifier::new(&block, &Ball)?.deepest_along(0, &motion, 0.0, 1e-6);
+    /// let Along::Deeper { depth: [low, high], most, .. } = found else { panic!("{found:?}") };
+    /// assert!(low <= 0.5 && 0.5 <= high && high - low < 1.1e-6 && most < 0.57);
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Panics
+    /// If there is no such surface.
+    pub fn deepest_along(
+        &mut self,
+        surface: usize,
+        motion: &Motion,
+        allowed: f64,
+        tolerance: f64,
+    ) -> Along {
+        let Certifier { setting, each, work, budget, sweeper, .. } = self;
+        let Body::Profile(section) = &setting.body else { return Along::Undecided(0.0) };
+        if self.card.shape != Shape::Revolved {
+            return Along::Undecided(0.0);
+        }
+        let question =
+            |limit| Question::new(section, setting.sight.margin, limit, |other| other == surface);
+        let error = error(setting, motion);
+        // Written so that what is not a number is no tolerance.
+        let tolerance = (32.0 * error).max(tolerance / setting.length);
+        let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
+        let whole = each[surface].get_or_insert_with(|| question(0.0));
+        let mut search =
+            Search { setting, work, sweeper, motion, question: whole, tolerance, budget: *budget };
+        let found = search.deepest(allowed.max(0.0));
+        if allowed >= 0.0 || matches!(found, Along::Deeper { .. }) {
+            return found;
+        }
+        let near = question(allowed);
+        search.question = &near;
+        match search.deepest(allowed) {
+            Along::Within => found,
+            nearer => nearer,
+        }
+    }
+}
+
+/// What is asked of one surface on one motion; lengths are in the tool's unit.
+struct Search<'a, 's> {
+    setting: &'a Setting<'s>,
+    work: &'a mut Work,
+    sweeper: &'a mut Sweeper,
+    motion: &'a Motion,
+    question: &'a Question,
+    tolerance: f64,
+    budget: u32,
+}
+
+/// How deep it is at a time.
+#[derive(Clone, Copy)]
+struct Peak {
+    depth: [f64; 2],
+    at: f64,
+    witness: Witness,
+}
+
+impl Search<'_, '_> {
+    fn deepest(&mut self, allowed: f64) -> Along {
+        let times = (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES));
+        let seen = times.filter_map(|at| self.at(at)).collect::<Vec<Peak>>();
+        let seen = seen.into_iter().filter(|peak| peak.depth[0] > allowed).reduce(deeper);
+        let first = match seen {
+            Some(peak) => peak,
+            None => match self.sweep(allowed, self.tolerance, self.budget) {
+                None => return self.within(allowed),
+                Some(Stop::Spent { at }) => return Along::Undecided(at),
+                Some(Stop::Deeper { at, best }) => {
+                    let witness = self.setting.witness(&best, &self.motion.pose(at));
+                    let depth = [allowed, allowed + self.tolerance];
+                    let seen = Peak { depth, at, witness };
+                    self.at(at).map_or(seen, |here| deeper(seen, here))
+                }
+            },
+        };
+        let top = self.climb(first);
+        let (best, most) = self.bounded(top, allowed);
+        let length = self.setting.length;
+        let depth = best.depth.map(|depth| depth * length);
+        Along::Deeper { at: best.at, depth, most: most * length, witness: best.witness }
+    }
+
+    /// Something deeper if there is, and what nothing is deeper than.
+    fn bounded(&mut self, mut best: Peak, allowed: f64) -> (Peak, f64) {
+        let mut close = CLOSE;
+        for _ in 0..ROUNDS {
+            let [low, high] = best.depth;
+            let gap = self.tolerance.max(close * (high - allowed));
+            // Half of it is for what a sweep does not tell apart, half for what each round gains.
+            let limit = (low + 0.5 * gap).max(allowed);
+            match self.sweep(limit, 0.5 * gap, self.budget / PART) {
+                None => return (best, high.max(limit + 0.5 * gap)),
+                Some(Stop::Spent { .. }) => close *= 4.0,
+                Some(Stop::Deeper { at, .. }) => match self.at(at) {
+                    Some(here) if here.depth[0] > low => best = self.climb(here),
+                    _ => close *= 4.0,
+                },
+            }
+        }
+        // No place is farther from the surface than the axis is.
+        let any = if self.question.limit < 0.0 { 0.0 } else { self.setting.size };
+        (best, any)
+    }
+
+    /// What is deeper on the way than a limit, if anything is by more than a tolerance.
+    fn sweep(&mut self, limit: f64, tolerance: f64, budget: u32) -> Option<Stop> {
+        let Search { setting, question, motion, .. } = *self;
+        if self.question.limit < 0.0 && limit + tolerance >= 0.0 {
+            return None;
+        }
+        let error = error(setting, motion);
+        let task = Task { setting, question, motion, limit, error, tolerance };
+        self.sweeper.run(&task, budget)
+    }
+
+    /// What is to be said where no triangle is too deep.
+    fn within(&self, allowed: f64) -> Along {
+        let more = allowed.max(0.0) + self.tolerance;
+        let rules = slice::from_ref(self.question);
+        match self.setting.within(rules, &self.motion.pose(0.0), more) {
+            Some(true) => Along::Inside,
+            _ => Along::Within,
+        }
+    }
+
+    /// The deepest about a time: steps that gain are taken, those that do not are halved until they are too
+    /// short for more than the tolerance.
+    fn climb(&mut self, from: Peak) -> Peak {
+        let Setting { size, length, .. } = *self.setting;
+        let pace = self.motion.way().norm() / length + self.motion.angle() * size;
+        let mut best = from;
+        let mut step = 0.5 / f64::from(TIMES);
+        while step * pace > self.fine() && step > SHORTEST {
+            let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
+            let found = sides.map(|at| self.at(at)).into_iter().flatten();
+            let found = found.fold(best, deeper);
+            if found.depth[0] > best.depth[0] {
+                best = found;
+            } else {
+                step *= 0.5;
+            }
+        }
+        best
+    }
+
+    /// How closely depths are asked for.
+    fn fine(&self) -> f64 {
+        0.125 * self.tolerance
+    }
+
+    /// How deep it is at a part of the way, if it is.
+    fn at(&mut self, at: f64) -> Option<Peak> {
+        let tolerance = self.fine();
+        let Search { setting, question, ref mut work, budget, .. } = *self;
+        let pose = self.motion.pose(at);
+        if question.limit >= 0.0 {
+            let asked = (tolerance * setting.length, budget);
+            let found = penetration(setting, question, work, &pose, asked);
+            let depth = found.depth.map(|depth| depth / setting.length);
+            return found.witness.map(|witness| Peak { depth, at, witness });
+        }
+        setting.look(work, &pose);
+        let goal = Goal { least: question.limit, tolerance, enough: f64::INFINITY, budget };
+        work.outside(setting, question, &pose, goal);
+        let best = work.best?;
+        let (found, more) = (work.search.best, error(setting, self.motion) + work.skew);
+        let high = (found + tolerance).max(work.search.most) + more;
+        Some(Peak { depth: [found - more, high], at, witness: setting.witness(&best, &pose) })
+    }
+}
+
+fn deeper(one: Peak, other: Peak) -> Peak {
+    if other.depth[0] > one.depth[0] { other } else { one }
+}
