@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use touchoff::Mesh;
-use touchoff::postures::{Directions, PartStamp, PostureMap};
+use touchoff::postures::{Directions, PartStamp, PostureMap, colour};
 
 #[derive(Serialize)]
 struct Summary<'a> {
@@ -43,7 +43,10 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         match (form, &mesh) {
             (Form::Csv, _) => map.write_csv(&mut out)?,
             (Form::Json, _) => map.write_json(&mut out)?,
-            (Form::Ply, Some(mesh)) => map.write_ply(&mut out, mesh)?,
+            (Form::Ply, Some(mesh)) => {
+                let nicest = nicest(&map)?;
+                map.write_ply(&mut out, mesh, |niceness| colour(niceness / nicest))?;
+            }
             (Form::Png, Some(mesh)) => {
                 let directions = Directions::from(map.identity().directions.clone());
                 let picture = picture::of(&map, &directions, mesh, wanted.by)?;
@@ -55,6 +58,15 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         say!("{}", file.display());
     }
     told(&map, json)
+}
+
+/// The greatest niceness of all postures, or 1.
+fn nicest(map: &PostureMap) -> Result<f64, Failure> {
+    let mut nicest: f64 = 0.0;
+    for entry in map.rows()? {
+        nicest = entry?.1.best.first().map_or(nicest, |best| nicest.max(best.niceness));
+    }
+    Ok(if nicest > 0.0 { nicest } else { 1.0 })
 }
 
 /// The part that a map is of.
