@@ -49,7 +49,7 @@ fn batch(k: u32, triangles: u32) -> Vec<(u32, Row)> {
             depth: 0.001,
             clearance: 2.0,
         };
-        let directions = (0..10).map(|word| u64::from(k) * word >> 8).collect();
+        let directions = (0..10).map(|word| (u64::from(k) * word) >> 8).collect();
         let access = Access { tool: 0, directions, stickout: Some(f64::from(triangle)) };
         Row { best: vec![record], access: vec![access] }
     };

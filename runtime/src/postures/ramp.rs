@@ -19,8 +19,8 @@ const VIRIDIS: [[u8; 3]; 11] = [
 /// The colour, sRGB, of a part of the whole, from dark violet at 0 to yellow at 1; what is beyond is as its
 /// end, and what is not a number as 0.
 pub fn colour(part: f64) -> [u8; 3] {
-    // The larger of 0 and what is not a number is 0.
-    let at = part.max(0.0).min(1.0) * (VIRIDIS.len() - 1) as f64;
+    let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
+    let at = part * (VIRIDIS.len() - 1) as f64;
     let below = (at as usize).min(VIRIDIS.len() - 2);
     let over = at - below as f64;
     [0, 1, 2].map(|k| {

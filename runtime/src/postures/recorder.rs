@@ -3,7 +3,7 @@
 use super::{Judge, JudgeError, MapError, PostureMap, Record, ToolStamp};
 use crate::certify::Facets;
 use crate::haptic::{Samples, State};
-use crate::{Part, Pose, Probe, Tool};
+use crate::{Part, Pose, Probe, Tool, Unit};
 use std::time::{Duration, Instant};
 
 /// Takes the poses of a running loop, and records those that are nice and proved acceptable.
@@ -59,9 +59,9 @@ pub enum RecorderError {
     #[error("the map is in {map}, and the part beside it in {part}: make both from the same mesh")]
     Unit {
         /// The map's.
-        map: crate::Unit,
+        map: Unit,
         /// The part's.
-        part: crate::Unit,
+        part: Unit,
     },
     /// The tool cannot be judged.
     #[error(transparent)]

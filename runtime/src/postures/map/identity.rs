@@ -138,7 +138,7 @@ impl Identity {
         let stray = |access: &Access| {
             let last = access.directions.last().copied().unwrap_or(0);
             access.directions.len() != count.div_ceil(64)
-                || (count % 64 > 0 && last >> (count % 64) != 0)
+                || (!count.is_multiple_of(64) && last >> (count % 64) != 0)
         };
         access.iter().any(stray).then_some("it has other directions than the map")
     }

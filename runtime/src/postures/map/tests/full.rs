@@ -31,7 +31,7 @@ impl Disk {
     }
 
     fn take(&self, count: usize) -> io::Result<()> {
-        let count = count as i64;
+        let count = i64::try_from(count).expect("a small count");
         match self.room.fetch_sub(count, Ordering::Relaxed) >= count {
             true => Ok(()),
             false => Err(io::ErrorKind::StorageFull.into()),

@@ -84,7 +84,7 @@ fn any_record(random: &mut Pcg64Mcg) -> Record {
         // Some are as nice as others.
         niceness: f64::from(random.next_u32() % 4) / 3.0,
         depth: part(random) / 1e3,
-        clearance: if random.next_u32() % 4 == 0 { f64::INFINITY } else { part(random) },
+        clearance: if random.next_u32().is_multiple_of(4) { f64::INFINITY } else { part(random) },
     }
 }
 
