@@ -33,6 +33,24 @@ pub(crate) enum Fine {
     Proof,
 }
 
+/// Reads a part for its triangles, which `what` is asked of.
+pub(crate) fn mesh(part: &Path, unit: Unit, what: &'static str) -> Result<Mesh, Failure> {
+    let file = part.display();
+    let no_mesh = || Failure::NoTriangles { file: file.to_string(), what };
+    if is_saved(part) {
+        return Err(no_mesh());
+    }
+    match Shape::read(part, unit)? {
+        Shape::Mesh(mesh) => {
+            for finding in mesh.survey().findings() {
+                say!("{file}: {finding}");
+            }
+            Ok(mesh)
+        }
+        Shape::Points(_) => Err(no_mesh()),
+    }
+}
+
 /// Reads a part and takes points of it, for that tool.
 pub(crate) fn load(wanted: &PartFile, card: Option<&Card>, fine: Fine) -> Result<Loaded, Failure> {
     let file = wanted.part.display();

@@ -213,7 +213,7 @@ impl Search<'_, '_> {
 
     /// How closely depths are asked for.
     fn fine(&self) -> f64 {
-        0.125 * self.tolerance
+        self.tolerance / 32.0
     }
 
     /// How deep it is at a part of the way, if it is.
