@@ -170,7 +170,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;
     } else {
-        summary.print(&mut out, unit, count.reached.of(all))?;
+        summary.print(&mut out, unit, &count.reached.of(all))?;
     }
     out.flush()?;
     Ok(())
@@ -196,7 +196,7 @@ fn bar(batches: usize) -> ProgressBar {
 }
 
 impl Summary {
-    fn print(&self, out: &mut impl Write, unit: Unit, reached: String) -> std::io::Result<()> {
+    fn print(&self, out: &mut impl Write, unit: Unit, reached: &str) -> std::io::Result<()> {
         let Summary { triangles, directions, tally, seconds, .. } = self;
         if self.before > 0 {
             writeln!(out, "{} of {} batches were there already", self.before, self.batches)?;

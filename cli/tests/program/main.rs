@@ -3,6 +3,7 @@
 mod bench;
 mod haptic;
 mod parts;
+mod postures;
 mod verify;
 
 use bench::{Bench, rows, shared, stderr, stdout, touchoff};

@@ -1,0 +1,195 @@
+//! Sweeps, maps and paths: what they print and write, and what is wrong with them said.
+
+use crate::bench::{Bench, stderr, stdout, touchoff};
+use serde_json::Value;
+use std::process::Output;
+use touchoff::Unit;
+use touchoff::mesh::shapes;
+use touchoff::postures::PostureMap;
+
+/// A tube, and where a map of it goes.
+struct Tube {
+    bench: Bench,
+    part: String,
+    map: String,
+}
+
+impl Tube {
+    fn new() -> Tube {
+        let bench = Bench::new();
+        let tube = shapes::tube(6.0, 9.0, 12.0, 24, 3, Unit::Millimetre).expect("a tube");
+        let mut stl = Vec::new();
+        tube.write_stl(&mut stl).expect("memory");
+        let place = |name: &str| bench.folder.path().join(name).display().to_string();
+        let (part, map) = (place("tube.stl"), place("tube.postures"));
+        std::fs::write(&part, stl).expect("a writable folder");
+        Tube { bench, part, map }
+    }
+
+    fn place(&self, name: &str) -> String {
+        self.bench.folder.path().join(name).display().to_string()
+    }
+
+    fn sweep(&self, tools: &str, more: &[&str]) -> Output {
+        let all =
+            ["sweep", "--part", &self.part, "--unit", "mm", "--tools", tools, "--directions", "40"];
+        touchoff(&[&all[..], &["--tolerance", "0.05", "--out", &self.map], more].concat())
+    }
+}
+
+fn object(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", stderr(output));
+    serde_json::from_str(&stdout(output)).expect("JSON")
+}
+
+fn refused(output: &Output, words: &[&str]) {
+    let said = stderr(output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for word in words {
+        assert!(said.contains(word), "`{word}` is not said: {said}");
+    }
+}
+
+#[test]
+fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
+    let tube = Tube::new();
+    let told = object(&tube.sweep("D2Ball,BallEr16", &["--json"]));
+    assert_eq!((&told["triangles"], &told["directions"]), (&336.into(), &80.into()), "{told}");
+    assert_eq!(told["tally"]["postures"], 336 * 80 * 2);
+    assert_eq!(told["reached"], 336, "a ball of 1 mm comes everywhere in a tube of 12: {told}");
+    let [slim, stout] =
+        [0, 1].map(|k: usize| told["tools"][k]["reached"].as_u64().expect("a count"));
+    assert!(slim == 336 && stout < slim, "a nut does not go into the tube: {told}");
+    let stickout = told["tools"][1]["stickout"][0].as_f64().expect("a length");
+    assert!((18.0..=30.0).contains(&stickout), "{stickout}");
+
+    // Nothing is done twice, and what is told is the same.
+    let again = object(&tube.sweep("D2Ball,BallEr16", &["--json"]));
+    assert_eq!((&again["before"], &again["tally"]["postures"]), (&again["batches"], &0.into()));
+    assert_eq!((&again["tools"], &again["area"]), (&told["tools"], &told["area"]));
+
+    let to: Vec<String> =
+        ["m.csv", "m.json", "m.ply", "m.png"].iter().map(|name| tube.place(name)).collect();
+    let shown = touchoff(&[
+        "map", &tube.map, "--part", &tube.part, "--to", &to[0], "--to", &to[1], "--to", &to[2],
+        "--to", &to[3],
+    ]);
+    assert!(stdout(&shown).contains("336 of 336 triangles have a posture"), "{}", stderr(&shown));
+    let csv = std::fs::read_to_string(&to[0]).expect("a table");
+    assert!(csv.lines().count() > 336, "{csv}");
+    let json: Value =
+        serde_json::from_slice(&std::fs::read(&to[1]).expect("a file")).expect("JSON");
+    assert_eq!(json["rows"].as_array().expect("rows").len(), 336);
+    assert!(std::fs::read(&to[2]).expect("a file").starts_with(b"ply"));
+    assert!(std::fs::read(&to[3]).expect("a file").starts_with(b"\x89PNG"));
+
+    for name in ["tube.apt", "tube.csv"] {
+        let program = tube.place(name);
+        let led = touchoff(&[
+            "path",
+            &tube.map,
+            "--part",
+            &tube.part,
+            "--tool",
+            "D2Ball",
+            "--planes",
+            "0,0,1",
+            "--stepover",
+            "3",
+            "--to",
+            &program,
+            "--json",
+        ]);
+        let led = object(&led);
+        assert!(led["places"].as_u64() > Some(40), "{led}");
+        let checked = touchoff(&[
+            "verify",
+            "--part",
+            &tube.part,
+            "--unit",
+            "mm",
+            "--tool",
+            "D2Ball",
+            "--program",
+            &program,
+            "--tolerance",
+            "0.05",
+        ]);
+        assert_eq!(checked.status.code(), Some(0), "{}{}", stdout(&checked), stderr(&checked));
+    }
+}
+
+#[test]
+fn a_sweep_without_a_map_tells_the_same() {
+    let tube = Tube::new();
+    let kept = object(&tube.sweep("D2Ball", &["--json"]));
+    let all = ["sweep", "--part", &tube.part, "--unit", "mm", "--tools", "D2Ball", "--json"];
+    let told =
+        object(&touchoff(&[&all[..], &["--directions", "40", "--tolerance", "0.05"]].concat()));
+    for key in ["reached", "area", "tools", "tally"] {
+        assert_eq!(kept[key], told[key], "{key}");
+    }
+    let words = touchoff(&[&all[..7], &["--directions", "10"]].concat());
+    assert!(stdout(&words).contains("proved acceptable"), "{}", stdout(&words));
+}
+
+#[test]
+fn what_a_map_is_not_of_is_refused() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let before = std::fs::read(&tube.map).expect("a map");
+    refused(&tube.sweep("BallEr16", &[]), &["tools", "D2Ball", "BallEr16"]);
+    refused(&tube.sweep("D2Ball", &["--niceness", "0.5"]), &["rules"]);
+    let block = tube.bench.folder.path().join("block.stl").display().to_string();
+    let other =
+        ["sweep", "--part", &block, "--unit", "mm", "--tools", "D2Ball", "--directions", "40"];
+    let more = ["--tolerance", "0.05", "--out", &tube.map];
+    refused(&touchoff(&[&other[..], &more].concat()), &["another part"]);
+    let picture = tube.place("m.png");
+    refused(&touchoff(&["map", &tube.map, "--to", &picture]), &["--part"]);
+    refused(&touchoff(&["map", &tube.map, "--part", &block, "--to", &picture]), &["another part"]);
+    refused(&touchoff(&["map", &tube.map, "--to", &tube.place("m.pdf")]), &[".csv", "m.pdf"]);
+    let program = tube.place("p.apt");
+    let path = |tool: &str, to: &str| {
+        touchoff(&[
+            "path",
+            &tube.map,
+            "--part",
+            &tube.part,
+            "--tool",
+            tool,
+            "--stepover",
+            "3",
+            "--to",
+            to,
+        ])
+    };
+    refused(&path("BallEr16", &program), &["no `BallEr16`"]);
+    refused(&path("D2Ball", &tube.place("p.nc")), &[".apt", "p.nc"]);
+    assert_eq!(std::fs::read(&tube.map).expect("a map"), before, "a refusal changes nothing");
+}
+
+#[test]
+fn a_map_that_is_damaged_or_in_use_is_refused() {
+    let tube = Tube::new();
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    let open = PostureMap::read(&tube.map).expect("a map");
+    refused(&tube.sweep("D2Ball", &[]), &["another process"]);
+    drop(open);
+    assert!(tube.sweep("D2Ball", &[]).status.success());
+    std::fs::write(&tube.map, "not a map").expect("a writable file");
+    refused(&tube.sweep("D2Ball", &[]), &["tube.postures"]);
+    let missing = tube.place("missing.postures");
+    refused(&touchoff(&["map", &missing]), &["missing.postures"]);
+}
+
+#[test]
+fn what_means_nothing_is_refused() {
+    let tube = Tube::new();
+    refused(&tube.sweep("D2Bal", &[]), &["did you mean `D2Ball`"]);
+    refused(&tube.sweep("D2Ball", &["--allow", "nut=0.1"]), &["`nut`", "`shank`"]);
+    let cubes = tube.sweep("Block", &[]);
+    refused(&cubes, &["Block"]);
+    let wrong = tube.sweep("D2Ball", &["--tolerance", "0"]);
+    assert_eq!(wrong.status.code(), Some(2), "{}", stderr(&wrong));
+}
