@@ -71,6 +71,9 @@ pub(crate) enum Failure {
     /// A posture map could not be read or written.
     #[error(transparent)]
     Map(#[from] touchoff::postures::MapError),
+    /// Nothing can be recorded of a session.
+    #[error(transparent)]
+    Recorder(#[from] touchoff::postures::RecorderError),
     /// There is no path.
     #[error(transparent)]
     Path(#[from] touchoff::postures::path::PathError),

@@ -268,6 +268,9 @@ pub(crate) struct Haptic {
     /// Write every state to a table.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) record: Option<PathBuf>,
+    /// Keep the postures that are found acceptable in this map, an old one or a new one.
+    #[arg(long, value_name = "MAP")]
+    pub(crate) postures: Option<PathBuf>,
 }
 
 #[derive(Args)]

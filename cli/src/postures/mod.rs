@@ -6,7 +6,7 @@ mod picture;
 mod render;
 pub(crate) mod sweep;
 
-use touchoff::Mesh;
+use touchoff::{Mesh, Unit};
 
 /// A share of the whole.
 fn percent(part: f64, whole: f64) -> String {
@@ -36,4 +36,9 @@ impl Share {
         let triangles = percent(self.triangles as f64, all.triangles as f64);
         format!("{triangles} of the triangles, {} of the area", percent(self.area, all.area))
     }
+}
+
+/// The tolerance if none is given: a hundredth of a millimetre.
+pub(crate) fn usual(unit: Unit) -> f64 {
+    0.01 * Unit::Millimetre.to(unit)
 }

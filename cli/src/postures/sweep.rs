@@ -1,6 +1,6 @@
 //! A part and tools, every triangle in every direction.
 
-use super::{Share, percent};
+use super::{Share, percent, usual};
 use crate::arguments::Given;
 use crate::arguments::postures::Sweep as Wanted;
 use crate::failure::Failure;
@@ -174,11 +174,6 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     }
     out.flush()?;
     Ok(())
-}
-
-/// The tolerance if none is given: a hundredth of a millimetre.
-fn usual(unit: Unit) -> f64 {
-    0.01 * Unit::Millimetre.to(unit)
 }
 
 /// The batches that are not in the map.

@@ -181,6 +181,11 @@ impl<'a> Recorder<'a> {
         if self.batch.len() >= MANY || self.since.elapsed() > OLD { self.write() } else { Ok(()) }
     }
 
+    /// What it saw so far.
+    pub fn seen(&self) -> Recorded {
+        self.seen
+    }
+
     /// Brings the batch to the disk.
     ///
     /// # Errors

@@ -1,20 +1,24 @@
 //! The haptic loop from the command line: a device, a part and a tool for some seconds.
 
+mod kept;
+
 use crate::arguments::{Haptic, Wielded};
 use crate::failure::Failure;
 use crate::files::Found;
 use crate::part::{self, Fine};
+use kept::{Kept, Table, map_of};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use touchoff::certify::Facets;
 use touchoff::haptic::{
     Axes, Coupling, Device, Hand, Limits, Monotonic, Realtime, Recorded, Rendering, Report,
-    Samples, Session, Settings, State, Tremor, Watch, run, watched,
+    Session, Settings, State, Tremor, Watch, run, watched,
 };
+use touchoff::postures::Recorder;
 use touchoff::tool::{Card, Shape};
 use touchoff::{Part, Pose, Probe, Program, Tool, Unit};
 
@@ -29,10 +33,25 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
     let unit = wanted.part.unit;
-    let part = part::load(&wanted.part, Some(tool.card()), Fine::Points)?.part;
-    let record = match &wanted.record {
-        Some(path) => Some(Record::create(path, wanted.rate)?),
-        None => None,
+    let loaded = part::load(&wanted.part, Some(tool.card()), Fine::Points)?;
+    let map = match (&wanted.postures, &loaded.mesh) {
+        (None, _) => None,
+        (Some(file), Some(mesh)) => Some((map_of(file, mesh, tool)?, Facets::new(mesh))),
+        (Some(_), None) => {
+            let file = wanted.part.part.display().to_string();
+            return Err(Failure::NoTriangles { file, what: "--postures" });
+        }
+    };
+    let part = loaded.part;
+    let record = Kept {
+        table: match &wanted.record {
+            Some(path) => Some(Table::create(path, wanted.rate)?),
+            None => None,
+        },
+        recorder: match &map {
+            Some((map, facets)) => Some(Recorder::new(map, (&part, facets), tool)?),
+            None => None,
+        },
     };
     let axes = match tool.card().shape {
         Shape::Revolved => Axes::Five,
@@ -107,51 +126,12 @@ fn pressing(start: Pose, unit: Unit) -> impl FnMut(f64) -> Pose {
     }
 }
 
-const COLUMNS: &str = "cycle,seconds,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
-    tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,colliding,put_in,held";
-
-/// A record of all states, as a table.
-struct Record {
-    out: BufWriter<File>,
-    rate: f64,
-}
-
-impl Record {
-    fn create(path: &Path, rate: f64) -> Result<Record, Failure> {
-        let wrong = |source| Failure::Record { file: path.display().to_string(), source };
-        let mut out = BufWriter::new(File::create(path).map_err(wrong)?);
-        writeln!(out, "{COLUMNS}").map_err(wrong)?;
-        Ok(Record { out, rate })
-    }
-
-    fn take(&mut self, samples: &mut Samples) -> std::io::Result<()> {
-        for state in samples {
-            let State { cycle, wrench, push, energy, .. } = state;
-            let vectors = [
-                state.device.tip().coords,
-                state.device.axis(),
-                state.tool.tip().coords,
-                state.tool.axis(),
-                push.force,
-                push.torque,
-            ];
-            write!(self.out, "{cycle},{:.6}", cycle as f64 / self.rate)?;
-            for part in vectors.iter().flat_map(|vector| vector.iter()) {
-                write!(self.out, ",{part}")?;
-            }
-            let (depth, colliding) = (wrench.depth(), wrench.colliding);
-            writeln!(self.out, ",{depth},{colliding},{},{}", energy.put_in, energy.held)?;
-        }
-        Ok(())
-    }
-}
-
 /// Runs the loop in a thread of its own, and watches it from this one.
 fn wield(
     mut device: impl Device + Send,
     (wanted, json, cycles): (&Haptic, bool, u64),
     (part, tool): (&Part, &dyn Tool),
-    mut record: Option<Record>,
+    mut record: Kept<'_>,
 ) -> Result<(), Failure> {
     let limits = device.limits();
     let rendering = match wanted.direct {
@@ -184,10 +164,7 @@ fn wield(
         let mut shown = 0;
         while !looped.is_finished() {
             std::thread::sleep(Duration::from_millis(20));
-            match &mut record {
-                Some(record) => record.take(&mut samples)?,
-                None => samples.by_ref().for_each(drop),
-            }
+            record.take(&mut samples)?;
             if !json
                 && let Some(state) = latest.read()
                 && state.cycle >= shown
@@ -198,10 +175,8 @@ fn wield(
         }
         Ok(looped.join().expect("the loop panics at nothing"))
     })?;
-    if let Some(mut record) = record {
-        record.take(&mut samples)?;
-        record.out.flush()?;
-    }
+    record.take(&mut samples)?;
+    record.end()?;
     if json { said(&report, wanted) } else { told(&report, wanted) }
 }
 
