@@ -10,6 +10,7 @@ mod task;
 
 use crate::certify::body::Body;
 use crate::certify::body::field::Scratch;
+use crate::certify::body::owners::Owners;
 use crate::certify::body::section::Section;
 use crate::certify::bounds::descent::{Node, of_children};
 use crate::certify::bounds::swath::Swath;
@@ -231,23 +232,34 @@ impl Sweeper {
     /// Whether no place of a triangle is so deep, or so near, that after going so far it may be too deep.
     fn passes(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
         let Task { setting, question, .. } = *task;
-        match &setting.body {
-            Body::Profile(section) if question.owners.all() || task.limit < 0.0 => {
-                self.along(task, section, &Facet::new(corners), goes)
-            }
-            _ => self.halved(task, corners, goes),
+        let Body::Profile(section) = &setting.body else {
+            return self.halved(task, corners, goes);
+        };
+        let facet = Facet::new(corners);
+        if question.owners.all() || task.limit < 0.0 {
+            return self.along(task, (section, &question.owners), &facet, goes);
+        }
+        // Where no surface is too deep, none need be told apart.
+        match self.along(task, (section, &Owners::default()), &facet, goes) {
+            Passes::Open => self.halved(task, corners, goes),
+            decided => decided,
         }
     }
 
     /// The same by the ways of a triangle on which it is deepest, or nearest.
-    fn along(&mut self, task: &Task<'_>, section: &Section, facet: &Facet, goes: f64) -> Passes {
+    fn along(
+        &mut self,
+        task: &Task<'_>,
+        asked: (&Section, &Owners),
+        facet: &Facet,
+        goes: f64,
+    ) -> Passes {
         let goes = goes + facet.skew + task.error;
         let least = task.wanted() - goes;
         let (tolerance, enough, budget) = (0.25 * goes, f64::INFINITY, self.budget);
         self.search.begin(Goal { least, tolerance, enough, budget });
-        let asked = (section, &task.question.owners);
         let mut found = None;
-        let peaks = task.question.owners.peaks.iter().filter_map(|peak| facet.level(*peak));
+        let peaks = asked.1.peaks.iter().filter_map(|peak| facet.level(*peak));
         for course in facet.courses().chain(peaks) {
             let deepest = if least < 0.0 {
                 self.search.outside(asked, &course)
