@@ -21,8 +21,8 @@ touchoff::tool! {
     }
 }
 
-/// Along a wall, 30 mm high, whose face is x = 0: the last cut leans into it between two points that are
-/// both right, and the retract is not high enough before it goes across.
+/// Along a wall, 30 mm high, whose face is x = 0: one point is 0.05 mm in it, and the retract is not high
+/// enough to go across: both its ends are clear, the way between them is not.
 const PROGRAM: &str = "\
 PARTNO/WALL
 UNITS/MM
@@ -31,7 +31,7 @@ RAPID
 GOTO/-8,-40,12,0,0,1
 GOTO/-6,-40,12,0,0,1
 GOTO/-6,0,12,0,0,1
-GOTO/-6,40,12,-0.05,0,0.99874922
+GOTO/-5.95,40,12,0,0,1
 GOTO/-6,80,12,0,0,1
 RAPID
 GOTO/-6,80,25,0,0,1
