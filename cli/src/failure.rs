@@ -59,6 +59,9 @@ pub(crate) enum Failure {
     /// What was asked to be proved cannot be.
     #[error(transparent)]
     Uncertified(#[from] touchoff::certify::Uncertified),
+    /// A program could not be checked.
+    #[error(transparent)]
+    Verify(#[from] touchoff::verify::VerifyError),
     /// A sweep could not be done.
     #[error(transparent)]
     Sweep(#[from] touchoff::postures::sweep::SweepError),

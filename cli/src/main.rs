@@ -22,6 +22,7 @@ mod postures;
 mod run;
 mod stages;
 mod timing;
+mod verify;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -32,6 +33,9 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         None | Some(Command::Demo) => demo::demo(arguments.json),
         Some(Command::Run(wanted)) => run::run(&wanted, arguments.json),
+        Some(Command::Verify(wanted)) => {
+            return ended_or(verify::verify(&wanted, arguments.json), verify::NOT_CHECKED);
+        }
         Some(Command::Haptic(wanted)) => haptic::haptic(&wanted, arguments.json),
         Some(Command::Sweep(wanted)) => postures::sweep::sweep(&wanted, arguments.json),
         Some(Command::Map(wanted)) => postures::map::map(&wanted, arguments.json),
@@ -56,13 +60,20 @@ fn main() -> ExitCode {
 }
 
 fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
+    ended_or(done, FAILED)
+}
+
+/// The exit status of most that fails.
+const FAILED: u8 = 1;
+
+fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
     match done {
         Ok(code) => code,
         // Whoever read the output has enough of it.
         Err(failure) if failure.is_enough() => ExitCode::SUCCESS,
         Err(failure) => {
             say!("error: {failure}");
-            ExitCode::FAILURE
+            ExitCode::from(failed)
         }
     }
 }

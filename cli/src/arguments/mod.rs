@@ -26,6 +26,11 @@ pub(crate) enum Command {
     Demo,
     /// Feel a part with a tool along a path.
     Run(Box<Run>),
+    /// Check a program against the finished part: where on its way is a tool deeper than it may be?
+    ///
+    /// Every motion is proved, between its points too; a line a finding. Ends with status 1 if there are any,
+    /// with 2 if the program could not be checked.
+    Verify(Box<Verify>),
     /// Feel a part with a tool in a hand: the haptic loop, in real time.
     ///
     /// Prints how long cycles took, how many missed their time, the largest force, and what became of the
@@ -189,6 +194,35 @@ pub(crate) struct Run {
 }
 
 #[derive(Args)]
+pub(crate) struct Verify {
+    /// The finished part: a mesh in STL, PLY or OBJ.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: PathBuf,
+    /// The part's unit, which most formats do not say: `mm`, `inch` or `m`.
+    #[arg(long)]
+    pub(crate) unit: Unit,
+    /// A compiled tool by name, or any `.tool` file.
+    #[arg(long, value_name = "NAME|FILE.tool")]
+    pub(crate) tool: String,
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) program: PathBuf,
+    /// How deep any surface of the tool may be in the part, in the part's unit.
+    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance, default_value_t = 0.0)]
+    pub(crate) tolerance: f64,
+    /// How deep one surface may be instead, where it is the nearest and in feed; `inf` for any depth, below 0 a
+    /// margin that it has to keep: `--allow flute=0.05 --allow nut=-1`.
+    #[arg(long, value_name = "SURFACE=DEPTH", value_parser = allowance)]
+    pub(crate) allow: Vec<(String, f64)>,
+    /// What is deeper than it may be by no more than this may or may not be found, in the part's unit
+    /// [default: 0.001 mm].
+    #[arg(long, value_name = "LENGTH", value_parser = tolerance)]
+    pub(crate) resolution: Option<f64>,
+}
+
+#[derive(Args)]
 pub(crate) struct Haptic {
     #[command(flatten)]
     pub(crate) part: PartFile,
@@ -283,6 +317,14 @@ fn tolerance(text: &str) -> Result<f64, String> {
         Ok(value) => Err(format!("{value} is no tolerance: write a length of 0 or more")),
         Err(_) => Err(format!("`{text}` is not a number")),
     }
+}
+
+/// A surface and a depth.
+fn allowance(text: &str) -> Result<(String, f64), String> {
+    let (surface, depth) = text.split_once('=').ok_or("write SURFACE=DEPTH: `flute=0.05`")?;
+    let depth = depth.trim();
+    let number = depth.parse().map_err(|_| format!("`{depth}` is not a number"))?;
+    Ok((surface.trim().to_owned(), number))
 }
 
 /// A length above 0.

@@ -1,6 +1,6 @@
 //! What the commands about postures are asked for.
 
-use super::{above_zero, point};
+use super::{above_zero, allowance, point};
 use clap::{Args, ValueEnum};
 use nalgebra::Point3;
 use std::num::NonZeroU16;
@@ -99,16 +99,4 @@ pub(crate) struct Path {
     /// Where the program goes.
     #[arg(long, value_name = "OUT.apt|.csv")]
     pub(crate) to: PathBuf,
-}
-
-/// `SURFACE=LENGTH`
-fn allowance(text: &str) -> Result<(String, f64), String> {
-    let (surface, length) =
-        text.split_once('=').ok_or_else(|| format!("`{text}`: write `SURFACE=LENGTH`"))?;
-    match length.trim().parse::<f64>() {
-        Ok(length) if !length.is_nan() && length > f64::NEG_INFINITY => {
-            Ok((surface.trim().to_owned(), length))
-        }
-        _ => Err(format!("`{}` is no length", length.trim())),
-    }
 }

@@ -40,18 +40,20 @@ pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize)
     let right = Vector3::from(view.up).cross(&toward).normalize();
     let up = toward.cross(&right);
     let light = (toward + 0.5 * up - 0.4 * right).normalize();
-    let [low, high] = mesh.bounds();
-    let (middle, reach) = (low + 0.5 * (high - low), 0.5 * (high - low).norm());
+    let [across, along] = [right, up].map(|way| span(mesh, &way));
     let fine = side * FINER;
-    let scale = fine as f64 * (0.5 - MARGIN) / reach;
+    let scale =
+        fine as f64 * (1.0 - 2.0 * MARGIN) / (across[1] - across[0]).max(along[1] - along[0]);
+    let place = |at: f64, [low, high]: [f64; 2]| {
+        0.5 * fine as f64 + scale * (at - f64::midpoint(low, high))
+    };
     let mut depth = vec![f64::NEG_INFINITY; fine * fine];
     let mut pixels = vec![[255.0; 3]; fine * fine];
     for id in 0..mesh.triangles().len() as u32 {
         let Some(normal) = mesh.normal(id) else { continue };
         let corners = mesh.triangle(id).map(|corner| {
-            let from = corner - middle;
-            let half = 0.5 * fine as f64;
-            [half + scale * from.dot(&right), half - scale * from.dot(&up), from.dot(&toward)]
+            let [x, y, near] = [right, up, toward].map(|way| corner.coords.dot(&way));
+            [place(x, across), fine as f64 - place(y, along), near]
         });
         let facing = if normal.dot(&toward) < 0.0 { -normal } else { normal };
         let bright = SHADE + (1.0 - SHADE) * facing.dot(&light).max(0.0);
@@ -73,6 +75,12 @@ pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize)
     };
     let pixels = (0..side * side).map(|at| mean(at % side, at / side)).collect();
     Image { side, pixels }
+}
+
+/// From where to where a mesh reaches along a direction.
+fn span(mesh: &Mesh, way: &Vector3<f64>) -> [f64; 2] {
+    let along = mesh.vertices().iter().map(|vertex| vertex.coords.dot(way));
+    along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
 }
 
 /// Visits the pixels whose middles lie in a triangle, with how near they are there.

@@ -3,6 +3,7 @@
 mod bench;
 mod haptic;
 mod parts;
+mod verify;
 
 use bench::{Bench, rows, shared, stderr, stdout, touchoff};
 use serde_json::Value;

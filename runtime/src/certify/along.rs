@@ -89,8 +89,9 @@ impl Certifier<'_> {
         let tolerance = (32.0 * error).max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
         let whole = each[surface].get_or_insert_with(|| question(0.0));
+        let (radius, budget) = (self.card.radius(), *budget);
         let mut search =
-            Search { setting, work, sweeper, motion, question: whole, tolerance, budget: *budget };
+            Search { setting, work, sweeper, motion, question: whole, radius, tolerance, budget };
         let found = search.deepest(allowed.max(0.0));
         if allowed >= 0.0 || matches!(found, Along::Deeper { .. }) {
             return found;
@@ -111,6 +112,8 @@ struct Search<'a, 's> {
     sweeper: &'a mut Sweeper,
     motion: &'a Motion,
     question: &'a Question,
+    /// The largest: no place is farther from the surface.
+    radius: f64,
     tolerance: f64,
     budget: u32,
 }
@@ -150,6 +153,7 @@ impl Search<'_, '_> {
 
     /// Something deeper if there is, and what nothing is deeper than.
     fn bounded(&mut self, mut best: Peak, allowed: f64) -> (Peak, f64) {
+        let any = if self.question.limit < 0.0 { 0.0 } else { self.radius };
         let mut close = CLOSE;
         for _ in 0..ROUNDS {
             let [low, high] = best.depth;
@@ -157,7 +161,7 @@ impl Search<'_, '_> {
             // Half of it is for what a sweep does not tell apart, half for what each round gains.
             let limit = (low + 0.5 * gap).max(allowed);
             match self.sweep(limit, 0.5 * gap, self.budget / PART) {
-                None => return (best, high.max(limit + 0.5 * gap)),
+                None => return (best, high.max(any.min(limit + 0.5 * gap))),
                 Some(Stop::Spent { .. }) => close *= 4.0,
                 Some(Stop::Deeper { at, .. }) => match self.at(at) {
                     Some(here) if here.depth[0] > low => best = self.climb(here),
@@ -165,9 +169,7 @@ impl Search<'_, '_> {
                 },
             }
         }
-        // No place is farther from the surface than the axis is.
-        let any = if self.question.limit < 0.0 { 0.0 } else { self.setting.size };
-        (best, any)
+        (best, any.max(best.depth[1]))
     }
 
     /// What is deeper on the way than a limit, if anything is by more than a tolerance.
@@ -213,7 +215,7 @@ impl Search<'_, '_> {
 
     /// How closely depths are asked for.
     fn fine(&self) -> f64 {
-        0.125 * self.tolerance
+        self.tolerance / 32.0
     }
 
     /// How deep it is at a part of the way, if it is.

@@ -65,8 +65,8 @@ pub struct Verifier<'a> {
     budget: u32,
 }
 
-/// What a tenth of a micrometre is in mm, unless the tolerance asks for finer.
-const RESOLUTION: f64 = 1e-4;
+/// A micrometre, in mm: meshes are seldom as close to what they mean.
+const RESOLUTION: f64 = 1e-3;
 
 /// So many motions one after the other are asked of the same certifiers, so that answers are the same however
 /// many cores there are.
@@ -122,7 +122,7 @@ impl<'a> Verifier<'a> {
         Ok(self)
     }
 
-    /// With a resolution: what is deeper than allowed by no more than this may or may not be found. One below what rounding adds is taken as that. The default is 0.0001 mm.
+    /// With a resolution: what is deeper than allowed by no more than this may or may not be found. One below what rounding adds is taken as that. The default is 0.001 mm.
     ///
     /// # Errors
     /// If it is not a length above 0 or 0.

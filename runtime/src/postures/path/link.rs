@@ -31,6 +31,11 @@ impl Around {
         Around { centre: low + 0.5 * (high - low), radius: 2.0 * half, lead: LEAD * half }
     }
 
+    /// A little off the surface, along the axis.
+    pub(super) fn lifted(&self, pose: &Pose) -> Option<Pose> {
+        pose.shifted(pose.axis() * self.lead).ok()
+    }
+
     /// The way off from a posture, if it is proved.
     pub(super) fn leg(&self, leader: &mut Leader<'_>, pose: &Pose) -> Option<Leg> {
         let (from, axis) = (pose.tip() - self.centre, pose.axis());

@@ -8,8 +8,8 @@
 //!
 //! Parallel planes cut the part in lines; along each the tool stands where a sweep found that it can, with
 //! the directions that turn least from place to place. Every posture is proved, and every way between two.
-//! What cannot be joined on the surface is joined by a way out: back along the axis, around the part, and in
-//! along the next.
+//! What cannot be joined on the surface is joined over it: a little back along the axis, across, and in along
+//! the next; or else out, around the part, and in.
 
 mod axes;
 mod link;
@@ -263,7 +263,7 @@ impl Drawn {
         self.stops.push((pose, rapid));
     }
 
-    /// Goes to a run and along it; where two places cannot be joined on the surface, around the part.
+    /// Goes to a run and along it; where two places cannot be joined on the surface, over it or around the part.
     fn follow(&mut self, leader: &mut Leader<'_>, around: &Around, run: &Run, near: f64) {
         for (index, way) in run.ways.iter().enumerate() {
             let joined = match (index.checked_sub(1), &self.last) {
@@ -277,13 +277,29 @@ impl Drawn {
                 }
                 (_, None) => false,
             };
-            if !joined && !self.go_round(leader, around, way) {
+            if !joined && !self.hop(leader, around, way) && !self.go_round(leader, around, way) {
                 self.dropped += 1;
                 continue;
             }
             self.stop(way.pose, false);
             self.last = Some(*way);
         }
+    }
+
+    /// Lifts off the surface a little, and comes to a place of it over another, if that is proved.
+    fn hop(&mut self, leader: &mut Leader<'_>, around: &Around, way: &Way) -> bool {
+        let Some(last) = &self.last else { return false };
+        let (from, to) = (last.pose, way.pose);
+        let (Some(up), Some(over)) = (around.lifted(&from), around.lifted(&to)) else {
+            return false;
+        };
+        let proved = leader.goes(&from, &up) && leader.goes(&up, &over) && leader.goes(&over, &to);
+        if proved {
+            self.stop(up, false);
+            self.stop(over, true);
+            self.lifts += 1;
+        }
+        proved
     }
 
     /// Leaves the surface, and comes to a place of it from outside, if that is proved.
@@ -305,7 +321,7 @@ impl Drawn {
     }
 
     /// Goes off the surface: where that is not proved from the last place, back along those before it, as
-    /// far as the one that was come to from outside. Where it ends; `None` if nothing was touched yet.
+    /// far as the one that was come to from outside, hops and all. Where it ends; `None` if nothing was touched yet.
     fn leave(&mut self, leader: &mut Leader<'_>, around: &Around) -> Option<Pose> {
         let (first, came) = self.came?;
         let mut at = self.stops.len() - 1;

@@ -1,0 +1,215 @@
+//! A program held to a part: a line a finding, as compilers print them, a summary at the end.
+
+use crate::arguments::Verify;
+use crate::failure::Failure;
+use crate::files::{Found, figure, length};
+use crate::part;
+use nalgebra::{Point3, Vector3};
+use serde::Serialize;
+use std::io::Write;
+use std::process::ExitCode;
+use touchoff::certify::{Facets, Witness};
+use touchoff::tool::Card;
+use touchoff::verify::{Finding, Kind, Report, Verifier};
+use touchoff::{Program, Unit};
+
+/// The exit status where something is found.
+const FOUND: u8 = 1;
+
+/// The exit status where nothing could be checked, as that of wrong options.
+pub(crate) const NOT_CHECKED: u8 = 2;
+
+/// One finding.
+#[derive(Serialize)]
+struct Row<'a> {
+    file: &'a str,
+    line: usize,
+    /// The line that the motion begins at.
+    from: Option<usize>,
+    /// The stop that it ends at, from 0.
+    stop: usize,
+    rapid: bool,
+    /// The part of the way, from 0 to 1.
+    part: f64,
+    tip: [f64; 3],
+    axis: [f64; 3],
+    kind: &'static str,
+    surface: Option<&'a str>,
+    cutting: Option<bool>,
+    #[serde(flatten)]
+    measured: Option<Measured>,
+    #[serde(flatten)]
+    place: Option<Place>,
+}
+
+/// What a finding measures.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Measured {
+    Deep { allowed: f64, depth: [f64; 2], most: f64 },
+    Near { margin: f64, distance: [f64; 2], least: f64 },
+}
+
+/// Where on the part.
+#[derive(Serialize)]
+struct Place {
+    triangle: u32,
+    point: [f64; 3],
+}
+
+impl Place {
+    fn of(witness: &Witness) -> Place {
+        Place { triangle: witness.triangle, point: witness.point.into() }
+    }
+}
+
+impl<'a> Row<'a> {
+    fn of(found: &Finding, card: &'a Card, file: &'a str) -> Row<'a> {
+        let (kind, measured, place) = match found.kind {
+            Kind::Deep { allowed, depth, most, witness, .. } => {
+                ("deep", Some(Measured::Deep { allowed, depth, most }), Some(Place::of(&witness)))
+            }
+            Kind::Near { margin, distance, least, witness, .. } => {
+                let near = Measured::Near { margin, distance, least };
+                ("near", Some(near), Some(Place::of(&witness)))
+            }
+            Kind::Inside => ("inside", None, None),
+            Kind::Undecided { .. } => ("undecided", None, None),
+            Kind::Opposite => ("opposite", None, None),
+        };
+        let surface = found.kind.surface().map(|surface| &card.surfaces[surface]);
+        let (tip, axis): (Point3<f64>, Vector3<f64>) = (found.pose.tip(), found.pose.axis());
+        Row {
+            file,
+            line: found.line,
+            from: found.from,
+            stop: found.stop,
+            rapid: found.rapid,
+            part: found.part,
+            tip: tip.into(),
+            axis: axis.into(),
+            kind,
+            surface: surface.map(|surface| &*surface.name),
+            cutting: surface.map(|surface| surface.cutting),
+            measured,
+            place,
+        }
+    }
+}
+
+/// Holds a program to a part.
+pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
+    let found = Found::find(&wanted.tool, &wanted.given)?;
+    let program = Program::read(&wanted.program)?;
+    program.check_unit(wanted.unit)?;
+    let mesh = part::mesh(&wanted.part, wanted.unit, "verify")?;
+    let facets = Facets::new(&mesh);
+    let mut verifier = Verifier::new(&facets, found.tool())?.tolerance(wanted.tolerance)?;
+    if let Some(resolution) = wanted.resolution {
+        verifier = verifier.resolution(resolution)?;
+    }
+    for (surface, allowed) in &wanted.allow {
+        verifier = verifier.allow(surface, *allowed)?;
+    }
+    let report = verifier.check(&program)?;
+    let file = wanted.program.display().to_string();
+    let card = verifier.card();
+    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    for finding in &report.findings {
+        if json {
+            serde_json::to_writer(&mut out, &Row::of(finding, card, &file))?;
+            writeln!(out)?;
+        } else {
+            let (line, said) = (finding.line, shown(finding, card, wanted.unit));
+            writeln!(out, "{file}:{line}: {said}")?;
+        }
+    }
+    out.flush()?;
+    say!("{}", summary(&report, card, wanted.unit));
+    Ok(if report.findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FOUND) })
+}
+
+/// A finding for people.
+fn shown(found: &Finding, card: &Card, unit: Unit) -> String {
+    let name = |surface: usize| &*card.surfaces[surface].name;
+    let at = match found.from {
+        Some(from) => format!("{:.2} of the way from line {from}", found.part),
+        None => "where the program begins".to_owned(),
+    };
+    let at = if found.rapid { format!("{at}, in rapid traverse") } else { at };
+    match &found.kind {
+        Kind::Deep { surface, depth: [low, high], most, witness, .. } => {
+            let more = if most > high && found.from.is_some() {
+                format!(", nowhere on it more than {}", fine(*most, unit))
+            } else {
+                String::new()
+            };
+            let (name, depth) = (name(*surface), between(*low, *high, unit));
+            format!("{name} is {depth} {unit} deep in triangle {}, {at}{more}", witness.triangle)
+        }
+        Kind::Near { surface, margin, distance: [low, high], witness, .. } => format!(
+            "{} is {} {unit} from triangle {}, not {margin}, {at}",
+            name(*surface),
+            between(*low, *high, unit),
+            witness.triangle,
+        ),
+        Kind::Inside => format!("the tool is wholly inside the material, {at}"),
+        Kind::Undecided { surface } => format!(
+            "whether {} is too deep is not decided, beginning {at}: try a larger `--resolution`",
+            name(*surface)
+        ),
+        Kind::Opposite => {
+            format!("{}; only this stop was checked", touchoff::MotionError::Opposite)
+        }
+    }
+}
+
+/// From where to where, as far as figures differ.
+fn between(low: f64, high: f64, unit: Unit) -> String {
+    let [low, high] = [low, high].map(|value| fine(value, unit));
+    if low == high { high } else { format!("{low} to {high}") }
+}
+
+/// A length as elsewhere, or with its power of ten where that would leave little of it.
+fn fine(value: f64, unit: Unit) -> String {
+    let shown = figure(value, unit);
+    let digits = shown.chars().filter(|c| ('1'..='9').contains(c)).count();
+    if value == 0.0 || digits > 1 || value.abs() >= 0.01 / unit.millimetres() {
+        shown
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// What all findings came to: of each surface how many, and its deepest.
+fn summary(report: &Report, card: &Card, unit: Unit) -> String {
+    let motions = report.motions;
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    let count = report.findings.len();
+    if count == 0 {
+        return format!("no findings in {motions} motion{}", plural(motions));
+    }
+    let mut each = Vec::new();
+    for (index, surface) in card.surfaces.iter().enumerate() {
+        let of = || report.findings.iter().filter(|found| found.kind.surface() == Some(index));
+        let deepest = of().filter_map(|found| match found.kind {
+            Kind::Deep { depth, .. } => Some((depth[1], found.line)),
+            _ => None,
+        });
+        let deepest = deepest.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        let deepest = deepest.map_or(String::new(), |(depth, line)| {
+            format!(" (deepest {}, line {line})", length(depth, unit))
+        });
+        if of().next().is_some() {
+            each.push(format!("{} {}{deepest}", surface.name, of().count()));
+        }
+    }
+    for (word, kind) in [("wholly inside", Kind::Inside), ("no one way", Kind::Opposite)] {
+        let count = report.findings.iter().filter(|found| found.kind == kind).count();
+        if count > 0 {
+            each.push(format!("{word} {count}"));
+        }
+    }
+    let each = each.join(", ");
+    format!("{count} finding{} in {motions} motion{}: {each}", plural(count), plural(motions))
+}

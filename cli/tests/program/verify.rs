@@ -1,0 +1,126 @@
+//! Programs that are checked: a line or an object a finding, and exit statuses for scripts.
+
+use crate::bench::{Bench, shared, stderr, stdout, touchoff};
+use serde_json::Value;
+use std::process::Output;
+
+/// Clear, then 0.5 into the block between two points that are clear of it, then out in rapid traverse.
+const PROGRAM: &str = "PARTNO/BLOCK\nUNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\n\
+                       GOTO/9,0,-0.5,0,0,1\nRAPID\nGOTO/9,0,3,0,0,1\nFINI\n";
+
+fn verify(bench: &Bench, program: &str, tool: &str, more: &[&str]) -> Output {
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    let (part, program) = (place("block.stl"), place(program));
+    let tool = if tool.ends_with(".tool") { place(tool) } else { tool.to_owned() };
+    let all = ["verify", "--part", &part, "--unit", "mm", "--tool", &tool, "--program", &program];
+    touchoff(&[&all, more].concat())
+}
+
+#[test]
+fn findings_are_lines_as_compilers_print_them() {
+    let bench = Bench::new();
+    let file = bench.write("block.apt", PROGRAM);
+    let output = verify(&bench, "block.apt", "D2Ball", &["--tolerance", "0.01"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let lines: Vec<String> = stdout(&output).lines().map(str::to_owned).collect();
+    let [line] = &lines[..] else { panic!("{lines:?}") };
+    assert!(line.starts_with(&format!("{file}:5: ball is 0.5000 mm deep in triangle ")), "{line}");
+    assert!(line.contains(" of the way from line 4"), "{line}");
+    let said = stderr(&output);
+    assert!(said.contains("1 finding in 3 motions: ball 1 (deepest 0.5000 mm, line 5)"), "{said}");
+    let clean = verify(&bench, "block.apt", "D2Ball", &["--tolerance", "0.5"]);
+    assert_eq!((clean.status.code(), clean.stdout.len()), (Some(0), 0), "{}", stderr(&clean));
+    assert!(stderr(&clean).contains("no findings in 3 motions"), "{}", stderr(&clean));
+    let allowed = verify(&bench, "block.apt", "D2Ball", &["--allow", "ball=inf"]);
+    assert_eq!(allowed.status.code(), Some(0), "{}", stdout(&allowed));
+}
+
+#[test]
+fn a_finding_is_an_object_for_programs() {
+    let bench = Bench::new();
+    bench.write("block.apt", PROGRAM);
+    let rows = |more: &[&str]| -> Vec<Value> {
+        let output = verify(&bench, "block.apt", "D2Ball", &[&["--json"], more].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+    };
+    let found = rows(&["--tolerance", "0.01"]);
+    let [row] = &found[..] else { panic!("{found:?}") };
+    let number = |value: &Value| value.as_f64().expect("a number");
+    assert_eq!((&row["line"], &row["from"], &row["stop"]), (&5.into(), &4.into(), &2.into()));
+    assert_eq!((&row["kind"], &row["surface"]), (&"deep".into(), &"ball".into()));
+    assert_eq!((&row["cutting"], &row["rapid"]), (&true.into(), &false.into()));
+    assert!((0.3..0.7).contains(&number(&row["part"])) && row["triangle"].is_u64(), "{row}");
+    assert!(number(&row["allowed"]) == 0.01 && row["file"].is_string(), "{row}");
+    let (low, high) = (number(&row["depth"][0]), number(&row["depth"][1]));
+    assert!(low <= 0.5 && 0.5 <= high && number(&row["most"]) >= high, "{row}");
+    for key in ["tip", "axis", "point"] {
+        assert_eq!(row[key].as_array().map(Vec::len), Some(3), "{key} of {row}");
+    }
+    // A margin: the shank begins 5 up, and so stays 4.5 above the block's top.
+    let found = rows(&["--allow", "ball=inf", "--allow", "shank=-4.6"]);
+    let [row] = &found[..] else { panic!("{found:?}") };
+    assert_eq!((&row["kind"], &row["surface"]), (&"near".into(), &"shank".into()));
+    let (low, high) = (number(&row["distance"][0]), number(&row["distance"][1]));
+    assert!(low <= 4.5 && 4.5 <= high && number(&row["least"]) <= low, "{row}");
+    assert!(number(&row["margin"]) == 4.6 && row.get("depth").is_none(), "{row}");
+}
+
+#[test]
+fn a_tool_file_takes_its_values() {
+    let bench = Bench::new();
+    bench.write("block.apt", PROGRAM);
+    bench.write(
+        "own.tool",
+        "tool Own { units mm; param D = 2; let r = D/2; profile { start (0, 0); arc to (r, r) center (0, r) as \
+         ball cutting; line to (r, 40), (0, 40) as shank; } niceness cutting: 1; }",
+    );
+    let status = |more: &[&str]| {
+        let all = [&["--allow", "ball=inf", "--allow", "shank=-1"], more].concat();
+        verify(&bench, "block.apt", "own.tool", &all).status.code()
+    };
+    // The shank begins a radius up, 0.5 above the block where the ball is as deep in it.
+    assert_eq!(status(&[]), Some(1));
+    assert_eq!(status(&["--set", "D=6"]), Some(0));
+}
+
+#[test]
+fn what_cannot_be_checked_has_a_status_of_its_own() {
+    let bench = Bench::new();
+    bench.write("block.apt", PROGRAM);
+    bench.write("cut.apt", &PROGRAM[..PROGRAM.len() - 6]);
+    bench.write("inch.apt", PROGRAM.replace("MM", "INCHES"));
+    let refused = |program: &str, tool: &str, more: &[&str], word: &str| {
+        let output = verify(&bench, program, tool, more);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(output.stdout.is_empty() && said.contains(word), "`{word}` is missing in:\n{said}");
+    };
+    refused("cut.apt", "D2Ball", &[], "cut.apt:7: the program stops here without FINI");
+    refused("inch.apt", "D2Ball", &[], "inch.apt:2: UNITS says inch, but the part is in mm");
+    refused("none.apt", "D2Ball", &[], "cannot be read");
+    refused("block.apt", "D3Ball", &[], "did you mean `D2Ball`?");
+    refused("block.apt", "D2Ball", &["--allow", "fluet=1"], "it has `ball`, `flute`, `shank`");
+    refused("block.apt", "D2Ball", &["--allow", "flute"], "SURFACE=DEPTH");
+    refused("block.apt", "D2Ball", &["--allow", "flute=NaN"], "is no length");
+    refused("block.apt", "D2Ball", &["--tolerance=-1"], "is no tolerance");
+    // By hand, so that it is not known which surface is where.
+    refused("block.apt", "Fig73", &[], "it is not known which surface is the nearest");
+}
+
+#[test]
+fn the_impeller_program_gouges() {
+    let Some(data) = shared() else { return };
+    let place = |name: &str| data.join(name).display().to_string();
+    let (part, program) = (place("parts/impeller.stl"), place("paths/impeller_flank.apt"));
+    let all =
+        ["verify", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
+    let output = touchoff(&[&all[..], &["--tolerance", "0.01", "--json"]].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let found: Vec<Value> =
+        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let deep: Vec<f64> = found.iter().filter_map(|row| row["depth"][0].as_f64()).collect();
+    assert!(deep.len() > 500, "{}", deep.len());
+    let deepest = deep.iter().copied().fold(0.0, f64::max);
+    assert!((0.15..0.16).contains(&deepest), "{deepest}");
+}

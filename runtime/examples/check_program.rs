@@ -1,0 +1,69 @@
+//! A finishing pass held to the finished part: `cargo run --release -p touchoff --example check_program`.
+
+use nalgebra::Point3;
+use std::io::Write;
+use touchoff::certify::Facets;
+use touchoff::mesh::shapes;
+use touchoff::verify::{Kind, Verifier};
+use touchoff::{Program, Unit};
+
+touchoff::tool! {
+    tool EndMill "12 mm across, 20 mm of it cut, in a holder 50 mm wide" {
+        units mm;
+        profile {
+            start (0, 0);
+            line to (6, 0) as face cutting;
+            line to (6, 20) as flute cutting;
+            line to (6, 45) as shank;
+            line to (25, 45), (25, 90), (0, 90) as holder;
+        }
+        niceness cutting: 1;
+    }
+}
+
+/// Along a wall, 30 mm high, whose face is x = 0: the last cut leans into it between two points that are
+/// both right, and the retract is not high enough before it goes across.
+const PROGRAM: &str = "\
+PARTNO/WALL
+UNITS/MM
+MULTAX/ON
+RAPID
+GOTO/-8,-40,12,0,0,1
+GOTO/-6,-40,12,0,0,1
+GOTO/-6,0,12,0,0,1
+GOTO/-6,40,12,-0.05,0,0.99874922
+GOTO/-6,80,12,0,0,1
+RAPID
+GOTO/-6,80,25,0,0,1
+RAPID
+GOTO/40,0,25,0,0,1
+FINI
+";
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (low, high) = (Point3::new(0.0, -60.0, 0.0), Point3::new(20.0, 60.0, 30.0));
+    let wall = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    let program = Program::parse(PROGRAM, "wall.apt")?;
+    // 0.01 mm is as good as right, and the holder keeps 1 mm.
+    let verifier = Verifier::new(&wall, &EndMill)?.tolerance(0.01)?.allow("holder", -1.0)?;
+    let report = verifier.check(&program)?;
+    let name = |surface: usize| &*verifier.card().surfaces[surface].name;
+    let mut out = std::io::stdout().lock();
+    for found in &report.findings {
+        write!(out, "wall.apt:{}: at {:.2} of the way, ", found.line, found.part)?;
+        match found.kind {
+            Kind::Deep { surface, depth: [low, high], witness, .. } => writeln!(
+                out,
+                "{} is {low:.4} to {high:.4} mm deep in triangle {}",
+                name(surface),
+                witness.triangle
+            )?,
+            Kind::Near { surface, distance: [low, high], .. } => {
+                writeln!(out, "{} is {low:.4} to {high:.4} mm away", name(surface))?;
+            }
+            other => writeln!(out, "{other:?}")?,
+        }
+    }
+    writeln!(out, "{} findings in {} motions", report.findings.len(), report.motions)?;
+    Ok(())
+}

@@ -1,0 +1,178 @@
+//! Programs of which geometry says what is found.
+
+use crate::block;
+use crate::oracle::Mounted;
+use touchoff::certify::Facets;
+use touchoff::mesh::shapes;
+use touchoff::verify::{Kind, Report, Verifier, VerifyError};
+use touchoff::{Mesh, Program, Unit};
+
+touchoff::tool! {
+    tool ByHand "a ball without a profile" {
+        units mm;
+        region ball as ball cutting where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+        niceness cutting: 1;
+    }
+}
+
+/// Checks a program with a tolerance and allowances.
+fn check(mesh: &Mesh, text: &str, tolerance: f64, allowed: &[(&str, f64)]) -> Report {
+    let facets = Facets::new(mesh);
+    let program = Program::parse(text, "part.cl").expect("a program");
+    let verifier = Verifier::new(&facets, &Mounted).expect("a profile");
+    let verifier = verifier.tolerance(tolerance).expect("a length");
+    let verifier = allowed.iter().fold(verifier, |verifier, (name, allowed)| {
+        verifier.allow(name, *allowed).expect("a surface")
+    });
+    verifier.check(&program).expect("it can be checked")
+}
+
+/// Of each finding: line, kind, surface.
+fn briefly(report: &Report) -> Vec<(usize, &'static str, Option<usize>)> {
+    let word = |kind: &Kind| match kind {
+        Kind::Deep { .. } => "deep",
+        Kind::Near { .. } => "near",
+        Kind::Inside => "inside",
+        Kind::Undecided { .. } => "undecided",
+        Kind::Opposite => "opposite",
+    };
+    let brief = report.findings.iter().map(|f| (f.line, word(&f.kind), f.kind.surface()));
+    brief.collect()
+}
+
+/// 10 by 10 by 50, its top at z = 0.
+fn pillar() -> Mesh {
+    block([-5.0, -5.0, -50.0], [5.0, 5.0, 0.0])
+}
+
+#[test]
+fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
+    let text = "MULTAX/ON\nGOTO/-30,0,-0.5,0,0,1\nGOTO/30,0,-0.5,0,0,1\nFINI\n";
+    let report = check(&pillar(), text, 0.01, &[]);
+    let [found] = &report.findings[..] else { panic!("{report:?}") };
+    assert_eq!((found.from, found.line, found.stop, found.rapid), (Some(2), 3, 1, false));
+    // The ball is 0.5 deep wherever its lowest point is over the pillar.
+    assert!((25.0 / 60.0..=35.0 / 60.0).contains(&found.part), "{found:?}");
+    let Kind::Deep { surface: 0, allowed, depth: [low, high], most, .. } = found.kind else {
+        panic!("{found:?}")
+    };
+    assert!(
+        allowed == 0.01 && low <= 0.5 && 0.5 <= high && high <= most && most < 0.57,
+        "{found:?}"
+    );
+    assert_eq!(check(&pillar(), text, 0.5, &[]).findings, []);
+    assert_eq!(check(&pillar(), text, 0.0, &[("ball", 0.5)]).findings, []);
+    assert_eq!(briefly(&check(&pillar(), text, 0.5, &[("ball", 0.4)])), [(3, "deep", Some(0))]);
+}
+
+#[test]
+fn a_flute_that_gouges_does_not_hide_what_rubs() {
+    // Beside the pillar, 0.2 in it; the nut comes over its top.
+    let text = "GOTO/-20,0,-26,0,0,1\nGOTO/-7.8,0,-26,0,0,1\nFINI\n";
+    let all =
+        [(2, "deep", Some(0)), (2, "deep", Some(1)), (2, "deep", Some(2)), (2, "deep", Some(3))];
+    assert_eq!(briefly(&check(&pillar(), text, 0.0, &[])), all);
+    let cut = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
+    assert_eq!(briefly(&check(&pillar(), text, 0.0, &cut)), all[2..]);
+    // Over the top, the corner of shank and nut is the nearest to what is under the axis.
+    let rub = [cut[0], cut[1], ("shank", 2.0)];
+    assert_eq!(briefly(&check(&pillar(), text, 0.0, &rub)), all[3..]);
+    // 26 up the nut is over the top: 0.5 above it is too near for a margin of 1, and 2 are not.
+    let higher = |z: f64| format!("GOTO/-20,0,{z},0,0,1\nGOTO/-7.8,0,{z},0,0,1\nFINI\n");
+    let margin = [rub[0], rub[1], rub[2], ("nut", -1.0)];
+    let near = check(&pillar(), &higher(-24.5), 0.0, &margin);
+    assert_eq!(briefly(&near), [(2, "near", Some(3))]);
+    let Kind::Near { distance: [low, high], least, margin: kept, .. } = near.findings[0].kind
+    else {
+        panic!("{near:?}")
+    };
+    assert!(kept == 1.0 && low <= 0.5 && 0.5 <= high && least > 0.4 && least <= low, "{near:?}");
+    assert_eq!(check(&pillar(), &higher(-23.0), 0.0, &margin).findings, []);
+}
+
+#[test]
+fn in_rapid_traverse_nothing_cuts() {
+    let cut = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
+    let feed = "GOTO/-30,0,-9,0,0,1\nGOTO/30,0,-9,0,0,1\nFINI\n";
+    assert_eq!(check(&pillar(), feed, 0.01, &cut).findings, []);
+    let rapid = "GOTO/-30,0,-9,0,0,1\nRAPID\nGOTO/30,0,-9,0,0,1\nFINI\n";
+    let report = check(&pillar(), rapid, 0.01, &cut);
+    assert_eq!(briefly(&report), [(3, "deep", Some(0)), (3, "deep", Some(1))]);
+    assert!(report.findings.iter().all(|found| found.rapid));
+}
+
+#[test]
+fn the_first_stop_is_checked_by_itself() {
+    let report = check(&pillar(), "0,0,-0.5,0,0,1\n", 0.0, &[]);
+    let [found] = &report.findings[..] else { panic!("{report:?}") };
+    assert_eq!((report.motions, found.from, found.stop, found.line), (0, None, 0, 1));
+    assert_eq!(check(&pillar(), "0,0,0.5,0,0,1\n", 0.0, &[]).findings, []);
+}
+
+#[test]
+fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
+    let large = block([-200.0; 3], [200.0; 3]);
+    let text = "0,0,0,0,0,1\n9,0,0,0,0,1\n";
+    let report = check(&large, text, 0.1, &[]);
+    assert_eq!(briefly(&report), [(1, "inside", None), (2, "inside", None)]);
+    let any = [("ball", f64::INFINITY), ("flute", f64::INFINITY)];
+    assert_eq!(
+        briefly(&check(&large, text, 0.1, &any)),
+        [(1, "inside", None), (2, "inside", None)]
+    );
+    let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
+    let below = check(&sheet, "0,0,-90,0,0,1\n", 0.0, &[]);
+    assert!(below.findings.is_empty() && !below.inside_known);
+}
+
+#[test]
+fn an_axis_that_turns_to_its_opposite_is_found() {
+    let text = "0,0,20,0,0,1\n0,0,60,0,0,-1\n0,0,2,0,0,1\n";
+    let report = check(&pillar(), text, 0.0, &[]);
+    // The tool upside down reaches from 60 down to 20.
+    assert_eq!(briefly(&report), [(2, "opposite", None), (3, "opposite", None)]);
+    let into = check(&pillar(), "0,0,20,0,0,1\n0,0,30,0,0,-1\n", 0.0, &[]);
+    // Over the pillar the corner between shank and nut is nearest, so that both are as deep.
+    let both = [(2, "opposite", None), (2, "deep", Some(2)), (2, "deep", Some(3))];
+    assert_eq!(briefly(&into), both);
+}
+
+#[test]
+fn what_is_not_decided_is_said() {
+    let facets = Facets::new(&pillar());
+    let program =
+        Program::parse("-30,0,1e-7,0,0,1\n30,0,1e-7,0.01,0,1\n", "a.csv").expect("two stops");
+    let verifier = Verifier::new(&facets, &Mounted).expect("a profile").budget(1);
+    let report = verifier.check(&program).expect("it can be checked");
+    let undecided = report.findings.iter().filter(|f| matches!(f.kind, Kind::Undecided { .. }));
+    assert!(undecided.count() > 0, "{report:?}");
+}
+
+#[test]
+fn what_cannot_be_checked_is_refused() {
+    let facets = Facets::new(&pillar());
+    let error = Verifier::new(&facets, &ByHand).err().expect("no profile");
+    assert!(matches!(error, VerifyError::Allowance(_)), "{error}");
+    let verifier = || Verifier::new(&facets, &Mounted).expect("a profile");
+    let said = verifier().allow("fluet", 0.1).err().expect("no such surface").to_string();
+    assert!(said.contains("no surface `fluet`; it has `ball`, `flute`"), "{said}");
+    for wrong in [f64::NAN, f64::NEG_INFINITY] {
+        assert!(verifier().allow("flute", wrong).is_err());
+    }
+    for wrong in [f64::NAN, -1.0, f64::INFINITY] {
+        assert!(verifier().tolerance(wrong).is_err() && verifier().resolution(wrong).is_err());
+    }
+    let inch = Program::parse("UNITS/INCHES\nGOTO/1,2,3\nFINI\n", "inch.cl").expect("a program");
+    let said = verifier().check(&inch).expect_err("another unit").to_string();
+    assert!(said.starts_with("inch.cl:1: UNITS says inch"), "{said}");
+}
+
+#[test]
+fn findings_come_in_the_programs_order_and_are_the_same_again() {
+    let rows: String = (0..150)
+        .map(|k| format!("{},0,{},0,0,1\n", k % 7, 0.1 - 0.002 * f64::from(k % 97)))
+        .collect();
+    let report = check(&pillar(), &rows, 0.0, &[]);
+    assert!(report.findings.len() > 40 && report.findings.is_sorted_by_key(|found| found.stop));
+    assert_eq!(check(&pillar(), &rows, 0.0, &[]), report);
+}

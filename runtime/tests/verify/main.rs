@@ -1,0 +1,152 @@
+//! Programs held to parts: against brute force on random ones, and where geometry says what is found.
+
+mod cases;
+mod oracle;
+
+use nalgebra::Point3;
+use oracle::{Draw, Mounted, SURFACES, Stand, Worst, along, places};
+use touchoff::certify::{Facets, Witness};
+use touchoff::mesh::shapes;
+use touchoff::verify::{Finding, Kind, Verifier};
+use touchoff::{Mesh, Pose, Program, Unit};
+
+pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
+
+const RESOLUTION: f64 = 1e-3;
+/// Places of triangles are that near to each other, mm.
+const STEP: f64 = 0.6;
+/// Times of each motion.
+const TIMES: u32 = 24;
+
+/// A walk of stops about a block.
+fn walk(draw: &mut Draw, stops: usize) -> Vec<(Stand, bool)> {
+    let mut tip = Point3::from(draw.vector(12.0));
+    let mut axis = draw.vector(1.0).normalize();
+    let mut walk = Vec::new();
+    for _ in 0..stops {
+        walk.push(((tip, axis), draw.between(0.0, 1.0) < 0.2));
+        let size = if draw.between(0.0, 1.0) < 0.3 { 9.0 } else { 1.5 };
+        // It stays about the block.
+        tip = Point3::from((tip.coords + draw.vector(size)) * 0.95);
+        axis = (axis + draw.vector(0.25)).normalize();
+    }
+    walk
+}
+
+/// What a stop's surfaces may do.
+fn limits(given: &[(&str, f64)], tolerance: f64, rapid: bool) -> [f64; 4] {
+    SURFACES.map(|name| {
+        let own = given.iter().find(|(known, _)| *known == name).map(|(_, allowed)| *allowed);
+        let allowed = own.unwrap_or(tolerance);
+        if rapid { allowed.min(tolerance) } else { allowed }
+    })
+}
+
+/// Holds a finding to the witness that it names.
+fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &Stand)) {
+    let (tip, axis) = along((from, to), found.part);
+    assert!((found.pose.tip() - tip).norm() < 1e-9 && (found.pose.axis() - axis).norm() < 1e-9);
+    let stand = (tip, axis);
+    let on = |witness: &Witness| {
+        let [a, b, c] = mesh.triangle(witness.triangle);
+        let normal = (b - a).cross(&(c - a)).normalize();
+        assert!((witness.point - a).dot(&normal).abs() < 1e-9, "{found:?}");
+        let mut there = Worst::none();
+        there.add(&witness.point, &stand);
+        there
+    };
+    match &found.kind {
+        Kind::Deep { surface, allowed, depth: [low, high], most, witness } => {
+            let there = on(witness).depth[*surface];
+            assert_eq!(*allowed, limits[*surface]);
+            assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
+            assert!(
+                there > allowed.max(0.0) && high - low < RESOLUTION && most >= high,
+                "{found:?}"
+            );
+        }
+        Kind::Near { surface, margin, distance: [low, high], least, witness } => {
+            let there = on(witness).distance[*surface];
+            assert_eq!(-margin, limits[*surface]);
+            assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
+            assert!(there < *margin && high - low < RESOLUTION && least <= low, "{found:?}");
+        }
+        other => panic!("{other:?} at {found:?}"),
+    }
+}
+
+/// Holds what is found of a motion to what brute force finds on it.
+fn hold(of: &[Finding], limits: &[f64; 4], worst: &Worst) {
+    for (surface, limit) in limits.iter().enumerate() {
+        let found: Vec<_> = of.iter().filter(|f| f.kind.surface() == Some(surface)).collect();
+        assert!(found.len() <= 1, "{found:?}");
+        let (depth, distance) = (worst.depth[surface], worst.distance[surface]);
+        let deep = depth > limit.max(0.0) + RESOLUTION;
+        let near = *limit < 0.0 && distance < -limit - RESOLUTION;
+        match found.first().map(|found| found.kind) {
+            Some(Kind::Deep { most, .. }) => assert!(depth <= most + 1e-9, "{depth}: {found:?}"),
+            Some(Kind::Near { least, .. }) => {
+                assert!(!deep && distance >= least - 1e-9, "{distance}: {found:?}");
+            }
+            _ => assert!(!deep && !near, "{surface}: {limit}, {worst:?}, {of:?}"),
+        }
+    }
+}
+
+#[test]
+fn brute_force_finds_nothing_else() {
+    let meshes = [
+        block([-8.0, -8.0, -8.0], [8.0, 8.0, 8.0]),
+        shapes::plane(18.0, 6, Unit::Millimetre).expect("a sheet"),
+    ];
+    let cut = f64::INFINITY;
+    let allowances: [&[(&str, f64)]; 5] = [
+        &[],
+        &[("flute", cut), ("ball", 1.5)],
+        &[("nut", -1.0), ("shank", -0.3)],
+        &[("nut", -0.5), ("flute", 0.7), ("ball", cut)],
+        &[("ball", cut), ("flute", cut), ("shank", -3.0), ("nut", -6.0)],
+    ];
+    let [mut deep, mut near, mut clear] = [0; 3];
+    for (k, mesh) in meshes.iter().enumerate() {
+        let (facets, places) = (Facets::new(mesh), places(mesh, STEP));
+        for (seed, given) in (10 * k as u64..).zip(allowances) {
+            let tolerance = if seed % 2 == 0 { 0.0 } else { 0.05 };
+            let walk = walk(&mut Draw::new(seed + 1), 60);
+            let pose = |(tip, axis): &Stand| Pose::from_axis(*tip, *axis).expect("an axis");
+            let poses = walk.iter().map(|(stand, rapid)| (pose(stand), *rapid));
+            let program = Program::new("walk", None, poses).expect("stops");
+            let verifier = Verifier::new(&facets, &Mounted).expect("a profile");
+            let verifier = verifier.tolerance(tolerance).expect("a length");
+            let verifier = verifier.resolution(RESOLUTION).expect("a length");
+            let verifier = given.iter().fold(verifier, |verifier, (name, to)| {
+                verifier.allow(name, *to).expect("a surface")
+            });
+            let report = verifier.check(&program).expect("it can be checked");
+            assert_eq!((report.motions, report.inside_known), (59, k == 0));
+            for (stop, (to, rapid)) in walk.iter().enumerate() {
+                let from = &walk[stop.saturating_sub(1)].0;
+                let limits = limits(given, tolerance, *rapid);
+                let found: Vec<Finding> =
+                    report.findings.iter().filter(|found| found.stop == stop).copied().collect();
+                for finding in found.iter().filter(|found| !matches!(found.kind, Kind::Inside)) {
+                    assert_eq!((finding.line, finding.rapid), (stop + 1, *rapid));
+                    judge(finding, mesh, &limits, (from, to));
+                    deep += usize::from(matches!(finding.kind, Kind::Deep { .. }));
+                    near += usize::from(matches!(finding.kind, Kind::Near { .. }));
+                }
+                let mut worst = Worst::none();
+                for time in 0..=TIMES {
+                    let stand = along((from, to), f64::from(time) / f64::from(TIMES));
+                    places.iter().for_each(|place| worst.add(place, &stand));
+                }
+                hold(&found, &limits, &worst);
+                clear += usize::from(found.is_empty());
+            }
+        }
+    }
+    // Otherwise nothing was tried.
+    assert!(deep > 100 && near > 20 && clear > 100, "{deep} deep, {near} near, {clear} clear");
+}

@@ -1,0 +1,142 @@
+//! What a program does to a part, by brute force: places of triangles, times of motions, and the distance to
+//! each piece of one profile written out. It shares nothing with what it judges.
+
+use nalgebra::{Point3, Vector3};
+use touchoff::Mesh;
+
+/// The surfaces of the tool, in its order.
+pub(crate) const SURFACES: [&str; 4] = ["ball", "flute", "shank", "nut"];
+
+touchoff::tool! {
+    tool Mounted "6 mm ball, flute to 10, 25 out of a nut" {
+        units mm;
+        profile {
+            start (0, 0);
+            arc to (3, 3) center (0, 3) as ball cutting;
+            line to (3, 10) as flute cutting;
+            line to (3, 25) as shank;
+            line to (8, 25), (8, 40), (0, 40) as nut;
+        }
+        niceness cutting: 1;
+    }
+}
+
+/// A tip and an axis.
+pub(crate) type Stand = (Point3<f64>, Vector3<f64>);
+
+/// How far a place of the half plane is from each surface.
+fn distances([d, z]: [f64; 2]) -> [f64; 4] {
+    let segment = |[a, b]: [f64; 2], [c, e]: [f64; 2]| {
+        let (x, y) = (c - a, e - b);
+        let t = (((d - a) * x + (z - b) * y) / (x * x + y * y)).clamp(0.0, 1.0);
+        (d - a - t * x).hypot(z - b - t * y)
+    };
+    // The quarter below and beside (0, 3).
+    let ball = if z <= 3.0 { (3.0 - d.hypot(z - 3.0)).abs() } else { (d - 3.0).hypot(z - 3.0) };
+    let nut = [([3.0, 25.0], [8.0, 25.0]), ([8.0, 25.0], [8.0, 40.0]), ([8.0, 40.0], [0.0, 40.0])];
+    [
+        ball,
+        segment([3.0, 3.0], [3.0, 10.0]),
+        segment([3.0, 10.0], [3.0, 25.0]),
+        nut.iter().map(|(from, to)| segment(*from, *to)).fold(f64::INFINITY, f64::min),
+    ]
+}
+
+fn inside([d, z]: [f64; 2]) -> bool {
+    match z {
+        0.0..3.0 => d.hypot(z - 3.0) <= 3.0,
+        3.0..25.0 => d <= 3.0,
+        25.0..=40.0 => d <= 8.0,
+        _ => false,
+    }
+}
+
+fn seen(place: &Point3<f64>, (tip, axis): &Stand) -> [f64; 2] {
+    let way = place - tip;
+    let z = way.dot(axis);
+    [(way - axis * z).norm(), z]
+}
+
+/// What brute force finds of each surface: how deep it is where it is the nearest, and how near.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Worst {
+    pub(crate) depth: [f64; 4],
+    pub(crate) distance: [f64; 4],
+}
+
+impl Worst {
+    pub(crate) fn none() -> Worst {
+        Worst { depth: [0.0; 4], distance: [f64::INFINITY; 4] }
+    }
+
+    /// With a place of the part and the tool's stand.
+    pub(crate) fn add(&mut self, place: &Point3<f64>, stand: &Stand) {
+        let seen = seen(place, stand);
+        // No margin that is tried reaches farther.
+        if seen[0] > 15.0 || !(-7.0..47.0).contains(&seen[1]) {
+            return;
+        }
+        let far = distances(seen);
+        for (least, far) in self.distance.iter_mut().zip(far) {
+            *least = least.min(far);
+        }
+        if inside(seen) {
+            let nearest = far.iter().copied().fold(f64::INFINITY, f64::min);
+            for (most, far) in self.depth.iter_mut().zip(far) {
+                // On a seam both are as near.
+                if far - nearest <= 1e-9 {
+                    *most = most.max(nearest);
+                }
+            }
+        }
+    }
+}
+
+/// Where a motion has come at a part of its way: the tip goes straight, the axis turns evenly.
+pub(crate) fn along((from, to): (&Stand, &Stand), part: f64) -> Stand {
+    let tip = from.0 + (to.0 - from.0) * part;
+    let angle = from.1.cross(&to.1).norm().atan2(from.1.dot(&to.1));
+    if angle < 1e-9 {
+        return (tip, from.1);
+    }
+    let axis = from.1 * ((1.0 - part) * angle).sin() + to.1 * (part * angle).sin();
+    (tip, axis.normalize())
+}
+
+/// Places of all triangles, no farther apart than a step along their edges.
+pub(crate) fn places(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
+    let mut places = Vec::new();
+    for id in 0..mesh.triangles().len() as u32 {
+        let [a, b, c] = mesh.triangle(id);
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let n = (longest / step).ceil() as u32;
+        for i in 0..=n {
+            for j in 0..=n - i {
+                let [u, v] = [i, j].map(|k| f64::from(k) / f64::from(n));
+                places.push(a + (b - a) * u + (c - a) * v);
+            }
+        }
+    }
+    places
+}
+
+/// Numbers that are the same each time.
+pub(crate) struct Draw(u64);
+
+impl Draw {
+    pub(crate) fn new(seed: u64) -> Draw {
+        Draw(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    /// Evenly between two numbers.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
+    }
+
+    pub(crate) fn vector(&mut self, size: f64) -> Vector3<f64> {
+        Vector3::from([0; 3].map(|_| self.between(-size, size)))
+    }
+}
