@@ -142,3 +142,6 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
+
+#[cfg(test)]
+mod tests;

@@ -35,7 +35,7 @@ impl Holder {
         let pieces = card.outline.iter().filter(|piece| mount(piece) != Some(first));
         let mut corners: Vec<[f64; 2]> = Vec::new();
         for piece in pieces {
-            // An arc is within the steps of its ends: as far out as the farther, as low as the lower.
+            // An arc is one step, as far out as it comes, and as low.
             let [from, to] = [piece.from, piece.to];
             let count = if piece.circle.is_some() { 1 } else { STEPS };
             for k in 0..count {
@@ -43,9 +43,11 @@ impl Holder {
                     from[part] + (to[part] - from[part]) * k as f64 / count as f64
                 };
                 let (low, high) = (at(k, 1).min(at(k + 1, 1)), at(k, 0).max(at(k + 1, 0)));
-                let radius = piece.circle.map_or(high, |arc| {
-                    high.max(if arc.convex { arc.centre[0] + arc.radius } else { high })
-                });
+                let bulge = piece.circle.filter(|arc| arc.convex);
+                let radius = bulge.map_or(high, |arc| high.max(arc.centre[0] + arc.radius));
+                // The material on its left, it goes outward below its centre.
+                let below = bulge.filter(|arc| from[0] <= arc.centre[0] && arc.centre[0] <= to[0]);
+                let low = below.map_or(low, |arc| low.min(arc.centre[1] - arc.radius));
                 corners.push([radius * length, low * length]);
             }
         }
@@ -146,3 +148,6 @@ impl Holder {
 
 /// Boxes are known in `f32`.
 const WIDER: f64 = 1.0 + 1e-6;
+
+#[cfg(test)]
+mod tests;

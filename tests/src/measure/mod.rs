@@ -11,5 +11,6 @@ pub mod haptics;
 pub mod kernels;
 pub mod mutants;
 pub mod points;
+pub mod postures;
 pub mod search;
 pub mod stress;

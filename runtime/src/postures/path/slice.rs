@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_sphere_is_cut_in_circles() {
-        let sphere = shapes::sphere(10.0, 40_000, Unit::Millimetre).expect("a sphere");
+        let sphere = shapes::sphere(10.0, 5, Unit::Millimetre).expect("a sphere");
         let slices = slices(&sphere, &Vector3::z(), [1.0, 0.5]);
         assert_eq!(slices.len(), 20);
         for (k, lines) in slices.iter().enumerate() {

@@ -29,7 +29,7 @@ fn what_belongs_to_something_else_is_refused() {
     let mut asked = own.clone();
     asked.rules.tolerance = 0.02;
     let text = says(&asked);
-    assert!(text.contains("(tolerance 0.01, niceness from 0.25, `shank` -0.5, 3 kept"), "{text}");
+    assert!(text.contains("(tolerance 0.01, niceness above 0.25, `shank` -0.5, 3 kept"), "{text}");
     assert!(text.contains("than now (tolerance 0.02,"), "{text}");
     assert!(says(&own.clone().keeping(NonZeroU16::MIN)).contains("1 kept of each triangle"));
     let mut asked = own.clone();

@@ -1,0 +1,79 @@
+//! A part with hollows and bosses.
+
+use nalgebra::Point3;
+use touchoff::{Mesh, MeshError, Unit};
+
+/// How wide the block is, and how low its bottom, in mm.
+const WIDE: f64 = 40.0;
+const LOW: f64 = -16.0;
+
+/// How high its top is: a bowl, a dome, a groove and a step. In the bowl a ball of 4 mm fits, in the groove one
+/// of 2.
+fn top(x: f64, y: f64) -> f64 {
+    let dome = (-((x - 9.0).powi(2) + (y - 8.0).powi(2)) / 18.0).exp();
+    let bowl = (-((x + 8.0).powi(2) + (y - 7.0).powi(2)) / 24.0).exp();
+    let groove = (-((y + 6.0 + 0.1 * x) / 2.2).powi(2)).exp();
+    let step = 1.0 / (1.0 + (-(y + 13.0) * 4.0).exp());
+    6.0 * dome - 7.0 * bowl - 4.0 * groove + 3.0 * (step - 1.0) + 0.3 * (0.9 * x).sin()
+}
+
+/// A block whose top goes up and down, closed and oriented outward, in mm: its top is cut into so many squares a
+/// side, its sides and its bottom into strips.
+///
+/// # Errors
+/// If there is no square.
+pub fn relief(squares: u32) -> Result<Mesh, MeshError> {
+    let n = squares;
+    let at = |k: u32| WIDE * (f64::from(k) / f64::from(n) - 0.5);
+    let mut vertices = Vec::new();
+    for j in 0..=n {
+        for i in 0..=n {
+            vertices.push(Point3::new(at(i), at(j), top(at(i), at(j))));
+        }
+    }
+    let up = |i: u32, j: u32| j * (n + 1) + i;
+    let mut triangles = Vec::new();
+    for j in 0..n {
+        for i in 0..n {
+            let [a, b, c, d] = [up(i, j), up(i + 1, j), up(i + 1, j + 1), up(i, j + 1)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    // Around the rim, counter-clockwise from above, with what lies below it, and the bottom's middle.
+    let rim: Vec<u32> = (0..n)
+        .map(|k| up(k, 0))
+        .chain((0..n).map(|k| up(n, k)))
+        .chain((0..n).map(|k| up(n - k, n)))
+        .chain((0..n).map(|k| up(0, n - k)))
+        .collect();
+    let first = vertices.len() as u32;
+    let low: Vec<Point3<f64>> = rim
+        .iter()
+        .map(|k| {
+            let place = vertices[*k as usize];
+            Point3::new(place.x, place.y, LOW)
+        })
+        .collect();
+    vertices.extend(low);
+    let middle = vertices.len() as u32;
+    vertices.push(Point3::new(0.0, 0.0, LOW));
+    let count = rim.len() as u32;
+    for k in 0..count {
+        let next = (k + 1) % count;
+        let [a, b] = [rim[k as usize], rim[next as usize]];
+        let [c, d] = [first + next, first + k];
+        triangles.extend([[a, d, c], [a, c, b], [d, middle, c]]);
+    }
+    Mesh::new(vertices, triangles, Unit::Millimetre)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_a_solid() {
+        let survey = relief(12).expect("a block").survey();
+        assert!(survey.solid(), "{:?}", survey.findings());
+    }
+}
