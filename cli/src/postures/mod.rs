@@ -21,15 +21,13 @@ struct Share {
 }
 
 impl Share {
-    fn add(&mut self, area: f64) {
-        self.triangles += 1;
-        self.area += area;
-    }
-
-    fn all(mesh: &Mesh) -> Share {
-        let mut all = Share::default();
-        (0..mesh.triangles().len() as u32).for_each(|id| all.add(mesh.area(id)));
-        all
+    /// Those of a mesh that are meant.
+    fn of_all(mesh: &Mesh, meant: impl Fn(u32) -> bool) -> Share {
+        let ids = (0..mesh.triangles().len() as u32).filter(|id| meant(*id));
+        ids.fold(Share::default(), |share, id| Share {
+            triangles: share.triangles + 1,
+            area: share.area + mesh.area(id),
+        })
     }
 
     fn of(self, all: Share) -> String {

@@ -59,24 +59,28 @@ struct OfTool {
 
 /// What is known of the part, row by row.
 struct Count {
-    reached: Share,
+    /// Of each triangle, whether a tool reaches it.
+    reached: Vec<bool>,
     tools: Vec<OfTool>,
 }
 
 impl Count {
-    fn new(tools: &[&dyn Tool]) -> Count {
+    fn new(mesh: &Mesh, tools: &[&dyn Tool]) -> Count {
         let none = |tool: &&dyn Tool| OfTool {
             name: tool.card().name.to_string(),
             reached: 0,
             best: 0,
             stickout: None,
         };
-        Count { reached: Share::default(), tools: tools.iter().map(none).collect() }
+        Count {
+            reached: vec![false; mesh.triangles().len()],
+            tools: tools.iter().map(none).collect(),
+        }
     }
 
-    fn add(&mut self, mesh: &Mesh, triangle: u32, row: &Row) {
+    fn add(&mut self, triangle: u32, row: &Row) {
         if let Some(best) = row.best.first() {
-            self.reached.add(mesh.area(triangle));
+            self.reached[triangle as usize] = true;
             self.tools[usize::from(best.tool)].best += 1;
         }
         for access in &row.access {
@@ -116,7 +120,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         }
         None => None,
     };
-    let mut count = Count::new(&tools);
+    let mut count = Count::new(&mesh, &tools);
     let open = left(&sweep, map.as_ref())?;
     let bar = bar(open.len());
     let start = Instant::now();
@@ -130,7 +134,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
                     return ControlFlow::Break(error);
                 }
             }
-            None => batch.rows.iter().for_each(|(id, row)| count.add(&mesh, *id, row)),
+            None => batch.rows.iter().for_each(|(id, row)| count.add(*id, row)),
         }
         ControlFlow::Continue(())
     });
@@ -142,15 +146,16 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     if let Some(map) = &map {
         for entry in map.rows()? {
             let (triangle, row) = entry?;
-            count.add(&mesh, triangle, &row);
+            count.add(triangle, &row);
         }
     }
-    let all = Share::all(&mesh);
+    let all = Share::of_all(&mesh, |_| true);
+    let reached = Share::of_all(&mesh, |triangle| count.reached[triangle as usize]);
     let summary = Summary {
         triangles: mesh.triangles().len(),
         directions: directions.list().len(),
-        reached: count.reached.triangles,
-        area: count.reached.area / all.area,
+        reached: reached.triangles,
+        area: reached.area / all.area,
         tools: count.tools,
         before: sweep.batches() - open.len(),
         batches: sweep.batches(),
@@ -170,7 +175,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;
     } else {
-        summary.print(&mut out, unit, &count.reached.of(all))?;
+        summary.print(&mut out, unit, &reached.of(all))?;
     }
     out.flush()?;
     Ok(())

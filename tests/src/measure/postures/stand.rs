@@ -223,7 +223,7 @@ mod tests {
                     }
                 }
             }
-            assert!(stood > 300, "{name}: {stood}");
+            assert!(stood > 100, "{name}: {stood}");
         }
     }
 }
