@@ -3,6 +3,7 @@
 mod apart;
 mod judged;
 mod recorded;
+mod swept;
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
