@@ -2,6 +2,7 @@
 
 mod apart;
 mod judged;
+mod led;
 mod recorded;
 mod swept;
 
