@@ -81,6 +81,12 @@ impl Sites {
         Sites { sites, size: card.size() * length }
     }
 
+    /// How far from the tip any of them is.
+    pub(crate) fn reach(&self) -> f64 {
+        let far = |site: &Site| site.centre[0].hypot(site.centre[1]) + site.radius;
+        self.sites.iter().map(far).fold(0.0, f64::max)
+    }
+
     /// The contacts of a face with a tool whose axis has a direction: the face has a place and an outward
     /// normal, and the tool's own is the opposite there.
     pub(crate) fn contacts(

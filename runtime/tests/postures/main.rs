@@ -2,7 +2,9 @@
 
 mod apart;
 mod judged;
+mod led;
 mod recorded;
+mod swept;
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};

@@ -5,8 +5,8 @@ use crate::{Mesh, Pose};
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_3;
 
-/// A sphere about the part, twice as large: a tool whose tip is on it, and whose axis is within 30 degrees of
-/// the way out, has all of the part below its tip.
+/// A sphere about the part, twice as large as what holds the tips of all tools that touch it: a tool that went
+/// there along its axis has that within 30 degrees of the way out, and all of the part below its tip.
 pub(super) struct Around {
     centre: Point3<f64>,
     radius: f64,
@@ -25,10 +25,11 @@ pub(super) struct Leg {
 const LEAD: f64 = 1.0 / 32.0;
 
 impl Around {
-    pub(super) fn new(mesh: &Mesh) -> Around {
+    /// `reach` is how far from its tip the tool touches.
+    pub(super) fn new(mesh: &Mesh, reach: f64) -> Around {
         let [low, high] = mesh.bounds();
         let half = 0.5 * (high - low).norm();
-        Around { centre: low + 0.5 * (high - low), radius: 2.0 * half, lead: LEAD * half }
+        Around { centre: low + 0.5 * (high - low), radius: 2.0 * (half + reach), lead: LEAD * half }
     }
 
     /// A little off the surface, along the axis.

@@ -23,7 +23,7 @@ use crate::{Level, Mesh, Motion, Pose, Tool, cores};
 use axes::{Run, Spot, Way};
 use link::{Around, Leg};
 use nalgebra::{Point3, Vector3};
-use slice::{Place, slices};
+use slice::{Place, length_of_lines, slices};
 
 /// How a surface is gone over.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,14 @@ pub enum PathError {
         /// How many may be.
         most: usize,
     },
+    /// The places on the lines would be too many.
+    #[error("{places:.0} places are more than {most}: take a larger step or stepover")]
+    TooFine {
+        /// How many they would be at most.
+        places: f64,
+        /// How many may be.
+        most: usize,
+    },
     /// The rules mean nothing, or nothing of the tool can be held to them.
     #[error(transparent)]
     Judge(#[from] JudgeError),
@@ -88,6 +96,9 @@ pub struct Path {
 
 /// The most planes.
 const MOST: usize = 100_000;
+
+/// The most places, as far as the lines' length tells: some gigabytes, and weeks of any machine.
+const MOST_PLACES: usize = 20_000_000;
 
 /// Of the tolerance this part is for the way between stops.
 const BETWEEN: f64 = 1.0 / 8.0;
@@ -127,15 +138,21 @@ pub fn path<'a>(
             return Err(PathError::Pattern { what, value });
         }
     }
-    let normal = Vector3::from(pattern.normal).try_normalize(0.0).filter(|n| n.norm().is_finite());
+    // By its largest part first, so that no square is too large or too small.
+    let normal = Vector3::from(pattern.normal);
+    let normal = (normal / normal.amax()).try_normalize(0.0).filter(|n| n.norm().is_finite());
     let normal = normal.ok_or(PathError::Normal)?;
     let [low, high] = mesh.bounds();
     let planes = (high - low).norm() / pattern.stepover;
     if planes > MOST as f64 {
         return Err(PathError::TooMany { planes, most: MOST });
     }
+    let places = length_of_lines(mesh, &normal, pattern.stepover) / pattern.step;
+    if places > MOST_PLACES as f64 {
+        return Err(PathError::TooFine { places, most: MOST_PLACES });
+    }
     let mut leader = Leader::new(facets, tool, rules)?;
-    let around = Around::new(mesh);
+    let around = Around::new(mesh, leader.sites.reach());
     let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
     let lines: Vec<(usize, &Vec<Place>)> = planes
         .iter()

@@ -25,18 +25,13 @@ pub(super) fn slices(
     normal: &Vector3<f64>,
     [stepover, step]: [f64; 2],
 ) -> Vec<Vec<Vec<Place>>> {
-    let heights = |id: u32| mesh.triangle(id).map(|corner| corner.coords.dot(normal));
-    let ids = 0..mesh.triangles().len() as u32;
-    let all = ids.clone().flat_map(heights);
-    let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
-        [low.min(height), high.max(height)]
-    });
+    let [low, high] = range(mesh, normal);
     let count = ((high - low) / stepover).round().max(1.0);
     let plane = |k: usize| low + (high - low) * (k as f64 + 0.5) / count;
     let mut planes: Vec<Vec<Piece>> = vec![Vec::new(); count as usize];
-    for id in ids {
+    for id in 0..mesh.triangles().len() as u32 {
         let corners = mesh.triangle(id);
-        let heights = heights(id);
+        let heights = heights(mesh, normal, id);
         let place = |height: f64| (height - low) / (high - low) * count - 0.5;
         let least = heights.into_iter().fold(f64::INFINITY, f64::min);
         let most = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -52,6 +47,27 @@ pub(super) fn slices(
         .iter()
         .map(|pieces| chains(pieces).iter().map(|line| along(line, step)).collect())
         .collect()
+}
+
+/// About how long all lines are together, each piece of area as long as it is steep to the planes and as they
+/// are near to each other.
+pub(super) fn length_of_lines(mesh: &Mesh, normal: &Vector3<f64>, stepover: f64) -> f64 {
+    let [low, high] = range(mesh, normal);
+    let steep = (0..mesh.triangles().len() as u32)
+        .filter_map(|id| Some(mesh.area(id) * mesh.normal(id)?.cross(normal).norm()));
+    steep.sum::<f64>() / stepover.min(high - low)
+}
+
+fn heights(mesh: &Mesh, normal: &Vector3<f64>, id: u32) -> [f64; 3] {
+    mesh.triangle(id).map(|corner| corner.coords.dot(normal))
+}
+
+/// How low and how high a mesh is along a normal.
+fn range(mesh: &Mesh, normal: &Vector3<f64>) -> [f64; 2] {
+    let all = (0..mesh.triangles().len() as u32).flat_map(|id| heights(mesh, normal, id));
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
+        [low.min(height), high.max(height)]
+    })
 }
 
 /// Where a plane crosses a triangle's sides: two of them or none, since a corner is on one side or the

@@ -154,7 +154,7 @@ impl<'a> Tried<'a> {
         for (_, posture) in ranked.into_iter().take(of.keep.get().into()) {
             let axis = of.directions.list()[posture.direction];
             if let Ok(pose) = Pose::from_axis(posture.tip, axis.into()) {
-                best.push(self.record(&pose, posture.niceness));
+                best.push(self.record(axis, &pose, posture.niceness));
             }
         }
         Access { tool: self.index, directions, stickout }
@@ -218,9 +218,9 @@ impl<'a> Tried<'a> {
         }
     }
 
-    /// What is proved of a posture.
-    fn record(&mut self, pose: &Pose, niceness: f64) -> Record {
-        let (tip, axis) = (pose.tip().into(), pose.axis().into());
+    /// What is proved of a posture. The axis is told as it was given: normalised, it could give another pose.
+    fn record(&mut self, axis: [f64; 3], pose: &Pose, niceness: f64) -> Record {
+        let tip = pose.tip().into();
         let mut record =
             Record { tool: self.index, tip, axis, niceness, depth: 0.0, clearance: 0.0 };
         self.judge.measure(&mut record, pose);

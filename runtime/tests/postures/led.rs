@@ -1,0 +1,291 @@
+//! Paths: no stop and no way between two is deeper than the tolerance, wherever one looks.
+
+use crate::{HOLDER, Mill, NECK, away, from_cutting, inside};
+use nalgebra::{Point3, Rotation3, Vector3};
+use std::num::NonZeroU16;
+use std::ops::ControlFlow;
+use touchoff::certify::Facets;
+use touchoff::mesh::shapes;
+use touchoff::postures::path::{Path, PathError, Pattern, path};
+use touchoff::postures::sweep::Sweep;
+use touchoff::postures::{Directions, Rules};
+use touchoff::{Mesh, Tool, Unit};
+
+touchoff::tool! {
+    tool Wide "a bull nose that is larger than most parts here" {
+        units mm;
+        profile {
+            start (0, 0);
+            line to (60, 0) as face cutting;
+            arc to (65, 5) center (60, 5) as corner cutting;
+            line to (65, 40), (0, 40) as body;
+        }
+        niceness cutting: 1;
+    }
+}
+
+const TOLERANCE: f64 = 0.01;
+
+/// A part with all that leads a tool over it; lengths in mm are taken to the part's unit.
+struct Case {
+    mesh: Mesh,
+    facets: Facets,
+    rules: Rules,
+    directions: Directions,
+    access: Vec<Vec<u64>>,
+    scale: f64,
+}
+
+impl Case {
+    fn new(mesh: Mesh, tool: &dyn Tool) -> Case {
+        let scale = Unit::Millimetre.to(mesh.unit());
+        let rules = Rules { tolerance: TOLERANCE * scale, niceness: 0.5, allowed: Vec::new() };
+        let (facets, directions) = (Facets::new(&mesh), Directions::spread(100));
+        let mut access = vec![Vec::new(); mesh.triangles().len()];
+        let sweep =
+            Sweep::new((&mesh, &facets), vec![tool], &directions, rules.clone(), NonZeroU16::MIN)
+                .expect("a sweep");
+        let all: Vec<usize> = (0..sweep.batches()).collect();
+        let _: ControlFlow<()> = sweep.run(&all, |batch| {
+            for (id, mut row) in batch.rows {
+                access[id as usize] = std::mem::take(&mut row.access[0].directions);
+            }
+            ControlFlow::Continue(())
+        });
+        Case { mesh, facets, rules, directions, access, scale }
+    }
+
+    fn lead(&self, tool: &dyn Tool, pattern: &Pattern) -> Result<Path, PathError> {
+        let of = (&self.mesh, &self.facets);
+        path(of, (tool, &self.rules), (&self.directions, &self.access), pattern)
+    }
+
+    /// Planes across a way, so many mm apart.
+    fn over(&self, tool: &dyn Tool, normal: [f64; 3], [stepover, step]: [f64; 2]) -> Path {
+        let [stepover, step] = [stepover, step].map(|part| part * self.scale);
+        self.lead(tool, &Pattern { normal, stepover, step }).expect("a path")
+    }
+}
+
+/// Places of a mesh, no triangle's farther from the next than a little.
+fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
+    let mut all = Vec::new();
+    for id in 0..mesh.triangles().len() as u32 {
+        let [a, b, c] = mesh.triangle(id);
+        let size = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        let count = (size / apart).ceil();
+        for i in 0..=count as u32 {
+            for j in 0..=count as u32 - i {
+                all.push(a + (b - a) * (f64::from(i) / count) + (c - a) * (f64::from(j) / count));
+            }
+        }
+    }
+    all
+}
+
+/// The most that what cuts and what does not of a [`Mill`] is in a part on its way, in mm: on feed, and on
+/// rapid moves.
+fn deepest(case: &Case, path: &Path) -> [[f64; 2]; 2] {
+    const TIMES: u32 = 6;
+    let places = raster(&case.mesh, 0.5 * case.scale);
+    let mut most = [[0f64; 2]; 2];
+    for pair in path.stops.windows(2) {
+        let (from, to, rapid) = (pair[0].0, pair[1].0, usize::from(pair[1].1));
+        let about = from.axis().cross(&to.axis());
+        let turn = from.axis().angle(&to.axis());
+        for k in 0..=TIMES {
+            let part = f64::from(k) / f64::from(TIMES);
+            let tip = from.tip() + (to.tip() - from.tip()) * part;
+            let axis = match about.try_normalize(1e-12) {
+                Some(about) => {
+                    let about = nalgebra::Unit::new_unchecked(about);
+                    Rotation3::from_axis_angle(&about, turn * part) * from.axis()
+                }
+                None => from.axis(),
+            };
+            for place in &places {
+                let off = (place - tip) / case.scale;
+                let z = off.dot(&axis);
+                if !(0.0..=40.0).contains(&z) {
+                    continue;
+                }
+                let place = [(off.norm_squared() - z * z).max(0.0).sqrt(), z];
+                if inside(place) {
+                    let (cuts, still) =
+                        (from_cutting(place), away(&NECK, place).min(away(&HOLDER, place)));
+                    let kind = usize::from(still < cuts);
+                    most[rapid][kind] = most[rapid][kind].max(cuts.min(still));
+                }
+            }
+        }
+    }
+    most
+}
+
+/// A block with a step along y, its corners as `[x, z]`.
+fn step() -> Mesh {
+    let outline = [[-12.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0], [0.0, 14.0], [-12.0, 14.0]];
+    let place = |y: f64| move |[x, z]: [f64; 2]| Point3::new(x, y, z);
+    let vertices = outline.map(place(-10.0)).into_iter().chain(outline.map(place(10.0))).collect();
+    let mut triangles = Vec::new();
+    for k in 0..6u32 {
+        let next = (k + 1) % 6;
+        triangles.extend([[k, next, next + 6], [k, next + 6, k + 6]]);
+    }
+    // Seen from the inner corner all others are in sight.
+    for (a, b) in [(4, 5), (5, 0), (0, 1), (1, 2)] {
+        triangles.extend([[3, b, a], [9, a + 6, b + 6]]);
+    }
+    let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
+    let turned = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    match mesh.survey().solid() {
+        true => mesh,
+        false => Mesh::new(mesh.vertices().to_vec(), turned, Unit::Millimetre).expect("a mesh"),
+    }
+}
+
+fn sphere() -> Mesh {
+    shapes::sphere(10.0, 3, Unit::Millimetre).expect("a sphere")
+}
+
+fn proved(mesh: Mesh, normal: [f64; 3], apart: [f64; 2]) -> Path {
+    let case = Case::new(mesh, &Mill);
+    let path = case.over(&Mill, normal, apart);
+    let [feed, rapid] = deepest(&case, &path);
+    println!(
+        "{} stops, {} places, {} left out, {} lifts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
+        path.stops.len(),
+        path.places,
+        path.left_out,
+        path.lifts,
+        path.turns
+    );
+    assert!(feed[0] <= TOLERANCE + 1e-9 && feed[1] <= TOLERANCE / 8.0 + 1e-9, "{feed:?}");
+    assert!(rapid[0] <= TOLERANCE + 1e-9 && rapid[1] <= TOLERANCE / 8.0 + 1e-9, "{rapid:?}");
+    assert!(path.places > 100 && path.turns[1] <= path.turns[0], "{path:?}");
+    let [low, high] = case.mesh.bounds();
+    for (end, rapid) in [path.stops[0], path.stops[path.stops.len() - 1]] {
+        assert!(rapid);
+        assert!((end.tip() - nalgebra::center(&low, &high)).norm() > 0.9 * (high - low).norm());
+    }
+    path
+}
+
+#[test]
+fn a_sphere_is_gone_over() {
+    let path = proved(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
+    assert!(path.left_out * 20 < path.places, "{} of {}", path.left_out, path.places);
+    assert!(path.turns[1] < 0.8 * path.turns[0], "{:?}", path.turns);
+}
+
+#[test]
+fn a_block_with_a_step_is_gone_over() {
+    let mesh = step();
+    assert!(mesh.survey().solid(), "{:?}", mesh.survey().findings());
+    proved(mesh, [0.0, 1.0, 0.0], [2.0, 1.0]);
+}
+
+#[test]
+fn an_open_sheet_and_a_bore_are_gone_over() {
+    proved(shapes::plane(10.0, 4, Unit::Millimetre).expect("a sheet"), [1.0, 0.0, 0.0], [1.0, 1.0]);
+    let path = proved(
+        shapes::tube(6.0, 12.0, 16.0, 24, 4, Unit::Millimetre).expect("a tube"),
+        [0.0, 1.0, 0.0],
+        [2.0, 1.5],
+    );
+    assert!(path.lifts > 0);
+}
+
+#[test]
+fn the_same_path_comes_again_and_in_every_unit_and_place() {
+    let around = |scale: f64, unit: Unit, off: f64| {
+        let mesh = sphere();
+        let moved = mesh.vertices().iter().map(|place| place * scale + Vector3::repeat(off));
+        let mesh = Mesh::new(moved.collect(), mesh.triangles().to_vec(), unit).expect("a mesh");
+        let case = Case::new(mesh, &Mill);
+        let path = case.over(&Mill, [0.0, 0.0, 1.0], [4.0, 2.0]);
+        let [feed, rapid] = deepest(&case, &path);
+        let rounding = 1e-9 + 1e-13 * off;
+        let most = feed.into_iter().chain(rapid).fold(0.0, f64::max);
+        assert!(most <= TOLERANCE + rounding, "{unit} at {off}: {most}");
+        path
+    };
+    let first = around(1.0, Unit::Millimetre, 0.0);
+    assert_eq!(around(1.0, Unit::Millimetre, 0.0).stops, first.stops);
+    for (scale, unit, off) in
+        [(1.0 / 25.4, Unit::Inch, 0.0), (1e-3, Unit::Metre, 0.0), (1.0, Unit::Millimetre, 1e6)]
+    {
+        let path = around(scale, unit, off);
+        let share = path.places as f64 / first.places as f64;
+        assert!(
+            (0.9..1.1).contains(&share),
+            "{unit} at {off}: {} of {}",
+            path.places,
+            first.places
+        );
+    }
+}
+
+#[test]
+fn a_pattern_that_is_none_is_refused() {
+    let case = Case::new(sphere(), &Mill);
+    let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 2.0, step: 1.0 };
+    let refused = |pattern: Pattern| case.lead(&Mill, &pattern).expect_err("no path");
+    for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = refused(Pattern { stepover: none, ..pattern });
+        assert!(matches!(error, PathError::Pattern { what: "a stepover", .. }), "{error}");
+        let error = refused(Pattern { step: none, ..pattern });
+        assert!(matches!(error, PathError::Pattern { what: "a step", .. }), "{error}");
+    }
+    for normal in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
+        assert_eq!(refused(Pattern { normal, ..pattern }), PathError::Normal);
+    }
+    for stepover in [1e-6, 1e-300] {
+        let error = refused(Pattern { stepover, ..pattern });
+        assert!(matches!(error, PathError::TooMany { .. }), "{error}");
+    }
+    for (stepover, step) in [(2.0, 1e-9), (2.0, 1e-300), (1e9, 1e-9)] {
+        let error = refused(Pattern { stepover, step, ..pattern });
+        assert!(matches!(error, PathError::TooFine { .. }), "{error}");
+    }
+    // One plane and one place of a line are enough.
+    for coarse in [1e3, 1e300] {
+        let path = case.lead(&Mill, &Pattern { stepover: coarse, step: coarse, ..pattern });
+        assert!(path.expect("a path").places > 0);
+    }
+    // A normal of any length.
+    for size in [1e-300, 1e300] {
+        let path =
+            case.lead(&Mill, &Pattern { normal: [0.0, 0.0, size], ..pattern }).expect("a path");
+        assert_eq!(path.stops, case.lead(&Mill, &pattern).expect("a path").stops, "{size}");
+    }
+    let none = vec![Vec::new(); case.access.len()];
+    let of = (&case.mesh, &case.facets);
+    for access in [&none[..], &[], &vec![vec![0; 4]; case.access.len()]] {
+        let found = path(of, (&Mill, &case.rules), (&case.directions, access), &pattern);
+        assert_eq!(found.expect_err("no path"), PathError::Nowhere);
+    }
+    let wrong = Rules { tolerance: 0.0, ..case.rules.clone() };
+    let found = path(of, (&Mill, &wrong), (&case.directions, &case.access), &pattern);
+    assert!(matches!(found, Err(PathError::Judge(_))));
+}
+
+#[test]
+fn one_triangle_is_gone_over() {
+    let corners = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]].map(Point3::from);
+    let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]], Unit::Millimetre).expect("a mesh");
+    let case = Case::new(mesh, &Mill);
+    let path = case.over(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
+    assert_eq!(path.left_out, 0);
+    // Planes that lie in it cut it nowhere.
+    let flat = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 1.0 };
+    assert_eq!(case.lead(&Mill, &flat).expect_err("no path"), PathError::Nowhere);
+}
+
+#[test]
+fn a_tool_that_is_larger_than_the_part_comes_to_it() {
+    let case = Case::new(sphere(), &Wide);
+    assert!(case.access.iter().flatten().any(|word| *word != 0));
+    let path = case.over(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
+    assert!(path.places > 0 && path.stops.len() > path.places);
+}
