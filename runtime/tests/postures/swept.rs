@@ -318,7 +318,7 @@ fn directions_are_spread_evenly_and_none_is_lost() {
         assert_eq!(count, 2 * hemisphere.min(Directions::MOST));
         let all = vec![u64::MAX; count.div_ceil(64)];
         let mut set = all.clone();
-        if count % 64 != 0 {
+        if !count.is_multiple_of(64) {
             set[count / 64] = (1 << (count % 64)) - 1;
         }
         assert!((directions.solid_angle(&set) - 4.0 * std::f64::consts::PI).abs() < 1e-12);
