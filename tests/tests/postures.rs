@@ -45,7 +45,7 @@ fn what_a_sweep_finds_accessible_is_free_and_what_not_is_blocked() {
 
 #[test]
 fn so_it_is_with_corners_two_contacts_and_tools_in_inches() {
-    sample(vec!["BullNose", "Lollipop", "TSlot", "Woodruff", "HalfInchBallCat40"], 300);
+    sample(vec!["BullNose", "Lollipop", "TSlot", "Dovetail", "HalfInchBallCat40"], 300);
 }
 
 /// A judge that cannot refuse is none.
@@ -101,45 +101,5 @@ fn a_plate_is_reached_from_all_above_it() {
     assert_eq!(solid.len(), 2);
     for angle in solid {
         assert!((angle - std::f64::consts::TAU).abs() < 0.03, "{angle}");
-    }
-}
-
-#[test]
-fn probe() {
-    use nalgebra::{Point3, Vector3};
-    use touchoff::Pose;
-    use touchoff::certify::Certifier;
-    let mesh = relief(20).expect("a block");
-    let facets = Facets::new(&mesh);
-    let tool = tools_library::find("Woodruff").expect("a tool");
-    let directions = Directions::spread(60);
-    let stand = Stand::new("Woodruff", 1.0, 0.01).expect("a tool");
-    let names: Vec<String> = tool.card().surfaces.iter().map(|s| s.name.to_string()).collect();
-    for (triangle, direction) in [(395u32, 89), (558, 94), (977, 49), (384, 68), (796, 56)] {
-        let [a, b, c] = mesh.triangle(triangle);
-        let place = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-        let normal = mesh.normal(triangle).expect("n");
-        let axis = Vector3::from(directions.list()[direction]);
-        for posture in stand.postures(place, normal, axis, 1.0) {
-            let pose = Pose::from_axis(posture.tip, axis).expect("a pose");
-            let free = Part::new(&mesh).judge(&stand, &posture, 0.01, 0.0);
-            println!("{triangle} {free:?}");
-            for (k, name) in names.iter().enumerate() {
-                let mut alone = Certifier::new(&facets, tool).expect("c");
-                for (other, name) in names.iter().enumerate() {
-                    let allowed = if other == k {
-                        if tool.card().surfaces[k].cutting { 0.01 } else { 0.0 }
-                    } else {
-                        f64::INFINITY
-                    };
-                    alone = alone.allow(name, allowed).expect("ok");
-                }
-                println!(
-                    "  {name}: {:?} {:?}",
-                    alone.clear(&pose),
-                    Certifier::new(&facets, tool).expect("c").deepest_on(k, &pose, 1e-9).depth
-                );
-            }
-        }
     }
 }
