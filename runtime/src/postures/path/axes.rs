@@ -78,7 +78,8 @@ impl Leader<'_> {
             .map(|place| {
                 let normal = mesh.normal(place.triangle)?;
                 let set = access.get(place.triangle as usize)?;
-                let any = set.iter().any(|word| *word != 0);
+                // A set of other directions says nothing.
+                let any = set.len() == directions.words() && set.iter().any(|word| *word != 0);
                 any.then_some(Reached { spot: Spot { point: place.point, normal }, set })
             })
             .collect();
