@@ -53,7 +53,8 @@ use work::{Setting, Work};
 /// is asked about is the tool's surface as its profile draws it.
 ///
 /// ```
-/// /// use touchoff::certify::{Certifier, Facets};
+/// use nalgebra::{Point3, Vector3};
+/// use touchoff::certify::{Certifier, Facets};
 /// use touchoff::{Pose, Unit, mesh::shapes};
 ///
 /// touchoff::tool! {
@@ -310,7 +311,8 @@ impl<'a> Certifier<'a> {
     /// A motion says nothing of spin, so that of a solid without an axis all is undecided.
     ///
     /// ```
-    /// #     /// # use touchoff::certify::{Certifier, Facets, Sweep};
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::certify::{Certifier, Facets, Sweep};
     /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
     /// touchoff::tool! {
     ///     tool EndMill "12 mm across, 20 mm of it cut" {
