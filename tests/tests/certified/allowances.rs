@@ -380,3 +380,16 @@ fn allowances_that_mean_nothing_are_refused() {
     let text = refused("flute", f64::NEG_INFINITY).to_string();
     assert_eq!(text, "an allowance of -inf for `flute` is no length");
 }
+
+/// The corner that the neck shares with what is below it owns places of the flute's heights, but not the
+/// flute: what touches that does not touch the neck.
+#[test]
+fn the_neck_is_not_touched_where_the_flute_is() {
+    for off in -40..=40 {
+        let wall = block([8.25 + f64::from(off) * 1e-13, -20.0, 0.5], [30.0, 20.0, 2.5]);
+        let facets = Facets::new(&wall);
+        let mut certifier = allowing(&facets, "Woodruff", &[("flute", 0.01)]);
+        let clear = certifier.clear(&pose([0.0; 3], UP));
+        assert!(matches!(clear, Clear::Clear), "{off}: {clear:?}");
+    }
+}

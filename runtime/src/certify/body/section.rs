@@ -169,13 +169,15 @@ impl Section {
             })
     }
 
-    /// How deep a place in a slab is.
+    /// How deep a place in a slab is; less than 0 outside, and nothing where other features are the nearest.
     #[inline]
     pub(crate) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
         let side = &self.features[slab.side];
         let over = side.over(p);
         if over < 0.0 {
-            return Depth { value: over, gradient: side.inward(p), feature: slab.side };
+            let other = -over <= self.touch() && self.apart(owners, |f| f.away(p));
+            let value = if other { f64::NEG_INFINITY } else { over };
+            return Depth { value, gradient: side.inward(p), feature: slab.side };
         }
         let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
         let gradient = self.features[feature].outward(p);
@@ -188,6 +190,16 @@ impl Section {
             feature = owner;
         }
         Depth { value, gradient, feature }
+    }
+
+    /// How far outside a place may be and still be taken to touch.
+    fn touch(&self) -> f64 {
+        4.0 * self.error
+    }
+
+    /// Whether all owners are farther away than what touches.
+    fn apart(&self, owners: &Owners, away: impl Fn(&Feature) -> f64) -> bool {
+        !owners.all() && self.owned(owners).all(|owner| away(&self.features[owner]) > self.touch())
     }
 
     /// No less than the depth of any place of a slab in a triangle; below 0 if none is inside. What is
@@ -203,7 +215,8 @@ impl Section {
         let side = &self.features[slab.side];
         let over = side.over_at_most(triangle);
         if over < 0.0 {
-            return over;
+            let other = over > enough && self.apart(owners, |f| f.at_least(triangle));
+            return if other { f64::NEG_INFINITY } else { over };
         }
         let mut bound = if side.square(triangle, slab.feet) { over } else { f64::INFINITY };
         for near in &slab.near {
