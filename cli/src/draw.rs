@@ -21,8 +21,7 @@ pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<
         out.flush()?;
         return Ok(());
     };
-    let form = output.extension().map(|extension| extension.to_ascii_lowercase());
-    let bytes = match form.as_ref().and_then(|form| form.to_str()) {
+    let bytes = match files::ending(output).as_deref() {
         Some("svg") => drawing(file, given)?.into_bytes(),
         Some("png") => png(&drawing(file, given)?)?,
         _ => {

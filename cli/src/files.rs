@@ -141,6 +141,11 @@ pub(crate) fn expand(files: &[PathBuf], plan: bool, given: &Given) -> Result<(),
     Ok(())
 }
 
+/// What a file's name ends in, in small letters.
+pub(crate) fn ending(file: &Path) -> Option<String> {
+    file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
+}
+
 /// A length with its unit.
 pub(crate) fn length(value: f64, unit: Unit) -> String {
     format!("{} {unit}", figure(value, unit))

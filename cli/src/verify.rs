@@ -101,8 +101,8 @@ impl<'a> Row<'a> {
 pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let program = Program::read(&wanted.program)?;
-    program.check_unit(wanted.unit)?;
-    let mesh = part::mesh(&wanted.part, wanted.unit, "verify")?;
+    program.check_unit(wanted.mesh.unit)?;
+    let mesh = part::mesh(&wanted.mesh.part, wanted.mesh.unit, "verify")?;
     let facets = Facets::new(&mesh);
     let mut verifier = Verifier::new(&facets, found.tool())?.tolerance(wanted.tolerance)?;
     if let Some(resolution) = wanted.resolution {
@@ -120,12 +120,12 @@ pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
             serde_json::to_writer(&mut out, &Row::of(finding, card, &file))?;
             writeln!(out)?;
         } else {
-            let (line, said) = (finding.line, shown(finding, card, wanted.unit));
+            let (line, said) = (finding.line, shown(finding, card, wanted.mesh.unit));
             writeln!(out, "{file}:{line}: {said}")?;
         }
     }
     out.flush()?;
-    say!("{}", summary(&report, card, wanted.unit));
+    say!("{}", summary(&report, card, wanted.mesh.unit));
     Ok(if report.findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FOUND) })
 }
 

@@ -45,7 +45,7 @@ fn what_a_sweep_finds_accessible_is_free_and_what_not_is_blocked() {
 
 #[test]
 fn so_it_is_with_corners_two_contacts_and_tools_in_inches() {
-    sample(vec!["BullNose", "Lollipop", "TSlot", "Dovetail", "HalfInchBallCat40"], 300);
+    sample(vec!["BullNose", "Lollipop", "TSlot", "Dovetail", "Woodruff", "HalfInchBallCat40"], 300);
 }
 
 /// A judge that cannot refuse is none.

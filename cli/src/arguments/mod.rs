@@ -152,6 +152,17 @@ pub(crate) struct PartFile {
     pub(crate) seed: u64,
 }
 
+/// The part, as triangles.
+#[derive(Args)]
+pub(crate) struct MeshFile {
+    /// The finished part: a mesh in STL, PLY or OBJ.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: PathBuf,
+    /// The part's unit, which most formats do not say: `mm`, `inch` or `m`.
+    #[arg(long)]
+    pub(crate) unit: Unit,
+}
+
 #[derive(Args)]
 pub(crate) struct Sample {
     #[command(flatten)]
@@ -195,12 +206,8 @@ pub(crate) struct Run {
 
 #[derive(Args)]
 pub(crate) struct Verify {
-    /// The finished part: a mesh in STL, PLY or OBJ.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) part: PathBuf,
-    /// The part's unit, which most formats do not say: `mm`, `inch` or `m`.
-    #[arg(long)]
-    pub(crate) unit: Unit,
+    #[command(flatten)]
+    pub(crate) mesh: MeshFile,
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: String,

@@ -1,21 +1,10 @@
 //! What the commands about postures are asked for.
 
-use super::{above_zero, allowance, point};
+use super::{MeshFile, above_zero, allowance, point};
 use clap::{Args, ValueEnum};
 use nalgebra::Point3;
 use std::num::NonZeroU16;
 use std::path::PathBuf;
-use touchoff::Unit;
-
-#[derive(Args)]
-pub(crate) struct MeshFile {
-    /// The part: a mesh in STL, PLY or OBJ.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) part: PathBuf,
-    /// The part's unit: `mm`, `inch` or `m`.
-    #[arg(long)]
-    pub(crate) unit: Unit,
-}
 
 #[derive(Args)]
 pub(crate) struct Sweep {

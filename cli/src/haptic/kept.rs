@@ -1,12 +1,13 @@
 //! What is kept of a session: a table of its states, a map of its postures.
 
 use crate::failure::Failure;
+use crate::postures::map::check_part;
 use crate::postures::usual;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use touchoff::haptic::{Samples, State};
-use touchoff::postures::{Identity, PartStamp, PostureMap, Recorded, Recorder, Rules};
+use touchoff::postures::{Identity, PostureMap, Recorded, Recorder, Rules};
 use touchoff::{Mesh, Tool};
 
 const COLUMNS: &str = "cycle,seconds,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
@@ -80,14 +81,15 @@ impl Kept<'_> {
 }
 
 /// The map of a file, or a new one of this part and tool: as a sweep would begin it.
-pub(super) fn map_of(file: &Path, mesh: &Mesh, tool: &dyn Tool) -> Result<PostureMap, Failure> {
+pub(super) fn map_of(
+    file: &Path,
+    (mesh, part): (&Mesh, &Path),
+    tool: &dyn Tool,
+) -> Result<PostureMap, Failure> {
     if file.exists() {
         let map = PostureMap::read(file)?;
-        if map.identity().part == PartStamp::of(mesh) {
-            return Ok(map);
-        }
-        let map = file.display().to_string();
-        return Err(Failure::OtherPart { map, part: "this part".to_owned() });
+        check_part(&map, file, (mesh, part))?;
+        return Ok(map);
     }
     let rules = Rules { tolerance: usual(mesh.unit()), niceness: 0.0, allowed: Vec::new() };
     Ok(PostureMap::open(file, &Identity::new(mesh, &[tool], rules)?)?)

@@ -36,7 +36,9 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
     let loaded = part::load(&wanted.part, Some(tool.card()), Fine::Points)?;
     let map = match (&wanted.postures, &loaded.mesh) {
         (None, _) => None,
-        (Some(file), Some(mesh)) => Some((map_of(file, mesh, tool)?, Facets::new(mesh))),
+        (Some(file), Some(mesh)) => {
+            Some((map_of(file, (mesh, &wanted.part.part), tool)?, Facets::new(mesh)))
+        }
         (Some(_), None) => {
             let file = wanted.part.part.display().to_string();
             return Err(Failure::NoTriangles { file, what: "--postures" });

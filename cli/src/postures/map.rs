@@ -3,6 +3,7 @@
 use super::picture;
 use crate::arguments::postures::Map as Wanted;
 use crate::failure::Failure;
+use crate::files::ending;
 use crate::part;
 use serde::Serialize;
 use std::fs::File;
@@ -71,14 +72,22 @@ fn nicest(map: &PostureMap) -> Result<f64, Failure> {
 
 /// The part that a map is of.
 pub(super) fn belonging(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
-    let PartStamp { unit, digest, .. } = map.identity().part;
-    let mesh = part::mesh(part, unit, "--part")?;
-    if PartStamp::of(&mesh).digest == digest {
-        Ok(mesh)
-    } else {
-        let [map, part] = [file, part].map(|file| file.display().to_string());
-        Err(Failure::OtherPart { map, part })
+    let mesh = part::mesh(part, map.identity().part.unit, "--part")?;
+    check_part(map, file, (&mesh, part))?;
+    Ok(mesh)
+}
+
+/// Holds a map to a part.
+pub(crate) fn check_part(
+    map: &PostureMap,
+    file: &Path,
+    (mesh, part): (&Mesh, &Path),
+) -> Result<(), Failure> {
+    if PartStamp::of(mesh) == map.identity().part {
+        return Ok(());
     }
+    let [map, part] = [file, part].map(|file| file.display().to_string());
+    Err(Failure::OtherPart { map, part })
 }
 
 fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
@@ -120,8 +129,7 @@ enum Form {
 
 impl Form {
     fn of(file: &Path) -> Result<Form, Failure> {
-        let form = file.extension().map(|extension| extension.to_ascii_lowercase());
-        match form.as_ref().and_then(|form| form.to_str()) {
+        match ending(file).as_deref() {
             Some("csv") => Ok(Form::Csv),
             Some("json") => Ok(Form::Json),
             Some("ply") => Ok(Form::Ply),

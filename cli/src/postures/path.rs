@@ -4,7 +4,7 @@ use super::map::belonging;
 use crate::arguments::Given;
 use crate::arguments::postures::Path as Wanted;
 use crate::failure::Failure;
-use crate::files::Found;
+use crate::files::{Found, ending};
 use serde::Serialize;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -28,8 +28,7 @@ struct Summary {
 
 /// Leads a tool over a part, and writes the program.
 pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
-    let form = wanted.to.extension().map(|extension| extension.to_ascii_lowercase());
-    let apt = match form.as_ref().and_then(|form| form.to_str()) {
+    let apt = match ending(&wanted.to).as_deref() {
         Some("apt") => true,
         Some("csv") => false,
         _ => return Err(Failure::ProgramForm { file: wanted.to.display().to_string() }),

@@ -222,22 +222,18 @@ impl<'a> Certifier<'a> {
         match self.touches(pose) {
             Touch::Yes(witness) => Clear::Touching(witness),
             Touch::Undecided(high) => Clear::Undecided(high),
-            Touch::No => {
-                let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
-                match self.setting.within(rules, pose, 4.0 * self.setting.error) {
-                    Some(true) => Clear::Inside,
-                    Some(false) => Clear::Clear,
-                    None => Clear::Untouched,
-                }
-            }
+            Touch::No => match self.within(pose) {
+                Some(true) => Clear::Inside,
+                Some(false) => Clear::Clear,
+                None => Clear::Untouched,
+            },
         }
     }
 
-    /// Whether what may not be in the part is wholly inside it, where no triangle touches it.
-    #[cfg(feature = "postures")]
-    pub(crate) fn is_inside(&self, pose: &Pose) -> bool {
+    /// Whether what may not be in the part is wholly inside it, if that has an inside; no triangle touches it.
+    pub(crate) fn within(&self, pose: &Pose) -> Option<bool> {
         let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
-        self.setting.within(rules, pose, 4.0 * self.setting.error) == Some(true)
+        self.setting.within(rules, pose, 4.0 * self.setting.error)
     }
 
     /// Whether the axis passes all of what may not be in the part in one stretch.

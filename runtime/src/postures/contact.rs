@@ -17,8 +17,9 @@ pub(crate) struct Sites {
 pub(crate) struct Contact {
     /// Where its tip is.
     pub(crate) tip: Point3<f64>,
-    /// The place of its half plane that touches, a hair inside: its niceness is that of the contact.
-    pub(crate) within: [f64; 2],
+    /// The place of its half plane that touches, a hair inside of the surfaces on either side of it. Both touch, so
+    /// that a contact is as nice as the less nice of them.
+    pub(crate) within: [[f64; 2]; 2],
 }
 
 /// An arc, or a corner as an arc of no radius; lengths in the part's unit.
@@ -28,8 +29,9 @@ struct Site {
     radius: f64,
     /// Between which angles of the half plane, from d toward z, its normals lie.
     angles: [f64; 2],
-    /// Into a corner; of an arc that is the opposite of the normal.
-    inward: Option<[f64; 2]>,
+    /// Into a corner, nearer to what is before it and to what is after it; of an arc that is the opposite of
+    /// the normal.
+    inward: Option<[[f64; 2]; 2]>,
 }
 
 /// A part of a circle, or of the tool, that rounding stays below by far.
@@ -55,12 +57,18 @@ impl Sites {
                 let turn = cross(last, start).atan2(dot(last, start));
                 if turn > SAME {
                     let from = normal(last);
-                    let (sine, cosine) = (from + 0.5 * turn).sin_cos();
+                    // The corner's material is half a turn less `turn` wide, about the opposite of the
+                    // normals' middle.
+                    let into = |side: f64| {
+                        let (sine, cosine) =
+                            (from + 0.5 * turn + side * 0.25 * (PI - turn)).sin_cos();
+                        [-cosine, -sine]
+                    };
                     sites.push(Site {
                         centre: piece.from.map(|part| part * length),
                         radius: 0.0,
                         angles: [from, from + turn],
-                        inward: Some([-cosine, -sine]),
+                        inward: Some([into(1.0), into(-1.0)]),
                     });
                 }
             }
@@ -112,10 +120,10 @@ impl Sites {
                 return None;
             }
             let way = if out > 0.0 { across / out } else { across };
-            let inward = site.inward.unwrap_or([-out, -up]);
+            let inward = site.inward.unwrap_or([[-out, -up]; 2]);
             Some(Contact {
                 tip: place - way * touched[0] - axis * touched[1],
-                within: [0, 1].map(|k| touched[k] + SAME * self.size * inward[k]),
+                within: inward.map(|way| [0, 1].map(|k| touched[k] + SAME * self.size * way[k])),
             })
         })
     }

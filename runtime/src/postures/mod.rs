@@ -11,6 +11,7 @@ mod ramp;
 mod recorder;
 mod row;
 pub mod sweep;
+mod touching;
 
 pub use directions::Directions;
 pub use judge::{Judge, JudgeError, Rules, RulesError};

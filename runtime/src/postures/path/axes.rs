@@ -4,15 +4,9 @@ use super::Leader;
 use super::slice::Place;
 use crate::postures::Directions;
 use crate::postures::directions::has;
+use crate::postures::touching::Spot;
 use crate::{Mesh, Pose};
-use nalgebra::{Point3, Vector3};
-
-/// Where the part is touched.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
-    pub(super) point: Point3<f64>,
-    pub(super) normal: Vector3<f64>,
-}
+use nalgebra::Vector3;
 
 /// A posture of a path.
 #[derive(Clone, Copy, Debug)]

@@ -15,14 +15,13 @@ mod axes;
 mod link;
 mod slice;
 
-use super::contact::Sites;
+use super::touching::{Posture, Spot, Touching};
 use super::{Directions, Judge, JudgeError, Rules};
-use crate::certify::{Certifier, Facets, Sweep, Touch};
-use crate::tool::{Ask, Felt, Points};
-use crate::{Level, Mesh, Motion, Pose, Tool, cores};
-use axes::{Run, Spot, Way};
+use crate::certify::{Facets, Sweep};
+use crate::{Mesh, Motion, Pose, Tool, cores};
+use axes::{Run, Way};
 use link::{Around, Leg};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use slice::{Place, length_of_lines, slices};
 
 /// How a surface is gone over.
@@ -111,13 +110,10 @@ const BUDGET: u32 = 1 << 18;
 
 /// A tool beside a part, ready to be led over it.
 pub(super) struct Leader<'a> {
-    tool: &'a dyn Tool,
-    length: f64,
-    sites: Sites,
-    certifier: Certifier<'a>,
+    touching: Touching<'a>,
+    judge: Judge<'a>,
     rules: &'a Rules,
-    points: Points,
-    felt: Felt,
+    postures: Vec<Posture>,
 }
 
 /// A path of a tool over all that it reaches of a part: no deeper than the rules' tolerance at its stops and
@@ -152,7 +148,7 @@ pub fn path<'a>(
         return Err(PathError::TooFine { places, most: MOST_PLACES });
     }
     let mut leader = Leader::new(facets, tool, rules)?;
-    let around = Around::new(mesh, leader.sites.reach());
+    let around = Around::new(mesh, leader.touching.reach());
     let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
     let lines: Vec<(usize, &Vec<Place>)> = planes
         .iter()
@@ -163,7 +159,7 @@ pub fn path<'a>(
         // What was refused was refused above.
         let Ok(mut leader) = Leader::new(facets, tool, rules) else { return Vec::new() };
         let run = |(plane, line): &(usize, &Vec<Place>)| {
-            leader.certifier.forget();
+            leader.judge.certifier.forget();
             (*plane, leader.runs(mesh, (directions, access), line))
         };
         lines[range].iter().map(run).collect()
@@ -194,49 +190,27 @@ impl<'a> Leader<'a> {
         tool: &'a dyn Tool,
         rules: &'a Rules,
     ) -> Result<Leader<'a>, JudgeError> {
-        let length = tool.card().unit.to(facets.unit());
         let at_stops = Rules { tolerance: rules.tolerance * (1.0 - BETWEEN), ..rules.clone() };
-        Ok(Leader {
-            tool,
-            length,
-            sites: Sites::new(tool.card(), length),
-            certifier: Judge::new(facets, tool, &at_stops)?.certifier.budget(BUDGET),
-            rules,
-            points: Points::default(),
-            felt: Felt::default(),
-        })
+        let mut judge = Judge::new(facets, tool, &at_stops)?;
+        judge.certifier = judge.certifier.budget(BUDGET);
+        let touching = Touching::new(tool, facets.unit());
+        Ok(Leader { touching, judge, rules, postures: Vec::new() })
     }
 
     /// The tool at a place, its axis in a direction, if that is proved to be acceptable.
     fn stand(&mut self, spot: &Spot, axis: Vector3<f64>) -> Option<Way> {
-        let contacts: Vec<_> = self.sites.contacts(spot.point, spot.normal, axis).collect();
-        self.points.clear();
-        for contact in &contacts {
-            let [d, z] = contact.within;
-            self.points.push([d / self.length, 0.0, z / self.length]);
-        }
-        let ask = Ask { niceness: true, ..Ask::INSIDE };
-        self.tool.evaluate(Level::new(), ask, &self.points, self.length, &mut self.felt);
-        let mut nice: Vec<(f64, Point3<f64>)> = self
-            .felt
-            .places()
-            .map(|place| (self.felt.niceness[place], contacts[place].tip))
-            .filter(|(niceness, _)| *niceness > self.rules.niceness)
-            .collect();
-        nice.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let certifier = &mut self.certifier;
-        nice.into_iter().find_map(|(_, tip)| {
-            let pose = Pose::from_axis(tip, axis).ok()?;
-            let free = matches!(certifier.touches(&pose), Touch::No) && !certifier.is_inside(&pose);
-            free.then_some(Way { spot: *spot, pose, axis })
-        })
+        self.touching.list(*spot, [axis], &mut self.postures);
+        let nice = self.postures.iter().filter(|posture| posture.niceness > self.rules.niceness);
+        let mut poses = nice.filter_map(|posture| Pose::from_axis(posture.tip, axis).ok());
+        let pose = poses.find(|pose| self.judge.accepts(pose))?;
+        Some(Way { spot: *spot, pose, axis })
     }
 
     /// Whether the tool is proved to be no deeper than the tolerance on its way.
     fn goes(&mut self, from: &Pose, to: &Pose) -> bool {
         let Ok(motion) = Motion::new(from, to) else { return false };
         let more = BETWEEN * self.rules.tolerance;
-        matches!(self.certifier.sweep_clear(&motion, more), Sweep::Clear | Sweep::Untouched)
+        matches!(self.judge.certifier.sweep_clear(&motion, more), Sweep::Clear | Sweep::Untouched)
     }
 }
 

@@ -2,14 +2,13 @@
 
 use super::tally::Decided;
 use super::{Batch, Sweep, SweepError, Tally};
+use crate::Tool;
 use crate::certify::Touch;
 use crate::pose::Pose;
-use crate::postures::contact::Sites;
 use crate::postures::holder::Holder;
 use crate::postures::map::merge;
+use crate::postures::touching::{Posture, Spot, Touching};
 use crate::postures::{Access, Judge, Record, Row};
-use crate::tool::{Ask, Felt, Points};
-use crate::{Level, Tool};
 use nalgebra::{Point3, Vector3};
 
 /// Of each direction the places that were last in the way are kept, the last first.
@@ -23,10 +22,8 @@ pub(super) struct Worker<'a> {
 
 /// A tool that is tried.
 struct Tried<'a> {
-    tool: &'a dyn Tool,
     index: u16,
-    length: f64,
-    sites: Sites,
+    touching: Touching<'a>,
     holder: Option<Holder>,
     judge: Judge<'a>,
     /// Whether what of it may not be in the part is one piece: if one place of it is outside the part, and no
@@ -35,23 +32,6 @@ struct Tried<'a> {
     /// Of each direction, places of the part that were in the way.
     known: Vec<Vec<Point3<f64>>>,
     postures: Vec<Posture>,
-    points: Points,
-    felt: Felt,
-}
-
-/// A posture that is to be judged.
-#[derive(Clone, Copy)]
-struct Posture {
-    direction: usize,
-    tip: Point3<f64>,
-    niceness: f64,
-}
-
-/// Where a triangle is touched.
-#[derive(Clone, Copy)]
-struct Spot {
-    point: Point3<f64>,
-    normal: Vector3<f64>,
 }
 
 impl<'a> Worker<'a> {
@@ -88,20 +68,16 @@ impl<'a> Worker<'a> {
 
 impl<'a> Tried<'a> {
     fn new(of: &Sweep<'a>, tool: &'a dyn Tool, index: u16) -> Result<Tried<'a>, SweepError> {
-        let (card, length) = (tool.card(), tool.card().unit.to(of.facets.unit()));
+        let (card, unit) = (tool.card(), of.facets.unit());
         let judge = Judge::new(of.facets, tool, &of.rules)?;
         Ok(Tried {
-            tool,
             index,
-            length,
-            sites: Sites::new(card, length),
-            holder: Holder::new(card, length),
+            touching: Touching::new(tool, unit),
+            holder: Holder::new(card, card.unit.to(unit)),
             one_piece: judge.certifier.is_one_piece(),
             judge,
             known: vec![Vec::new(); of.directions.list().len()],
             postures: Vec::new(),
-            points: Points::default(),
-            felt: Felt::default(),
         })
     }
 
@@ -119,15 +95,15 @@ impl<'a> Tried<'a> {
         (best, tally): (&mut Vec<Record>, &mut Tally),
     ) -> Access {
         let mut directions = vec![0; of.directions.words()];
-        self.postures.clear();
+        tally.facing += of.directions.list().len() as u64;
         let Some(spot) = spot else {
-            tally.facing += of.directions.list().len() as u64;
             return Access { tool: self.index, directions, stickout: None };
         };
-        self.place(of, spot, tally);
         let mut reached: Vec<Posture> = Vec::new();
         let mut outside = None;
-        let postures = std::mem::take(&mut self.postures);
+        let mut postures = std::mem::take(&mut self.postures);
+        let axes = of.directions.list().iter().map(|axis| Vector3::from(*axis));
+        self.touching.list(spot, axes, &mut postures);
         // A tool can have several contacts in one direction; the nicest that is acceptable counts.
         for contacts in postures.chunk_by(|a, b| a.direction == b.direction) {
             let mut decided = Decided::Plain;
@@ -139,6 +115,7 @@ impl<'a> Tried<'a> {
                     break;
                 }
             }
+            tally.facing -= 1;
             *tally.of(decided) += 1;
         }
         self.postures = postures;
@@ -158,28 +135,6 @@ impl<'a> Tried<'a> {
             }
         }
         Access { tool: self.index, directions, stickout }
-    }
-
-    /// The postures in which the tool touches a triangle.
-    fn place(&mut self, of: &Sweep<'a>, spot: Spot, tally: &mut Tally) {
-        self.points.clear();
-        for (direction, axis) in of.directions.list().iter().enumerate() {
-            let before = self.postures.len();
-            for contact in self.sites.contacts(spot.point, spot.normal, Vector3::from(*axis)) {
-                let [d, z] = contact.within;
-                self.points.push([d / self.length, 0.0, z / self.length]);
-                self.postures.push(Posture { direction, tip: contact.tip, niceness: 0.0 });
-            }
-            tally.facing += u64::from(self.postures.len() == before);
-        }
-        let ask = Ask { niceness: true, ..Ask::INSIDE };
-        self.tool.evaluate(Level::new(), ask, &self.points, self.length, &mut self.felt);
-        for place in self.felt.places() {
-            self.postures[place].niceness = self.felt.niceness[place];
-        }
-        // The nicest first, where one direction has several.
-        self.postures
-            .sort_by(|a, b| a.direction.cmp(&b.direction).then(b.niceness.total_cmp(&a.niceness)));
     }
 
     fn decide(
@@ -211,7 +166,7 @@ impl<'a> Tried<'a> {
                 let inside = if self.one_piece && certifier.is_too_deep(stands, &before) {
                     *outside.get_or_insert_with(|| of.facets.contains(before) == Some(true))
                 } else {
-                    certifier.is_inside(&pose)
+                    certifier.within(&pose) == Some(true)
                 };
                 if inside { Decided::Found } else { Decided::Acceptable }
             }

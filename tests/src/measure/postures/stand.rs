@@ -116,7 +116,12 @@ impl Stand {
         let out = across.norm();
         let way: P2 = [out, up];
         let size = self.oracle.extent()[0].max(self.oracle.extent()[1]);
-        let mut touched: Vec<(P2, P2)> = Vec::new();
+        // Where it touches, and a little inside of what touches there.
+        let hair = ROUNDING * size;
+        let inside = |at: P2, back: P2, piece: P2| {
+            [at[0] + hair * (back[0] - 0.02 * piece[1]), at[1] + hair * (back[1] + 0.02 * piece[0])]
+        };
+        let mut touched: Vec<(P2, [P2; 2])> = Vec::new();
         for (k, piece) in self.pieces.iter().enumerate().filter(|(_, piece)| piece.cuts) {
             if let Some(centre) = piece.centre
                 && piece.bulges()
@@ -127,7 +132,8 @@ impl Stand {
                 if cross(arms[0], way) >= -more * ROUNDING
                     && cross(way, arms[1]) >= -more * ROUNDING
                 {
-                    touched.push(([0, 1].map(|k| centre[k] + radius * way[k]), way));
+                    let on = |radius: f64| [0, 1].map(|k| centre[k] + radius * way[k]);
+                    touched.push((on(radius), [on(radius - hair); 2]));
                 }
             }
             // The corner before the piece; at the axis the outline comes from its mirror image.
@@ -141,18 +147,20 @@ impl Stand {
             let highest =
                 dot(before, way) >= -more * ROUNDING && dot(after, way) <= more * ROUNDING;
             if bends && highest {
-                let normal = unit([before[1] + after[1], -before[0] - after[0]]);
-                touched.push((piece.from, normal));
+                let back = before.map(|part| -part);
+                let both = [inside(piece.from, back, before), inside(piece.from, after, after)];
+                touched.push((piece.from, both));
             }
         }
-        let posture = |([d, z], [nd, nz]): (P2, P2)| {
+        let posture = |([d, z], both): (P2, [P2; 2])| {
             // Square to a face, a ring of the tool touches, and no place of it is told from others.
             if out < ROUNDING && d > ROUNDING * size {
                 return None;
             }
             let radial = if out > 0.0 { across / out } else { Vector3::zeros() };
-            let within = [d - ROUNDING * size * nd, 0.0, z - ROUNDING * size * nz];
-            let niceness = self.oracle.sense(within).map_or(0.0, |sense| sense.niceness);
+            let nice = |[d, z]: P2| self.oracle.sense([d, 0.0, z]).map(|sense| sense.niceness);
+            // What meets at a corner both touches: the less nice counts.
+            let niceness = both.into_iter().filter_map(nice).reduce(f64::min)?;
             let tip = place - self.length * (d * radial + z * axis);
             Some(Posture { tip, axis, niceness })
         };
