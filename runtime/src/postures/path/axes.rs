@@ -19,8 +19,8 @@ pub(super) struct Way {
 /// Postures one behind the other.
 pub(super) struct Run {
     pub(super) ways: Vec<Way>,
-    /// Of each but the last, whether the way to the next is proved.
-    pub(super) joined: Vec<bool>,
+    /// Of each but the last, over which stops the way to the next is proved, if it is.
+    pub(super) joined: Vec<Option<Vec<Pose>>>,
     /// The sum of the squares of the axis's turns, in radians, before they were made even.
     pub(super) turned: f64,
 }
@@ -29,6 +29,7 @@ impl Run {
     pub(super) fn reverse(&mut self) {
         self.ways.reverse();
         self.joined.reverse();
+        self.joined.iter_mut().flatten().for_each(|stops| stops.reverse());
     }
 
     /// The sum of the squares of the axis's turns, in radians.
@@ -45,6 +46,7 @@ fn squares(ways: &[Way]) -> f64 {
 struct Reached<'a> {
     spot: Spot,
     set: &'a [u64],
+    crossed: &'a [Spot],
 }
 
 /// What it costs to stand at the rim of what is accessible, beside a turn of as many radians, squared.
@@ -58,6 +60,12 @@ const EVEN: usize = 24;
 
 /// Turns that are smaller are even, in radians.
 const SMALL: f64 = 1e-3;
+
+/// How often a way from place to place is halved at most.
+const FINEST: u32 = 6;
+
+/// Directions whose mean is shorter point opposite ways.
+const HALF: f64 = 1e-6;
 
 impl Leader<'_> {
     /// The postures along a line, in runs: a place that the tool does not reach ends one.
@@ -74,7 +82,11 @@ impl Leader<'_> {
                 let set = access.get(place.triangle as usize)?;
                 // A set of other directions says nothing.
                 let any = set.len() == directions.words() && set.iter().any(|word| *word != 0);
-                any.then_some(Reached { spot: Spot { point: place.point, normal }, set })
+                any.then_some(Reached {
+                    spot: Spot { point: place.point, normal },
+                    set,
+                    crossed: &place.crossed,
+                })
             })
             .collect();
         let mut runs = Vec::new();
@@ -83,22 +95,65 @@ impl Leader<'_> {
             let mut run = Vec::new();
             for (at, direction) in stretch.iter().zip(even(directions, &stretch)) {
                 match self.stand_near(directions, at, direction) {
-                    Some(way) => run.push(way),
+                    Some(way) => run.push((way, at.crossed)),
                     None => runs.push(std::mem::take(&mut run)),
                 }
             }
             runs.push(run);
         }
         runs.retain(|run| !run.is_empty());
-        runs.into_iter().map(|ways| self.run(ways)).collect()
+        runs.into_iter().map(|run| self.run(run)).collect()
     }
 
-    /// A run of postures, its turns made even.
-    fn run(&mut self, ways: Vec<Way>) -> Run {
+    /// A run of postures, its turns made even; with each, what the line crossed before it.
+    fn run(&mut self, run: Vec<(Way, &[Spot])>) -> Run {
+        let (ways, crossed): (Vec<Way>, Vec<&[Spot]>) = run.into_iter().unzip();
         let turned = squares(&ways);
         let ways = self.smooth(ways);
-        let joined = ways.windows(2).map(|pair| self.goes(&pair[0].pose, &pair[1].pose)).collect();
+        let pairs = ways.windows(2).zip(&crossed[1..]);
+        let joined = pairs.map(|(pair, crossed)| self.join(&pair[0], &pair[1], crossed));
+        let joined = joined.collect();
         Run { ways, joined, turned }
+    }
+
+    /// The stops of a proved way from place to place, without its ends: none, if it goes straight, and else as many
+    /// as it needs. Over edges that bulge it goes from the one triangle's normal to the other's.
+    pub(super) fn join(&mut self, from: &Way, to: &Way, crossed: &[Spot]) -> Option<Vec<Pose>> {
+        let mut stops = Vec::new();
+        if !self.sweep(&from.pose, &to.pose)? {
+            let mut at = *from;
+            for (k, spot) in crossed.iter().enumerate() {
+                let part = (k as f64 + 0.5) / crossed.len() as f64;
+                let axis = from.axis.lerp(&to.axis, part).try_normalize(HALF)?;
+                // Where an edge is hollow the tool does not come to it, and need not.
+                if let Some(next) = self.stand(spot, axis)
+                    && next.pose != at.pose
+                {
+                    self.refine(&at, &next, FINEST, &mut stops)?;
+                    at = next;
+                }
+            }
+            self.refine(&at, to, FINEST, &mut stops)?;
+            stops.pop();
+        }
+        Some(stops)
+    }
+
+    /// Adds the stops of a proved way to a place, that with them: what does not go straight is halved, so many
+    /// times at most.
+    fn refine(&mut self, from: &Way, to: &Way, more: u32, stops: &mut Vec<Pose>) -> Option<()> {
+        // What is too much to prove is not less by halves.
+        if self.sweep(&from.pose, &to.pose)? {
+            stops.push(to.pose);
+            return Some(());
+        }
+        let more = more.checked_sub(1)?;
+        let point = nalgebra::center(&from.spot.point, &to.spot.point);
+        let normal = from.spot.normal.lerp(&to.spot.normal, 0.5).try_normalize(HALF)?;
+        let axis = from.axis.lerp(&to.axis, 0.5).try_normalize(HALF)?;
+        let middle = self.stand(&Spot { point, normal }, axis)?;
+        self.refine(from, &middle, more, stops)?;
+        self.refine(&middle, to, more, stops)
     }
 
     /// The tool at a place, in a direction or one near it that the sweep found for the triangle's middle.

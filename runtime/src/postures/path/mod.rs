@@ -8,8 +8,9 @@
 //!
 //! Parallel planes cut the part in lines; along each the tool stands where a sweep found that it can, with
 //! the directions that turn least from place to place. Every posture is proved, and every way between two.
-//! What cannot be joined on the surface is joined over it: a little back along the axis, across, and in along
-//! the next; or else out, around the part, and in.
+//! Where going straight is too deep, the tool is led over the edges between two places, with stops as near
+//! as need be. What cannot be joined on the surface is joined over it: a little back along the axis, across,
+//! and in along the next; or else out, around the part, and in.
 
 mod axes;
 mod link;
@@ -206,11 +207,21 @@ impl<'a> Leader<'a> {
         Some(Way { spot: *spot, pose, axis })
     }
 
+    /// Whether the tool is proved to be no deeper than the tolerance on its way, or to be deeper; if neither,
+    /// `None`.
+    fn sweep(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
+        let motion = Motion::new(from, to).ok()?;
+        let more = BETWEEN * self.rules.tolerance;
+        match self.judge.certifier.sweep_clear(&motion, more) {
+            Sweep::Clear | Sweep::Untouched => Some(true),
+            Sweep::Touching(..) | Sweep::Inside => Some(false),
+            Sweep::Undecided(_) => None,
+        }
+    }
+
     /// Whether the tool is proved to be no deeper than the tolerance on its way.
     fn goes(&mut self, from: &Pose, to: &Pose) -> bool {
-        let Ok(motion) = Motion::new(from, to) else { return false };
-        let more = BETWEEN * self.rules.tolerance;
-        matches!(self.judge.certifier.sweep_clear(&motion, more), Sweep::Clear | Sweep::Untouched)
+        self.sweep(from, to) == Some(true)
     }
 }
 
@@ -260,15 +271,16 @@ impl Drawn {
             let joined = match (index.checked_sub(1), &self.last) {
                 // Whether the way before is the last is known by its place.
                 (Some(before), Some(last)) if run.ways[before].pose == last.pose => {
-                    run.joined[before]
+                    run.joined[before].clone()
                 }
-                (_, Some(last)) => {
-                    (way.spot.point - last.spot.point).norm() <= near
-                        && leader.goes(&last.pose, &way.pose)
+                (_, Some(last)) if (way.spot.point - last.spot.point).norm() <= near => {
+                    leader.join(last, way, &[])
                 }
-                (_, None) => false,
+                _ => None,
             };
-            if !joined && !self.hop(leader, around, way) && !self.go_round(leader, around, way) {
+            if let Some(stops) = joined {
+                stops.into_iter().for_each(|pose| self.stop(pose, false));
+            } else if !self.hop(leader, around, way) && !self.go_round(leader, around, way) {
                 self.dropped += 1;
                 continue;
             }

@@ -1,6 +1,7 @@
 //! The lines in which planes cut a mesh, in order.
 
 use crate::Mesh;
+use crate::postures::touching::Spot;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
@@ -12,10 +13,12 @@ struct Piece {
 }
 
 /// A place of a line, and the triangle it lies in.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Place {
     pub(super) point: Point3<f64>,
     pub(super) triangle: u32,
+    /// The sides that the line crossed since the place before, in order: on each its last triangle, and its next.
+    pub(super) crossed: Vec<Spot>,
 }
 
 /// The lines in which parallel planes cut a mesh, plane by plane, as places about a step apart: at most that
@@ -45,7 +48,7 @@ pub(super) fn slices(
     }
     planes
         .iter()
-        .map(|pieces| chains(pieces).iter().map(|line| along(line, step)).collect())
+        .map(|pieces| chains(pieces).iter().map(|line| along(mesh, line, step)).collect())
         .collect()
 }
 
@@ -122,10 +125,18 @@ fn chains(pieces: &[Piece]) -> Vec<Vec<Piece>> {
 
 /// Places along a line: the middles of equal parts of its pieces, as far as they are not too near to the
 /// last.
-fn along(line: &[Piece], step: f64) -> Vec<Place> {
-    let mut places = Vec::new();
+fn along(mesh: &Mesh, line: &[Piece], step: f64) -> Vec<Place> {
+    let mut places: Vec<Place> = Vec::new();
     let mut since = f64::INFINITY;
-    for Piece { triangle, ends: [from, to] } in line {
+    let mut crossed = Vec::new();
+    for (index, Piece { triangle, ends: [from, to] }) in line.iter().enumerate() {
+        if let Some(before) = index.checked_sub(1)
+            && !places.is_empty()
+        {
+            let normals = [line[before].triangle, *triangle].map(|side| mesh.normal(side));
+            let spot = |normal| Spot { point: *from, normal };
+            crossed.extend(normals.into_iter().flatten().map(spot));
+        }
         let way = to - from;
         let parts = (way.norm() / step).ceil().max(1.0);
         let part = way.norm() / parts;
@@ -134,7 +145,8 @@ fn along(line: &[Piece], step: f64) -> Vec<Place> {
             since += 0.5 * part;
             if since >= 0.5 * step {
                 let point = from + way * ((k as f64 + 0.5) / parts);
-                places.push(Place { point, triangle: *triangle });
+                let crossed = std::mem::take(&mut crossed);
+                places.push(Place { point, triangle: *triangle, crossed });
                 since = 0.0;
             }
             since += 0.5 * part;
