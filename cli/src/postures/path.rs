@@ -6,12 +6,11 @@ use crate::arguments::postures::Path as Wanted;
 use crate::failure::Failure;
 use crate::files::{Found, ending};
 use serde::Serialize;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use touchoff::certify::Facets;
 use touchoff::postures::path::{Pattern, path as lead};
 use touchoff::postures::{Directions, PostureMap, Rules};
-use touchoff::program::{Cutter, Heading};
+use touchoff::program::{Cutter, Heading, apt_word};
 use touchoff::{Motion, Pose, Program};
 
 #[derive(Serialize)]
@@ -34,6 +33,10 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         _ => return Err(Failure::ProgramForm { file: wanted.to.display().to_string() }),
     };
     let map = PostureMap::read(&wanted.map)?;
+    let unit = map.identity().part.unit;
+    if apt {
+        apt_word(unit)?;
+    }
     let found = Found::find(&wanted.tool, &Given::default())?;
     let (tool, identity) = (found.tool(), map.identity());
     let index = identity.tool(tool.card()).ok_or_else(|| Failure::OtherTool {
@@ -66,19 +69,19 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         turns: led.turns.map(f64::to_degrees),
         way: ways(&led.stops),
     };
-    let unit = identity.part.unit;
     let name = wanted.to.display().to_string();
     let program = Program::new(&name, Some(unit), led.stops)?;
     let unwritable = |source| Failure::Unwritable { file: wanted.to.display().to_string(), source };
-    let mut out = BufWriter::new(File::create(&wanted.to).map_err(unwritable)?);
+    // What cannot be written leaves the file as it was.
+    let mut text = Vec::new();
     if apt {
         let part = wanted.part.file_stem().unwrap_or_default().to_string_lossy();
         let heading = Heading { part: &part, cutter: Cutter::of(tool.card(), unit) };
-        program.write_apt(&mut out, &heading)?;
+        program.write_apt(&mut text, &heading)?;
     } else {
-        program.write_csv(&mut out).map_err(unwritable)?;
+        program.write_csv(&mut text).map_err(unwritable)?;
     }
-    out.flush().map_err(unwritable)?;
+    std::fs::write(&wanted.to, text).map_err(unwritable)?;
     let mut out = std::io::stdout().lock();
     if json {
         serde_json::to_writer(&mut out, &summary)?;

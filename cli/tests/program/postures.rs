@@ -197,3 +197,16 @@ fn what_means_nothing_is_refused() {
     let wrong = tube.sweep("D2Ball", &["--tolerance", "0"]);
     assert_eq!(wrong.status.code(), Some(2), "{}", stderr(&wrong));
 }
+
+#[test]
+fn a_program_that_cannot_be_written_leaves_the_file_as_it_was() {
+    let tube = Tube::new();
+    let all = ["sweep", "--part", &tube.part, "--unit", "m", "--tools", "D2Ball"];
+    let more = ["--directions", "5", "--tolerance", "0.001", "--out", &tube.map];
+    assert!(touchoff(&[&all[..], &more].concat()).status.success());
+    let program = tube.place("kept.apt");
+    std::fs::write(&program, "GOTO/1,2,3\n").expect("a writable folder");
+    let path = ["path", &tube.map, "--part", &tube.part, "--tool", "D2Ball", "--stepover", "1"];
+    refused(&touchoff(&[&path[..], &["--to", &program]].concat()), &["no word for m", "table"]);
+    assert_eq!(std::fs::read_to_string(&program).expect("a file"), "GOTO/1,2,3\n");
+}

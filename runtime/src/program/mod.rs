@@ -18,7 +18,7 @@ mod error;
 mod write;
 
 pub use error::{Fault, ProgramError};
-pub use write::{Cutter, Heading, WriteError};
+pub use write::{Cutter, Heading, WriteError, apt_word};
 
 use std::fs;
 use std::path::Path;

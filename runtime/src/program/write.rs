@@ -87,6 +87,18 @@ fn near_by(one: f64, other: f64) -> bool {
 /// A statement that is longer is continued on the next line: cards had so many columns for it.
 const COLUMNS: usize = 72;
 
+/// The word that APT-CL has for a unit.
+///
+/// # Errors
+/// It has none for metres.
+pub fn apt_word(unit: Unit) -> Result<&'static str, WriteError> {
+    match unit {
+        Unit::Millimetre => Ok("MM"),
+        Unit::Inch => Ok("INCHES"),
+        Unit::Metre => Err(WriteError::Unit { unit }),
+    }
+}
+
 impl Program {
     /// Writes the program as APT-CL: `PARTNO`, `UNITS` where the unit is known, `MULTAX/ON`, `CUTTER`, a `GOTO`
     /// for each stop, `RAPID` before those that are reached in rapid traverse, `FINI`. Spins that were given
@@ -95,12 +107,7 @@ impl Program {
     /// # Errors
     /// If the unit is the metre, the part's name is no line of text, or `out` fails.
     pub fn write_apt(&self, out: &mut impl Write, heading: &Heading<'_>) -> Result<(), WriteError> {
-        let unit = match self.unit {
-            Some(unit @ Unit::Metre) => return Err(WriteError::Unit { unit }),
-            Some(Unit::Millimetre) => Some("MM"),
-            Some(Unit::Inch) => Some("INCHES"),
-            None => None,
-        };
+        let unit = self.unit.map(apt_word).transpose()?;
         if heading.part.contains(char::is_control) {
             return Err(WriteError::Part { name: heading.part.to_owned() });
         }

@@ -219,7 +219,7 @@ impl Sweeper {
                 || match self.passes(task, corners, goes) {
                     Passes::Too(deep) => return Some(stop(deep)),
                     Passes::Yes => false,
-                    Passes::Open => true,
+                    Passes::Open | Passes::Others => true,
                 };
             if left {
                 self.left.push(Left::Part(self.some[lane]));
@@ -241,7 +241,7 @@ impl Sweeper {
         }
         // Where no surface is too deep, none need be told apart.
         match self.along(task, (section, &Owners::default()), &facet, goes) {
-            Passes::Open => self.halved(task, corners, goes),
+            Passes::Others => self.halved(task, corners, goes),
             decided => decided,
         }
     }
@@ -273,7 +273,13 @@ impl Sweeper {
             return if self.search.open() { Passes::Open } else { Passes::Yes };
         };
         let here = task.depth(&mut self.scratch, point);
-        if task.too_deep(&here) { Passes::Too(here) } else { Passes::Open }
+        if task.too_deep(&here) {
+            Passes::Too(here)
+        } else if here.depth > least {
+            Passes::Open
+        } else {
+            Passes::Others
+        }
     }
 
     /// The same by its parts: it is halved until all of it passes, or what does not is small beside the
@@ -315,6 +321,8 @@ enum Passes {
     /// It is too deep there.
     Too(Place),
     Open,
+    /// What may be too deep is nearer to others than to the owners there.
+    Others,
 }
 
 /// How many pieces of a triangle are looked at before time is halved instead.
