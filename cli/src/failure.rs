@@ -5,6 +5,14 @@ use touchoff::tool::ToolError;
 use touchoff::{CloudError, ProgramError};
 
 impl Failure {
+    /// The exit status: 2 where an input cannot be taken as what was asked for, 1 for all else.
+    pub(crate) fn status(&self) -> u8 {
+        match self {
+            Failure::Program(_) | Failure::NoInside { .. } => 2,
+            _ => 1,
+        }
+    }
+
     /// Whether the reader of the output has closed it, which is no failure.
     pub(crate) fn is_enough(&self) -> bool {
         let kind = match self {
@@ -129,6 +137,12 @@ pub(crate) enum Failure {
         file: String,
         /// A name that would do.
         better: std::path::PathBuf,
+    },
+    /// It is not known what is inside a part.
+    #[error("{file}: {}; mend the mesh, or give `--surface-only`", crate::part::NO_INSIDE)]
+    NoInside {
+        /// The part.
+        file: String,
     },
     /// What is asked for wants a mesh.
     #[error("`{what}` is for meshes: {file} has points and no triangles")]

@@ -18,6 +18,7 @@ mod files;
 mod fmt;
 mod haptic;
 mod part;
+mod plausibility;
 mod postures;
 mod run;
 mod stages;
@@ -60,12 +61,10 @@ fn main() -> ExitCode {
 }
 
 fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
-    ended_or(done, FAILED)
+    ended_or(done, 1)
 }
 
-/// The exit status of most that fails.
-const FAILED: u8 = 1;
-
+/// `failed` is the least exit status of a failure.
 fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
     match done {
         Ok(code) => code,
@@ -73,7 +72,7 @@ fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
         Err(failure) if failure.is_enough() => ExitCode::SUCCESS,
         Err(failure) => {
             say!("error: {failure}");
-            ExitCode::from(failed)
+            ExitCode::from(failure.status().max(failed))
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
 use crate::files::{Found, length};
 use std::path::Path;
+use touchoff::certify::Facets;
 use touchoff::cloud::MOST_BLUE;
 use touchoff::mesh::Shape;
 use touchoff::tool::Card;
@@ -77,6 +78,22 @@ pub(crate) fn load(wanted: &PartFile, card: Option<&Card>, fine: Fine) -> Result
             say!("{file}: {} points, no triangles: {estimated} estimated", points.places.len());
             let part = Part::from_cloud(&Cloud::from_points(points, wanted.unit)?);
             Ok(Loaded { part, mesh: None, prove: None })
+        }
+    }
+}
+
+/// What is said where a mesh does not tell what is inside.
+pub(crate) const NO_INSIDE: &str = "whether the tool is inside the material is unknown: the part's mesh leaks, is \
+                                    inside out or not consistently oriented";
+
+/// Refuses a part of which it is not known what is inside, unless its surface alone is asked for.
+pub(crate) fn has_inside(facets: &Facets, part: &Path, surface_only: bool) -> Result<(), Failure> {
+    match (facets.has_inside(), surface_only) {
+        (true, _) => Ok(()),
+        (false, false) => Err(Failure::NoInside { file: part.display().to_string() }),
+        (false, true) => {
+            say!("{}: {NO_INSIDE}; only its surface is looked at", part.display());
+            Ok(())
         }
     }
 }

@@ -3,7 +3,8 @@
 use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
-use crate::part::{self, Fine, Loaded};
+use crate::part::{self, Fine, Loaded, NO_INSIDE};
+use crate::plausibility;
 use crate::timing::{Timing, nanoseconds};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -44,19 +45,25 @@ struct Certified<'a> {
     triangle: Option<u32>,
     /// The surface of the tool that is nearest to it there.
     surface: Option<&'a str>,
+    /// Whether the tool is wholly inside the material, where no triangle shows it; null where that is unknown.
+    inside: Option<bool>,
 }
 
 impl<'a> Certified<'a> {
-    fn new(found: &Penetration, card: &'a Card) -> Certified<'a> {
+    fn new(found: &Penetration, inside: Option<bool>, card: &'a Card) -> Certified<'a> {
         Certified {
             deepest: found.depth,
             triangle: found.witness.map(|witness| witness.triangle),
             surface: found.witness.map(|witness| &*card.surfaces[witness.surface].name),
+            inside,
         }
     }
 
     /// For people: what is proved, as far as figures differ.
     fn shown(&self, unit: Unit) -> String {
+        if self.inside == Some(true) {
+            return "wholly inside the material".to_owned();
+        }
         let [low, high] = self.deepest.map(|depth| figure(depth, unit));
         let depth = if low == high { high } else { format!("{low} to {high}") };
         format!("{depth} {}", self.surface.unwrap_or_default())
@@ -72,6 +79,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let unit = wanted.part.unit;
     program.check_unit(unit)?;
     program.check_poses(tool.card())?;
+    program.check_cutter(tool.card(), unit)?;
     let Loaded { part, mesh, prove } = part::load(&wanted.part, Some(tool.card()), Fine::Proof)?;
     let certify = [wanted.certify, prove].into_iter().flatten().reduce(f64::min);
     let facets = match (certify, &mesh) {
@@ -111,8 +119,13 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         let certified = certifier.as_mut().map(|(certifier, tolerance)| {
             let start = Instant::now();
             let found = certifier.deepest(&stop.pose, *tolerance);
-            summary.certify(stop.line, &found, nanoseconds(start.elapsed()));
-            Certified::new(&found, tool.card())
+            let ns = nanoseconds(start.elapsed());
+            let inside = match found.witness {
+                Some(_) => Some(false),
+                None => certifier.is_buried(&stop.pose),
+            };
+            summary.certify(stop.line, (&found, inside), ns);
+            Certified::new(&found, inside, tool.card())
         });
         if json {
             let seen = unseen.map(|unseen| felt.depth() + unseen);
@@ -121,7 +134,9 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
             let row = row((index, stop.line), (&felt, bound), ns, surfaces, certified);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
-        } else if felt.colliding > 0 || certified.as_ref().is_some_and(|c| c.triangle.is_some()) {
+        } else if felt.colliding > 0
+            || certified.as_ref().is_some_and(|c| c.triangle.is_some() || c.inside == Some(true))
+        {
             let proved = certified.map(|c| format!("{}; ", c.shown(unit)));
             let each: Vec<String> = surfaces
                 .iter()
@@ -135,19 +150,15 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     }
     out.flush()?;
     summary.print(unit);
+    if facets.is_some_and(|(facets, _)| !facets.has_inside()) {
+        say!("{NO_INSIDE}");
+    }
     Ok(())
 }
 
 /// What was loaded.
 fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
-    let ignored: BTreeMap<&str, usize> =
-        program.ignored.iter().fold(BTreeMap::new(), |mut words, (_, word)| {
-            *words.entry(word.as_str()).or_default() += 1;
-            words
-        });
-    for (word, times) in ignored {
-        say!("{}: `{word}` means nothing here, {times} times", wanted.path.display());
-    }
+    plausibility::passed_over(program);
     say!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
         card.name,
@@ -211,6 +222,8 @@ struct Summary {
 #[derive(Default)]
 struct Proved {
     in_contact: usize,
+    /// Poses at which the tool is wholly inside the material, and the line of the first.
+    inside: (usize, usize),
     /// Between what the greatest depth lies, and its line.
     deepest: ([f64; 2], usize),
     times: Vec<u64>,
@@ -236,10 +249,14 @@ impl Summary {
         }
     }
 
-    fn certify(&mut self, line: usize, found: &Penetration, ns: u64) {
+    fn certify(&mut self, line: usize, (found, inside): (&Penetration, Option<bool>), ns: u64) {
         let proved = self.proved.get_or_insert_default();
         proved.times.push(ns);
         proved.in_contact += usize::from(found.witness.is_some());
+        if inside == Some(true) {
+            let (count, first) = proved.inside;
+            proved.inside = (count + 1, if count == 0 { line } else { first });
+        }
         if found.depth[1] > proved.deepest.0[1] {
             proved.deepest = (found.depth, line);
         }
@@ -268,6 +285,12 @@ impl Summary {
         );
         if let Some(mut proved) = self.proved {
             let timing = Timing::of(&mut proved.times);
+            if let (count @ 1.., line) = proved.inside {
+                say!(
+                    "proved: wholly inside the material at {count} of {} poses, first at line {line}",
+                    self.poses
+                );
+            }
             let ([low, high], line) = proved.deepest;
             say!(
                 "proved: {} of {} poses in contact, deepest {} to {} at line {line}; {:.2} µs on average, \

@@ -3,7 +3,8 @@
 use crate::arguments::Verify;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
-use crate::part;
+use crate::part::{self, NO_INSIDE};
+use crate::plausibility;
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use std::io::Write;
@@ -46,7 +47,7 @@ struct Row<'a> {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Measured {
-    Deep { allowed: f64, depth: [f64; 2], most: f64 },
+    Deep { allowed: f64, depth: [f64; 2], most: f64, through: bool },
     Near { margin: f64, distance: [f64; 2], least: f64 },
 }
 
@@ -66,14 +67,15 @@ impl Place {
 impl<'a> Row<'a> {
     fn of(found: &Finding, card: &'a Card, file: &'a str) -> Row<'a> {
         let (kind, measured, place) = match found.kind {
-            Kind::Deep { allowed, depth, most, witness, .. } => {
-                ("deep", Some(Measured::Deep { allowed, depth, most }), Some(Place::of(&witness)))
+            Kind::Deep { allowed, depth, most, through, witness, .. } => {
+                let deep = Measured::Deep { allowed, depth, most, through };
+                ("deep", Some(deep), Some(Place::of(&witness)))
             }
             Kind::Near { margin, distance, least, witness, .. } => {
                 let near = Measured::Near { margin, distance, least };
                 ("near", Some(near), Some(Place::of(&witness)))
             }
-            Kind::Inside => ("inside", None, None),
+            Kind::Inside { .. } => ("inside", None, None),
             Kind::Undecided { .. } => ("undecided", None, None),
             Kind::Opposite => ("opposite", None, None),
         };
@@ -101,7 +103,10 @@ impl<'a> Row<'a> {
 pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let program = Program::read(&wanted.program)?;
-    program.check_unit(wanted.mesh.unit)?;
+    let unit = wanted.mesh.unit;
+    program.check_unit(unit)?;
+    program.check_motions()?;
+    let compared = program.check_cutter(found.tool().card(), unit)?;
     let mesh = part::mesh(&wanted.mesh.part, wanted.mesh.unit, "verify")?;
     let facets = Facets::new(&mesh);
     let mut verifier = Verifier::new(&facets, found.tool())?.tolerance(wanted.tolerance)?;
@@ -120,13 +125,38 @@ pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
             serde_json::to_writer(&mut out, &Row::of(finding, card, &file))?;
             writeln!(out)?;
         } else {
-            let (line, said) = (finding.line, shown(finding, card, wanted.mesh.unit));
+            let (line, said) = (finding.line, shown(finding, card, unit));
             writeln!(out, "{file}:{line}: {said}")?;
         }
     }
     out.flush()?;
-    say!("{}", summary(&report, card, wanted.mesh.unit));
-    Ok(if report.findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FOUND) })
+    plausibility::print(&report, &program, unit);
+    if let Some(line) = compared {
+        say!("{file}:{line}: CUTTER is not compared: it does not describe `{}`", card.name);
+    }
+    say!("{}", summary(&report, card, unit));
+    Ok(ExitCode::from(status(&report, wanted)))
+}
+
+/// The exit status: why there is no verdict is said.
+fn status(report: &Report, wanted: &Verify) -> u8 {
+    let mut status = if report.findings.is_empty() { 0 } else { FOUND };
+    if !report.inside_known {
+        if wanted.surface_only {
+            say!("{NO_INSIDE}; only its surface was checked");
+        } else {
+            say!("not verified: {NO_INSIDE}; mend the mesh, or give `--surface-only`");
+            status = NOT_CHECKED;
+        }
+    }
+    if report.approach.is_far() && !wanted.anyway {
+        say!(
+            "not verified: the program never comes within the tool's diameter of the part; is it the right part, \
+             place and unit? `--anyway` takes it as it is"
+        );
+        status = NOT_CHECKED;
+    }
+    status
 }
 
 /// A finding for people.
@@ -138,6 +168,9 @@ fn shown(found: &Finding, card: &Card, unit: Unit) -> String {
     };
     let at = if found.rapid { format!("{at}, in rapid traverse") } else { at };
     match &found.kind {
+        Kind::Deep { surface, through: true, witness, .. } => {
+            format!("{} goes right through triangle {}, {at}", name(*surface), witness.triangle)
+        }
         Kind::Deep { surface, depth: [low, high], most, witness, .. } => {
             let more = if most > high && found.from.is_some() {
                 format!(", nowhere on it more than {}", fine(*most, unit))
@@ -153,7 +186,12 @@ fn shown(found: &Finding, card: &Card, unit: Unit) -> String {
             between(*low, *high, unit),
             witness.triangle,
         ),
-        Kind::Inside => format!("the tool is wholly inside the material, {at}"),
+        Kind::Inside { surface: None } => {
+            format!("the tool is wholly inside the material, {at}")
+        }
+        Kind::Inside { surface: Some(surface) } => {
+            format!("{} is inside the material, where no triangle is, {at}", name(*surface))
+        }
         Kind::Undecided { surface } => format!(
             "whether {} is too deep is not decided, beginning {at}: try a larger `--resolution`",
             name(*surface)
@@ -204,7 +242,8 @@ fn summary(report: &Report, card: &Card, unit: Unit) -> String {
             each.push(format!("{} {}{deepest}", surface.name, of().count()));
         }
     }
-    for (word, kind) in [("wholly inside", Kind::Inside), ("no one way", Kind::Opposite)] {
+    let inside = Kind::Inside { surface: None };
+    for (word, kind) in [("wholly inside", inside), ("no one way", Kind::Opposite)] {
         let count = report.findings.iter().filter(|found| found.kind == kind).count();
         if count > 0 {
             each.push(format!("{word} {count}"));

@@ -227,6 +227,13 @@ pub(crate) struct Verify {
     /// [default: 0.001 mm].
     #[arg(long, value_name = "LENGTH", value_parser = tolerance)]
     pub(crate) resolution: Option<f64>,
+    /// Check the part's surface alone where its mesh leaks or is inside out, so that whether the tool is inside
+    /// the material is unknown; otherwise that ends with status 2.
+    #[arg(long)]
+    pub(crate) surface_only: bool,
+    /// Take a program that never comes within the tool's diameter of the part; otherwise that ends with status 2.
+    #[arg(long)]
+    pub(crate) anyway: bool,
 }
 
 #[derive(Args)]

@@ -29,6 +29,9 @@ pub(crate) struct Sweep {
     /// Postures that are kept of each triangle.
     #[arg(long, default_value_t = NonZeroU16::MIN)]
     pub(crate) keep: NonZeroU16,
+    /// Look at the part's surface alone where its mesh leaks or is inside out, so that what is inside is unknown.
+    #[arg(long)]
+    pub(crate) surface_only: bool,
     /// The map that is filled: what is in it already is not done again.
     #[arg(short, long, value_name = "MAP")]
     pub(crate) out: Option<PathBuf>,
@@ -85,6 +88,9 @@ pub(crate) struct Path {
     /// How far places on a line are apart at most, in the part's unit [default: half the stepover].
     #[arg(long, value_name = "LENGTH", value_parser = above_zero)]
     pub(crate) step: Option<f64>,
+    /// Look at the part's surface alone where its mesh leaks or is inside out, so that what is inside is unknown.
+    #[arg(long)]
+    pub(crate) surface_only: bool,
     /// Where the program goes.
     #[arg(long, value_name = "OUT.apt|.csv")]
     pub(crate) to: PathBuf,

@@ -5,6 +5,7 @@ use crate::arguments::Given;
 use crate::arguments::postures::Path as Wanted;
 use crate::failure::Failure;
 use crate::files::{Found, ending};
+use crate::part;
 use serde::Serialize;
 use std::io::Write;
 use touchoff::certify::Facets;
@@ -23,6 +24,9 @@ struct Summary {
     turns: [f64; 2],
     /// How far the tip goes in feed, and in rapid traverse, in the part's unit.
     way: [f64; 2],
+    /// Stops at which the spindle is below the tip, and the line of the first.
+    upside_down: usize,
+    first_upside_down: Option<usize>,
 }
 
 /// Leads a tool over a part, and writes the program.
@@ -59,8 +63,10 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         step: wanted.step.unwrap_or(0.5 * wanted.stepover),
     };
     let facets = Facets::new(&mesh);
+    part::has_inside(&facets, &wanted.part, wanted.surface_only)?;
     let directions = Directions::from(identity.directions.clone());
     let led = lead((&mesh, &facets), (tool, &rules), (&directions, &access), &pattern)?;
+    let below = |(pose, _): &(Pose, bool)| pose.axis().z < 0.0;
     let summary = Summary {
         stops: led.stops.len(),
         places: led.places,
@@ -68,6 +74,8 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         lifts: led.lifts,
         turns: led.turns.map(f64::to_degrees),
         way: ways(&led.stops),
+        upside_down: led.stops.iter().filter(|stop| below(stop)).count(),
+        first_upside_down: led.stops.iter().position(|stop| below(stop)).map(|stop| stop + 1),
     };
     let name = wanted.to.display().to_string();
     let program = Program::new(&name, Some(unit), led.stops)?;
@@ -87,7 +95,7 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;
     } else {
-        let Summary { stops, places, left_out, lifts, turns: [before, after], way } = summary;
+        let Summary { stops, places, left_out, lifts, turns: [before, after], way, .. } = summary;
         writeln!(out, "{}: {stops} stops, {places} of them on the surface", wanted.to.display())?;
         writeln!(out, "{left_out} places left out; leaves the surface {lifts} times")?;
         writeln!(out, "{:.1} {unit} in feed, {:.1} {unit} in rapid traverse", way[0], way[1])?;
@@ -95,6 +103,14 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
             out,
             "turns by {after:.2}° from place to place (root mean square; {before:.2}° unsmoothed)"
         )?;
+        if let Some(first) = summary.first_upside_down {
+            writeln!(
+                out,
+                "at {} stops the axis points below the table, z = 0 being level (the first is stop {first}): not \
+                 every machine goes there",
+                summary.upside_down,
+            )?;
+        }
     }
     out.flush()?;
     Ok(())

@@ -22,6 +22,8 @@ struct Summary {
     triangles: usize,
     directions: usize,
     tools: Vec<OfTool>,
+    /// Whether it is known what is inside the part; otherwise its surface alone was looked at.
+    inside_known: bool,
     /// Triangles that have an acceptable posture.
     reached: usize,
     /// Their part of the area.
@@ -103,6 +105,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let unit = wanted.mesh.unit;
     let mesh = part::mesh(&wanted.mesh.part, unit, "sweep")?;
     let facets = Facets::new(&mesh);
+    part::has_inside(&facets, &wanted.mesh.part, wanted.surface_only)?;
     let rules = Rules {
         tolerance: wanted.tolerance.unwrap_or_else(|| usual(unit)),
         niceness: wanted.niceness,
@@ -154,6 +157,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let summary = Summary {
         triangles: mesh.triangles().len(),
         directions: directions.list().len(),
+        inside_known: facets.has_inside(),
         reached: reached.triangles,
         area: reached.area / all.area,
         tools: count.tools,

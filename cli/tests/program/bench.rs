@@ -38,7 +38,7 @@ impl Bench {
         bench
     }
 
-    fn part(&self, name: &str, mesh: &Mesh) {
+    pub(super) fn part(&self, name: &str, mesh: &Mesh) {
         let mut bytes = Vec::new();
         mesh.write_stl(&mut bytes).expect("memory");
         self.write(name, bytes);
@@ -65,9 +65,18 @@ impl Bench {
 
     /// A run that fails with status 1 and says all of `words`, and writes no row.
     pub(super) fn refused(&self, part: &str, path: &str, tool: &str, words: &[&str]) {
+        self.refused_with(1, (part, path, tool), words);
+    }
+
+    /// The same of a program that cannot be taken, with status 2.
+    pub(super) fn refused_program(&self, path: &str, words: &[&str]) {
+        self.refused_with(2, ("block.stl", path, "D2Ball"), words);
+    }
+
+    fn refused_with(&self, status: i32, (part, path, tool): (&str, &str, &str), words: &[&str]) {
         let output = self.run(part, path, tool, &["--json"]);
         let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert_eq!(output.status.code(), Some(status), "{said}");
         assert!(output.stdout.is_empty(), "a row was written: {}", stdout(&output));
         for word in words {
             assert!(said.contains(word), "`{word}` is missing in:\n{said}");

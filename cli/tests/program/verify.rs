@@ -1,12 +1,19 @@
 //! Programs that are checked: a line or an object a finding, and exit statuses for scripts.
 
 use crate::bench::{Bench, shared, stderr, stdout, touchoff};
+use nalgebra::Point3;
 use serde_json::Value;
 use std::process::Output;
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Unit};
 
 /// Clear, then 0.5 into the block between two points that are clear of it, then out in rapid traverse.
 const PROGRAM: &str = "PARTNO/BLOCK\nUNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\n\
                        GOTO/9,0,-0.5,0,0,1\nRAPID\nGOTO/9,0,3,0,0,1\nFINI\n";
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
 
 fn verify(bench: &Bench, program: &str, tool: &str, more: &[&str]) -> Output {
     let place = |name: &str| bench.folder.path().join(name).display().to_string();
@@ -106,6 +113,146 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
     refused("block.apt", "D2Ball", &["--tolerance=-1"], "is no tolerance");
     // By hand, so that it is not known which surface is where.
     refused("block.apt", "Fig73", &[], "it is not known which surface is the nearest");
+}
+
+/// What could be a motion is refused with its line, by every command that reads programs.
+#[test]
+fn words_that_could_move_the_tool_are_refused() {
+    let bench = Bench::new();
+    let part = bench.folder.path().join("block.stl").display().to_string();
+    let words = "GOTOX/1,2,3|GO TO/1,2,3|LINEAR/1,2,3|ARC/1,2,3|DRILL/1|ORIGIN/0,0,35|CUTCOM/LEFT|MODE/INCR|\
+                 THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5";
+    for word in words.split('|') {
+        let text = PROGRAM
+            .replace("RAPID\n", &format!("{word}\n"))
+            .replace("UNITS/MM", "UNITS/MM\nLOADTL/1\nCUTTER/2,1");
+        let file = bench.write("word.apt", text);
+        let output = verify(&bench, "word.apt", "D2Ball", &["--tolerance", "0.5"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{word}: {said}");
+        assert!(said.contains("word.apt:8: "), "{word}: {said}");
+        let run = touchoff(&[
+            "run", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &file,
+            "--points", "100",
+        ]);
+        assert_eq!(run.status.code(), Some(2), "{word}: {}", stderr(&run));
+    }
+    bench.write("wide.apt", PROGRAM.replace("UNITS/MM", "UNITS/MM\nCUTTER/50,25"));
+    let output = verify(&bench, "wide.apt", "D2Ball", &["--tolerance", "0.5"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("wide.apt:3: CUTTER/50,25 is not `D2Ball`, which is CUTTER/2,1")
+    );
+    bench.write(
+        "passed.apt",
+        PROGRAM.replace("UNITS/MM", "UNITS/MM\nCOOLNT/ON\nFEDRAT/9\nFEDRAT/8"),
+    );
+    let output = verify(&bench, "passed.apt", "D2Ball", &["--tolerance", "0.5"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains(": COOLNT, FEDRAT (2), PARTNO"), "{}", stderr(&output));
+}
+
+/// Nothing compared, no verdict.
+#[test]
+fn a_program_that_never_comes_near_is_not_verified() {
+    let bench = Bench::new();
+    let far = |x: f64| {
+        PROGRAM.replace("GOTO/-9", &format!("GOTO/{x}")).replace("GOTO/9", &format!("GOTO/{x}"))
+    };
+    bench.write("far.apt", far(1000.0));
+    let output = verify(&bench, "far.apt", "D2Ball", &[]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for words in [
+        "part: (-3.0000, -3.0000, -2.0000) to (3.0000, 3.0000, 0.0000) in mm",
+        "tips in (1000.0000, 0.0000, -0.5000) to (1000.0000, 0.0000, 3.0000) in mm",
+        "nearest approach: 996.0",
+        "; at least 996.0",
+        "never comes within the tool's diameter",
+    ] {
+        assert!(said.contains(words), "`{words}` is missing in:\n{said}");
+    }
+    let output = verify(&bench, "far.apt", "D2Ball", &["--anyway"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // Both ends are far away; the way between them is not.
+    bench.write("across.csv", "-900,0,0.5,0,0,1\n900,0,0.5,0,0,1\n");
+    let output = verify(&bench, "across.csv", "D2Ball", &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nearest approach: 0."), "{}", stderr(&output));
+    bench.write("one.csv", "0,0,0.5,0,0,1\n");
+    let output = verify(&bench, "one.csv", "D2Ball", &[]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("one.csv:1: holds one position"), "{}", stderr(&output));
+}
+
+/// Of a mesh without an inside no verdict is given but of its surface.
+#[test]
+fn a_part_without_an_inside_is_not_verified() {
+    let bench = Bench::new();
+    bench.write("block.apt", PROGRAM);
+    let block = cuboid([-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]);
+    let made = |triangles: Vec<[u32; 3]>| {
+        Mesh::new(block.vertices().to_vec(), triangles, Unit::Millimetre).expect("a mesh")
+    };
+    let leaky = made(block.triangles()[1..].to_vec());
+    let inside_out = made(block.triangles().iter().map(|[a, b, c]| [*b, *a, *c]).collect());
+    for (name, mesh) in [("leaky.stl", leaky), ("inside_out.stl", inside_out)] {
+        bench.part(name, &mesh);
+        let part = bench.folder.path().join(name).display().to_string();
+        let program = bench.folder.path().join("block.apt").display().to_string();
+        let all =
+            ["verify", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
+        let status = |more: &[&str]| {
+            let output = touchoff(&[&all, more].concat());
+            (output.status.code(), stderr(&output))
+        };
+        let (code, said) = status(&["--tolerance", "0.5"]);
+        assert_eq!(code, Some(2), "{name}: {said}");
+        assert!(said.contains("is inside the material is unknown"), "{name}: {said}");
+        assert_eq!(status(&["--tolerance", "0.5", "--surface-only"]).0, Some(0), "{name}");
+        let output = touchoff(&[
+            "sweep",
+            "--part",
+            &part,
+            "--unit",
+            "mm",
+            "--tools",
+            "D2Ball",
+            "--directions",
+            "8",
+        ]);
+        assert_eq!(output.status.code(), Some(2), "{name}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_buried_tool_is_said_to_be_inside() {
+    let bench = Bench::new();
+    bench.write("deep.csv", "0,0,-80,0,0,1\n0.5,0,-80,0,0,1\n");
+    bench.part("large.stl", &cuboid([-100.0; 3], [100.0; 3]));
+    let part = bench.folder.path().join("large.stl").display().to_string();
+    let program = bench.folder.path().join("deep.csv").display().to_string();
+    let tool = ["--unit", "mm", "--tool", "D2Ball"];
+    let all = [&["verify", "--part", &part, "--program", &program][..], &tool].concat();
+    let rows = |more: &[&str]| -> Vec<Value> {
+        let output = touchoff(&[&all[..], &["--json"], more].concat());
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+    };
+    let whole = rows(&[]);
+    assert!(
+        whole.iter().all(|row| row["kind"] == "inside" && row["surface"].is_null()),
+        "{whole:?}"
+    );
+    let run = [
+        &["run", "--part", &part, "--path", &program, "--certify", "1e-6", "--points", "100"][..],
+        &tool,
+    ]
+    .concat();
+    let output = touchoff(&run);
+    let said = stderr(&output);
+    assert!(said.contains("wholly inside the material at 2 of 2 poses, first at line 1"), "{said}");
+    assert!(stdout(&output).contains("wholly inside the material"), "{}", stdout(&output));
 }
 
 #[test]

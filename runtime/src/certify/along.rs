@@ -7,14 +7,14 @@
 
 use super::answer::{Along, Witness};
 use super::body::Body;
+use super::containment::{Containment, Cores};
 use super::question::Question;
 use super::sweep::{Stop, Sweeper, Task};
 use super::triangle::course::Goal;
 use super::work::{Setting, Work};
 use super::{Certifier, penetration};
 use crate::motion::Motion;
-use crate::tool::Shape;
-use std::slice;
+use crate::tool::{Card, Shape};
 
 /// How far a place is known on a way, in the tool's unit: rounding grows with the way.
 pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
@@ -77,9 +77,9 @@ impl Certifier<'_> {
         allowed: f64,
         tolerance: f64,
     ) -> Along {
-        let Certifier { setting, each, work, budget, sweeper, .. } = self;
+        let Certifier { setting, card, each, each_cores, work, budget, sweeper, .. } = self;
         let Body::Profile(section) = &setting.body else { return Along::Undecided(0.0) };
-        if self.card.shape != Shape::Revolved {
+        if card.shape != Shape::Revolved {
             return Along::Undecided(0.0);
         }
         let question =
@@ -89,10 +89,28 @@ impl Certifier<'_> {
         let tolerance = (32.0 * error).max(tolerance / setting.length);
         let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
         let whole = each[surface].get_or_insert_with(|| question(0.0));
-        let (radius, budget) = (self.card.radius(), *budget);
-        let mut search =
-            Search { setting, work, sweeper, motion, question: whole, radius, tolerance, budget };
-        let found = search.deepest(allowed.max(0.0));
+        let depth = allowed.max(0.0);
+        let cores = match &mut each_cores[surface] {
+            Some((known, cores)) if *known == depth => cores,
+            other => {
+                let all = 0..card.surfaces.len();
+                let limits = all.map(|k| if k == surface { depth } else { f64::INFINITY });
+                &mut other.insert((depth, Cores::new(limits))).1
+            }
+        };
+        let budget = *budget;
+        let mut search = Search {
+            setting,
+            card,
+            cores,
+            work,
+            sweeper,
+            motion,
+            question: whole,
+            tolerance,
+            budget,
+        };
+        let found = search.deepest(depth);
         if allowed >= 0.0 || matches!(found, Along::Deeper { .. }) {
             return found;
         }
@@ -108,12 +126,13 @@ impl Certifier<'_> {
 /// What is asked of one surface on one motion; lengths are in the tool's unit.
 struct Search<'a, 's> {
     setting: &'a Setting<'s>,
+    card: &'a Card,
+    /// Points of what the surface owns and may not be in the part.
+    cores: &'a mut Cores,
     work: &'a mut Work,
     sweeper: &'a mut Sweeper,
     motion: &'a Motion,
     question: &'a Question,
-    /// The largest: no place is farther from the surface.
-    radius: f64,
     tolerance: f64,
     budget: u32,
 }
@@ -134,7 +153,7 @@ impl Search<'_, '_> {
         let first = match seen {
             Some(peak) => peak,
             None => match self.sweep(allowed, self.tolerance, self.budget) {
-                None => return self.within(allowed),
+                None => return self.within(),
                 Some(Stop::Spent { at }) => return Along::Undecided(at),
                 Some(Stop::Deeper { at, best }) => {
                     let witness = self.setting.witness(&best, &self.motion.pose(at));
@@ -153,7 +172,8 @@ impl Search<'_, '_> {
 
     /// Something deeper if there is, and what nothing is deeper than.
     fn bounded(&mut self, mut best: Peak, allowed: f64) -> (Peak, f64) {
-        let any = if self.question.limit < 0.0 { 0.0 } else { self.radius };
+        // No place is farther from the surface than the largest radius.
+        let any = if self.question.limit < 0.0 { 0.0 } else { self.card.radius() };
         let mut close = CLOSE;
         for _ in 0..ROUNDS {
             let [low, high] = best.depth;
@@ -183,13 +203,13 @@ impl Search<'_, '_> {
         self.sweeper.run(&task, budget)
     }
 
-    /// What is to be said where no triangle is too deep.
-    fn within(&self, allowed: f64) -> Along {
-        let more = allowed.max(0.0) + self.tolerance;
-        let rules = slice::from_ref(self.question);
-        match self.setting.within(rules, &self.motion.pose(0.0), more) {
-            Some(true) => Along::Inside,
-            _ => Along::Within,
+    /// Returns what there is to say where no triangle is too deep.
+    fn within(&mut self) -> Along {
+        let Search { setting, card, motion, tolerance, .. } = *self;
+        match setting.containment((card, self.cores), &motion.pose(0.0), tolerance) {
+            Containment::Inside(_) => Along::Inside,
+            Containment::Outside | Containment::Unknown => Along::Within,
+            Containment::Undecided => Along::Undecided(0.0),
         }
     }
 

@@ -71,16 +71,20 @@ pub struct Witness {
 pub enum Clear {
     /// No point of the part is inside the tool or on its surface, and the tool is outside the part.
     Clear,
-    /// No triangle touches the tool, but the part is not closed and oriented, so that whether the tool
-    /// is wholly inside the material cannot be known.
-    Untouched,
+    /// No triangle touches the tool, or none is deeper than allowed, but the part has no inside: its mesh
+    /// leaks, is inside out or not consistently oriented. Whether the tool is inside the material is not
+    /// known.
+    SurfaceOnly,
     /// A point of the part is inside the tool, or deeper than its surface is [allowed](super::Certifier::allow)
     /// to be, or nearer.
     Touching(Witness),
-    /// The tool is wholly inside the material and touches no triangle.
-    Inside,
+    /// A piece of what may not be in the part is wholly inside the material, where no triangle shows it: all
+    /// of the tool, or what surfaces own that may not be so deep. Holds a surface of that piece, by its place in
+    /// the card's list.
+    Inside(usize),
     /// What is closest is so near to the surface that rounding decides, or the budget was spent: no
-    /// point of the part is deeper than is allowed by more than this, in the part's unit.
+    /// point of the part is deeper than is allowed by more than this, in the part's unit. It is 0 where only
+    /// whether the tool is inside the material is not decided.
     Undecided(f64),
 }
 
@@ -90,13 +94,14 @@ pub enum Sweep {
     /// At no time is a point of the part deeper than is allowed, by more than the tolerance, and the tool is
     /// outside the part.
     Clear,
-    /// The same, but the part is not closed and oriented, so that whether the tool is wholly inside the
-    /// material cannot be known.
-    Untouched,
+    /// The same, but the part has no inside: its mesh leaks, is inside out or not consistently oriented.
+    /// Whether the tool is inside the material is not known.
+    SurfaceOnly,
     /// At this part of the way, from 0 to 1, a point is deeper than is allowed; it may not be the first.
     Touching(f64, Witness),
-    /// The tool is wholly inside the material and touches no triangle.
-    Inside,
+    /// A piece of what may not be in the part is wholly inside the material when the motion begins, where no
+    /// triangle shows it. Holds a surface of that piece, by its place in the card's list.
+    Inside(usize),
     /// The budget was spent, or rounding decides: until this part of the way it is clear, and what comes then is
     /// not known.
     Undecided(f64),
@@ -105,8 +110,9 @@ pub enum Sweep {
 /// How deep a surface of a tool gets in a part on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
-    /// At no time deeper than is allowed by more than the tolerance, and what of the tool the surface owns is
-    /// not wholly inside the material, if that can be known.
+    /// At no time deeper than is allowed by more than the tolerance, and nothing of the tool that the surface
+    /// owns is wholly inside the material. Of a part that has no inside (see [`Sweep::SurfaceOnly`]) the
+    /// latter is not known.
     Within,
     /// Deeper than is allowed, or nearer.
     Deeper {

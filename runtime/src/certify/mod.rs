@@ -18,6 +18,7 @@ mod answer;
 mod apart;
 mod body;
 mod bounds;
+mod containment;
 mod part;
 mod question;
 mod space;
@@ -28,7 +29,11 @@ mod work;
 pub use answer::{
     AllowanceError, Along, Clear, Clearance, Penetration, Sweep, Uncertified, Witness,
 };
+#[cfg(feature = "postures")]
+pub(crate) use containment::Containment;
 pub use part::Facets;
+#[cfg(feature = "postures")]
+pub(crate) use part::Location;
 
 use crate::motion::Motion;
 use crate::pose::Pose;
@@ -37,7 +42,11 @@ use crate::tree::Sight;
 use apart::Apart;
 use body::Body;
 use body::field::Field;
+use body::owners::Owners;
 use body::section::Section;
+#[cfg(not(feature = "postures"))]
+use containment::Containment;
+use containment::Cores;
 use fearless_simd::Level;
 #[cfg(feature = "postures")]
 use nalgebra::{Point3, Vector3};
@@ -89,6 +98,11 @@ pub struct Certifier<'a> {
     /// allowed.
     allowed: Vec<f64>,
     rules: Option<Vec<Question>>,
+    /// Points of what may not be in the part: by the rules, of all of the tool, and of each surface with how
+    /// deep it may be, in the tool's unit.
+    cores: Cores,
+    whole_cores: Cores,
+    each_cores: Vec<Option<(f64, Cores)>>,
     /// Of the surfaces whose distance was asked for last, what to ask for it.
     apart: Option<Apart>,
     budget: u32,
@@ -129,6 +143,9 @@ impl<'a> Certifier<'a> {
             each: (0..surfaces).map(|_| None).collect(),
             allowed: vec![0.0; surfaces],
             rules: None,
+            cores: Cores::whole(card),
+            whole_cores: Cores::whole(card),
+            each_cores: (0..surfaces).map(|_| None).collect(),
             apart: None,
             budget: 1 << 20,
             work: Work::default(),
@@ -183,6 +200,7 @@ impl<'a> Certifier<'a> {
         self.allowed[index] = allowed;
         let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
         self.rules = Some(Question::all(section, sight.margin, &allowed));
+        self.cores = Cores::new(allowed);
         Ok(self)
     }
 
@@ -222,28 +240,57 @@ impl<'a> Certifier<'a> {
         match self.touches(pose) {
             Touch::Yes(witness) => Clear::Touching(witness),
             Touch::Undecided(high) => Clear::Undecided(high),
-            Touch::No => match self.within(pose) {
-                Some(true) => Clear::Inside,
-                Some(false) => Clear::Clear,
-                None => Clear::Untouched,
+            Touch::No => match self.containment(pose) {
+                Containment::Inside(surface) => Clear::Inside(surface),
+                Containment::Outside => Clear::Clear,
+                Containment::Unknown => Clear::SurfaceOnly,
+                Containment::Undecided => Clear::Undecided(0.0),
             },
         }
     }
 
-    /// Whether what may not be in the part is wholly inside it, if that has an inside; no triangle touches it.
-    pub(crate) fn within(&self, pose: &Pose) -> Option<bool> {
-        let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
-        self.setting.within(rules, pose, 4.0 * self.setting.error)
+    /// Returns where what may not be in the part is. Call only if no triangle touches it.
+    pub(crate) fn containment(&mut self, pose: &Pose) -> Containment {
+        let cores = (self.card, &mut self.cores);
+        self.setting.containment(cores, pose, 4.0 * self.setting.error)
     }
 
-    /// Whether the axis passes all of what may not be in the part in one stretch.
-    #[cfg(feature = "postures")]
-    pub(crate) fn is_one_piece(&self) -> bool {
-        let rules = self.rules.as_deref().unwrap_or(slice::from_ref(&self.whole));
-        match &self.setting.body {
-            Body::Profile(section) => Question::are_one_piece(rules, section),
-            Body::Field(_) => false,
+    /// Returns whether all of the tool is wholly inside the material and touches no triangle, whatever is
+    /// allowed; `None` where that is not known: the part has no inside, or rounding decides.
+    pub fn is_buried(&mut self, pose: &Pose) -> Option<bool> {
+        let Certifier { setting, card, whole, whole_cores, work, budget, .. } = self;
+        match touches(setting, slice::from_ref(whole), work, pose, *budget) {
+            Touch::Yes(_) => Some(false),
+            Touch::Undecided(_) => None,
+            Touch::No => {
+                match setting.containment((card, whole_cores), pose, 4.0 * setting.error) {
+                    Containment::Inside(_) => Some(true),
+                    Containment::Outside => Some(false),
+                    Containment::Unknown | Containment::Undecided => None,
+                }
+            }
         }
+    }
+
+    /// Returns the greatest depth that a surface can have, by its place in the card's list, in the part's
+    /// unit: that of the deepest point of the tool that it is the nearest to, to a hundredth. It has it
+    /// where the part's surface passes the middle of the tool. `None` where it is not known which surface is
+    /// the nearest (see [`Certifier::allow`]).
+    ///
+    /// # Panics
+    /// If there is no such surface.
+    pub fn greatest_depth(&self, surface: usize) -> Option<f64> {
+        assert!(surface < self.card.surfaces.len());
+        let Body::Profile(section) = &self.setting.body else { return None };
+        let owners = Owners::of(section, |other| other == surface);
+        Some(owners.greatest_depth(section) * self.setting.length)
+    }
+
+    /// Whether what may not be in the part is one piece: the points that are deeper than their limit by twice
+    /// what rounding adds, which [`Certifier::is_too_deep`] tells.
+    #[cfg(feature = "postures")]
+    pub(crate) fn is_one_piece(&mut self) -> bool {
+        self.setting.is_one_piece((self.card, &mut self.cores), self.setting.error)
     }
 
     /// Begins as if nothing had been asked yet.
@@ -256,29 +303,7 @@ impl<'a> Certifier<'a> {
     pub(crate) fn touches(&mut self, pose: &Pose) -> Touch {
         let Certifier { setting, whole, rules, work, budget, .. } = self;
         let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
-        let touch = 2.0 * setting.error;
-        let mut open: Option<f64> = None;
-        for rule in rules {
-            let least = rule.limit - touch;
-            let enough = rule.limit + touch;
-            let goal = Goal { least, tolerance: touch, enough, budget: *budget };
-            if rule.limit < 0.0 {
-                setting.look(work, pose);
-                work.outside(setting, rule, pose, goal);
-            } else {
-                work.inside(setting, rule, pose, goal);
-            }
-            if let Some(best) = &work.best
-                && work.search.best > goal.enough + work.skew
-            {
-                return Touch::Yes(setting.witness(best, pose));
-            }
-            if work.best.is_some() || work.search.open() {
-                let high = work.search.most.max(work.search.wanted()) + touch + work.skew;
-                open = Some(open.unwrap_or(0.0).max(high - rule.limit));
-            }
-        }
-        open.map_or(Touch::No, |high| Touch::Undecided(high * setting.length))
+        touches(setting, rules, work, pose, *budget)
     }
 
     /// Whether a place of the part, in the world, is surely deeper than is [allowed](Certifier::allow).
@@ -341,7 +366,7 @@ impl<'a> Certifier<'a> {
         if self.card.shape != Shape::Revolved {
             return Sweep::Undecided(0.0);
         }
-        let Certifier { setting, whole, rules, budget, sweeper, .. } = self;
+        let Certifier { setting, card, whole, rules, cores, budget, sweeper, .. } = self;
         let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
         let error = along::error(setting, motion);
         // Written so that what is not a number is no tolerance.
@@ -364,10 +389,11 @@ impl<'a> Certifier<'a> {
                 Sweep::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
             Some(Stop::Spent { at }) => Sweep::Undecided(at),
-            None => match setting.within(rules, &motion.pose(0.0), tolerance) {
-                Some(true) => Sweep::Inside,
-                Some(false) => Sweep::Clear,
-                None => Sweep::Untouched,
+            None => match setting.containment((card, cores), &motion.pose(0.0), tolerance) {
+                Containment::Inside(surface) => Sweep::Inside(surface),
+                Containment::Outside => Sweep::Clear,
+                Containment::Unknown => Sweep::SurfaceOnly,
+                Containment::Undecided => Sweep::Undecided(0.0),
             },
         }
     }
@@ -379,6 +405,39 @@ pub(crate) enum Touch {
     Yes(Witness),
     /// By no more than this, in the part's unit.
     Undecided(f64),
+}
+
+/// Whether a triangle is deeper than rules allow.
+fn touches(
+    setting: &Setting<'_>,
+    rules: &[Question],
+    work: &mut Work,
+    pose: &Pose,
+    budget: u32,
+) -> Touch {
+    let touch = 2.0 * setting.error;
+    let mut open: Option<f64> = None;
+    for rule in rules {
+        let least = rule.limit - touch;
+        let enough = rule.limit + touch;
+        let goal = Goal { least, tolerance: touch, enough, budget };
+        if rule.limit < 0.0 {
+            setting.look(work, pose);
+            work.outside(setting, rule, pose, goal);
+        } else {
+            work.inside(setting, rule, pose, goal);
+        }
+        if let Some(best) = &work.best
+            && work.search.best > goal.enough + work.skew
+        {
+            return Touch::Yes(setting.witness(best, pose));
+        }
+        if work.best.is_some() || work.search.open() {
+            let high = work.search.most.max(work.search.wanted()) + touch + work.skew;
+            open = Some(open.unwrap_or(0.0).max(high - rule.limit));
+        }
+    }
+    open.map_or(Touch::No, |high| Touch::Undecided(high * setting.length))
 }
 
 /// The deepest place that owners have.

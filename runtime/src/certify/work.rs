@@ -53,20 +53,6 @@ impl Setting<'_> {
     pub(crate) fn margin(&self) -> f64 {
         if self.sight.fits { 4.0 * self.body.steep() * self.sight.margin } else { f64::INFINITY }
     }
-
-    /// Whether what of the tool may not be deeper than its limit and a tolerance is wholly inside the part, if
-    /// that has an inside; no triangle is so deep. What has no core is nowhere so deep.
-    pub(crate) fn within(&self, rules: &[Question], pose: &Pose, tolerance: f64) -> Option<bool> {
-        for rule in rules {
-            for (core, depth) in &rule.cores {
-                let place = pose.tip() + pose.rotation() * Vector3::from(*core) * self.length;
-                if *depth > rule.limit + tolerance && self.facets.contains(place)? {
-                    return Some(true);
-                }
-            }
-        }
-        Some(false)
-    }
 }
 
 /// What a search is at, or has found.

@@ -15,6 +15,8 @@ pub(crate) struct Holder {
     steps: Vec<[f64; 2]>,
     /// The least stick-out: the highest of what cuts.
     cutting: f64,
+    /// How far the tool sticks out as it is: the height of the nose.
+    pub(crate) own: f64,
     /// To what triangles are cut up before all of one is taken to be as high as its highest place.
     fine: f64,
 }
@@ -65,7 +67,7 @@ impl Holder {
         let cuts = card.outline.iter().filter(|piece| card.surfaces[piece.surface].cutting);
         let cutting = cuts.flat_map(|piece| [piece.from[1], piece.to[1]]).fold(0.0, f64::max);
         let widest = steps.last().map_or(0.0, |[radius, _]| *radius);
-        Some(Holder { steps, cutting: cutting * length, fine: FINE * widest })
+        Some(Holder { steps, cutting: cutting * length, own: nose, fine: FINE * widest })
     }
 
     /// How far above the nose it is at least, so far from the axis; `None` where it does not reach.

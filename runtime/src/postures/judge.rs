@@ -146,7 +146,7 @@ impl<'a> Judge<'a> {
     /// Whether it is proved that no surface of the tool is deeper in the part than it may be. What rounding
     /// leaves open is not.
     pub fn accepts(&mut self, pose: &Pose) -> bool {
-        matches!(self.certifier.clear(pose), Clear::Clear | Clear::Untouched)
+        matches!(self.certifier.clear(pose), Clear::Clear | Clear::SurfaceOnly)
     }
 
     /// A posture with what is proved of it, if it is acceptable: nice enough, and no deeper than it may be.

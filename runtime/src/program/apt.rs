@@ -2,38 +2,18 @@
 //!
 //! Read are `GOTO/x,y,z[,i,j,k]` and `FROM/` (the tip, and the unit vector from the tip to the
 //! spindle; without one, the last given stays, `0,0,1` at first), `RAPID` (for the next `GOTO`),
-//! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, and `FINI`, which must end the program, so
-//! that a file cut short is never taken for a whole one. `$$` opens a comment, a trailing `$`
-//! continues the statement, `;` separates two, and case does not matter.
+//! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, one `LOADTL`, `CUTTER`, and `FINI` or NX's
+//! `END-OF-PATH`, which must end the program, so that a file cut short is never taken for a whole one.
+//! `$$` opens a comment, a trailing `$` continues the statement, `;` separates two, and case does not
+//! matter.
 //!
-//! A word that moves the tool or its coordinates in another way is refused; any other word is
-//! reported in [`Program::ignored`](super::Program::ignored).
+//! Words that can neither move the tool nor change what positions mean are listed in
+//! [`Program::ignored`](super::Program::ignored); every other word is refused (`words` has the list).
 
+use super::words::{is_prose, pass_over};
 use super::{Fault, Located, Stop, Tape, axis_pose, lines, number, shown};
 use crate::Unit;
 use std::mem;
-
-/// Words that say nothing of where the tool is.
-#[rustfmt::skip]
-const SILENT: [&str; 10] = [
-    "PARTNO", "PPRINT", "REMARK", "CUTTER", "LOADTL", "SPINDL", "FEDRAT", "COOLNT", "TOOL PATH",
-    "END-OF-PATH",
-];
-
-/// Words whose line is prose to its end: neither `$` nor `;` means anything in it.
-const PROSE: [&str; 5] = ["PARTNO", "PPRINT", "REMARK", "INSERT", "LETTER"];
-
-/// Words that move the tool, or decide whether and how often it moves.
-#[rustfmt::skip]
-const MOVES: [&str; 32] = [
-    "GODLTA", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "GOHOME", "GOCLER",
-    "TLON", "TLLFT", "TLRGT", "TLAXIS", "CIRCLE", "MOVARC", "HELIX", "NURBS", "SPLINE", "THREAD",
-    "CYCLE", "POCKET", "SCURV", "RETRCT", "CALL", "MACRO", "TERMAC", "LOOPST", "JUMPTO", "RUN",
-    "COPY", "DNTCUT",
-];
-
-/// Words that move what positions are measured in, or the part under the tool.
-const FRAMES: [&str; 6] = ["MSYS", "TRACUT", "TRANS", "ROTABL", "ROTHED", "ROTATE"];
 
 /// The positions of an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tape, Located> {
@@ -45,17 +25,12 @@ pub(super) fn read(text: &str) -> Result<Tape, Located> {
         reader.statement(*line, statement, is_last).map_err(|fault| (*line, fault))?;
         end = *line;
     }
-    let whole = reader.finished && cut.is_none();
+    let whole = (reader.finished || reader.path_ended) && cut.is_none();
     if whole || reader.tape.stops.is_empty() && cut.is_none() {
         Ok(reader.tape)
     } else {
         Err((cut.unwrap_or(end), Fault::Unfinished))
     }
-}
-
-/// Whether a line is prose to its end.
-pub(super) fn is_prose(line: &str) -> bool {
-    line.get(..6).is_some_and(|word| PROSE.iter().any(|prose| word.eq_ignore_ascii_case(prose)))
 }
 
 /// The statements, each with the line it begins on; and that of a last one whose continuation
@@ -92,18 +67,24 @@ struct Reader {
     tape: Tape,
     axis: Option<[f64; 3]>,
     rapid: bool,
+    /// The line of `LOADTL`.
+    loaded: Option<usize>,
+    path_ended: bool,
     finished: bool,
 }
 
 impl Reader {
     /// Takes one statement; a position that `is_last` in the file and cannot be read was cut.
     fn statement(&mut self, line: usize, text: &str, is_last: bool) -> Result<(), Fault> {
-        if self.finished && !is_prose(text) {
-            return Err(Fault::AfterEnd);
-        }
         let (head, rest) = text.split_once('/').unwrap_or((text, ""));
         let word = head.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
         let rest = rest.trim();
+        let ended = self.finished || self.path_ended && word != "FINI";
+        if ended && !is_prose(text) {
+            return Err(Fault::AfterEnd {
+                end: if self.finished { "FINI" } else { "END-OF-PATH" },
+            });
+        }
         let cut = |fault| if is_last { Fault::Unfinished } else { fault };
         match word.as_str() {
             "GOTO" => {
@@ -111,13 +92,20 @@ impl Reader {
                 self.position(line, "GOTO", rest, rapid).map_err(cut)?;
             }
             "FROM" => self.position(line, "FROM", rest, true).map_err(cut)?,
-            "RAPID" => self.rapid = true,
+            "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
+            "LOADTL" => self.load(line)?,
+            "CUTTER" => self.cutter(line, rest)?,
+            // Diameter, corner, height and angles of a mill, as NX writes them.
+            "TLDATA" if let Some(mill) = rest.strip_prefix("MILL,") => {
+                let ends = mill.match_indices(',').nth(1).map_or(mill.len(), |(comma, _)| comma);
+                self.cutter(line, &mill[..ends])?;
+            }
             "FINI" => self.finished = true,
-            "CYCLE" if rest.eq_ignore_ascii_case("OFF") => {}
-            "MSYS" if is_identity(rest) => {}
-            other => self.other(line, text, other)?,
+            // So NX ends the path of an operation; `FINI` may follow.
+            "END-OF-PATH" => self.path_ended = true,
+            other => self.other(line, text, other, rest)?,
         }
         Ok(())
     }
@@ -174,44 +162,45 @@ impl Reader {
         }
     }
 
-    /// A word that is none of those read: harmless, refused, or reported.
-    fn other(&mut self, line: usize, text: &str, word: &str) -> Result<(), Fault> {
-        if is_prose(text) {
-            let prose = word.get(..6).unwrap_or(word);
-            if !SILENT.contains(&prose) {
-                self.tape.ignored.push((line, prose.to_owned()));
-            }
-            return Ok(());
+    /// A tool is loaded: one of a program.
+    fn load(&mut self, line: usize) -> Result<(), Fault> {
+        if let Some(first) = self.loaded.replace(line) {
+            return Err(Fault::SecondTool { first });
         }
-        if SILENT.contains(&word) {
-            return Ok(());
-        }
-        // A definition of geometry, `C1 = CIRCLE/...`, moves nothing; `TLLFT,GOFWD/...` does, and
-        // so does what follows a label or a number, `L1) GOTO/...`.
-        let is_definition = word.contains('=');
-        let mut words = word.split([' ', ')', ',']);
-        let first = words.next().unwrap_or(word);
-        let major = words.next_back().filter(|_| text.contains('/')).unwrap_or(first);
-        if is_definition {
-            self.tape.ignored.push((line, bare(word)));
-        } else if FRAMES.contains(&major) {
-            return Err(Fault::Frame { word: major.to_owned() });
-        } else if MOVES.contains(&major) {
-            return Err(Fault::Moves { word: major.to_owned() });
-        } else if first == "GOTO" || ["GOTO", "FROM", "UNITS"].contains(&major) {
-            return Err(Fault::Malformed { statement: shown(text) });
-        } else {
-            self.tape.ignored.push((line, bare(word)));
-        }
+        self.tape.ignored.push((line, "LOADTL".to_owned()));
         Ok(())
     }
-}
 
-/// Whether `MSYS` names the part's own coordinates: its origin, x axis and y axis.
-fn is_identity(rest: &str) -> bool {
-    const IDENTITY: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    let values = rest.split(',').map(number).collect::<Result<Vec<f64>, Fault>>();
-    values.is_ok_and(|values| values == IDENTITY)
+    /// The cutter that positions are of.
+    fn cutter(&mut self, line: usize, rest: &str) -> Result<(), Fault> {
+        let values = rest.split(',').map(number).collect::<Result<Vec<f64>, Fault>>()?;
+        match &self.tape.cutter {
+            Some((first, known)) if known.iter().zip(&values).any(|(one, other)| one != other) => {
+                Err(Fault::SecondTool { first: *first })
+            }
+            Some(_) => Ok(()),
+            None => {
+                self.tape.cutter = Some((line, values));
+                Ok(())
+            }
+        }
+    }
+
+    /// A word that is none of those read: passed over, or refused.
+    fn other(&mut self, line: usize, text: &str, word: &str, rest: &str) -> Result<(), Fault> {
+        match pass_over(word, rest) {
+            Ok(word) => {
+                self.tape.ignored.push((line, word));
+                Ok(())
+            }
+            Err(Fault::UnknownWord { .. })
+                if word.split([' ', ')']).any(|part| ["GOTO", "FROM", "UNITS"].contains(&part)) =>
+            {
+                Err(Fault::Malformed { statement: shown(text) })
+            }
+            Err(fault) => Err(fault),
+        }
+    }
 }
 
 /// What [`shown`] gives, without its quotes; nothing for nothing.
@@ -237,7 +226,8 @@ mod tests {
         };
         let program = Program::read(path).expect("it is a program");
         assert_eq!(program.unit, Some(Unit::Millimetre));
-        assert_eq!(program.ignored, []);
+        let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
+        assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
         let cutting = program.stops.iter().filter(|stop| !stop.rapid).count();
         assert_eq!((cutting, program.stops.len()), (1274, 1302));
         let first = program.stops[0];
@@ -279,12 +269,93 @@ mod tests {
     }
 
     #[test]
-    fn reports_what_it_ignores() {
-        let text = "TOOL PATH/A,TOOL,B\nMSYS/0.,0,0,1,0,0,0,1,0\nTLDATA/MILL,2\nPPRINT hi\n\
-                    CYCLE/OFF\nINSERT M8\nC1 = CIRCLE/0,0,1\nGOTO/1,2,3\nEND-OF-PATH\nFINI\n";
-        let said: Vec<_> = program(text).ignored;
-        let expected = [(3, "TLDATA"), (6, "INSERT"), (7, "C1 = CIRCLE")];
-        assert_eq!(said, expected.map(|(line, word)| (line, word.to_owned())));
+    fn lists_what_it_passes_over() {
+        let text = "TOOL PATH/A,TOOL,B\nMSYS/0.,0,0,1,0,0,0,1,0\nTLDATA/DRILL,2\nPPRINT hi; GOTOX/1\n\
+                    CYCLE/OFF\ncutcom / off\nMODE/ABSOL\nLOADTL/3\nFEDRAT/ 250.,MMPM\nGOTO/1,2,3\n\
+                    COOLNT/OFF\nEND-OF-PATH\nFINI\n";
+        let expected = [
+            (1, "TOOL PATH"),
+            (2, "MSYS"),
+            (3, "TLDATA"),
+            (4, "PPRINT"),
+            (5, "CYCLE"),
+            (6, "CUTCOM"),
+            (7, "MODE"),
+            (8, "LOADTL"),
+            (9, "FEDRAT"),
+            (11, "COOLNT"),
+        ];
+        assert_eq!(program(text).ignored, expected.map(|(line, word)| (line, word.to_owned())));
+    }
+
+    /// Words that move the tool, that change what positions mean, and words that nobody knows.
+    #[test]
+    fn what_could_be_a_motion_is_refused() {
+        let words = "GOTOX/1,2,3|GOOT/1,2,3|GO TO/1,2,3|GOABS/1,2,3|LINEAR/1,2,3|MOVE/1,2,3|MOVETO/1,2,3|\
+                     ARC/1,2,3|CIRC/1,2,3|ARCDAT/1,2,3|DRILL/1,2,3|GODLT/1,2,3|ORIGIN/0,0,35|CUTCOM/LEFT|\
+                     MODE/INCR|THICK/-5|HEAD/2|LOADTL/2|CUTTER/50|INSERT G0 Z-5|LETTER/HI|RAPID/ON|OPSKIP/ON|\
+                     TRACUT/M1|C1 = CIRCLE/0,0,1|M1 = MACRO/|AUXFUN/98|PREFUN/91|X|GOTO|TLDATA/MILL,50.,0.";
+        for word in words.split('|') {
+            let text =
+                format!("UNITS/MM\nLOADTL/1\nCUTTER/2,1\nGOTO/1,2,3\n{word}\nGOTO/4,5,6\nFINI\n");
+            let said = refusal(&text);
+            assert!(said.starts_with("part.cl:5: "), "{word}: {said}");
+        }
+        let text = "GOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI";
+        assert_eq!(program(text).stops.len(), 2);
+    }
+
+    #[test]
+    fn the_end_of_a_path_of_nx_ends_a_program() {
+        let whole = "TOOL PATH/A,TOOL,B\nGOTO/1,2,3\nGOTO/4,5,6\nEND-OF-PATH";
+        assert_eq!(program(whole).stops.len(), 2);
+        assert_eq!(program(&format!("{whole}\nFINI\n")).stops.len(), 2);
+        assert_eq!(
+            refusal(format!("{whole}\nTOOL PATH/C,TOOL,D\nGOTO/1,2,3\nEND-OF-PATH\n")),
+            "part.cl:5: a statement follows END-OF-PATH: give one program per file"
+        );
+    }
+
+    #[test]
+    fn the_cutter_is_compared_with_the_tool() {
+        crate::tool! {
+            tool Ball "6 mm" {
+                units mm;
+                profile {
+                    start (0, 0);
+                    arc to (3, 3) center (0, 3) as ball cutting;
+                    line to (3, 20), (0, 20) as shank;
+                }
+                niceness cutting: 1;
+            }
+        }
+        use crate::Tool as _;
+        let check = |cutter: &str, unit: Unit| {
+            let text = format!("{cutter}\nGOTO/1,2,3\nGOTO/4,5,6\nFINI");
+            program(&text).check_cutter(Ball.card(), unit).map_err(|error| error.to_string())
+        };
+        let mm = Unit::Millimetre;
+        for same in [
+            "CUTTER/6",
+            "CUTTER/6.0,3.0",
+            "CUTTER/6.,3.,0.,3.,0.,0.,30.",
+            "CUTTER/6.001,3",
+            "TLDATA/MILL,6.0000,3.0000,30.0000,0.0000,0.0000",
+            "UNITS/INCHES\nCUTTER/.23622,.11811",
+            "PPRINT none",
+        ] {
+            assert_eq!(check(same, mm), Ok(None), "{same}");
+        }
+        assert_eq!(check("CUTTER/.23622,.11811", Unit::Inch), Ok(None));
+        for other in ["CUTTER/50", "CUTTER/6,0", "CUTTER/6,3,0,3,0,5", "UNITS/INCHES\nCUTTER/6,3"] {
+            assert!(check(other, mm).is_err(), "{other}");
+        }
+        assert_eq!(
+            check("CUTTER/50,1", mm),
+            Err("part.cl:1: CUTTER/50,1 is not `Ball`, which is CUTTER/6,3 in mm: give the tool that the \
+                 program was made for, or remove the statement to try another"
+                .to_owned())
+        );
     }
 
     #[test]
@@ -300,7 +371,9 @@ mod tests {
     #[test]
     fn every_refusal_names_its_line_and_remedy() {
         let moves = "moves the tool in a way that is not read: post the program as GOTO points";
-        let frame = "moves the coordinates: post the program as GOTO points in the part's own";
+        let frame = "changes what positions mean: post the program as GOTO points in the part's coordinates";
+        let unknown = "is not understood and could move the tool: post the program as GOTO points, or \
+                       remove the statement if it moves nothing";
         let unfinished =
             "the program stops here without FINI: post it again, or add FINI if this is the end";
         let numbers = "numbers: write GOTO/x,y,z or GOTO/x,y,z,i,j,k";
@@ -308,7 +381,18 @@ mod tests {
         let infinite = "is not a finite number: correct it or remove the position";
         for (body, message) in [
             ("GODLTA/0,0,1\nFINI", format!("2: GODLTA {moves}")),
-            ("TLLFT, gofwd / L1,PAST,L2\nFINI", format!("2: GOFWD {moves}")),
+            ("TLLFT, gofwd / L1,PAST,L2\nFINI", format!("2: TLLFT {moves}")),
+            ("GOTOX/1,2,3\nFINI", format!("2: `GOTOX` {unknown}")),
+            ("C1 = LINE/P1,P2\nFINI", format!("2: `C1 = LINE` {unknown}")),
+            (
+                "LOADTL/1\nGOTO/1,2,3\nLOADTL/2\nFINI",
+                "4: another tool than that of line 2: give one program per tool".to_owned(),
+            ),
+            (
+                "INSERT G0 Z-5\nFINI",
+                "2: INSERT writes to the control what may be a motion: post the program without it"
+                    .to_owned(),
+            ),
             ("L1) CYCLE/DRILL,5\nFINI", format!("2: CYCLE {moves}")),
             ("MSYS/0,0,5,1,0,0,0,1,0\nFINI", format!("2: MSYS {frame}")),
             ("0010 GOTO/1,2,3\nFINI", format!("2: `0010 GOTO/1,2,3` {malformed}")),
@@ -347,7 +431,7 @@ mod tests {
             ("GOTO/1,2,3\nGOTO/4,5", format!("3: {unfinished}")),
             ("GOTO/1,2,3\nGOTO/4,5,6,0,0.7", format!("3: {unfinished}")),
             ("GOTO/1,2,3,$\n0,0,1$", format!("2: {unfinished}")),
-            ("GOTO/1,2,3\nFIN", format!("3: {unfinished}")),
+            ("GOTO/1,2,3\nFIN", format!("3: `FIN` {unknown}")),
             (
                 "GOTO/1,2,3\nFINI\n\nPPRINT BYE\nGOTO/1,2,3",
                 "6: a statement follows FINI: give one program per file".to_owned(),

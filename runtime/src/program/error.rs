@@ -25,6 +25,33 @@ pub enum ProgramError {
         /// The file.
         file: String,
     },
+    /// The file holds one position, and so no motion.
+    #[error("{file}:{line}: holds one position, and so no motion: give the whole program")]
+    OnePosition {
+        /// The file.
+        file: String,
+        /// Its line, 1-based.
+        line: usize,
+    },
+    /// The program is for another cutter.
+    #[error(
+        "{file}:{line}: CUTTER/{stated} is not `{tool}`, which is CUTTER/{expected} in {unit}: give the tool \
+         that the program was made for, or remove the statement to try another"
+    )]
+    Cutter {
+        /// The file.
+        file: String,
+        /// The line of `CUTTER`, 1-based.
+        line: usize,
+        /// Its arguments.
+        stated: String,
+        /// The tool's name.
+        tool: String,
+        /// The arguments that the tool has, in the program's unit.
+        expected: String,
+        /// That unit.
+        unit: Unit,
+    },
     /// A line cannot be taken.
     #[error("{file}:{line}: {fault}")]
     Line {
@@ -138,11 +165,42 @@ pub enum Fault {
         /// The word.
         word: String,
     },
-    /// A word that moves what positions are measured in.
-    #[error("{word} moves the coordinates: post the program as GOTO points in the part's own")]
+    /// A word that changes what positions mean.
+    #[error(
+        "{word} changes what positions mean: post the program as GOTO points in the part's coordinates"
+    )]
     Frame {
         /// The word.
         word: String,
+    },
+    /// A block of G-code.
+    #[error(
+        "{block} is G-code, which is not read: post the program as APT-CL, or as rows of x,y,z,i,j,k"
+    )]
+    GCode {
+        /// The block.
+        block: String,
+    },
+    /// A word that writes text for the control.
+    #[error("{word} writes to the control what may be a motion: post the program without it")]
+    Verbatim {
+        /// The word.
+        word: String,
+    },
+    /// A word that is not known to leave the tool and its coordinates alone.
+    #[error(
+        "{word} is not understood and could move the tool: post the program as GOTO points, or remove the \
+         statement if it moves nothing"
+    )]
+    UnknownWord {
+        /// The word.
+        word: String,
+    },
+    /// A second tool, or a second cutter.
+    #[error("another tool than that of line {first}: give one program per tool")]
+    SecondTool {
+        /// The line of the first, 1-based.
+        first: usize,
     },
     /// A position that is not written as one.
     #[error("{statement} is not understood: write GOTO/x,y,z,i,j,k, with nothing before it")]
@@ -177,6 +235,9 @@ pub enum Fault {
     #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
     Unfinished,
     /// A statement after the end.
-    #[error("a statement follows FINI: give one program per file")]
-    AfterEnd,
+    #[error("a statement follows {end}: give one program per file")]
+    AfterEnd {
+        /// What ended the program.
+        end: &'static str,
+    },
 }

@@ -14,7 +14,9 @@
 
 mod apt;
 mod csv;
+mod cutter;
 mod error;
+mod words;
 mod write;
 
 pub use error::{Fault, ProgramError};
@@ -34,12 +36,14 @@ pub struct Program {
     pub unit: Option<Unit>,
     /// The positions, at least one.
     pub stops: Vec<Stop>,
-    /// Words that were not understood and do not place the tool as far as is known, each with its
-    /// 1-based line.
+    /// Words that were passed over, each with its 1-based line: they can neither move the tool nor change
+    /// what positions mean.
     pub ignored: Vec<(usize, String)>,
     file: String,
     /// Of a program that was read.
     unit_line: Option<usize>,
+    /// The arguments of APT's `CUTTER`, in the program's unit, and its line.
+    cutter: Option<(usize, Vec<f64>)>,
 }
 
 /// One position of a program.
@@ -70,7 +74,7 @@ impl Program {
         if stops.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        Ok(Program { unit, stops, ignored: Vec::new(), file, unit_line: None })
+        Ok(Program { unit, stops, ignored: Vec::new(), file, unit_line: None, cutter: None })
     }
 
     /// Reads a program from a file.
@@ -93,6 +97,7 @@ impl Program {
                 unit_line: tape.unit.map(|(_, line)| line),
                 stops: tape.stops,
                 ignored: tape.ignored,
+                cutter: tape.cutter,
                 file,
             }),
         }
@@ -124,6 +129,17 @@ impl Program {
             _ => Ok(()),
         }
     }
+
+    /// Refuses a program that has no motion.
+    ///
+    /// # Errors
+    /// If it holds one position.
+    pub fn check_motions(&self) -> Result<(), ProgramError> {
+        match self.stops[..] {
+            [Stop { line, .. }] => Err(ProgramError::OnePosition { file: self.file.clone(), line }),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A fault and its 1-based line.
@@ -135,6 +151,7 @@ struct Tape {
     stops: Vec<Stop>,
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
+    cutter: Option<(usize, Vec<f64>)>,
 }
 
 /// Bytes to text to positions.
@@ -186,7 +203,7 @@ fn begins_table(line: &str) -> bool {
     line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
         || first.parse::<f64>().is_ok()
         || first.trim_matches('"').eq_ignore_ascii_case("x")
-        || separated && !apt::is_prose(line)
+        || separated && !words::is_prose(line)
 }
 
 const PLAIN_NUMBER: &str = "write a plain number with a decimal point";

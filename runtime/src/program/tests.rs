@@ -23,9 +23,14 @@ pub(super) fn shared(name: &str) -> Option<PathBuf> {
 fn refuses_what_is_neither_format() {
     let no_position = "part.cl: holds no position: give rows of x,y,z,i,j,k or an APT-CL \
                        program of GOTO points (G-code is not read)";
-    for empty in ["", "\u{feff}", "# only\n\n$$ comments\r\n", "G0 X1 Y2\nM30\n", "FINI\n"] {
+    for empty in ["", "\u{feff}", "# only\n\n$$ comments\r\n", "FINI\n"] {
         assert_eq!(refusal(empty), no_position, "{empty:?}");
     }
+    assert_eq!(
+        refusal("G0 X1 Y-2.5\nM30\n"),
+        "part.cl:1: `G0 X1 Y-2.5` is G-code, which is not read: post the program as APT-CL, or as rows of \
+         x,y,z,i,j,k"
+    );
     assert_eq!(
         refusal("\n%\nO1000\n"),
         "part.cl:2: `%` begins neither a row of x,y,z,i,j,k nor an APT statement: give one or \

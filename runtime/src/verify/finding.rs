@@ -1,5 +1,6 @@
 //! What is found wrong with a program.
 
+use super::Approach;
 use crate::certify::{AllowanceError, Uncertified, Witness};
 use crate::{Pose, ProgramError};
 
@@ -30,9 +31,11 @@ pub struct Report {
     pub motions: usize,
     /// What is wrong, in the program's order; of one motion in the order of the card's surfaces.
     pub findings: Vec<Finding>,
-    /// Whether it can be known that a tool is wholly inside the material: the part is closed and oriented.
-    /// Otherwise that is never found.
+    /// Whether the part has an inside: its mesh is closed, consistently oriented and not inside out. Otherwise
+    /// a tool that is wholly inside the material is never found.
     pub inside_known: bool,
+    /// How near the tool comes to the part.
+    pub approach: Approach,
 }
 
 /// Something wrong with one motion, or with the stop that a program begins at.
@@ -68,6 +71,9 @@ pub enum Kind {
         depth: [f64; 2],
         /// What it is no deeper than on the whole motion.
         most: f64,
+        /// Whether the part's surface passes the middle of the tool there: no point of the tool is deeper, so
+        /// that the depth says no more of how far the tool is in the material.
+        through: bool,
         /// Where it is that deep then.
         witness: Witness,
     },
@@ -84,9 +90,11 @@ pub enum Kind {
         /// Where it is that near then.
         witness: Witness,
     },
-    /// The tool, or what a surface of it owns, is wholly inside the material when the motion begins, and no
-    /// triangle shows it.
-    Inside,
+    /// A part of the tool is wholly inside the material when the motion begins, where no triangle shows it.
+    Inside {
+        /// The surface that owns the part; `None` if all of the tool is inside.
+        surface: Option<usize>,
+    },
     /// Rounding decides, or the budget was spent: until the finding's part of the way the surface is no
     /// deeper than it may be, and what comes then is not known.
     Undecided {
@@ -104,7 +112,8 @@ impl Kind {
             Kind::Deep { surface, .. }
             | Kind::Near { surface, .. }
             | Kind::Undecided { surface } => Some(*surface),
-            Kind::Inside | Kind::Opposite => None,
+            Kind::Inside { surface } => *surface,
+            Kind::Opposite => None,
         }
     }
 }

@@ -14,8 +14,10 @@
 //! the depth there, and its `most` bounds that of the whole motion. Depth is that of the tool's profile as it stands still:
 //! neither runout nor deflection counts. Motions are taken as [`Motion`] means them, rapid ones too.
 
+mod approach;
 mod finding;
 
+pub use approach::Approach;
 pub use finding::{Finding, Kind, Report, VerifyError};
 
 use crate::Pose;
@@ -150,19 +152,22 @@ impl<'a> Verifier<'a> {
     /// `parallel` on all cores; the findings are the same, in the program's order.
     ///
     /// # Errors
-    /// If the program states another unit than the part's.
+    /// If the program states another unit than the part's, or another cutter than the tool.
     pub fn check(&self, program: &Program) -> Result<Report, VerifyError> {
         program.check_unit(self.facets.unit())?;
+        program.check_cutter(self.tool.card(), self.facets.unit())?;
         let stops = &program.stops;
         let found = cores::ranges(stops.len(), TOGETHER, |range| {
             let mut checker = Checker::new(self)?;
             Ok(range.flat_map(|stop| checker.stop(stops, stop)).collect::<Vec<_>>())
         });
         let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
+        let findings: Vec<Finding> = found.into_iter().flatten().collect();
         Ok(Report {
             motions: stops.len().saturating_sub(1),
-            findings: found.into_iter().flatten().collect(),
-            inside_known: self.facets.solid,
+            approach: self.approach(stops, &findings)?,
+            findings,
+            inside_known: self.facets.has_inside(),
         })
     }
 
@@ -187,7 +192,12 @@ struct Checker<'a> {
 struct Mode<'a> {
     certifier: Certifier<'a>,
     limits: Vec<f64>,
+    /// How deep each surface can be at all, of those that were asked for.
+    greatest: Vec<Option<f64>>,
 }
+
+/// What is no less deep than this part of the greatest depth that there is goes right through.
+const THROUGH: f64 = 0.98;
 
 impl<'a> Checker<'a> {
     fn new(of: &Verifier<'a>) -> Result<Checker<'a>, VerifyError> {
@@ -197,7 +207,8 @@ impl<'a> Checker<'a> {
             for (surface, limit) in of.tool.card().surfaces.iter().zip(&limits) {
                 certifier = certifier.allow(&surface.name, *limit)?;
             }
-            Ok::<_, VerifyError>(Mode { certifier, limits })
+            let greatest = vec![None; limits.len()];
+            Ok::<_, VerifyError>(Mode { certifier, limits, greatest })
         };
         Ok(Checker { modes: [mode(false)?, mode(true)?], resolution: of.resolution })
     }
@@ -236,11 +247,11 @@ impl Mode<'_> {
     /// What a motion does that it may not, and at which part of the way.
     fn motion(&mut self, motion: &Motion, resolution: f64) -> Vec<(f64, Kind)> {
         let swept = self.certifier.sweep_clear(motion, resolution);
-        if matches!(swept, Sweep::Clear | Sweep::Untouched) {
+        if matches!(swept, Sweep::Clear | Sweep::SurfaceOnly) {
             return Vec::new();
         }
         let mut found = Vec::new();
-        let mut inside = swept == Sweep::Inside;
+        let mut inside = Vec::new();
         for (surface, allowed) in self.limits.iter().copied().enumerate() {
             if allowed == f64::INFINITY {
                 continue;
@@ -253,14 +264,25 @@ impl Mode<'_> {
                     found.push((at, Kind::Near { surface, margin, distance, least, witness }));
                 }
                 Along::Deeper { at, depth, most, witness } => {
-                    found.push((at, Kind::Deep { surface, allowed, depth, most, witness }));
+                    let greatest = self.greatest[surface].get_or_insert_with(|| {
+                        self.certifier.greatest_depth(surface).unwrap_or(f64::INFINITY)
+                    });
+                    let through = depth[1] >= THROUGH * *greatest;
+                    found
+                        .push((at, Kind::Deep { surface, allowed, depth, most, through, witness }));
                 }
-                Along::Inside => inside = true,
+                Along::Inside => inside.push(surface),
                 Along::Undecided(at) => found.push((at, Kind::Undecided { surface })),
             }
         }
-        if inside {
-            found.push((0.0, Kind::Inside));
+        if let (Sweep::Inside(surface), []) = (swept, &inside[..]) {
+            inside.push(surface);
+        }
+        if !inside.is_empty() && self.certifier.is_buried(&motion.pose(0.0)) == Some(true) {
+            found.push((0.0, Kind::Inside { surface: None }));
+        } else {
+            let of = |surface| (0.0, Kind::Inside { surface: Some(surface) });
+            found.extend(inside.into_iter().map(of));
         }
         found
     }

@@ -32,7 +32,7 @@ fn briefly(report: &Report) -> Vec<(usize, &'static str, Option<usize>)> {
     let word = |kind: &Kind| match kind {
         Kind::Deep { .. } => "deep",
         Kind::Near { .. } => "near",
-        Kind::Inside => "inside",
+        Kind::Inside { .. } => "inside",
         Kind::Undecided { .. } => "undecided",
         Kind::Opposite => "opposite",
     };
@@ -120,6 +120,11 @@ fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
         briefly(&check(&large, text, 0.1, &any)),
         [(1, "inside", None), (2, "inside", None)]
     );
+    // All of the tool but its shank is allowed to be anywhere, and its nut is in the open.
+    let deep = block([-200.0, -200.0, -200.0], [200.0, 200.0, 25.5]);
+    let limits = [any[0], any[1], ("nut", f64::INFINITY)];
+    let shank = briefly(&check(&deep, text, 0.1, &limits));
+    assert_eq!(shank, [(1, "inside", Some(2)), (2, "inside", Some(2))]);
     let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
     let below = check(&sheet, "0,0,-90,0,0,1\n", 0.0, &[]);
     assert!(below.findings.is_empty() && !below.inside_known);

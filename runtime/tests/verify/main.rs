@@ -58,7 +58,7 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
         there
     };
     match &found.kind {
-        Kind::Deep { surface, allowed, depth: [low, high], most, witness } => {
+        Kind::Deep { surface, allowed, depth: [low, high], most, witness, .. } => {
             let there = on(witness).depth[*surface];
             assert_eq!(*allowed, limits[*surface]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
@@ -131,7 +131,9 @@ fn brute_force_finds_nothing_else() {
                 let limits = limits(given, tolerance, *rapid);
                 let found: Vec<Finding> =
                     report.findings.iter().filter(|found| found.stop == stop).copied().collect();
-                for finding in found.iter().filter(|found| !matches!(found.kind, Kind::Inside)) {
+                for finding in
+                    found.iter().filter(|found| !matches!(found.kind, Kind::Inside { .. }))
+                {
                     assert_eq!((finding.line, finding.rapid), (stop + 1, *rapid));
                     judge(finding, mesh, &limits, (from, to));
                     deep += usize::from(matches!(finding.kind, Kind::Deep { .. }));

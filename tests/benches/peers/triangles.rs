@@ -146,7 +146,7 @@ impl Contender for Cleared<'_> {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let clear = matches!(self.0.clear(pose), Clear::Clear | Clear::Untouched);
+        let clear = matches!(self.0.clear(pose), Clear::Clear | Clear::SurfaceOnly);
         Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
     }
 }

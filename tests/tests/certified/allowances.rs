@@ -152,7 +152,7 @@ fn clear_goes_by_allowances() {
                 owned.most(&pose, &samples, |p| owned.over(p), draw).map_or(0.0, |best| best.value)
             };
             match found {
-                Clear::Clear | Clear::Inside | Clear::Untouched => {
+                Clear::Clear | Clear::Inside(_) | Clear::SurfaceOnly => {
                     let over = over(draw);
                     assert!(over <= 4.0 * rounding(&owned), "{text}: {over}");
                     seen[0] += 1;
@@ -197,7 +197,7 @@ fn sweeps_go_by_allowances() {
                     seen[2] += 1;
                     at
                 }
-                Sweep::Clear | Sweep::Inside | Sweep::Untouched => {
+                Sweep::Clear | Sweep::Inside(_) | Sweep::SurfaceOnly => {
                     seen[0] += 1;
                     1.0
                 }
@@ -336,7 +336,7 @@ fn a_level_face_alone_keeps_its_margin() {
         let above = Facets::new(&block([5.8, -0.1, tip], [5.9, 0.1, 5.0]));
         let mut certifier = allowing(&above, "Flat", &allowed);
         let found = certifier.clear(&pose([0.0; 3], UP));
-        assert_eq!(matches!(found, Clear::Clear | Clear::Untouched), clear, "{tip}: {found:?}");
+        assert_eq!(matches!(found, Clear::Clear | Clear::SurfaceOnly), clear, "{tip}: {found:?}");
         let way = Motion::new(&pose([0.0; 3], UP), &pose([0.0; 3], UP)).expect("one way");
         let found = certifier.sweep_clear(&way, 0.0);
         assert_eq!(found == Sweep::Clear, clear, "{tip}: {found:?}");

@@ -4,6 +4,7 @@
 
 mod allowances;
 mod apart;
+mod buried;
 mod closed_forms;
 mod end_in_part;
 mod fields;

@@ -1,7 +1,9 @@
 //! What is known of a tool: its profile, or how deep places are and how fast that changes.
 
+mod deepest;
 pub(crate) mod feature;
 pub(crate) mod field;
+pub(crate) mod interior;
 pub(crate) mod owners;
 pub(crate) mod section;
 

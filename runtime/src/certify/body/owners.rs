@@ -133,6 +133,30 @@ impl Owners {
         zone
     }
 
+    /// How deep the deepest place is that these own: no less than a hundredth below, unless the budget is
+    /// spent before.
+    ///
+    /// By rectangles that are halved, as depth changes by no more than the way.
+    pub(crate) fn greatest_depth(&self, section: &Section) -> f64 {
+        let mut greatest = 0.0;
+        let mut stack: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
+        for _ in 0..LOOKS {
+            let Some(rectangle) = stack.pop() else { break };
+            let (middle, reach) = rectangle.ball();
+            let depth = section.signed(middle);
+            let owner = |feature: usize| section.features[feature].away(middle);
+            let owner = section.owned(self).map(owner).fold(f64::INFINITY, f64::min);
+            if depth >= 0.0 && owner <= depth + section.error {
+                greatest = depth.max(greatest);
+            }
+            let owned = owner <= depth.abs() + 2.0 * reach + section.error;
+            if owned && depth + reach > 1.01 * greatest + section.error {
+                stack.extend(rectangle.halves());
+            }
+        }
+        greatest
+    }
+
     /// Where depth is restricted to what these own, it can be greatest at a place that is as far from three
     /// features; there are a few such places. Elsewhere it grows some way that they own, or away from the
     /// axis nowhere does.
@@ -207,5 +231,5 @@ impl Owners {
 /// Zones are found to this part of the tool's size.
 const FINE: u32 = 1 << 11;
 
-/// How many rectangles are looked at for peaks.
+/// How many rectangles are looked at for peaks, or for the deepest place.
 const LOOKS: u32 = 1 << 17;

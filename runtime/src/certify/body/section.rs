@@ -150,9 +150,14 @@ impl Section {
         }
     }
 
+    /// The distance of a place from the profile.
+    pub(crate) fn away(&self, p: Place) -> f64 {
+        self.nearest(0..self.features.len(), p).0
+    }
+
     /// How deep a place is; outside, the negative of its distance.
     pub(crate) fn signed(&self, p: Place) -> f64 {
-        let (value, _) = self.nearest(0..self.features.len(), p);
+        let value = self.away(p);
         if self.contains(p) { value } else { -value }
     }
 

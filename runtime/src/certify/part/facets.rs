@@ -4,6 +4,7 @@ use super::flat::Plane;
 use super::flats::Flats;
 use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
 use crate::{Mesh, Unit};
+use nalgebra::Point3;
 
 /// The triangles of a part, arranged for being asked how deep a tool is in them: a 16-wide tree of boxes
 /// like that of a cloud, whose leaves hold 16 triangles.
@@ -97,6 +98,13 @@ impl Facets {
         }
     }
 
+    /// The lowest and the highest corner of the box about the triangles.
+    pub fn bounds(&self) -> [Point3<f64>; 2] {
+        let corners = self.corners.iter().flatten().map(|corner| Point3::from(*corner));
+        let none = [Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3])];
+        corners.fold(none, |[low, high], corner| [low.inf(&corner), high.sup(&corner)])
+    }
+
     /// How many triangles there are.
     pub fn len(&self) -> usize {
         self.ids.len()
@@ -105,6 +113,11 @@ impl Facets {
     /// Whether there is none; a [`Mesh`] always has some.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
+    }
+
+    /// Whether it is known what is inside: the mesh is closed, consistently oriented, and not inside out.
+    pub fn has_inside(&self) -> bool {
+        self.solid
     }
 
     /// The unit of its lengths.

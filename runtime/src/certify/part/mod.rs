@@ -9,3 +9,4 @@ pub use facets::Facets;
 pub(crate) use facets::{Corners, flat};
 pub(crate) use flat::Ring;
 pub(crate) use flats::Face;
+pub(crate) use winding::Location;

@@ -1,39 +1,80 @@
-//! Whether a point is inside a part: how often its surface goes around the point, by what a ray crosses.
+//! Where a point is: the winding number of a part's surface about it, by what a ray crosses.
 
 use super::Facets;
 use crate::tree::WIDTH;
 use nalgebra::{Point3, Vector3};
+use robust::{Coord3D, orient3d};
 
-/// Ways that no edge of a part is likely to lie along.
-const WAYS: [[f64; 3]; 6] = [
-    [0.5377, 0.6421, 0.5465],
-    [-0.7013, 0.4547, -0.5492],
-    [0.2915, -0.8349, 0.4669],
-    [-0.4129, -0.3607, 0.8363],
-    [0.8713, -0.2287, -0.4341],
-    [-0.1741, 0.5613, -0.8091],
-];
+/// Where a point is beside a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Location {
+    Inside,
+    Outside,
+    /// The part has no inside: its mesh is not closed, not consistently oriented, or inside out.
+    Unknown,
+    /// The point is on the surface, or all rays that were tried meet an edge.
+    Undecided,
+}
+
+/// How many rays are tried. One is nearly always enough: a ray is refused only where it meets an edge
+/// exactly, as predicates are exact.
+const RAYS: u32 = 32;
+
+/// A ray ends this many sizes of the part away from its beginning, and so outside.
+const FAR: f64 = 8.0;
+
+/// The direction of a ray: on a spiral, so that all are different and none is along an axis.
+fn direction(ray: u32) -> Vector3<f64> {
+    /// The golden angle.
+    const TURN: f64 = 2.399_963_229_728_653;
+    let z = 1.0 - (2.0 * f64::from(ray) + 1.0) / f64::from(RAYS);
+    let (sin, cos) = (0.5 + TURN * f64::from(ray)).sin_cos();
+    let d = (1.0 - z * z).sqrt();
+    Vector3::new(d * cos, d * sin, z)
+}
+
+/// What a ray does at a triangle.
+enum Crossing {
+    Misses,
+    /// 1 through the outer side, -1 through the inner side.
+    Through(i32),
+    /// It meets an edge or a corner, or lies in the plane.
+    Edge,
+    /// It begins on the triangle.
+    Begins,
+}
 
 impl Facets {
-    /// Whether a point of the world, in the part's unit, is inside the part: `None` if the part has no
-    /// inside, or the point is so near to its surface that rounding would decide.
-    pub(crate) fn contains(&self, point: Point3<f64>) -> Option<bool> {
+    /// Where a point of the world is, in the part's unit.
+    ///
+    /// The answer is exact for the point's doubles and the triangles' corners as they were read, unless
+    /// products of four lengths overflow or underflow.
+    pub(crate) fn locate(&self, point: Point3<f64>) -> Location {
         if !self.solid {
-            return None;
+            return Location::Unknown;
         }
         let p = self.frame.inside([point.x, point.y, point.z]);
         let size = f64::from(self.frame.size);
         if p.iter().any(|part| part.abs() > size) {
-            return Some(false);
+            return Location::Outside;
         }
-        WAYS.iter().find_map(|way| self.turns(point, Vector3::from(*way))).map(|turns| turns > 0)
+        for ray in 0..RAYS {
+            match self.winding(point, direction(ray)) {
+                Ok(winding) if winding > 0 => return Location::Inside,
+                Ok(_) => return Location::Outside,
+                Err(Crossing::Begins) => return Location::Undecided,
+                Err(_) => {}
+            }
+        }
+        Location::Undecided
     }
 
-    /// How often the surface goes around a point, by what a ray crosses; `None` if it comes too near to
-    /// an edge.
-    fn turns(&self, point: Point3<f64>, way: Vector3<f64>) -> Option<i32> {
+    /// How often the surface goes around a point, by what a ray crosses; what it does where that does not
+    /// tell.
+    fn winding(&self, point: Point3<f64>, way: Vector3<f64>) -> Result<i32, Crossing> {
         let p = self.frame.inside([point.x, point.y, point.z]);
-        let mut turns = 0;
+        let end = point + way * (FAR * f64::from(self.frame.size) * self.frame.scale);
+        let mut winding = 0;
         let mut stack = vec![(0, 0)];
         while let Some((level, index)) = stack.pop() {
             for lane in 0..self.children(level, index) {
@@ -51,33 +92,88 @@ impl Facets {
                         stack.push((level + 1, child));
                     }
                 } else {
-                    turns += self.crossing(child, point, &way)?;
+                    match crossing(self.corners[child], point, end) {
+                        Crossing::Misses => {}
+                        Crossing::Through(side) => winding += side,
+                        other => return Err(other),
+                    }
                 }
             }
         }
-        Some(turns)
+        Ok(winding)
+    }
+}
+
+/// What the straight way from a point to another does at a triangle.
+fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
+    let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
+    let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
+    // On which side of each edge the line passes: on the same of all three if it crosses.
+    let sides = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
+    if sides.iter().any(|side| *side > 0.0) && sides.iter().any(|side| *side < 0.0) {
+        return Crossing::Misses;
+    }
+    // Positive on the inner side of the triangle's plane.
+    let [begins, ends] = [orient3d(a, b, c, p), orient3d(a, b, c, q)];
+    if begins > 0.0 && ends > 0.0 || begins < 0.0 && ends < 0.0 {
+        return Crossing::Misses;
+    }
+    if sides.iter().any(|side| *side == 0.0 || side.is_nan()) {
+        return Crossing::Edge;
+    }
+    match (begins > 0.0, begins < 0.0) {
+        (true, _) => Crossing::Through(1),
+        (_, true) => Crossing::Through(-1),
+        _ => Crossing::Begins,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unit;
+    use crate::mesh::shapes;
+
+    /// Points in the planes of a block's faces, on lines through its corners and edges, and on its surface.
+    #[test]
+    fn no_ray_is_lost_to_an_edge() {
+        let (low, high) = (Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
+        let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        let steps = [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0];
+        for x in steps {
+            for y in steps {
+                for z in steps {
+                    let far = [x, y, z].into_iter().map(f64::abs).fold(0.0, f64::max);
+                    let found = block.locate(Point3::new(x, y, z));
+                    let expected = match far {
+                        0.0..1.0 => Location::Inside,
+                        1.0 => Location::Undecided,
+                        _ => Location::Outside,
+                    };
+                    assert_eq!(found, expected, "{x} {y} {z}");
+                }
+            }
+        }
     }
 
-    /// 1 if a ray leaves through a triangle's outer side, -1 if it enters, 0 if it misses; `None` where
-    /// rounding would decide.
-    fn crossing(&self, triangle: usize, point: Point3<f64>, way: &Vector3<f64>) -> Option<i32> {
-        let [a, b, c] = self.corners[triangle].map(|corner| Point3::from(corner) - point);
-        let largest = a.amax().max(b.amax()).max(c.amax());
-        let nearly = 64.0 * f64::EPSILON * largest * largest;
-        let sides = [a.cross(&b), b.cross(&c), c.cross(&a)].map(|normal| normal.dot(way));
-        if sides.iter().any(|side| *side > nearly) && sides.iter().any(|side| *side < -nearly) {
-            return Some(0);
-        }
-        if sides.iter().any(|side| side.abs() <= nearly) {
-            return None;
-        }
-        // The ray's line crosses; it does so ahead if the plane is ahead.
-        let normal = (b - a).cross(&(c - a));
-        let (along, ahead) = (normal.dot(way), normal.dot(&a));
-        if ahead.abs() <= nearly * largest {
-            return None;
-        }
-        let forward = ahead * along > 0.0;
-        Some(if forward { if along > 0.0 { 1 } else { -1 } } else { 0 })
+    /// An ulp beside a face is still decided.
+    #[test]
+    fn an_ulp_beside_the_surface_is_decided() {
+        let (low, high) = (Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
+        let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        let at = |x: f64| block.locate(Point3::new(x, 0.25, 0.125));
+        assert_eq!(at(1.0f64.next_down()), Location::Inside);
+        assert_eq!(at(1.0), Location::Undecided);
+        assert_eq!(at(1.0f64.next_up()), Location::Outside);
+    }
+
+    #[test]
+    fn a_ray_from_the_end_of_the_other_counts_the_same() {
+        let (low, high) = (Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
+        let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        let inside = Point3::new(0.3, -0.7, 0.9);
+        let turns: Vec<i32> =
+            (0..RAYS).filter_map(|ray| block.winding(inside, direction(ray)).ok()).collect();
+        assert!(turns.len() > 28 && turns.iter().all(|winding| *winding == 1), "{turns:?}");
     }
 }

@@ -213,8 +213,8 @@ impl<'a> Leader<'a> {
         let motion = Motion::new(from, to).ok()?;
         let more = BETWEEN * self.rules.tolerance;
         match self.judge.certifier.sweep_clear(&motion, more) {
-            Sweep::Clear | Sweep::Untouched => Some(true),
-            Sweep::Touching(..) | Sweep::Inside => Some(false),
+            Sweep::Clear | Sweep::SurfaceOnly => Some(true),
+            Sweep::Touching(..) | Sweep::Inside(_) => Some(false),
             Sweep::Undecided(_) => None,
         }
     }

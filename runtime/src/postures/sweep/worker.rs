@@ -3,7 +3,7 @@
 use super::tally::Decided;
 use super::{Batch, Sweep, SweepError, Tally};
 use crate::Tool;
-use crate::certify::Touch;
+use crate::certify::{Containment, Location, Touch};
 use crate::pose::Pose;
 use crate::postures::holder::Holder;
 use crate::postures::map::merge;
@@ -69,7 +69,7 @@ impl<'a> Worker<'a> {
 impl<'a> Tried<'a> {
     fn new(of: &Sweep<'a>, tool: &'a dyn Tool, index: u16) -> Result<Tried<'a>, SweepError> {
         let (card, unit) = (tool.card(), of.facets.unit());
-        let judge = Judge::new(of.facets, tool, &of.rules)?;
+        let mut judge = Judge::new(of.facets, tool, &of.rules)?;
         Ok(Tried {
             index,
             touching: Touching::new(tool, unit),
@@ -100,7 +100,7 @@ impl<'a> Tried<'a> {
             return Access { tool: self.index, directions, stickout: None };
         };
         let mut reached: Vec<Posture> = Vec::new();
-        let mut outside = None;
+        let mut before = None;
         let mut postures = std::mem::take(&mut self.postures);
         let axes = of.directions.list().iter().map(|axis| Vector3::from(*axis));
         self.touching.list(spot, axes, &mut postures);
@@ -108,7 +108,7 @@ impl<'a> Tried<'a> {
         for contacts in postures.chunk_by(|a, b| a.direction == b.direction) {
             let mut decided = Decided::Plain;
             for posture in contacts.iter().filter(|contact| contact.niceness > of.rules.niceness) {
-                decided = self.decide(of, posture, spot, &mut outside);
+                decided = self.decide(of, posture, spot, &mut before);
                 if decided == Decided::Acceptable {
                     directions[posture.direction / 64] |= 1 << (posture.direction % 64);
                     reached.push(*posture);
@@ -142,7 +142,7 @@ impl<'a> Tried<'a> {
         of: &Sweep<'a>,
         posture: &Posture,
         spot: Spot,
-        outside: &mut Option<bool>,
+        before: &mut Option<Location>,
     ) -> Decided {
         let axis = Vector3::from(of.directions.list()[posture.direction]);
         let known = &mut self.known[posture.direction];
@@ -162,13 +162,19 @@ impl<'a> Tried<'a> {
             Touch::Undecided(_) => Decided::Undecided,
             Touch::No => {
                 // A place before the triangle, deep in the tool: if that is outside the part, so is the tool.
-                let before = spot.point + spot.normal * (2.0 * of.rules.tolerance);
-                let inside = if self.one_piece && certifier.is_too_deep(stands, &before) {
-                    *outside.get_or_insert_with(|| of.facets.contains(before) == Some(true))
-                } else {
-                    certifier.within(&pose) == Some(true)
-                };
-                if inside { Decided::Found } else { Decided::Acceptable }
+                let place = spot.point + spot.normal * (2.0 * of.rules.tolerance);
+                if self.one_piece && certifier.is_too_deep(stands, &place) {
+                    return match before.get_or_insert_with(|| of.facets.locate(place)) {
+                        Location::Inside => Decided::Found,
+                        Location::Outside | Location::Unknown => Decided::Acceptable,
+                        Location::Undecided => Decided::Undecided,
+                    };
+                }
+                match certifier.containment(&pose) {
+                    Containment::Inside(_) => Decided::Found,
+                    Containment::Outside | Containment::Unknown => Decided::Acceptable,
+                    Containment::Undecided => Decided::Undecided,
+                }
             }
         }
     }
@@ -182,7 +188,7 @@ impl<'a> Tried<'a> {
         record
     }
 
-    /// The least stick-out of all postures.
+    /// The least stick-out of all postures: no more than that of the tool as it is, which was judged.
     fn stickout(&self, of: &Sweep<'a>, reached: &[Posture]) -> Option<f64> {
         let holder = self.holder.as_ref()?;
         let mut least: Option<f64> = None;
@@ -192,6 +198,6 @@ impl<'a> Tried<'a> {
                 least = Some(needed);
             }
         }
-        least
+        least.map(|least| least.min(holder.own))
     }
 }

@@ -188,7 +188,7 @@ impl Judge<'_> {
 
     fn clear(&mut self, clear: Clear, most: f64, low: f64, at: &str) {
         match clear {
-            Clear::Clear | Clear::Untouched | Clear::Inside => {
+            Clear::Clear | Clear::SurfaceOnly | Clear::Inside(_) => {
                 if most > self.rounding || low > 0.0 {
                     self.wrong("said not to touch", at);
                 }

@@ -124,7 +124,7 @@ impl Judge<'_> {
             self.same(t);
         }
         match swept {
-            Sweep::Clear | Sweep::Inside | Sweep::Untouched => {
+            Sweep::Clear | Sweep::Inside(_) | Sweep::SurfaceOnly => {
                 self.row.proved += 1;
                 let closest = self.brute.closest(&self.way, TIMES, true, draw);
                 self.proved(&closest);
@@ -204,7 +204,7 @@ impl Judge<'_> {
         let [_, height] = self.pair.oracle.extent();
         let top = self.way.from.tip() + self.way.from.axis() * (0.9 * height * self.brute.length);
         let inside = turns(self.pair.mesh, top).round() > 0.0;
-        if matches!((swept, inside), (Sweep::Clear, true) | (Sweep::Inside, false)) {
+        if matches!((swept, inside), (Sweep::Clear, true) | (Sweep::Inside(_), false)) {
             self.wrong("it is on the other side");
         }
     }

@@ -103,7 +103,7 @@ pub fn hunt(
         let clear = |numbers: &Numbers, certifier: &mut Certifier<'_>| {
             let pose = pose(*numbers);
             pose.is_some_and(|pose| {
-                matches!(certifier.clear(&pose), Clear::Clear | Clear::Untouched)
+                matches!(certifier.clear(&pose), Clear::Clear | Clear::SurfaceOnly)
             })
         };
         let pair = neighbours(start, to, |numbers| clear(numbers, &mut certifier));

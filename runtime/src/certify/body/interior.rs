@@ -1,0 +1,345 @@
+//! Witnesses of the part of a tool that may not be inside the material: one point of each of its
+//! connected pieces.
+//!
+//! Each surface has a *limit*, how deep the part may be in it. The restricted interior `S` holds the
+//! points of the tool that are deeper than the limit of the surface nearest to them. If no triangle of
+//! the part meets `S`, each connected piece of `S` lies wholly inside the part or wholly outside, and one
+//! point of it decides which.
+//!
+//! **Every piece is found.** Let `p` be a point of `S` at depth `t`, and `q` its nearest point on the
+//! profile: on a feature, or on a reflex corner. The ball of radius `t` about `p` touches the profile at
+//! `q` and holds nothing of it; so does every smaller ball that touches there. All points of the normal
+//! from `q` between the limit `L` and `p` thus have `q` as their nearest point and lie in the same piece
+//! of `S`. So each piece meets an *offset curve*: the points of the normals of a feature, or of the fan
+//! of a reflex corner, at the distance `L`. A point of an offset curve is in the closure of `S` where no
+//! other feature is nearer than `L`. Along the curve that can change only where the curve crosses the
+//! axis or a curve at the distance `L` from another feature. These are lines and circles, so their
+//! crossings have closed forms; between two neighbouring crossings one point decides for all.
+
+use crate::certify::body::feature::{Feature, Place, cross, dot, minus, norm};
+use crate::certify::body::section::Section;
+
+/// A point of a tool's half plane that stands for a connected piece of its restricted interior.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Witness {
+    pub(crate) place: Place,
+    /// The feature that is the nearest.
+    pub(crate) feature: usize,
+}
+
+/// The inward normals of a feature, or of the fan of a reflex corner.
+#[derive(Clone, Copy, Debug)]
+enum Normals {
+    /// From `from + s along`, `s` up to `length`, along `inward`.
+    Line { from: Place, along: Place, length: f64, inward: Place },
+    /// From a circle: at the angle `from + s`, `s` up to `turn`, at the distance `t` from the profile the
+    /// point is `radius + grows t` away from the centre.
+    Arc { centre: Place, from: f64, turn: f64, radius: f64, grows: f64 },
+}
+
+/// A curve at a distance from a feature.
+#[derive(Clone, Copy)]
+enum Level {
+    /// All points whose product with a unit vector is `at`.
+    Line {
+        normal: Place,
+        at: f64,
+    },
+    Circle {
+        centre: Place,
+        radius: f64,
+    },
+}
+
+impl Normals {
+    fn of(feature: &Feature) -> Normals {
+        let [from, to] = feature.ends;
+        match feature.circle {
+            None => Normals::Line {
+                from,
+                along: feature.along,
+                length: feature.length,
+                inward: [-feature.along[1], feature.along[0]],
+            },
+            Some(circle) => {
+                let [first, last] = [from, to].map(|end| angle(minus(end, circle.centre)));
+                // A convex arc is walked counterclockwise about its centre, a concave one clockwise.
+                let (from, to) = if circle.convex { (first, last) } else { (last, first) };
+                let grows = if circle.convex { -1.0 } else { 1.0 };
+                Normals::Arc {
+                    centre: circle.centre,
+                    from,
+                    turn: (to - from).rem_euclid(std::f64::consts::TAU),
+                    radius: circle.radius,
+                    grows,
+                }
+            }
+        }
+    }
+
+    /// The fan of normals between two features that meet in a reflex corner.
+    fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
+        let [arrives, leaves] = [before.heading(1), after.heading(0)];
+        if cross(arrives, leaves) >= 0.0 {
+            return None;
+        }
+        let inward = |way: Place| angle([-way[1], way[0]]);
+        let (from, to) = (inward(leaves), inward(arrives));
+        Some(Normals::Arc {
+            centre: after.ends[0],
+            from,
+            turn: (to - from).rem_euclid(std::f64::consts::TAU),
+            radius: 0.0,
+            grows: 1.0,
+        })
+    }
+
+    /// How far the parameter goes.
+    fn end(&self) -> f64 {
+        match self {
+            Normals::Line { length, .. } => *length,
+            Normals::Arc { turn, .. } => *turn,
+        }
+    }
+
+    /// The point at the distance `t` on a normal.
+    fn point(&self, s: f64, t: f64) -> Place {
+        match self {
+            Normals::Line { from, along, inward, .. } => {
+                [0, 1].map(|k| from[k] + s * along[k] + t * inward[k])
+            }
+            Normals::Arc { centre, from, radius, grows, .. } => {
+                let far = radius + grows * t;
+                let (sin, cos) = (from + s).sin_cos();
+                [centre[0] + far * cos, centre[1] + far * sin]
+            }
+        }
+    }
+
+    /// Beyond this distance the normals have met.
+    fn longest(&self) -> f64 {
+        match self {
+            Normals::Arc { radius, grows, .. } if *grows < 0.0 => *radius,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The parameters at which the offset curve at the distance `t` crosses a level.
+    fn crossings(&self, t: f64, level: Level, into: &mut Vec<f64>) {
+        let end = self.end();
+        let mut add = |s: f64| {
+            if s > 0.0 && s < end {
+                into.push(s);
+            }
+        };
+        match (self, level) {
+            (Normals::Line { along, .. }, Level::Line { normal, at }) => {
+                let slope = dot(*along, normal);
+                if slope != 0.0 {
+                    add((at - dot(self.point(0.0, t), normal)) / slope);
+                }
+            }
+            (Normals::Line { along, .. }, Level::Circle { centre, radius }) => {
+                let out = minus(self.point(0.0, t), centre);
+                let (middle, off) = (-dot(*along, out), cross(*along, out));
+                let half = radius * radius - off * off;
+                if half >= 0.0 {
+                    let half = half.sqrt();
+                    add(middle - half);
+                    add(middle + half);
+                }
+            }
+            (Normals::Arc { centre, from, radius, grows, .. }, level) => {
+                let far = radius + grows * t;
+                // In both cases the crossings have the same cosine to one direction.
+                let (way, cosine) = match level {
+                    Level::Line { normal, at } => (normal, (at - dot(*centre, normal)) / far),
+                    Level::Circle { centre: other, radius } => {
+                        let way = minus(other, *centre);
+                        let apart = norm(way);
+                        let cosine =
+                            (far * far + apart * apart - radius * radius) / (2.0 * far * apart);
+                        (way, cosine)
+                    }
+                };
+                if (-1.0..=1.0).contains(&cosine) {
+                    let (middle, half) = (angle(way), cosine.acos());
+                    for crossing in [middle - half, middle + half] {
+                        add((crossing - from).rem_euclid(std::f64::consts::TAU));
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn angle(way: Place) -> f64 {
+    way[1].atan2(way[0])
+}
+
+/// All points at a distance from a feature are on these.
+fn levels(feature: &Feature, t: f64) -> impl Iterator<Item = Level> {
+    let sides = match feature.circle {
+        None => {
+            let normal = [-feature.along[1], feature.along[0]];
+            let at = dot(feature.ends[0], normal);
+            [-t, t].map(|t| Level::Line { normal, at: at + t })
+        }
+        Some(circle) => [circle.radius + t, (circle.radius - t).abs()]
+            .map(|radius| Level::Circle { centre: circle.centre, radius }),
+    };
+    let ends = feature.ends.map(|centre| Level::Circle { centre, radius: t });
+    sides.into_iter().chain(ends)
+}
+
+/// The axis of the tool.
+const AXIS: Level = Level::Line { normal: [1.0, 0.0], at: 0.0 };
+
+/// The restricted interior of a tool with a profile.
+struct Interior<'a> {
+    section: &'a Section,
+    /// How deep the part may be where each feature is the nearest; infinity for any depth.
+    limits: &'a [f64],
+}
+
+/// A point of each connected piece of the interior that is deeper than its features' limits by more than
+/// `tolerance`; pieces that are not shown to be one may have several. What rounding adds is taken off.
+pub(crate) fn witnesses(section: &Section, limits: &[f64], tolerance: f64) -> Vec<Witness> {
+    let interior = Interior { section, limits };
+    let more = tolerance + section.error;
+    let mut found = Vec::new();
+    for (index, feature) in section.features.iter().enumerate() {
+        interior.add(&Normals::of(feature), limits[index] + more, index, &mut found);
+        let Some(next) = section.features.get(index + 1) else { continue };
+        // Points of a fan are as near to both features, and so belong to the stricter.
+        let owner = if limits[index + 1] < limits[index] { index + 1 } else { index };
+        if let Some(fan) = Normals::fan(feature, next) {
+            interior.add(&fan, limits[owner] + more, owner, &mut found);
+        }
+    }
+    interior.joined(found, more)
+}
+
+impl Interior<'_> {
+    /// Adds a witness of each run of normals that are longer than a limit.
+    fn add(&self, normals: &Normals, limit: f64, feature: usize, found: &mut Vec<Witness>) {
+        if limit.is_infinite() || limit >= normals.longest() {
+            return;
+        }
+        let mut cuts = vec![0.0, normals.end()];
+        normals.crossings(limit, AXIS, &mut cuts);
+        for other in &self.section.features {
+            levels(other, limit).for_each(|level| normals.crossings(limit, level, &mut cuts));
+        }
+        cuts.sort_by(f64::total_cmp);
+        // The widest span of each run of spans whose normals are long enough.
+        let mut run: Option<[f64; 2]> = None;
+        let spans = cuts.windows(2).map(|pair| [pair[0], pair[1]]);
+        for span in spans.filter(|[from, to]| from < to).map(Some).chain([None]) {
+            let long = span.filter(|[from, to]| {
+                self.is_free(normals.point(f64::midpoint(*from, *to), limit), limit)
+            });
+            match (run, long) {
+                (Some(widest), Some(span)) if span[1] - span[0] <= widest[1] - widest[0] => {}
+                (_, Some(span)) => run = Some(span),
+                (Some([from, to]), None) => {
+                    let s = f64::midpoint(from, to);
+                    let longest = self.length(normals, s, limit);
+                    let place = normals.point(s, limit + DEEP * (longest - limit));
+                    found.push(Witness { place, feature });
+                    run = None;
+                }
+                (None, None) => {}
+            }
+        }
+    }
+
+    /// Whether nothing of the profile is nearer to a point than its foot, `t` away.
+    fn is_free(&self, p: Place, t: f64) -> bool {
+        p[0] >= 0.0 && self.section.away(p) >= t * (1.0 - NEARLY)
+    }
+
+    /// How far a normal that is at least `least` long goes before something else of the profile is as near
+    /// as its foot, or to the axis.
+    fn length(&self, normals: &Normals, s: f64, least: f64) -> f64 {
+        let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.size)];
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            if self.is_free(normals.point(s, middle), middle) {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        low
+    }
+
+    /// How far about a point of the tool all points are deeper than the limit of their nearest feature by
+    /// more than `more`; nothing if that is not shown.
+    ///
+    /// Let the point be `d` deep. No point within `r` of it is less than `d - r` deep, and its nearest
+    /// feature is no farther than `d + 2r` from the point. So for each limit `l`, `r` may be as large as
+    /// `d - l`, or as half of what the features of that limit are farther away than `d`.
+    fn margin(&self, p: Place, more: f64) -> f64 {
+        let depth = self.section.signed(p);
+        let of = |(feature, limit): (&Feature, &f64)| {
+            (depth - limit - more).max(0.5 * (feature.away(p) - depth))
+        };
+        let features = self.section.features.iter().zip(self.limits);
+        features.map(of).fold(depth, f64::min)
+    }
+
+    /// Whether the straight way between two points is shown to stay in the interior.
+    fn connects(&self, from: Place, to: Place, more: f64) -> bool {
+        let way = minus(to, from);
+        let length = norm(way);
+        let mut at = 0.0;
+        for _ in 0..STEPS {
+            if at >= length {
+                return true;
+            }
+            let p = [0, 1].map(|k| from[k] + way[k] * (at / length));
+            let margin = self.margin(p, more);
+            if margin <= self.section.error {
+                return false;
+            }
+            at += margin;
+        }
+        false
+    }
+
+    /// Drops witnesses of pieces that have another: of those that are connected one is left, the one with
+    /// the most room about it.
+    fn joined(&self, mut found: Vec<Witness>, more: f64) -> Vec<Witness> {
+        let margin = |witness: &Witness| self.margin(witness.place, more);
+        found.sort_by(|one, other| margin(other).total_cmp(&margin(one)));
+        let mut kept: Vec<Vec<Witness>> = Vec::new();
+        for witness in found {
+            let mut rest = Vec::new();
+            let mut all = vec![witness];
+            for piece in kept {
+                let one = piece.iter().any(|p| self.connects(p.place, witness.place, more));
+                if one {
+                    all = [piece, all].concat();
+                } else {
+                    rest.push(piece);
+                }
+            }
+            rest.push(all);
+            kept = rest;
+        }
+        kept.into_iter().map(|piece| piece[0]).collect()
+    }
+}
+
+/// A witness stands at this part of the way from the limit to where the normal ends.
+const DEEP: f64 = 0.75;
+
+/// What a distance may be less by for rounding alone, as a part of it.
+const NEARLY: f64 = 1e-12;
+
+/// How often the length of a normal is halved: to a part in 2^48 of the tool's size.
+const HALVINGS: u32 = 50;
+
+/// How many steps a way is walked in at most, before it is not shown to stay inside.
+const STEPS: u32 = 256;

@@ -1,0 +1,112 @@
+//! The words of APT-CL that a reader may pass over, and why it may not pass over others.
+//!
+//! A word is passed over only if it can neither move the tool nor change what positions mean, whatever
+//! its arguments, or with the arguments that are given. All other words are refused: what is not
+//! understood could be a motion.
+
+use super::{Fault, number};
+
+/// Words whose line is prose to its end: neither `$` nor `;` means anything in it.
+const PROSE: [&str; 3] = ["PARTNO", "PPRINT", "REMARK"];
+
+/// Words that write text to the control as it stands, to the end of the line: it may hold any motion.
+const VERBATIM: [&str; 2] = ["INSERT", "LETTER"];
+
+/// Words that can neither move the tool nor change what positions mean: names and messages, tolerances
+/// that the positions have already been computed with, speeds and feeds, coolant, stops and waits, the
+/// block numbers and the file of the post-processor, planes that only other words use, displays.
+#[rustfmt::skip]
+const INERT: [&str; 38] = [
+    "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
+    "INTOL", "OUTTOL", "TOLER", "LINTOL", "MCHTOL", "CUT",
+    "FEDRAT", "FEDTO", "SPINDL", "COOLNT", "OPSTOP", "STOP", "DELAY", "DWELL", "END", "REWIND",
+    "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY",
+    "TOOL PATH", "TLDATA", "TOOLNO",
+];
+
+/// Words that move the tool, or decide whether and how often it moves.
+#[rustfmt::skip]
+const MOVES: [&str; 49] = [
+    "GODLTA", "GO", "GOFWD", "GOBACK", "GOLFT", "GORGT", "GOUP", "GODOWN", "GOHOME", "GOCLER",
+    "GOABS", "INDIRP", "INDIRV", "LINEAR", "MOVE", "MOVETO", "ARC", "CIRC", "ARCDAT", "DRILL",
+    "TLON", "TLLFT", "TLRGT", "CIRCLE", "MOVARC", "HELIX", "NURBS", "SPLINE", "THREAD", "TAP",
+    "BORE", "REAM", "CYCLE", "POCKET", "SCURV", "RETRCT", "RETURN", "PROBE", "CALL", "MACRO",
+    "TERMAC", "LOOPST", "LOOPND", "JUMPTO", "RUN", "COPY", "DNTCUT", "OPSKIP", "DELETE",
+];
+
+/// Words that change what positions mean: their frame, their point of the tool, whether they are
+/// increments, or which tool and spindle is at them.
+#[rustfmt::skip]
+const FRAMES: [&str; 21] = [
+    "MSYS", "CSYS", "TRACUT", "TRANS", "ORIGIN", "ROTABL", "ROTHED", "ROTATE", "TLAXIS", "TILT",
+    "PLANE", "SCALE", "MIRROR", "CUTCOM", "OFSTNO", "FIXOFF", "THICK", "OFFSET", "MODE", "HEAD",
+    "TURRET",
+];
+
+/// Returns whether a line is prose to its end.
+pub(super) fn is_prose(line: &str) -> bool {
+    PROSE
+        .iter()
+        .chain(&VERBATIM)
+        .any(|prose| line.get(..prose.len()).is_some_and(|word| word.eq_ignore_ascii_case(prose)))
+}
+
+/// Decides whether a statement may be passed over: its word in capitals, with one space between parts.
+///
+/// # Errors
+/// If it moves the tool, changes what positions mean, or is not known to do neither.
+pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, Fault> {
+    // Prose need not have a `/`.
+    if let Some(prose) = PROSE.iter().find(|prose| word.starts_with(**prose)) {
+        return Ok((*prose).to_owned());
+    }
+    if let Some(verbatim) = VERBATIM.iter().find(|verbatim| word.starts_with(**verbatim)) {
+        return Err(Fault::Verbatim { word: (*verbatim).to_owned() });
+    }
+    if INERT.contains(&word) || is_inert_with(word, arguments) {
+        return Ok(word.to_owned());
+    }
+    if is_g_code(word) {
+        return Err(Fault::GCode { block: super::shown(word) });
+    }
+    // `TLLFT,GOFWD/...` and `L1) GOTO/...` are motions as well.
+    let known = |list: &[&str]| {
+        word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
+    };
+    if let Some(word) = known(&FRAMES) {
+        return Err(Fault::Frame { word });
+    }
+    match known(&MOVES) {
+        Some(word) => Err(Fault::Moves { word }),
+        None => Err(Fault::UnknownWord { word: super::shown(word) }),
+    }
+}
+
+/// Returns whether a statement is a block of G-code: letters, each with a number.
+fn is_g_code(statement: &str) -> bool {
+    let is_address = |word: &str| {
+        let number = word.strip_prefix(|c: char| c.is_ascii_alphabetic());
+        number.is_some_and(|number| number.parse::<f64>().is_ok())
+    };
+    statement.split(' ').all(is_address)
+}
+
+/// Returns whether a word that could change something changes nothing with these arguments.
+fn is_inert_with(word: &str, arguments: &str) -> bool {
+    let is = |word: &str| arguments.eq_ignore_ascii_case(word);
+    let numbers = || arguments.split(',').map(number).collect::<Result<Vec<f64>, Fault>>();
+    match word {
+        "CYCLE" | "CUTCOM" | "OPSKIP" => is("OFF"),
+        "TRACUT" | "COPY" => is("NOMORE"),
+        "MODE" => is("ABSOL"),
+        "TLAXIS" => is("0,0,1"),
+        "ORIGIN" | "TRANS" | "THICK" => {
+            numbers().is_ok_and(|values| values.iter().all(|v| *v == 0.0))
+        }
+        // The part's own coordinates: origin, x axis, y axis.
+        "MSYS" => {
+            numbers().is_ok_and(|values| values == [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+        }
+        _ => false,
+    }
+}
