@@ -223,7 +223,12 @@ impl Summary {
             let part = percent(count as f64, tally.postures as f64);
             writeln!(out, "{count:>12} {part:>7}  {words}")?;
         }
-        writeln!(out, "reached: {reached}")?;
+        let known = if self.inside_known {
+            ""
+        } else {
+            ", by the surface alone: what is inside is unknown"
+        };
+        writeln!(out, "reached: {reached}{known}")?;
         for tool in &self.tools {
             let stickout = tool.stickout.map_or(String::new(), |[least, most]| {
                 let [least, most] = [least, most].map(|value| length(value, unit));

@@ -343,3 +343,91 @@ const HALVINGS: u32 = 50;
 
 /// How many steps a way is walked in at most, before it is not shown to stay inside.
 const STEPS: u32 = 256;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Tool;
+
+    crate::tool! {
+        tool Slender "a flat end, a long flute" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (0.5, 0) as face cutting;
+                line to (0.5, 70) as flute cutting;
+                line to (0, 70) as top;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Dumbbell "two cylinders of 3 mm radius, and a neck of 1 mm" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (3, 0), (3, 10) as lower cutting;
+                line to (1, 10), (1, 30), (3, 30) as neck;
+                line to (3, 40), (0, 40) as upper;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Chamfered "a chamfer of a nanometre" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (4.999999, 0) as face cutting;
+                line to (5, 0.000001) as chamfer cutting;
+                line to (5, 50), (0, 50) as flute;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    /// Witnesses of a tool whose surfaces have limits by name; all others may be as deep as they will.
+    fn of(tool: &dyn Tool, limits: &[(&str, f64)]) -> Vec<Witness> {
+        let card = tool.card();
+        let section = Section::new(card, 1e-12).expect("a function of z");
+        let limit = |feature: &Feature| {
+            let name = &*card.surfaces[feature.surface].name;
+            limits
+                .iter()
+                .find(|(known, _)| *known == name)
+                .map_or(f64::INFINITY, |(_, limit)| *limit)
+        };
+        let limits: Vec<f64> = section.features.iter().map(limit).collect();
+        let found = witnesses(&section, &limits, 1e-9);
+        for witness in &found {
+            assert!(section.signed(witness.place) > limits[witness.feature], "{witness:?}");
+            let own = section.features[witness.feature].away(witness.place);
+            assert!((own - section.signed(witness.place)).abs() < 1e-12, "{witness:?}");
+        }
+        found
+    }
+
+    #[test]
+    fn a_thin_piece_is_found() {
+        let [face] = of(&Slender, &[("face", 0.0)])[..] else { panic!("one piece") };
+        assert!(face.place[1] < 0.5 && face.feature == 0, "{face:?}");
+        let [chamfer] = of(&Chamfered, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
+        assert_eq!(chamfer.feature, 1);
+    }
+
+    #[test]
+    fn pieces_are_as_many_as_there_are() {
+        let all = |limit: f64| [("lower", limit), ("neck", limit), ("upper", limit)];
+        assert_eq!(of(&Dumbbell, &all(0.0)).len(), 1);
+        assert_eq!(of(&Dumbbell, &all(0.9)).len(), 1);
+        // The neck is nowhere so deep.
+        let heights: Vec<f64> = of(&Dumbbell, &all(1.5)).iter().map(|w| w.place[1]).collect();
+        let [low, high] = heights[..] else { panic!("two pieces: {heights:?}") };
+        assert!(low.min(high) < 10.0 && low.max(high) > 30.0, "{heights:?}");
+        assert_eq!(of(&Dumbbell, &all(3.1)), []);
+        assert_eq!(of(&Dumbbell, &[("lower", 0.0), ("upper", 0.0)]).len(), 2);
+        assert_eq!(of(&Dumbbell, &[]), []);
+    }
+}
