@@ -3,10 +3,11 @@
 use crate::arguments::{ALL_SCENES, Bench};
 use crate::failure::Failure;
 use crate::files::Found;
+use crate::program;
 use std::io::Write;
 use std::path::Path;
+use touchoff::Unit;
 use touchoff::mesh::Shape;
-use touchoff::{Program, Unit};
 use touchoff_tests::measure::bench::{self, Own, Plan, Row};
 
 /// Measures, and prints a row at a time.
@@ -53,9 +54,7 @@ fn scenes(wanted: &Bench) -> Vec<&str> {
 
 fn own<'t>(part: &Path, unit: Unit, found: &'t Found, path: &Path) -> Result<Own<'t>, Failure> {
     let tool = found.tool();
-    let program = Program::read(path)?;
-    program.check_unit(unit)?;
-    program.check_poses(tool.card())?;
+    let program = program::read(path, tool.card(), unit)?;
     let file = part.display().to_string();
     let Shape::Mesh(mesh) = Shape::read(part, unit)? else {
         return Err(Failure::NoTriangles { file, what: "touchoff bench" });

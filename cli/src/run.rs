@@ -4,7 +4,7 @@ use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
 use crate::part::{self, Fine, Loaded, NO_INSIDE};
-use crate::plausibility;
+use crate::program;
 use crate::timing::{Timing, nanoseconds};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -75,11 +75,8 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     // Everything that can be wrong is found before the first row is written.
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
-    let program = Program::read(&wanted.path)?;
     let unit = wanted.part.unit;
-    program.check_unit(unit)?;
-    program.check_poses(tool.card())?;
-    program.check_cutter(tool.card(), unit)?;
+    let program = program::read(&wanted.path, tool.card(), unit)?;
     let Loaded { part, mesh, prove } = part::load(&wanted.part, Some(tool.card()), Fine::Proof)?;
     let certify = [wanted.certify, prove].into_iter().flatten().reduce(f64::min);
     let facets = match (certify, &mesh) {
@@ -158,7 +155,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
 
 /// What was loaded.
 fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
-    plausibility::passed_over(program);
+    program::passed_over(program);
     say!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
         card.name,

@@ -4,15 +4,15 @@ use crate::arguments::Verify;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
 use crate::part::{self, NO_INSIDE};
-use crate::plausibility;
+use crate::program;
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use std::io::Write;
 use std::process::ExitCode;
+use touchoff::Unit;
 use touchoff::certify::{Facets, Witness};
 use touchoff::tool::Card;
 use touchoff::verify::{Finding, Kind, Report, Verifier};
-use touchoff::{Program, Unit};
 
 /// The exit status where something is found.
 const FOUND: u8 = 1;
@@ -102,12 +102,10 @@ impl<'a> Row<'a> {
 /// Holds a program to a part.
 pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
-    let program = Program::read(&wanted.program)?;
     let unit = wanted.mesh.unit;
-    program.check_unit(unit)?;
+    let program = program::read(&wanted.program, found.tool().card(), unit)?;
     program.check_motions()?;
-    let compared = program.check_cutter(found.tool().card(), unit)?;
-    let mesh = part::mesh(&wanted.mesh.part, wanted.mesh.unit, "verify")?;
+    let mesh = part::mesh(&wanted.mesh.part, unit, "verify")?;
     let facets = Facets::new(&mesh);
     let mut verifier = Verifier::new(&facets, found.tool())?.tolerance(wanted.tolerance)?;
     if let Some(resolution) = wanted.resolution {
@@ -130,10 +128,7 @@ pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
         }
     }
     out.flush()?;
-    plausibility::print(&report, &program, unit);
-    if let Some(line) = compared {
-        say!("{file}:{line}: CUTTER is not compared: it does not describe `{}`", card.name);
-    }
+    program::print(&report, &program, unit);
     say!("{}", summary(&report, card, unit));
     Ok(ExitCode::from(status(&report, wanted)))
 }

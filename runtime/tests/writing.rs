@@ -99,7 +99,8 @@ fn a_program_is_written_as_people_write_it() {
     );
     assert_eq!(csv(&program), "x,y,z,i,j,k\n1,2.5,0,0,0,1\n0.0000001,-2,1000000000,0.6,0,0.8\n");
     let read = Program::parse(&text, "again.cl").expect("it is a program");
-    assert_eq!(read.ignored, []);
+    assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);
+    assert_eq!(read.check_cutter(Flat.card(), Unit::Inch).expect("the same"), None);
     assert_eq!(read.unit, Some(Unit::Inch));
     assert_eq!(read.stops.iter().map(|stop| stop.line).collect::<Vec<_>>(), [6, 7]);
 }
@@ -162,7 +163,7 @@ proptest! {
         prop_assert!(text.lines().all(|line| line.len() <= 72), "{}", text);
         let read = Program::parse(&text, "again").expect("it is a program");
         prop_assert_eq!(read.unit, unit);
-        prop_assert_eq!(read.ignored.len(), 0);
+        prop_assert_eq!(&read.ignored, &[(1, "PARTNO".to_owned())]);
         let table = Program::parse(csv(&made), "again").expect("it is a table");
         prop_assert_eq!((read.stops.len(), table.stops.len()), (made.stops.len(), made.stops.len()));
         for ((one, other), row) in made.stops.iter().zip(&read.stops).zip(&table.stops) {

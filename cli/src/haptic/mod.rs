@@ -6,6 +6,7 @@ use crate::arguments::{Haptic, Wielded};
 use crate::failure::Failure;
 use crate::files::Found;
 use crate::part::{self, Fine};
+use crate::program;
 use kept::{Kept, Table, map_of};
 use nalgebra::{Point3, Vector3};
 use serde::Serialize;
@@ -20,7 +21,7 @@ use touchoff::haptic::{
 };
 use touchoff::postures::Recorder;
 use touchoff::tool::{Card, Shape};
-use touchoff::{Part, Pose, Probe, Program, Tool, Unit};
+use touchoff::{Part, Pose, Probe, Tool, Unit};
 
 /// States that a record can be behind: some seconds.
 const ROOM: usize = 1 << 16;
@@ -77,9 +78,7 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
             wield(hand, (wanted, json, cycles), (&part, tool), record)
         }
         Wielded::Path(path) => {
-            let program = Program::read(&path)?;
-            program.check_unit(unit)?;
-            program.check_poses(tool.card())?;
+            let program = program::read(&path, tool.card(), unit)?;
             let poses: Vec<Pose> = program.stops.iter().map(|stop| stop.pose).collect();
             let played = Recorded::new(poses, cycles, limits).map_err(Failure::Motion)?;
             wield(played, (wanted, json, cycles), (&part, tool), record)

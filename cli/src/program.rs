@@ -1,10 +1,28 @@
-//! Whether program, part and unit belong together: where both are, and what of the program was passed over.
+//! Programs: read and compared with tool and unit; where one is beside the part, and what of it was passed over.
 
+use crate::failure::Failure;
 use crate::files::{figure, length};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
+use std::path::Path;
+use touchoff::tool::Card;
 use touchoff::verify::{Approach, Report};
 use touchoff::{Program, Unit};
+
+/// Reads a program for a tool and a part in that unit.
+pub(crate) fn read(path: &Path, card: &Card, unit: Unit) -> Result<Program, Failure> {
+    let program = Program::read(path)?;
+    program.check_unit(unit)?;
+    program.check_poses(card)?;
+    if let Some(line) = program.check_cutter(card, unit)? {
+        say!(
+            "{}:{line}: CUTTER is not compared: it cannot describe `{}`",
+            path.display(),
+            card.name
+        );
+    }
+    Ok(program)
+}
 
 /// Prints the boxes of part and program, how near the tool comes, and what was passed over.
 pub(crate) fn print(report: &Report, program: &Program, unit: Unit) {
