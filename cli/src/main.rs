@@ -1,12 +1,7 @@
 //! The `touchoff` program: words for people over the libraries.
 
-/// A line on standard error; where that cannot be written, nobody is there to be told.
-macro_rules! say {
-    ($($words:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stderr(), $($words)*);
-    }};
-}
+#[macro_use]
+mod output;
 
 mod arguments;
 mod bench;
@@ -66,14 +61,15 @@ fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
 /// The exit status of most that fails.
 const FAILED: u8 = 1;
 
+/// The exit status of wrong options, those that the parser of options refuses too.
+const WRONG_USAGE: u8 = 2;
+
 fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
     match done {
         Ok(code) => code,
-        // Whoever read the output has enough of it.
-        Err(failure) if failure.is_enough() => ExitCode::SUCCESS,
         Err(failure) => {
             say!("error: {failure}");
-            ExitCode::from(failed)
+            ExitCode::from(if failure.is_usage() { WRONG_USAGE } else { failed })
         }
     }
 }

@@ -9,6 +9,7 @@ mod error;
 mod export;
 mod identity;
 mod merge;
+mod snapshot;
 #[cfg(test)]
 mod tests;
 
@@ -16,14 +17,18 @@ pub use error::MapError;
 pub use identity::{Difference, Identity, PartStamp, ToolStamp};
 
 use super::{Access, Record, Row};
+use crate::AtomicFile;
 use coding::{decode, encode};
 pub(super) use merge::merge;
 use redb::{
     Builder, Database, Range, ReadOnlyTable, ReadableDatabase, ReadableTable, TableDefinition,
 };
-use std::fs::{self, File};
-use std::io::{self, Read};
+use snapshot::{Draft, Header, copy};
+use std::collections::BTreeSet;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
 use std::path::Path;
+use std::time::Duration;
 
 const FACTS: TableDefinition<'_, &str, &[u8]> = TableDefinition::new("facts");
 const ROWS: TableDefinition<'_, u32, &[u8]> = TableDefinition::new("rows");
@@ -32,8 +37,11 @@ const VERSION: &str = "version";
 const IDENTITY: &str = "identity";
 /// The version that is written, and the newest that is read.
 const NEWEST: u32 = 1;
-/// What every `redb` store begins with.
-const MAGIC: &[u8] = b"redb\x1A\x0A\xA9\x0D\x0A";
+/// How often a map is copied that is written into meanwhile, and how long to wait after the first few.
+const COPIES: u32 = 200;
+const PAUSE: Duration = Duration::from_millis(5);
+/// Bytes that the store may keep of a copy that is in memory already.
+const CACHE: usize = 1 << 22;
 
 /// Postures at a part, triangle by triangle, in a file.
 ///
@@ -67,6 +75,8 @@ pub struct PostureMap {
     database: Database,
     identity: Identity,
     file: String,
+    /// Whether this is a copy of the file, made to be read.
+    is_copy: bool,
 }
 
 /// How much of a part is known.
@@ -84,6 +94,8 @@ pub struct Coverage {
 pub struct Rows<'a> {
     range: Range<'static, u32, &'static [u8]>,
     map: &'a PostureMap,
+    /// The first triangle that may come next.
+    next: u64,
 }
 
 impl Iterator for Rows<'_> {
@@ -93,6 +105,10 @@ impl Iterator for Rows<'_> {
         let entry = self.range.next()?;
         Some(entry.map_err(|error| self.map.says(error)).and_then(|(triangle, bytes)| {
             let triangle = triangle.value();
+            if u64::from(triangle) < self.next {
+                return Err(self.map.damaged(format!("triangle {triangle} is there twice")));
+            }
+            self.next = u64::from(triangle) + 1;
             Ok((triangle, self.map.decoded(triangle, bytes.value())?))
         }))
     }
@@ -109,42 +125,86 @@ impl PostureMap {
     /// is open in another process; or cannot be read and written.
     pub fn open(path: impl AsRef<Path>, identity: &Identity) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
+        if let Some(what) = identity.oversized() {
+            return Err(MapError::Oversized { file: path.display().to_string(), what });
+        }
         if matches!(path.try_exists(), Ok(false)) {
             begin(path, identity)?;
         }
-        let map = PostureMap::read(path)?;
+        let map = PostureMap::resume(path)?;
         match map.identity.differs(identity) {
             Some(difference) => Err(MapError::Differs { file: map.file, difference }),
             None => Ok(map),
         }
     }
 
-    /// Opens a map for what it is, to look at or to export.
+    /// Opens a map for what it is, to go on with it.
     ///
     /// # Errors
     /// Those of [`PostureMap::open`] but of belonging; a file that is not there is one that cannot be read.
+    pub fn resume(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let (bytes, header) = start(path)?;
+        let length = bytes.metadata().map_err(|source| unreadable(&file, source))?.len();
+        drop(bytes);
+        if header.is_closed() && length < header.length() {
+            return Err(MapError::Truncated { file, length, whole: header.length() });
+        }
+        let store = Builder::new().set_check_integrity_on_open(true).open(path);
+        let database = store.map_err(|error| match error {
+            redb::DatabaseError::Storage(redb::StorageError::Io(source)) => {
+                unreadable(&file, source)
+            }
+            error => truncated_or(MapError::of(&file, error), &header, length),
+        })?;
+        PostureMap::of(database, file)
+    }
+
+    /// Reads a map as it is at this moment, to look at or to export; it cannot be recorded into.
+    ///
+    /// The file is copied into memory and not changed, so it needs no permission to be written, and another process,
+    /// such as a sweep, may have it open and go on meanwhile. All of it is checked.
+    ///
+    /// # Errors
+    /// Those of [`PostureMap::open`] but of belonging and of writing; a file that is not there is one that cannot be
+    /// read; one that is written into so fast that no copy has a whole.
     pub fn read(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match starts_as_store(path) {
-            Ok(true) => (),
-            Ok(false) => return Err(MapError::Foreign { file }),
-            Err(source) => return Err(MapError::Unreadable { file, source }),
-        }
-        let store = Builder::new().set_check_integrity_on_open(true).open(path);
-        match store {
-            Ok(database) => PostureMap::of(database, file),
-            Err(redb::DatabaseError::Storage(redb::StorageError::Io(source))) => {
-                Err(MapError::Unreadable { file, source })
+        let (mut bytes, _) = start(path)?;
+        for attempt in 0..COPIES {
+            if attempt > 2 {
+                std::thread::sleep(PAUSE);
             }
-            Err(error) => Err(MapError::of(&file, error)),
+            let copied = copy(&mut bytes).map_err(|source| unreadable(&file, source))?;
+            let Some((header, memory)) = copied else { continue };
+            let length =
+                redb::StorageBackend::len(&memory).map_err(|source| unreadable(&file, source))?;
+            if header.is_closed() && length < header.length() {
+                return Err(MapError::Truncated { file, length, whole: header.length() });
+            }
+            let mut builder = Builder::new();
+            builder.set_check_integrity_on_open(true).set_cache_size(CACHE);
+            let read = builder
+                .create_with_backend(memory)
+                .map_err(|error| truncated_or(MapError::of(&file, error), &header, length))
+                .and_then(|database| PostureMap::of(database, file.clone()));
+            match read {
+                Ok(map) => return Ok(PostureMap { is_copy: true, ..map }),
+                // A commit comes to the disk page by page: a whole one may be there the next time.
+                Err(MapError::Damaged { .. } | MapError::Truncated { .. })
+                    if is_written(&bytes) => {}
+                Err(error) => return Err(error),
+            }
         }
+        Err(MapError::Busy { file })
     }
 
     /// The map in a store.
     fn of(database: Database, file: String) -> Result<PostureMap, MapError> {
         let identity = read_facts(&database, &file)?;
-        Ok(PostureMap { database, identity, file })
+        Ok(PostureMap { database, identity, file, is_copy: false })
     }
 
     /// To what it belongs.
@@ -168,7 +228,7 @@ impl PostureMap {
     /// If the file cannot be read; each row by itself, if it is damaged.
     pub fn rows(&self) -> Result<Rows<'_>, MapError> {
         let range = self.table()?.range::<u32>(..).map_err(|error| self.says(error))?;
-        Ok(Rows { range, map: self })
+        Ok(Rows { range, map: self, next: 0 })
     }
 
     /// Takes in what a sweep found of triangles, all of it or nothing: its accesses in place of those that
@@ -202,15 +262,17 @@ impl PostureMap {
         })
     }
 
-    /// Of each triangle, whether a sweep came to it.
+    /// The triangles that a sweep came to.
     ///
     /// # Errors
     /// If the file cannot be read, or a row is damaged.
-    pub fn swept(&self) -> Result<Vec<bool>, MapError> {
-        let mut swept = vec![false; self.identity.part.triangles as usize];
+    pub fn swept(&self) -> Result<BTreeSet<u32>, MapError> {
+        let mut swept = BTreeSet::new();
         for entry in self.rows()? {
             let (triangle, row) = entry?;
-            swept[triangle as usize] = !row.access.is_empty();
+            if !row.access.is_empty() {
+                swept.insert(triangle);
+            }
         }
         Ok(swept)
     }
@@ -233,6 +295,9 @@ impl PostureMap {
 
     /// Joins what is new to rows, in one transaction.
     fn change<T>(&self, news: &[(u32, T)], join: impl Fn(&mut Row, &T)) -> Result<(), MapError> {
+        if self.is_copy {
+            return Err(MapError::ReadOnly { file: self.file.clone() });
+        }
         let write = self.database.begin_write().map_err(|error| self.says(error))?;
         let mut table = write.open_table(ROWS).map_err(|error| self.says(error))?;
         let mut changed = false;
@@ -265,11 +330,18 @@ impl PostureMap {
 
     /// A row of bytes.
     fn decoded(&self, triangle: u32, bytes: &[u8]) -> Result<Row, MapError> {
-        let fits = |row: &Row| self.identity.refuses(triangle, &row.best, &row.access).is_none();
-        decode(bytes).filter(fits).ok_or_else(|| MapError::Damaged {
-            file: self.file.clone(),
-            what: format!("the row of triangle {triangle} is not what was written"),
+        let identity = &self.identity;
+        let fits = |row: &Row| {
+            row.best.len() <= usize::from(identity.keep.get())
+                && identity.refuses(triangle, &row.best, &row.access).is_none()
+        };
+        decode(bytes).filter(fits).ok_or_else(|| {
+            self.damaged(format!("the row of triangle {triangle} is not what was written"))
         })
+    }
+
+    fn damaged(&self, what: String) -> MapError {
+        MapError::Damaged { file: self.file.clone(), what }
     }
 
     fn fits(&self, triangle: u32, best: &[Record], access: &[Access]) -> Result<(), MapError> {
@@ -311,52 +383,72 @@ fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
     if version > NEWEST {
         return Err(MapError::Newer { file: file.to_owned(), version, reads: NEWEST });
     }
-    decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
+    let identity: Identity = decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
         file: file.to_owned(),
         what: "what it says of itself is not what was written".to_owned(),
-    })
+    })?;
+    match identity.oversized() {
+        Some(what) => Err(MapError::Oversized { file: file.to_owned(), what }),
+        None => Ok(identity),
+    }
 }
 
 /// Begins a map beside its place, and gives it its name when it is whole: nobody finds half of one.
 fn begin(path: &Path, identity: &Identity) -> Result<(), MapError> {
     let file = path.display().to_string();
     let unwritable = |source| MapError::written(file.clone(), source);
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        // As of any new file: the system takes away what the user wants no one to do.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let new = builder.prefix(".touchoff-").tempfile_in(folder).map_err(unwritable)?;
-    let database = Database::create(new.path()).map_err(|error| MapError::of(&file, error))?;
+    let draft = Draft::default();
+    let database = Builder::new().create_with_backend(draft.clone());
+    let database = database.map_err(|error| MapError::of(&file, error))?;
     write_facts(&database, identity).map_err(|error| MapError::of(&file, error))?;
-    drop(database);
-    new.as_file().sync_all().map_err(unwritable)?;
-    match new.persist_noclobber(path) {
-        // The name too; where folders cannot be synchronised, the system does it in its own time.
-        Ok(_) => {
-            #[cfg(unix)]
-            let _ = File::open(folder).and_then(|folder| folder.sync_all());
-            Ok(())
-        }
+    database.close().map_err(|error| MapError::of(&file, error))?;
+    let bytes = draft.bytes().map_err(unwritable)?;
+    let mut new = AtomicFile::create(path).map_err(unwritable)?;
+    new.write_all(&bytes).map_err(unwritable)?;
+    match new.commit_new() {
         // Another was faster: it is that one which is opened.
-        Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
-        Err(error) => Err(unwritable(error.error)),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+        done => done.map_err(unwritable),
     }
 }
 
-/// Whether a file begins as a store does.
-fn starts_as_store(path: &Path) -> io::Result<bool> {
-    // Asked first: a pipe would be waited for.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+/// A store's file, open to be read, and its header.
+fn start(path: &Path) -> Result<(File, Header), MapError> {
+    let file = path.display().to_string();
+    let open = || {
+        // Asked first: a pipe would be waited for.
+        if !fs::metadata(path)?.is_file() {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+        }
+        let mut bytes = File::open(path)?;
+        let header = Header::read(&mut bytes)?;
+        Ok((bytes, header))
+    };
+    match open() {
+        Ok((bytes, header)) if header.is_store() => Ok((bytes, header)),
+        Ok(_) => Err(MapError::Foreign { file }),
+        Err(source) => Err(MapError::Unreadable { file, source }),
     }
-    let mut start = Vec::new();
-    File::open(path)?.take(MAGIC.len() as u64).read_to_end(&mut start)?;
-    Ok(start == MAGIC)
+}
+
+/// An error, or rather that the file is too short, where that is the cause.
+fn truncated_or(error: MapError, header: &Header, length: u64) -> MapError {
+    match error {
+        MapError::Damaged { file, .. } if length < header.length() => {
+            MapError::Truncated { file, length, whole: header.length() }
+        }
+        error => error,
+    }
+}
+
+/// Whether another handle has a file open to write into it.
+fn is_written(file: &File) -> bool {
+    let locked = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
+    // A failure means that there was nothing to unlock.
+    let _ = file.unlock();
+    locked
+}
+
+fn unreadable(file: &str, source: io::Error) -> MapError {
+    MapError::Unreadable { file: file.to_owned(), source }
 }
