@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use tool_dsl::{Checked, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
-use touchoff::{Tool, Unit};
+use touchoff::{Escaped, Tool, Unit};
 
 #[derive(Serialize)]
 struct Listed<'a> {
@@ -71,7 +71,7 @@ pub(crate) fn tools(files: &[PathBuf], given: &Given, json: bool) -> Result<(), 
             serde_json::to_writer(&mut out, &Listed::of(card))?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{:<20} {:<5} {}", card.name, card.unit.word(), card.title)?;
+            writeln!(out, "{:<20} {:<5} {}", card.name, card.unit.word(), Escaped(&card.title))?;
         }
     }
     out.flush()?;

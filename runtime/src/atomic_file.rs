@@ -207,7 +207,9 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    loop {
+    /// More often than chance and a few other processes would have it.
+    const TRIES: usize = 16;
+    for _ in 0..TRIES {
         let file = builder.tempfile_in(folder)?;
         match file.as_file().try_lock() {
             // Another process took it for abandoned before it was locked, and removes it.
@@ -217,6 +219,7 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
             Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
         }
     }
+    Err(io::Error::other("temporary files there are removed as soon as they are made"))
 }
 
 /// Removes the temporaries of a folder whose writers are gone. What cannot be removed stays.
@@ -245,6 +248,9 @@ fn keep(new: &File, old: &Metadata) -> io::Result<()> {
             // Before the permissions: it takes some of them away.
             let _ = fchown(new, Some(old.uid()), Some(old.gid()));
         }
+    }
+    if new.metadata()?.permissions() == old.permissions() {
+        return Ok(());
     }
     new.set_permissions(old.permissions())
 }

@@ -99,7 +99,7 @@ fn a_program_is_written_as_people_write_it() {
     );
     assert_eq!(
         csv(&program),
-        "# touchoff program: complete with the end mark in its last line\nx,y,z,i,j,k\n1,2.5,0,0,0,1\n\
+        "# touchoff program: complete only with its last line `# end of program`\nx,y,z,i,j,k\n1,2.5,0,0,0,1\n\
          0.0000001,-2,1000000000,0.6,0,0.8\n# end of program\n"
     );
     let read = Program::parse(&text, "again.cl").expect("it is a program");

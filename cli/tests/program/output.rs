@@ -242,12 +242,15 @@ fn an_output_that_is_an_input_is_refused() {
     fs::hard_link(&part, &to_part).expect("a link");
     fs::hard_link(&tool, &to_tool).expect("a link");
     fs::hard_link(&part, &to_saved).expect("a link");
+    let folder = bench.folder.path().display().to_string();
+    let rows = bench.write("work-precision.jsonl", "0,0,1,0,0,1\n");
+    let bench_of = ["bench", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &rows];
     let kept = content(bench.folder.path());
     let stages = place("stages");
     let haptic =
         ["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--seconds", "0.1"];
     let leads = ["path", &map, "--part", &part, "--tool"];
-    let commands: [&[&str]; 11] = [
+    let commands: [&[&str]; 12] = [
         &["map", &map, "--to", &to_map],
         &["map", &map, "--part", &part, "--to", &to_part],
         &[&leads[..], &["D2Ball", "--stepover", "1", "--to", &to_map]].concat(),
@@ -259,6 +262,7 @@ fn an_output_that_is_an_input_is_refused() {
         &[&haptic[..], &["--device", "path", &path, "--record", &path]].concat(),
         &[&haptic[..], &["--postures", &map, "--record", &to_map]].concat(),
         &["expand", "--stages", &stages, &staged],
+        &[&bench_of[..], &["--out", &folder]].concat(),
     ];
     for command in commands {
         let output = touchoff(command);

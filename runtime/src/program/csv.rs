@@ -17,7 +17,8 @@ const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
 const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
 
 /// The first line of a table that was written here, and its last.
-pub(super) const HEAD: &str = "# touchoff program: complete with the end mark in its last line";
+pub(super) const HEAD: &str =
+    "# touchoff program: complete only with its last line `# end of program`";
 pub(super) const END: &str = "# end of program";
 
 /// The positions of a table.

@@ -5,6 +5,7 @@ use redb::backends::InMemoryBackend;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
 
 /// What every `redb` store begins with.
 pub(super) const MAGIC: &[u8] = b"redb\x1A\x0A\xA9\x0D\x0A";
@@ -55,7 +56,7 @@ impl Header {
 ///
 /// Pages of the last commit are not written before the next one, and every commit changes the header: a copy with the
 /// same header before and after has all pages of that commit.
-pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, InMemoryBackend)>> {
+pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
     /// Bytes that are copied at once.
     const CHUNK: usize = 1 << 20;
     let before = Header::read(file)?;
@@ -76,7 +77,62 @@ pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, InMemoryBacken
         at += size as u64;
     }
     let same = Header::read(file)? == before && file.metadata()?.len() == length;
-    Ok(same.then_some((before, memory)))
+    Ok(same.then(|| (before, Snapshot::new(memory, length))))
+}
+
+/// A file's copy, of which no more is read while it is checked than a tree of its pages takes.
+///
+/// A crafted file can name a page as the child of another many times over, so that a walk over some pages takes
+/// forever.
+#[derive(Clone, Debug)]
+pub(super) struct Snapshot {
+    memory: Arc<InMemoryBackend>,
+    /// Bytes that may still be read.
+    left: Arc<AtomicI64>,
+}
+
+impl Snapshot {
+    fn new(memory: InMemoryBackend, length: u64) -> Snapshot {
+        /// How often each byte may be read, and how many more: a check reads each page fewer than ten times.
+        const TIMES: u64 = 64;
+        const MORE: i64 = 1 << 24;
+        let left = i64::try_from(length.saturating_mul(TIMES)).unwrap_or(i64::MAX);
+        let left = Arc::new(AtomicI64::new(left.saturating_add(MORE)));
+        Snapshot { memory: Arc::new(memory), left }
+    }
+
+    /// Ends the check: from here on as much is read as is asked for.
+    pub(super) fn end_check(&self) {
+        self.left.store(i64::MAX, Ordering::Relaxed);
+    }
+}
+
+impl StorageBackend for Snapshot {
+    fn len(&self) -> io::Result<u64> {
+        self.memory.len()
+    }
+
+    fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
+        let size = i64::try_from(out.len()).unwrap_or(i64::MAX);
+        if self.left.fetch_sub(size, Ordering::Relaxed) < size {
+            // What is read after that fails too.
+            self.left.store(0, Ordering::Relaxed);
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "its pages form no tree"));
+        }
+        self.memory.read(offset, out)
+    }
+
+    fn set_len(&self, len: u64) -> io::Result<()> {
+        self.memory.set_len(len)
+    }
+
+    fn sync_data(&self) -> io::Result<()> {
+        self.memory.sync_data()
+    }
+
+    fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
+        self.memory.write(offset, data)
+    }
 }
 
 /// Memory that a store is made in, and whose bytes are then written to a file.
@@ -112,5 +168,23 @@ impl StorageBackend for Draft {
 
     fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
         self.0.write(offset, data)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_walk_that_does_not_end_is_ended() {
+        let memory = InMemoryBackend::new();
+        memory.set_len(4096).expect("memory");
+        let snapshot = Snapshot::new(memory, 4096);
+        let mut page = [0; 4096];
+        let reads = (0..100_000).take_while(|_| snapshot.read(0, &mut page).is_ok()).count();
+        assert_eq!(reads, 64 + (1 << 24) / 4096);
+        assert!(snapshot.read(0, &mut page[..1]).is_err());
+        snapshot.end_check();
+        assert!((0..10_000).all(|_| snapshot.read(0, &mut page).is_ok()));
     }
 }

@@ -3,6 +3,7 @@ mod full;
 mod read;
 mod refused;
 
+use super::open::write_facts;
 use super::*;
 use crate::mesh::shapes;
 use crate::postures::Rules;
@@ -10,6 +11,9 @@ use crate::{Mesh, Unit};
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use redb::Builder;
+use std::fs::{self, File};
+use std::io;
 use std::num::NonZeroU16;
 use tempfile::TempDir;
 
