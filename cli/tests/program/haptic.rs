@@ -70,9 +70,8 @@ fn a_disk_that_is_full_is_told_when_it_is() {
     let told = lines.iter().position(|line| line.contains("nothing is recorded from here on"));
     let told = told.unwrap_or_else(|| panic!("{lines:?}"));
     assert!(lines[told].contains("record.csv") && lines[told].contains("File too large"));
-    // The loop goes on: it shows where it is some times after that.
-    let shown = lines[told..].iter().filter(|line| line.contains("  tip ")).count();
-    assert!(shown >= 3, "{lines:?}");
+    // The loop goes on: it shows where it is after that too.
+    assert!(lines[told..].iter().any(|line| line.contains("  tip ")), "{lines:?}");
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1), "{lines:?}");
     assert!(stdout(&output).contains("cycles at 1000 Hz"), "{}", stdout(&output));
