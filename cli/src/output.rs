@@ -117,10 +117,11 @@ pub(crate) fn unwritable(file: &Path, source: io::Error) -> Failure {
 /// [`Failure::IsInput`] for the first of them.
 pub(crate) fn refuse_inputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
-    inputs: impl IntoIterator<Item = &'a Path> + Clone,
+    inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
+    let inputs: Vec<&Path> = inputs.into_iter().collect();
     for output in outputs {
-        for input in inputs.clone() {
+        for input in &inputs {
             if is_same_file(output, input) {
                 let [output, input] = [output, input].map(|file| file.display().to_string());
                 return Err(Failure::IsInput { output, input });
