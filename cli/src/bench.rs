@@ -3,15 +3,25 @@
 use crate::arguments::{ALL_SCENES, Bench};
 use crate::failure::Failure;
 use crate::files::Found;
+use crate::output::{Output, refuse_inputs, unwritable};
 use crate::program;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use touchoff::Unit;
 use touchoff::mesh::Shape;
 use touchoff_tests::measure::bench::{self, Own, Plan, Row};
 
 /// Measures, and prints a row at a time.
 pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
+    if let Some(folder) = &wanted.out {
+        let part = wanted.part.as_deref();
+        let own = part.map(name_of);
+        let scenes = scenes(wanted).into_iter().chain(own.as_deref());
+        let outputs: Vec<PathBuf> = bench::files(folder, scenes).collect();
+        let tool = wanted.tool.as_deref().map(Path::new);
+        let inputs = part.into_iter().chain(tool).chain(wanted.path.as_deref());
+        refuse_inputs(outputs.iter().map(PathBuf::as_path), inputs)?;
+    }
     let found = match &wanted.tool {
         Some(name) => Some(Found::find(name, &wanted.given)?),
         None if wanted.given.is_none() => None,
@@ -22,7 +32,7 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
         _ => None,
     };
     let plan = if wanted.quick { Plan::quick(wanted.seed) } else { Plan::full(wanted.seed) };
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     if !json {
         writeln!(out, "{}", bench::head())?;
     }
@@ -37,7 +47,7 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
     let measured = bench::measure(&scenes(wanted), own, &plan, &mut print)?;
     if let Some(folder) = &wanted.out {
         bench::write(folder, &measured, &plan, &command(wanted))
-            .map_err(|source| Failure::Unwritable { file: folder.display().to_string(), source })?;
+            .map_err(|source| unwritable(folder, source))?;
     }
     failed.map_or(Ok(()), |error| Err(error.into()))
 }
@@ -62,10 +72,15 @@ fn own<'t>(part: &Path, unit: Unit, found: &'t Found, path: &Path) -> Result<Own
     for finding in mesh.survey().findings() {
         say!("{file}: {finding}");
     }
-    let name = part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy());
+    let name = name_of(part);
     let poses = program.stops.iter().map(|stop| stop.pose).collect();
     let compiled = matches!(found, Found::Compiled(_));
-    Ok(Own { mesh, name: name.into_owned(), tool, compiled, poses })
+    Ok(Own { mesh, name, tool, compiled, poses })
+}
+
+/// The name of a part's scene.
+fn name_of(part: &Path) -> String {
+    part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// The command that measures the same, with names of files in the place of paths.

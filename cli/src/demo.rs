@@ -1,6 +1,7 @@
 //! Table 7.1 of Ho (1999): the thesis's tool along a tube, measured here.
 
 use crate::failure::Failure;
+use crate::output::Output;
 use crate::timing::{Timing, nanoseconds};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -39,7 +40,7 @@ struct Row {
 
 /// Measures and prints the table.
 pub(crate) fn demo(json: bool) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     let mesh = tube();
     let progress = ProgressBar::new((TABLE_7_1.len() * 2 * POSES) as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} poses {msg}") {

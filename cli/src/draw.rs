@@ -3,6 +3,7 @@
 use crate::arguments::Given;
 use crate::failure::Failure;
 use crate::files;
+use crate::output::{Output, refuse_inputs, write_file};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 use std::io::Write;
@@ -16,11 +17,12 @@ const MOST: f32 = 5e7;
 /// Draws a file's tool into another file, or on standard output.
 pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<(), Failure> {
     let Some(output) = output else {
-        let mut out = std::io::stdout().lock();
+        let mut out = Output::bytes();
         writeln!(out, "{}", drawing(file, given)?)?;
         out.flush()?;
         return Ok(());
     };
+    refuse_inputs([output], [file])?;
     let bytes = match files::ending(output).as_deref() {
         Some("svg") => drawing(file, given)?.into_bytes(),
         Some("png") => png(&drawing(file, given)?)?,
@@ -29,8 +31,7 @@ pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<
             return Err(Failure::Form { file: output.display().to_string(), better });
         }
     };
-    std::fs::write(output, bytes)
-        .map_err(|source| Failure::Unwritable { file: output.display().to_string(), source })
+    write_file(output, bytes)
 }
 
 fn drawing(file: &Path, given: &Given) -> Result<String, Failure> {

@@ -5,26 +5,17 @@ use touchoff::tool::ToolError;
 use touchoff::{CloudError, ProgramError};
 
 impl Failure {
-    /// The exit status: 2 where an input cannot be taken as what was asked for, 1 for all else.
+    /// The exit status: 2 where the options are wrong or an input cannot be taken as what was asked for, 1 for all
+    /// else.
     pub(crate) fn status(&self) -> u8 {
         match self {
-            Failure::Program(_) | Failure::NoInside { .. } => 2,
+            Failure::IsInput { .. } | Failure::Program(_) | Failure::NoInside { .. } => 2,
             _ => 1,
         }
     }
-
-    /// Whether the reader of the output has closed it, which is no failure.
-    pub(crate) fn is_enough(&self) -> bool {
-        let kind = match self {
-            Failure::Output(error) => Some(error.kind()),
-            Failure::Json(error) => error.io_error_kind(),
-            _ => None,
-        };
-        kind == Some(std::io::ErrorKind::BrokenPipe)
-    }
 }
 
-/// What ends the program with exit status 1.
+/// What ends the program with an exit status other than 0.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// Run time against error could not be measured.
@@ -47,14 +38,12 @@ pub(crate) enum Failure {
         /// Why not.
         source: std::io::Error,
     },
-    /// The record could not be begun.
-    #[error("{file}: {source}")]
-    Record {
-        /// The file.
-        file: String,
-        /// Why.
-        source: std::io::Error,
-    },
+    /// The system has no such core.
+    #[error(transparent)]
+    Core(#[from] touchoff::haptic::Refused),
+    /// A part of what was to be kept of a session was not; the reason was said when it happened.
+    #[error("not all of the session was kept: make room, and record it again")]
+    NotKept,
     /// A path does not say which way it goes.
     #[error(transparent)]
     Motion(touchoff::MotionError),
@@ -215,6 +204,14 @@ pub(crate) enum Failure {
     /// A drawing could not be made into pixels.
     #[error("the drawing could not be made a PNG: {0}; an `.svg` needs no pixels")]
     Pixels(String),
+    /// What is to be written is also read.
+    #[error("`{output}` is `{input}`, which is read: write to another file")]
+    IsInput {
+        /// The output.
+        output: String,
+        /// The input that is the same file.
+        input: String,
+    },
     /// A file could not be written.
     #[error("cannot write `{file}`: {source}; does its folder exist, and may you write there?")]
     Unwritable {

@@ -2,13 +2,14 @@
 
 use crate::arguments::Given;
 use crate::failure::Failure;
+use crate::output::{Output, show};
 use serde::Serialize;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use tool_dsl::{Checked, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
-use touchoff::{Tool, Unit};
+use touchoff::{Escaped, Tool, Unit};
 
 #[derive(Serialize)]
 struct Listed<'a> {
@@ -64,13 +65,13 @@ pub(crate) fn tools(files: &[PathBuf], given: &Given, json: bool) -> Result<(), 
         [] => return Err(Failure::NothingToSet("name one")),
         files => files.iter().map(Tool::card).collect(),
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     for card in cards {
         if json {
             serde_json::to_writer(&mut out, &Listed::of(card))?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{:<20} {:<5} {}", card.name, card.unit.word(), card.title)?;
+            writeln!(out, "{:<20} {:<5} {}", card.name, card.unit.word(), Escaped(&card.title))?;
         }
     }
     out.flush()?;
@@ -125,14 +126,14 @@ pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<Checked>, Failur
     let source = Interpreted::source(file)?;
     let compiled = compile_with(&source, &given.sources());
     for report in &compiled.reports {
-        say!("{}\n", report.render(&compiled.sources, std::io::stderr().is_terminal()));
+        show(report, &compiled.sources);
     }
     compiled.tool.ok_or(Failure::Files { wrong: 1, all: 1 })
 }
 
 /// Prints files' Rust, or their plans as graphs.
 pub(crate) fn expand(files: &[PathBuf], plan: bool, given: &Given) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     for file in files {
         let tool = checked(file, given)?;
         write!(out, "{}", if plan { emit::dot(&tool) } else { emit::rust(&tool) })?;

@@ -1,10 +1,12 @@
 //! Tools as files: how they are laid out.
 
 use crate::failure::Failure;
-use std::io::{self, IsTerminal, Read, Write};
+use crate::output::{Output, show};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::format::format;
 use tool_dsl::source::{Source, Sources};
+use touchoff::AtomicFile;
 
 /// Lays files out in place, or only names those that would change. A file with errors of syntax
 /// stays as it is.
@@ -44,25 +46,31 @@ fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
         Err(reports) => {
             let sources = Sources::new(source, []);
             for report in reports {
-                say!("{}\n", report.render(&sources, io::stderr().is_terminal()));
+                show(&report, &sources);
             }
             return Ok(Outcome::Wrong);
         }
     };
     let outcome = if formatted == source.text { Outcome::Same } else { Outcome::Changed };
-    let mut out = io::stdout().lock();
     match (&outcome, check) {
-        (Outcome::Changed, true) => writeln!(out, "{}", source.name)?,
-        (_, false) if piped => out.write_all(formatted.as_bytes())?,
+        (Outcome::Changed, true) => {
+            let mut out = Output::lines();
+            writeln!(out, "{}", source.name)?;
+            out.flush()?;
+        }
+        (_, false) if piped => {
+            let mut out = Output::bytes();
+            out.write_all(formatted.as_bytes())?;
+            out.flush()?;
+        }
         (Outcome::Changed, false) => {
-            if let Err(error) = replace(file, &formatted) {
+            if let Err(error) = AtomicFile::write(file, &formatted) {
                 say!("error: {}: {error}", file.display());
                 return Ok(Outcome::Wrong);
             }
         }
         _ => {}
     }
-    out.flush()?;
     Ok(outcome)
 }
 
@@ -70,19 +78,4 @@ fn standard_input() -> io::Result<Source> {
     let mut text = String::new();
     io::stdin().read_to_string(&mut text)?;
     Ok(Source::new("<stdin>", text))
-}
-
-/// Puts a text in a file's place at once: whoever reads the file finds all of the old or all of the
-/// new. A link keeps leading to its file, and the file keeps its permissions.
-fn replace(file: &Path, text: &str) -> io::Result<()> {
-    let file = file.canonicalize()?;
-    // Who may not write the file may not replace it either.
-    std::fs::OpenOptions::new().write(true).open(&file)?;
-    let folder = file.parent().unwrap_or(Path::new("."));
-    let mut new = tempfile::Builder::new().prefix(".touchoff-").tempfile_in(folder)?;
-    new.write_all(text.as_bytes())?;
-    new.as_file().set_permissions(file.metadata()?.permissions())?;
-    new.as_file().sync_all()?;
-    new.persist(&file)?;
-    Ok(())
 }

@@ -1,12 +1,7 @@
 //! The `touchoff` program: words for people over the libraries.
 
-/// A line on standard error; where that cannot be written, nobody is there to be told.
-macro_rules! say {
-    ($($words:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stderr(), $($words)*);
-    }};
-}
+#[macro_use]
+mod output;
 
 mod arguments;
 mod bench;
@@ -68,8 +63,6 @@ fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
 fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
     match done {
         Ok(code) => code,
-        // Whoever read the output has enough of it.
-        Err(failure) if failure.is_enough() => ExitCode::SUCCESS,
         Err(failure) => {
             say!("error: {failure}");
             ExitCode::from(failure.status().max(failed))

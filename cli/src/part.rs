@@ -3,6 +3,7 @@
 use crate::arguments::{PartFile, Sample};
 use crate::failure::Failure;
 use crate::files::{Found, length};
+use crate::output::refuse_inputs;
 use std::path::Path;
 use touchoff::certify::Facets;
 use touchoff::cloud::MOST_BLUE;
@@ -168,6 +169,8 @@ pub(crate) fn about(part: &Part, tool: Option<&dyn Tool>, unit: Unit) {
 
 /// Takes points of a part and saves them.
 pub(crate) fn sample(wanted: &Sample) -> Result<(), Failure> {
+    let tool = wanted.tool.as_deref().map(Path::new);
+    refuse_inputs([&*wanted.output], std::iter::once(&*wanted.part.part).chain(tool))?;
     let found = match &wanted.tool {
         Some(name) => Some(Found::find(name, &wanted.given)?),
         None if wanted.given.is_none() => None,

@@ -3,6 +3,7 @@
 use crate::arguments::Run;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
+use crate::output::Output;
 use crate::part::{self, Fine, Loaded, NO_INSIDE};
 use crate::program;
 use crate::timing::{Timing, nanoseconds};
@@ -94,7 +95,7 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     about(wanted, &part, &program, tool.card());
     part::about(&part, Some(tool), unit);
 
-    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    let mut out = Output::rows();
     if !json {
         let proved = if certifier.is_some() { "proved; " } else { "" };
         writeln!(out, "    line  points   depth ({unit})  {proved}by surface")?;

@@ -3,6 +3,7 @@
 use crate::arguments::Given;
 use crate::check;
 use crate::failure::Failure;
+use crate::output::{refuse_inputs, show, unwritable, write_file};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::hash::Hasher;
@@ -13,14 +14,14 @@ use touchoff::tool::Interpreted;
 
 /// Writes the stages of files into a folder, each file's into one of its own.
 pub(crate) fn write(folder: &Path, files: &[PathBuf], given: &Given) -> Result<(), Failure> {
+    let places = |file: &PathBuf| NAMES.map(|name| folder.join(stem(file)).join(name));
+    let outputs: Vec<PathBuf> = files.iter().flat_map(places).collect();
+    refuse_inputs(outputs.iter().map(PathBuf::as_path), files.iter().map(PathBuf::as_path))?;
     for file in files {
         let own = folder.join(stem(file));
-        let unwritable =
-            |at: &Path, source| Failure::Unwritable { file: at.display().to_string(), source };
         std::fs::create_dir_all(&own).map_err(|source| unwritable(&own, source))?;
         for (name, text) in stages(file, given)? {
-            let at = own.join(name);
-            std::fs::write(&at, text).map_err(|source| unwritable(&at, source))?;
+            write_file(&own.join(name), text)?;
         }
     }
     Ok(())
@@ -56,27 +57,35 @@ fn stem(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
+/// The names of the stages' texts.
+const NAMES: [&str; 6] =
+    ["tree.txt", "model.txt", "regions.txt", "plan.dot", "rust.txt", "certificate.txt"];
+
 /// What each stage makes of a file, by the name of its text.
-fn stages(file: &Path, given: &Given) -> Result<Vec<(&'static str, String)>, Failure> {
+fn stages(
+    file: &Path,
+    given: &Given,
+) -> Result<impl Iterator<Item = (&'static str, String)> + use<>, Failure> {
     let source = Interpreted::source(file)?;
     let compiled = compile_with(&source, &given.sources());
     let Some(tool) = &compiled.tool else {
         for report in &compiled.reports {
-            say!("{}\n", report.render(&compiled.sources, false));
+            show(report, &compiled.sources);
         }
         return Err(Failure::Files { wrong: 1, all: 1 });
     };
     let certificate = Certificate::of(tool);
     let mut proved = Vec::new();
     check::table::write(&mut proved, tool, &certificate)?;
-    Ok(vec![
-        ("tree.txt", emit::tree(&source)),
-        ("model.txt", emit::model(tool)),
-        ("regions.txt", emit::regions(tool)),
-        ("plan.dot", emit::dot(tool)),
-        ("rust.txt", functions(tool)),
-        ("certificate.txt", String::from_utf8_lossy(&proved).into_owned()),
-    ])
+    let texts = [
+        emit::tree(&source),
+        emit::model(tool),
+        emit::regions(tool),
+        emit::dot(tool),
+        functions(tool),
+        String::from_utf8_lossy(&proved).into_owned(),
+    ];
+    Ok(NAMES.into_iter().zip(texts))
 }
 
 /// The functions of a tool's Rust: how many lines each has, and a digest of them. All of it would be

@@ -3,6 +3,7 @@
 use crate::arguments::Verify;
 use crate::failure::Failure;
 use crate::files::{Found, figure, length};
+use crate::output::Output;
 use crate::part::{self, NO_INSIDE};
 use crate::program;
 use nalgebra::{Point3, Vector3};
@@ -117,7 +118,7 @@ pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
     let report = verifier.check(&program)?;
     let file = wanted.program.display().to_string();
     let card = verifier.card();
-    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    let mut out = Output::rows();
     for finding in &report.findings {
         if json {
             serde_json::to_writer(&mut out, &Row::of(finding, card, &file))?;

@@ -36,9 +36,11 @@ struct Readme;
 // Generated code names this crate `::touchoff`, here as elsewhere.
 extern crate self as touchoff;
 
+mod atomic_file;
 pub mod certify;
 pub mod cloud;
 mod cores;
+mod escape;
 #[cfg(feature = "haptic")]
 pub mod haptic;
 pub mod mesh;
@@ -59,7 +61,9 @@ mod unit;
 pub mod verify;
 mod words;
 
+pub use atomic_file::AtomicFile;
 pub use cloud::{Cloud, CloudError, Cover, Sampling};
+pub use escape::{Escaped, EscapedLines};
 pub use fearless_simd::Level;
 pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};

@@ -97,7 +97,11 @@ fn a_program_is_written_as_people_write_it() {
         "PARTNO/WALL $ 1; 2\nUNITS/INCHES\nMULTAX/ON\nCUTTER/0.47244094488188976,0\nRAPID\n\
          GOTO/1,2.5,0,0,0,1\nGOTO/0.0000001,-2,1000000000,0.6,0,0.8\nFINI\n"
     );
-    assert_eq!(csv(&program), "x,y,z,i,j,k\n1,2.5,0,0,0,1\n0.0000001,-2,1000000000,0.6,0,0.8\n");
+    assert_eq!(
+        csv(&program),
+        "# touchoff program: complete only with its last line `# end of program`\nx,y,z,i,j,k\n1,2.5,0,0,0,1\n\
+         0.0000001,-2,1000000000,0.6,0,0.8\n# end of program\n"
+    );
     let read = Program::parse(&text, "again.cl").expect("it is a program");
     assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);
     assert_eq!(read.check_cutter(Flat.card(), Unit::Inch).expect("the same"), None);

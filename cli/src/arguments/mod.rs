@@ -9,9 +9,20 @@ use std::path::PathBuf;
 use tool_dsl::source::Source;
 use touchoff::{Law, Sampling, Unit, Weights};
 
+/// The exit statuses of all commands.
+const STATUSES: &str = "\
+Exit status:
+  0  done; `verify` without findings, `check` without warnings
+  1  failed, or something is wrong: findings of `verify`, errors of `check`, files that `fmt --check` would
+     change, stages that `expand --check` finds stale
+  2  wrong options, an output that is also an input, or a program that `verify` could not check
+  3  `check` only warns
+The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
+disk, is a failure. Files are replaced when they are whole: one that cannot be written is left as it was.";
+
 /// What a cutting tool feels of a workpiece, at any pose. Alone: `touchoff demo`.
 #[derive(Parser)]
-#[command(version, about)]
+#[command(version, about, after_help = STATUSES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -138,17 +149,17 @@ pub(crate) struct PartFile {
     #[arg(long)]
     pub(crate) unit: Unit,
     /// Points that are taken of the surface.
-    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_hyphen_values = true)]
     pub(crate) points: u64,
     /// As many points as it takes for no place of the surface to be deeper than found by more than this,
     /// in the part's unit; where `run` would take more than a million, it proves depth to that instead.
-    #[arg(long, value_name = "TOLERANCE", value_parser = positive, conflicts_with = "points")]
+    #[arg(long, value_name = "TOLERANCE", value_parser = positive, conflicts_with = "points", allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     /// How the points are spread: `blue`, evenly, or `random`.
     #[arg(long, default_value_t = Sampling::Blue)]
     pub(crate) sampling: Sampling,
     /// The same seed, the same points.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
 }
 
@@ -200,7 +211,7 @@ pub(crate) struct Run {
     pub(crate) center: Option<Point3<f64>>,
     /// Prove how deep the part's triangles are in the tool, to this tolerance in the part's unit; 0 is as
     /// close as arithmetic allows.
-    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance)]
+    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance, allow_hyphen_values = true)]
     pub(crate) certify: Option<f64>,
 }
 
@@ -217,15 +228,15 @@ pub(crate) struct Verify {
     #[arg(long, value_name = "FILE")]
     pub(crate) program: PathBuf,
     /// How deep any surface of the tool may be in the part, in the part's unit.
-    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance, default_value_t = 0.0)]
+    #[arg(long, value_name = "TOLERANCE", value_parser = tolerance, default_value_t = 0.0, allow_hyphen_values = true)]
     pub(crate) tolerance: f64,
     /// How deep one surface may be instead, where it is the nearest and in feed; `inf` for any depth, below 0 a
     /// margin that it has to keep: `--allow flute=0.05 --allow nut=-1`.
-    #[arg(long, value_name = "SURFACE=DEPTH", value_parser = allowance)]
+    #[arg(long, value_name = "SURFACE=DEPTH", value_parser = allowance, allow_hyphen_values = true)]
     pub(crate) allow: Vec<(String, f64)>,
     /// What is deeper than it may be by no more than this may or may not be found, in the part's unit
     /// [default: 0.001 mm].
-    #[arg(long, value_name = "LENGTH", value_parser = tolerance)]
+    #[arg(long, value_name = "LENGTH", value_parser = tolerance, allow_hyphen_values = true)]
     pub(crate) resolution: Option<f64>,
     /// Check the part's surface alone where its mesh leaks or is inside out, so that whether the tool is inside
     /// the material is unknown; otherwise that ends with status 2.
@@ -250,22 +261,22 @@ pub(crate) struct Haptic {
     #[arg(long, num_args = 1..=2, value_names = ["hand|path|spacenav", "FILE"], default_value = "hand")]
     pub(crate) device: Vec<String>,
     /// Cycles a second.
-    #[arg(long, default_value_t = 1000.0, value_parser = rate)]
+    #[arg(long, default_value_t = 1000.0, value_parser = rate, allow_hyphen_values = true)]
     pub(crate) rate: f64,
     /// How long.
-    #[arg(long, default_value_t = 10.0, value_parser = above_zero)]
+    #[arg(long, default_value_t = 10.0, value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) seconds: f64,
     /// Force law: `thesis`, `gradient` or `facing`.
     #[arg(long, default_value_t = Law::Gradient)]
     pub(crate) law: Law,
     /// Stiffness of contact, N for each unit of the law's force: N/mm³ for a part in mm.
-    #[arg(long, default_value_t = 1.0, value_parser = above_zero)]
+    #[arg(long, default_value_t = 1.0, value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) stiffness: f64,
     /// The stiffest spring that the device can render, N/mm.
-    #[arg(long, default_value_t = 1.0, value_parser = above_zero)]
+    #[arg(long, default_value_t = 1.0, value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) device_stiffness: f64,
     /// The largest force of the device, N.
-    #[arg(long, default_value_t = 8.0, value_parser = above_zero)]
+    #[arg(long, default_value_t = 8.0, value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) most_force: f64,
     /// Push with what the tool feels where the device is, scaled to what that can render, without a coupling.
     #[arg(long)]
@@ -274,12 +285,13 @@ pub(crate) struct Haptic {
     #[arg(long)]
     pub(crate) realtime: bool,
     /// Stay on that core.
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) core: Option<usize>,
     /// Stay awake for so many µs before each cycle: what the system takes to wake a thread.
-    #[arg(long, default_value_t = 60)]
+    #[arg(long, default_value_t = 60, allow_hyphen_values = true)]
     pub(crate) awake: u64,
-    /// Write every state to a table.
+    /// Write every state to a table, which takes its name when the session ends. If the disk is full, that is said
+    /// at once and the session goes on without the table; the exit status is then 1.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) record: Option<PathBuf>,
     /// Keep the postures that are found acceptable in this map, an old one or a new one.
@@ -293,7 +305,7 @@ pub(crate) struct Bench {
     #[arg(long)]
     pub(crate) quick: bool,
     /// The same seed, the same clouds and placements.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// Only these scenes [default: all, or with `--part` none but that].
     #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', value_parser = PossibleValuesParser::new(scenes()))]

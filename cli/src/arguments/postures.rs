@@ -14,10 +14,10 @@ pub(crate) struct Sweep {
     #[arg(long, required = true, num_args = 1.., value_delimiter = ',', value_name = "NAME|FILE.tool")]
     pub(crate) tools: Vec<String>,
     /// Directions that each hemisphere has.
-    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u16).range(1..=2000))]
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u16).range(1..=2000), allow_hyphen_values = true)]
     pub(crate) directions: u16,
     /// How deep the part may be in what cuts, in the part's unit [default: 0.01 mm].
-    #[arg(long, value_name = "LENGTH", value_parser = above_zero)]
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     /// Contacts have to be nicer than this.
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true)]
@@ -27,7 +27,7 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "SURFACE=LENGTH", value_parser = allowance, allow_hyphen_values = true)]
     pub(crate) allow: Vec<(String, f64)>,
     /// Postures that are kept of each triangle.
-    #[arg(long, default_value_t = NonZeroU16::MIN)]
+    #[arg(long, default_value_t = NonZeroU16::MIN, allow_hyphen_values = true)]
     pub(crate) keep: NonZeroU16,
     /// Look at the part's surface alone where its mesh leaks or is inside out, so that what is inside is unknown.
     #[arg(long)]
@@ -77,16 +77,16 @@ pub(crate) struct Path {
     #[arg(long, value_name = "NAME|FILE.tool")]
     pub(crate) tool: String,
     /// How deep the part may be in what cuts, at stops and between them [default: the map's tolerance].
-    #[arg(long, value_name = "LENGTH", value_parser = above_zero)]
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     /// The normal of the planes whose lines on the part are followed.
     #[arg(long, value_name = "X,Y,Z", value_parser = point, default_value = "1,0,0", allow_hyphen_values = true)]
     pub(crate) planes: Point3<f64>,
     /// How far planes are apart, in the part's unit.
-    #[arg(long, value_name = "LENGTH", value_parser = above_zero)]
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) stepover: f64,
     /// How far places on a line are apart at most, in the part's unit [default: half the stepover].
-    #[arg(long, value_name = "LENGTH", value_parser = above_zero)]
+    #[arg(long, value_name = "LENGTH", value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) step: Option<f64>,
     /// Look at the part's surface alone where its mesh leaks or is inside out, so that what is inside is unknown.
     #[arg(long)]

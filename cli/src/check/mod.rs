@@ -5,8 +5,9 @@ pub(crate) mod table;
 
 use crate::arguments::Given;
 use crate::failure::Failure;
+use crate::output::{Output, show};
 use json::Proved;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use tool_dsl::domain::Domain;
@@ -21,8 +22,7 @@ const WARNED: u8 = 3;
 
 /// Shows what is wrong with files, and of those that are right what is proved.
 pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<ExitCode, Failure> {
-    let mut out = std::io::stdout().lock();
-    let styled = std::io::stderr().is_terminal();
+    let mut out = Output::lines();
     let (mut wrong, mut warned) = (0, false);
     for file in files {
         let source = match Interpreted::source(file) {
@@ -44,7 +44,7 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
             }
         }
         for report in &compiled.reports {
-            say!("{}\n", report.render(&compiled.sources, styled));
+            show(report, &compiled.sources);
         }
         let count = |severity: Severity| {
             compiled.reports.iter().filter(|report| report.severity == severity).count()

@@ -1,30 +1,31 @@
 //! What is kept of a session: a table of its states, a map of its postures.
 
 use crate::failure::Failure;
+use crate::output::unwritable;
 use crate::postures::map::check_part;
 use crate::postures::usual;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use touchoff::haptic::{Samples, State};
-use touchoff::postures::{Identity, PostureMap, Recorded, Recorder, Rules};
-use touchoff::{Mesh, Tool};
+use touchoff::postures::{Identity, MapError, PostureMap, Recorded, Recorder, Rules};
+use touchoff::{AtomicFile, Mesh, Tool};
 
 const COLUMNS: &str = "cycle,seconds,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
     tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,colliding,put_in,held";
 
-/// All states, as a table.
+/// All states, as a table. The file takes its name when the session is over.
 pub(super) struct Table {
-    out: BufWriter<File>,
+    out: AtomicFile,
+    file: PathBuf,
     rate: f64,
 }
 
 impl Table {
     pub(super) fn create(path: &Path, rate: f64) -> Result<Table, Failure> {
-        let wrong = |source| Failure::Record { file: path.display().to_string(), source };
-        let mut out = BufWriter::new(File::create(path).map_err(wrong)?);
-        writeln!(out, "{COLUMNS}").map_err(wrong)?;
-        Ok(Table { out, rate })
+        let wrong = |source| unwritable(path, source);
+        let mut out = AtomicFile::create(path).map_err(wrong)?;
+        writeln!(out, "{COLUMNS}").and_then(|()| out.flush()).map_err(wrong)?;
+        Ok(Table { out, file: path.to_owned(), rate })
     }
 
     fn take(&mut self, state: &State) -> std::io::Result<()> {
@@ -46,37 +47,63 @@ impl Table {
     }
 }
 
-/// What is kept of a session.
+/// What is kept of a session. What cannot be written is told at once and kept no longer; the loop goes on.
 pub(super) struct Kept<'a> {
-    pub(super) table: Option<Table>,
-    pub(super) recorder: Option<Recorder<'a>>,
+    table: Option<Table>,
+    recorder: Option<Recorder<'a>>,
+    failed: usize,
 }
 
-impl Kept<'_> {
+impl<'a> Kept<'a> {
+    pub(super) fn new(table: Option<Table>, recorder: Option<Recorder<'a>>) -> Kept<'a> {
+        Kept { table, recorder, failed: 0 }
+    }
+
     /// Takes the states that there are.
-    pub(super) fn take(&mut self, samples: &mut Samples) -> Result<(), Failure> {
+    pub(super) fn take(&mut self, samples: &mut Samples) {
         for state in samples {
-            if let Some(table) = &mut self.table {
-                table.take(&state)?;
-            }
-            if let Some(recorder) = &mut self.recorder {
-                recorder.take(&state)?;
-            }
+            let written = self.table.as_mut().map_or(Ok(()), |table| table.take(&state));
+            self.table_written(written);
+            let recorded = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.take(&state));
+            self.recorded(recorded);
         }
-        Ok(())
+        // A disk is full when it is, not when a buffer is.
+        let written = self.table.as_mut().map_or(Ok(()), |table| table.out.flush());
+        self.table_written(written);
+    }
+
+    fn table_written(&mut self, written: std::io::Result<()>) {
+        if let Err(source) = written
+            && let Some(table) = self.table.take()
+        {
+            self.failed += 1;
+            say!("error: {}; nothing is recorded from here on", unwritable(&table.file, source));
+        }
+    }
+
+    fn recorded(&mut self, recorded: Result<(), MapError>) {
+        if let Err(error) = recorded {
+            self.failed += 1;
+            self.recorder = None;
+            say!("error: {error}; no posture is kept from here on");
+        }
     }
 
     /// Brings all of it to the disk, and says what came of it.
+    ///
+    /// # Errors
+    /// If something could not be kept, now or before.
     pub(super) fn end(mut self) -> Result<(), Failure> {
-        if let Some(table) = &mut self.table {
-            table.out.flush()?;
-        }
-        if let Some(recorder) = &mut self.recorder {
-            recorder.write()?;
+        let recorded = self.recorder.as_mut().map_or(Ok(()), Recorder::write);
+        self.recorded(recorded);
+        if let Some(recorder) = &self.recorder {
             let Recorded { judged, accepted, skipped, .. } = recorder.seen();
             say!("postures: {accepted} acceptable of {judged} judged; {skipped} states not seen");
         }
-        Ok(())
+        if let Some(Table { out, file, .. }) = self.table {
+            out.commit().map_err(|source| unwritable(&file, source))?;
+        }
+        if self.failed > 0 { Err(Failure::NotKept) } else { Ok(()) }
     }
 }
 
@@ -87,7 +114,7 @@ pub(super) fn map_of(
     tool: &dyn Tool,
 ) -> Result<PostureMap, Failure> {
     if file.exists() {
-        let map = PostureMap::read(file)?;
+        let map = PostureMap::resume(file)?;
         check_part(&map, file, (mesh, part))?;
         return Ok(map);
     }

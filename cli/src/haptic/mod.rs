@@ -5,6 +5,7 @@ mod kept;
 use crate::arguments::{Haptic, Wielded};
 use crate::failure::Failure;
 use crate::files::Found;
+use crate::output::{Output, refuse_inputs};
 use crate::part::{self, Fine};
 use crate::program;
 use kept::{Kept, Table, map_of};
@@ -17,7 +18,7 @@ use std::time::Duration;
 use touchoff::certify::Facets;
 use touchoff::haptic::{
     Axes, Coupling, Device, Hand, Limits, Monotonic, Realtime, Recorded, Rendering, Report,
-    Session, Settings, State, Tremor, Watch, run, watched,
+    Session, Settings, State, Tremor, Watch, check_core, run, watched,
 };
 use touchoff::postures::Recorder;
 use touchoff::tool::{Card, Shape};
@@ -31,6 +32,13 @@ const SHOWN: f64 = 4.0;
 /// Runs the loop.
 pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
     let wielded = wanted.wielded().map_err(Failure::Device)?;
+    let program = if let Wielded::Path(path) = &wielded { Some(&**path) } else { None };
+    let inputs = [&*wanted.part.part, Path::new(&wanted.tool)].into_iter().chain(program);
+    refuse_inputs(wanted.postures.as_deref(), inputs.clone())?;
+    refuse_inputs(wanted.record.as_deref(), inputs.chain(wanted.postures.as_deref()))?;
+    if let Some(core) = wanted.core {
+        check_core(core)?;
+    }
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
     let unit = wanted.part.unit;
@@ -46,16 +54,9 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
         }
     };
     let part = loaded.part;
-    let record = Kept {
-        table: match &wanted.record {
-            Some(path) => Some(Table::create(path, wanted.rate)?),
-            None => None,
-        },
-        recorder: match &map {
-            Some((map, facets)) => Some(Recorder::new(map, (&part, facets), tool)?),
-            None => None,
-        },
-    };
+    let table = wanted.record.as_deref().map(|path| Table::create(path, wanted.rate));
+    let recorder = map.as_ref().map(|(map, facets)| Recorder::new(map, (&part, facets), tool));
+    let record = Kept::new(table.transpose()?, recorder.transpose()?);
     let axes = match tool.card().shape {
         Shape::Revolved => Axes::Five,
         Shape::Solid { .. } => Axes::Six,
@@ -160,12 +161,12 @@ fn wield(
         let clock = &mut Monotonic::new(Duration::from_micros(wanted.awake));
         run((&mut session, &mut device), (clock, cycles), watch, &stop)
     };
-    let report = std::thread::scope(|scope| -> Result<Report, Failure> {
+    let report = std::thread::scope(|scope| {
         let looped = scope.spawn(|| looped(&mut watch));
         let mut shown = 0;
         while !looped.is_finished() {
             std::thread::sleep(Duration::from_millis(20));
-            record.take(&mut samples)?;
+            record.take(&mut samples);
             if !json
                 && let Some(state) = latest.read()
                 && state.cycle >= shown
@@ -174,11 +175,12 @@ fn wield(
                 show(state, wanted.rate);
             }
         }
-        Ok(looped.join().expect("the loop panics at nothing"))
-    })?;
-    record.take(&mut samples)?;
-    record.end()?;
-    if json { said(&report, wanted) } else { told(&report, wanted) }
+        looped.join().expect("the loop panics at nothing")
+    });
+    record.take(&mut samples);
+    let kept = record.end();
+    if json { said(&report, wanted) } else { told(&report, wanted) }?;
+    kept
 }
 
 /// Where it is, on one line.
@@ -258,14 +260,15 @@ fn said(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
         lost: report.lost,
         law: wanted.law.to_string(),
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     serde_json::to_writer(&mut out, &said)?;
     writeln!(out)?;
+    out.flush()?;
     Ok(())
 }
 
 fn told(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
     let faults = report.faults;
     let Report { cycles, missed, left_out, stalls, .. } = report;
@@ -295,5 +298,6 @@ fn told(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
     for (count, what) in wrong.into_iter().filter(|(count, _)| *count > 0) {
         writeln!(out, "  {count} {what}")?;
     }
+    out.flush()?;
     Ok(())
 }

@@ -4,13 +4,13 @@ use super::picture;
 use crate::arguments::postures::Map as Wanted;
 use crate::failure::Failure;
 use crate::files::ending;
+use crate::output::{Output, refuse_inputs, unwritable};
 use crate::part;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
-use touchoff::Mesh;
 use touchoff::postures::{Directions, PartStamp, PostureMap, colour};
+use touchoff::{AtomicFile, Escaped, Mesh};
 
 #[derive(Serialize)]
 struct Summary<'a> {
@@ -26,6 +26,8 @@ struct Summary<'a> {
 
 /// Says what a map is, and writes it in other forms.
 pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
+    let inputs = std::iter::once(&*wanted.map).chain(wanted.part.as_deref());
+    refuse_inputs(wanted.to.iter().map(|to| &**to), inputs)?;
     let map = PostureMap::read(&wanted.map)?;
     let mesh = match &wanted.part {
         Some(part) => Some(belonging(&map, &wanted.map, part)?),
@@ -39,8 +41,8 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         }
     }
     for (form, file) in forms.iter().zip(&wanted.to) {
-        let unwritable = |source| Failure::Unwritable { file: file.display().to_string(), source };
-        let mut out = BufWriter::new(File::create(file).map_err(unwritable)?);
+        let unwritable = |source| unwritable(file, source);
+        let mut out = AtomicFile::create(file).map_err(unwritable)?;
         match (form, &mesh) {
             (Form::Csv, _) => map.write_csv(&mut out)?,
             (Form::Json, _) => map.write_json(&mut out)?,
@@ -55,7 +57,7 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
             }
             (Form::Ply | Form::Png, None) => (),
         }
-        out.flush().map_err(unwritable)?;
+        out.commit().map_err(unwritable)?;
         say!("{}", file.display());
     }
     told(&map, json)
@@ -102,12 +104,14 @@ fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
         covered: coverage.covered,
         swept: coverage.swept,
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     if json {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;
     } else {
-        writeln!(out, "{}, in {}", summary.tools.join(", "), summary.unit)?;
+        let tools: Vec<String> =
+            summary.tools.iter().map(|name| Escaped(name).to_string()).collect();
+        writeln!(out, "{}, in {}", tools.join(", "), summary.unit)?;
         writeln!(out, "{}; {} directions", identity.rules, summary.directions)?;
         writeln!(
             out,

@@ -5,9 +5,11 @@ use crate::arguments::Given;
 use crate::arguments::postures::Path as Wanted;
 use crate::failure::Failure;
 use crate::files::{Found, ending};
+use crate::output::{Output, refuse_inputs, unwritable, write_file};
 use crate::part;
 use serde::Serialize;
 use std::io::Write;
+use std::path::Path;
 use touchoff::certify::Facets;
 use touchoff::postures::path::{Pattern, path as lead};
 use touchoff::postures::{Directions, PostureMap, Rules};
@@ -36,6 +38,7 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         Some("csv") => false,
         _ => return Err(Failure::ProgramForm { file: wanted.to.display().to_string() }),
     };
+    refuse_inputs([&*wanted.to], [&*wanted.map, &wanted.part, Path::new(&wanted.tool)])?;
     let map = PostureMap::read(&wanted.map)?;
     let unit = map.identity().part.unit;
     if apt {
@@ -79,18 +82,16 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     };
     let name = wanted.to.display().to_string();
     let program = Program::new(&name, Some(unit), led.stops)?;
-    let unwritable = |source| Failure::Unwritable { file: wanted.to.display().to_string(), source };
-    // What cannot be written leaves the file as it was.
     let mut text = Vec::new();
     if apt {
         let part = wanted.part.file_stem().unwrap_or_default().to_string_lossy();
         let heading = Heading { part: &part, cutter: Cutter::of(tool.card(), unit) };
         program.write_apt(&mut text, &heading)?;
     } else {
-        program.write_csv(&mut text).map_err(unwritable)?;
+        program.write_csv(&mut text).map_err(|source| unwritable(&wanted.to, source))?;
     }
-    std::fs::write(&wanted.to, text).map_err(unwritable)?;
-    let mut out = std::io::stdout().lock();
+    write_file(&wanted.to, text)?;
+    let mut out = Output::lines();
     if json {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;

@@ -5,11 +5,13 @@ use crate::arguments::Given;
 use crate::arguments::postures::Sweep as Wanted;
 use crate::failure::Failure;
 use crate::files::{Found, length};
+use crate::output::{Output, refuse_inputs};
 use crate::part;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::io::Write;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 use touchoff::certify::Facets;
 use touchoff::postures::sweep::{Batch, Sweep, Tally};
@@ -98,6 +100,8 @@ impl Count {
 
 /// Sweeps, and tells what came of it.
 pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
+    let inputs = wanted.tools.iter().map(Path::new).chain([&*wanted.mesh.part]);
+    refuse_inputs(wanted.out.as_deref(), inputs)?;
     let nothing = Given::default();
     let found: Vec<Found> =
         wanted.tools.iter().map(|name| Found::find(name, &nothing)).collect::<Result<_, _>>()?;
@@ -174,7 +178,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
             acceptable: tally.acceptable,
         },
     };
-    let mut out = std::io::stdout().lock();
+    let mut out = Output::lines();
     if json {
         serde_json::to_writer(&mut out, &summary)?;
         writeln!(out)?;
@@ -189,7 +193,7 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
 fn left(sweep: &Sweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
     let Some(map) = map else { return Ok((0..sweep.batches()).collect()) };
     let swept = map.swept()?;
-    let is_open = |batch: &usize| sweep.triangles(*batch).iter().any(|id| !swept[*id as usize]);
+    let is_open = |batch: &usize| sweep.triangles(*batch).iter().any(|id| !swept.contains(id));
     Ok((0..sweep.batches()).filter(is_open).collect())
 }
 

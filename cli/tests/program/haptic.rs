@@ -47,6 +47,51 @@ fn a_hand_is_told_of_in_words() {
     }
 }
 
+/// A process may have so many more blocks in a file, and not one more.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_is_full_is_told_when_it_is() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+    let bench = Bench::new();
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    let table = bench.write("record.csv", "old");
+    let script = "trap '' XFSZ; ulimit -f 40; exec \"$@\"";
+    let mut child = Command::new("sh")
+        .args(["-c", script, "sh", env!("CARGO_BIN_EXE_touchoff")])
+        .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
+        .args(["--points", "2000", "--seconds", "3", "--record", &table])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("a shell");
+    let lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
+    let lines: Vec<String> = lines.map_while(Result::ok).collect();
+    let told = lines.iter().position(|line| line.contains("nothing is recorded from here on"));
+    let told = told.unwrap_or_else(|| panic!("{lines:?}"));
+    assert!(lines[told].contains("record.csv") && lines[told].contains("File too large"));
+    // The loop goes on: it shows where it is after that too.
+    assert!(lines[told..].iter().any(|line| line.contains("  tip ")), "{lines:?}");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(1), "{lines:?}");
+    assert!(stdout(&output).contains("cycles at 1000 Hz"), "{}", stdout(&output));
+    assert!(lines.last().is_some_and(|line| line.contains("not all of the session was kept")));
+    assert_eq!(std::fs::read_to_string(&table).expect("a file"), "old");
+    let names = std::fs::read_dir(bench.folder.path()).expect("a folder").count();
+    assert_eq!(names, 3, "something is left behind");
+}
+
+#[test]
+fn cores_that_there_are_not_are_refused_with_those_that_there_are() {
+    let bench = Bench::new();
+    for core in ["1024", "18446744073709551615"] {
+        let output = haptic(&bench, &["--core", core]);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        let words = format!("not kept on core {core}: this process may run on core ");
+        assert!(stderr(&output).contains(&words), "{}", stderr(&output));
+    }
+}
+
 #[test]
 fn what_is_no_device_is_refused_with_a_remedy() {
     let bench = Bench::new();

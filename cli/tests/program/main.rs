@@ -2,6 +2,7 @@
 
 mod bench;
 mod haptic;
+mod output;
 mod parts;
 mod postures;
 mod verify;

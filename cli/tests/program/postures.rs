@@ -177,8 +177,11 @@ fn what_a_map_is_not_of_is_refused() {
 fn a_map_that_is_damaged_or_in_use_is_refused() {
     let tube = Tube::new();
     assert!(tube.sweep("D2Ball", &[]).status.success());
-    let open = PostureMap::read(&tube.map).expect("a map");
+    let open = PostureMap::resume(&tube.map).expect("a map");
     refused(&tube.sweep("D2Ball", &[]), &["another process"]);
+    // To look at it is another matter.
+    let shown = touchoff(&["map", &tube.map]);
+    assert!(stdout(&shown).contains("384 of 384 triangles"), "{}", stderr(&shown));
     drop(open);
     assert!(tube.sweep("D2Ball", &[]).status.success());
     std::fs::write(&tube.map, "not a map").expect("a writable file");

@@ -51,6 +51,6 @@ pub use device::{Axes, Device, DeviceError, Limits, Push, Recorded, Scripted};
 pub use guard::{Fastest, Faults};
 pub use hand::{Grip, Hand, Tremor};
 pub use passivity::Energy;
-pub use realtime::{Realtime, Refused};
+pub use realtime::{Realtime, Refused, check_core};
 pub use run::{Clock, Latest, Monotonic, Report, Samples, Times, Unhurried, Watch, run, watched};
 pub use session::{Rendering, Session, Settings, State};

@@ -2,7 +2,7 @@
 
 use super::Record;
 use crate::certify::{AllowanceError, Certifier, Clear, Facets, Uncertified};
-use crate::{Pose, Tool};
+use crate::{Escaped, Pose, Tool};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -83,7 +83,9 @@ impl Rules {
 impl fmt::Display for Rules {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "tolerance {}, niceness above {}", self.tolerance, self.niceness)?;
-        self.allowed.iter().try_for_each(|(name, allowed)| write!(f, ", `{name}` {allowed}"))
+        self.allowed
+            .iter()
+            .try_for_each(|(name, allowed)| write!(f, ", `{}` {allowed}", Escaped(name)))
     }
 }
 

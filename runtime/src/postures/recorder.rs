@@ -3,7 +3,7 @@
 use super::{Judge, JudgeError, MapError, PostureMap, Record, ToolStamp};
 use crate::certify::Facets;
 use crate::haptic::{Samples, State};
-use crate::{Part, Pose, Probe, Tool, Unit};
+use crate::{Escaped, Part, Pose, Probe, Tool, Unit};
 use std::time::{Duration, Instant};
 
 /// Takes the poses of a running loop, and records those that are nice and proved acceptable.
@@ -90,7 +90,7 @@ impl<'a> Recorder<'a> {
     ) -> Result<Recorder<'a>, RecorderError> {
         let (card, identity) = (tool.card(), map.identity());
         let place = identity.tool(card).ok_or_else(|| {
-            let name = |tool: &ToolStamp| format!("`{}`", tool.name);
+            let name = |tool: &ToolStamp| format!("`{}`", Escaped(&tool.name));
             let known: Vec<String> = identity.tools.iter().map(name).collect();
             RecorderError::Tool { tool: card.name.to_string(), known: known.join(", ") }
         })?;

@@ -4,6 +4,10 @@
 //! turns the tool's frame into the part's. The number of columns of the first row decides, and
 //! every other row must have as many. Columns are separated by commas; `#` opens a comment, blank
 //! lines are skipped, and a first row of the names above is taken as such.
+//!
+//! A table that [`Program::write_csv`](super::Program::write_csv) wrote says in its first line, a comment, that it
+//! ends with an end mark, another comment. Without that mark such a table was cut short and is refused; tables of
+//! other programs need none.
 
 use super::{Fault, Located, PLAIN_NUMBER, Stop, axis_pose, lines, number, shown};
 use crate::Pose;
@@ -12,8 +16,14 @@ use nalgebra::Point3;
 const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
 const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
 
+/// The first line of a table that was written here, and its last.
+pub(super) const HEAD: &str =
+    "# touchoff program: complete only with its last line `# end of program`";
+pub(super) const END: &str = "# end of program";
+
 /// The positions of a table.
 pub(super) fn read(text: &str) -> Result<Vec<Stop>, Located> {
+    check_end(text)?;
     let mut stops = Vec::new();
     let mut columns = None;
     for (line, raw) in lines(text) {
@@ -30,6 +40,23 @@ pub(super) fn read(text: &str) -> Result<Vec<Stop>, Located> {
         columns = Some(cells.len());
     }
     Ok(stops)
+}
+
+/// Refuses a table that says it has an end mark and does not end with it.
+fn check_end(text: &str) -> Result<(), Located> {
+    // Spreadsheets fill the line up with separators and may put it in quotes.
+    let is = |line: &str, mark: &str| {
+        line.trim_end_matches([',', ';', '\t', ' ']).trim_matches('"') == mark
+    };
+    let mut filled = lines(text).filter(|(_, line)| !line.is_empty());
+    let Some((first, head)) = filled.next() else { return Ok(()) };
+    if !is(head, HEAD) {
+        return Ok(());
+    }
+    match filled.last() {
+        Some((_, line)) if is(line, END) => Ok(()),
+        last => Err((last.map_or(first, |(line, _)| line), Fault::NoEndMark)),
+    }
 }
 
 /// Whether a first row is the columns' names; one of other names is refused.
@@ -110,11 +137,41 @@ fn with_separators(fault: Fault, row: &str) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::super::tests::{refusal, shared};
+    use super::END;
+    use crate::Pose;
     use crate::program::{Program, Stop};
     use nalgebra::{Point3, Vector3};
 
     fn stops(text: &str) -> Vec<Stop> {
         Program::parse(text, "part.csv").expect("it is a table").stops
+    }
+
+    /// No beginning of a table that was written here is taken for all of it.
+    #[test]
+    fn no_beginning_is_a_table() {
+        let pose = |x| Pose::from_axis(Point3::new(x, 0.5, -12.25), Vector3::z()).expect("a pose");
+        let made = Program::new("made", None, [1.0, 2.0, 3.0].map(|x| (pose(x), false)));
+        let mut whole = Vec::new();
+        made.expect("poses").write_csv(&mut whole).expect("memory");
+        let whole = String::from_utf8(whole).expect("UTF-8");
+        assert_eq!(stops(&whole).iter().map(|stop| stop.line).collect::<Vec<_>>(), [3, 4, 5]);
+        let last = whole.trim_end().len();
+        assert_eq!(stops(&whole[..last]).len(), 3);
+        for end in 0..last {
+            assert!(Program::parse(&whole[..end], "part.csv").is_err(), "{:?}", &whole[..end]);
+        }
+        assert_eq!(
+            refusal(whole.trim_end().trim_end_matches(END)),
+            "part.cl:5: the table stops here without its end mark `# end of program`: write it again, or add \
+             the mark if this is the end"
+        );
+        let sheet = whole
+            .replace('\n', ",,,,,\r\n")
+            .replace("k,,,,,", "k")
+            .replace("25,0,0,1,,,,,", "25,0,0,1");
+        assert_eq!(stops(&sheet).len(), 3, "{sheet}");
+        let after = format!("{whole}4,5,6,0,0,1\n");
+        assert!(Program::parse(after, "part.csv").is_err());
     }
 
     #[test]

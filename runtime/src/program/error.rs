@@ -234,6 +234,12 @@ pub enum Fault {
     /// The end of the file before the end of the program.
     #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
     Unfinished,
+    /// The end of the file before the end mark that its first line speaks of.
+    #[error(
+        "the table stops here without its end mark `{}`: write it again, or add the mark if this is the end",
+        super::csv::END
+    )]
+    NoEndMark,
     /// A statement after the end.
     #[error("a statement follows {end}: give one program per file")]
     AfterEnd {

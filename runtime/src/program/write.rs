@@ -5,6 +5,7 @@
 //! may move its parts by a unit of roundoff.
 
 use super::Program;
+use super::csv::{END, HEAD};
 use crate::tool::{Card, Piece};
 use crate::{Pose, Unit};
 use std::fmt::{self, Display, Formatter};
@@ -132,11 +133,13 @@ impl Program {
     }
 
     /// Writes the program as a table with a row of names: `x,y,z,i,j,k`, or, where the spin of every pose was
-    /// given, `x,y,z,qx,qy,qz,qw`. A table says neither its unit nor which motions are rapid.
+    /// given, `x,y,z,qx,qy,qz,qw`. A table says neither its unit nor which motions are rapid. Its first line, a
+    /// comment, says that it ends with an end mark, so that no reader here takes a part of it for the whole.
     ///
     /// # Errors
     /// If `out` fails.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, "{HEAD}")?;
         let full = self.stops.iter().all(|stop| stop.pose.is_full());
         writeln!(out, "{}", if full { "x,y,z,qx,qy,qz,qw" } else { "x,y,z,i,j,k" })?;
         for stop in &self.stops {
@@ -148,7 +151,7 @@ impl Program {
                 writeln!(out, "{},{}", Listed(&tip), Listed(&axis))?;
             }
         }
-        Ok(())
+        writeln!(out, "{END}")
     }
 }
 

@@ -18,7 +18,7 @@ mod read;
 
 pub use error::SavedError;
 
-use crate::Part;
+use crate::{AtomicFile, Part};
 use layout::ALIGN;
 use memmap2::{Mmap, MmapOptions};
 use std::fs::{self, File};
@@ -118,27 +118,9 @@ fn write(out: &mut dyn Write, header: &[u8], sections: &[&[u8]]) -> io::Result<(
 
 /// Puts a new file in place of an old one when it is whole and on the disk.
 fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    // What a link leads to is replaced, not the link.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        // As of any new file: the system takes away what the user wants no one to do.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut new = builder.prefix(".touchoff-").tempfile_in(folder)?;
-    write(new.as_file_mut())?;
-    new.as_file().sync_all()?;
-    new.persist(&target)?;
-    // The name too; where folders cannot be synchronised, the system does it in its own time.
-    #[cfg(unix)]
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(())
+    let mut new = AtomicFile::create(path)?;
+    write(&mut new)?;
+    new.commit()
 }
 
 #[cfg(test)]

@@ -254,9 +254,9 @@ impl Interior<'_> {
         }
     }
 
-    /// Whether nothing of the profile is nearer to a point than its foot, `t` away.
+    /// Whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
     fn is_free(&self, p: Place, t: f64) -> bool {
-        p[0] >= 0.0 && self.section.away(p) >= t * (1.0 - NEARLY)
+        p[0] >= 0.0 && self.section.away(p) >= t - NEARLY * self.section.error
     }
 
     /// How far a normal that is at least `least` long goes before something else of the profile is as near
@@ -335,8 +335,8 @@ impl Interior<'_> {
 /// A witness stands at this part of the way from the limit to where the normal ends.
 const DEEP: f64 = 0.75;
 
-/// What a distance may be less by for rounding alone, as a part of it.
-const NEARLY: f64 = 1e-12;
+/// What a distance may be less by for rounding alone, as a part of what rounding makes of a place.
+const NEARLY: f64 = 0.25;
 
 /// How often the length of a normal is halved: to a part in 2^48 of the tool's size.
 const HALVINGS: u32 = 50;

@@ -7,9 +7,7 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
     /// The file system would not give it.
-    #[error(
-        "cannot open {file}: {source}: check the path and its permissions, to read and to write"
-    )]
+    #[error("cannot open {file}: {source}: check the path and its permissions")]
     Unreadable {
         /// The file.
         file: String,
@@ -40,6 +38,41 @@ pub enum MapError {
     Locked {
         /// The file.
         file: String,
+    },
+    /// Another writes into it without a pause long enough to copy it.
+    #[error("{file} is written into too fast to be read: try again, or wait until that has ended")]
+    Busy {
+        /// The file.
+        file: String,
+    },
+    /// It was opened to be read.
+    #[error(
+        "{file} was opened to be read only: open it with `PostureMap::resume` to record into it"
+    )]
+    ReadOnly {
+        /// The file.
+        file: String,
+    },
+    /// Its end is missing.
+    #[error(
+        "{file} is truncated: it has {length} of {whole} bytes: take a copy that is whole, or remove it and make it \
+         again"
+    )]
+    Truncated {
+        /// The file.
+        file: String,
+        /// The bytes that it has.
+        length: u64,
+        /// The bytes that it had at least.
+        whole: u64,
+    },
+    /// It has more of something than any map.
+    #[error("{file} is no map that can be used: {what}")]
+    Oversized {
+        /// The file.
+        file: String,
+        /// What there is too much of, and how much there may be.
+        what: String,
     },
     /// Its bytes are not those that were written.
     #[error("{file} is damaged: {what}: take a copy that is whole, or remove it and make it again")]

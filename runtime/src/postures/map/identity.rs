@@ -1,10 +1,11 @@
 //! To what a map belongs.
 
-use crate::postures::{Access, Record, Rules, RulesError};
+use crate::postures::{Access, Directions, Record, Rules, RulesError};
 use crate::tool::Card;
-use crate::{Mesh, Tool, Unit};
+use crate::{Escaped, Mesh, Tool, Unit};
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher24;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::hash::Hasher;
 use std::num::NonZeroU16;
@@ -134,6 +135,11 @@ impl Identity {
         if !best.iter().all(numbers) {
             return Some("its niceness, depth or clearance is no number that they can be");
         }
+        let ascending = access.is_sorted_by(|one, next| one.tool < next.tool);
+        let distinct = || access.iter().map(|access| access.tool).collect::<BTreeSet<u16>>().len();
+        if !ascending && distinct() < access.len() {
+            return Some("a tool has two accesses");
+        }
         let count = self.directions.len();
         let stray = |access: &Access| {
             let last = access.directions.last().copied().unwrap_or(0);
@@ -143,13 +149,25 @@ impl Identity {
         access.iter().any(stray).then_some("it has other directions than the map")
     }
 
+    /// What a map has no place for so many of, if there are: tools are told by 16 bits, and between directions there
+    /// are tables that grow with the square of their number.
+    pub(super) fn oversized(&self) -> Option<String> {
+        let (tools, directions) = (self.tools.len(), self.directions.len());
+        let (most_tools, most) = (usize::from(u16::MAX) + 1, 2 * Directions::MOST);
+        if tools > most_tools {
+            return Some(format!("it has {tools} tools, and there may be {most_tools}"));
+        }
+        (directions > most)
+            .then(|| format!("it has {directions} directions, and there may be {most}"))
+    }
+
     /// In what a file, of which this is the identity, differs from what is asked for.
     pub(super) fn differs(&self, asked: &Identity) -> Option<Difference> {
         if self.part != asked.part {
             return Some(Difference::Part { has: self.part, asked: asked.part });
         }
         let names = |of: &Identity| -> Vec<String> {
-            of.tools.iter().map(|tool| format!("`{}`", tool.name)).collect()
+            of.tools.iter().map(|tool| format!("`{}`", Escaped(&tool.name))).collect()
         };
         let (has, others) = (names(self), names(asked));
         if has != others {
@@ -158,7 +176,7 @@ impl Identity {
         }
         let mut tools = self.tools.iter().zip(&asked.tools);
         if let Some((tool, _)) = tools.find(|(tool, asked)| tool.digest != asked.digest) {
-            return Some(Difference::Tool { tool: tool.name.clone() });
+            return Some(Difference::Tool { tool: Escaped(&tool.name).to_string() });
         }
         if self.rules != asked.rules || self.keep != asked.keep {
             let [has, asked] =

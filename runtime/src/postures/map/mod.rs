@@ -9,6 +9,8 @@ mod error;
 mod export;
 mod identity;
 mod merge;
+mod open;
+mod snapshot;
 #[cfg(test)]
 mod tests;
 
@@ -18,12 +20,8 @@ pub use identity::{Difference, Identity, PartStamp, ToolStamp};
 use super::{Access, Record, Row};
 use coding::{decode, encode};
 pub(super) use merge::merge;
-use redb::{
-    Builder, Database, Range, ReadOnlyTable, ReadableDatabase, ReadableTable, TableDefinition,
-};
-use std::fs::{self, File};
-use std::io::{self, Read};
-use std::path::Path;
+use redb::{Database, Range, ReadOnlyTable, ReadableDatabase, ReadableTable, TableDefinition};
+use std::collections::BTreeSet;
 
 const FACTS: TableDefinition<'_, &str, &[u8]> = TableDefinition::new("facts");
 const ROWS: TableDefinition<'_, u32, &[u8]> = TableDefinition::new("rows");
@@ -32,8 +30,6 @@ const VERSION: &str = "version";
 const IDENTITY: &str = "identity";
 /// The version that is written, and the newest that is read.
 const NEWEST: u32 = 1;
-/// What every `redb` store begins with.
-const MAGIC: &[u8] = b"redb\x1A\x0A\xA9\x0D\x0A";
 
 /// Postures at a part, triangle by triangle, in a file.
 ///
@@ -67,6 +63,8 @@ pub struct PostureMap {
     database: Database,
     identity: Identity,
     file: String,
+    /// Whether this is a copy of the file, made to be read.
+    is_copy: bool,
 }
 
 /// How much of a part is known.
@@ -84,6 +82,8 @@ pub struct Coverage {
 pub struct Rows<'a> {
     range: Range<'static, u32, &'static [u8]>,
     map: &'a PostureMap,
+    /// The first triangle that may come next.
+    next: u64,
 }
 
 impl Iterator for Rows<'_> {
@@ -93,60 +93,16 @@ impl Iterator for Rows<'_> {
         let entry = self.range.next()?;
         Some(entry.map_err(|error| self.map.says(error)).and_then(|(triangle, bytes)| {
             let triangle = triangle.value();
+            if u64::from(triangle) < self.next {
+                return Err(self.map.damaged(format!("triangle {triangle} is there twice")));
+            }
+            self.next = u64::from(triangle) + 1;
             Ok((triangle, self.map.decoded(triangle, bytes.value())?))
         }))
     }
 }
 
 impl PostureMap {
-    /// Opens a map to go on with it, or begins one if there is no such file. A file that was killed over is
-    /// as it was after the last batch.
-    ///
-    /// All of the file is checked. One process has it open at a time.
-    ///
-    /// # Errors
-    /// A file that belongs to another part, other tools or rules; is no map, damaged, or of a newer version;
-    /// is open in another process; or cannot be read and written.
-    pub fn open(path: impl AsRef<Path>, identity: &Identity) -> Result<PostureMap, MapError> {
-        let path = path.as_ref();
-        if matches!(path.try_exists(), Ok(false)) {
-            begin(path, identity)?;
-        }
-        let map = PostureMap::read(path)?;
-        match map.identity.differs(identity) {
-            Some(difference) => Err(MapError::Differs { file: map.file, difference }),
-            None => Ok(map),
-        }
-    }
-
-    /// Opens a map for what it is, to look at or to export.
-    ///
-    /// # Errors
-    /// Those of [`PostureMap::open`] but of belonging; a file that is not there is one that cannot be read.
-    pub fn read(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
-        let path = path.as_ref();
-        let file = path.display().to_string();
-        match starts_as_store(path) {
-            Ok(true) => (),
-            Ok(false) => return Err(MapError::Foreign { file }),
-            Err(source) => return Err(MapError::Unreadable { file, source }),
-        }
-        let store = Builder::new().set_check_integrity_on_open(true).open(path);
-        match store {
-            Ok(database) => PostureMap::of(database, file),
-            Err(redb::DatabaseError::Storage(redb::StorageError::Io(source))) => {
-                Err(MapError::Unreadable { file, source })
-            }
-            Err(error) => Err(MapError::of(&file, error)),
-        }
-    }
-
-    /// The map in a store.
-    fn of(database: Database, file: String) -> Result<PostureMap, MapError> {
-        let identity = read_facts(&database, &file)?;
-        Ok(PostureMap { database, identity, file })
-    }
-
     /// To what it belongs.
     pub fn identity(&self) -> &Identity {
         &self.identity
@@ -168,7 +124,7 @@ impl PostureMap {
     /// If the file cannot be read; each row by itself, if it is damaged.
     pub fn rows(&self) -> Result<Rows<'_>, MapError> {
         let range = self.table()?.range::<u32>(..).map_err(|error| self.says(error))?;
-        Ok(Rows { range, map: self })
+        Ok(Rows { range, map: self, next: 0 })
     }
 
     /// Takes in what a sweep found of triangles, all of it or nothing: its accesses in place of those that
@@ -202,15 +158,17 @@ impl PostureMap {
         })
     }
 
-    /// Of each triangle, whether a sweep came to it.
+    /// The triangles that a sweep came to.
     ///
     /// # Errors
     /// If the file cannot be read, or a row is damaged.
-    pub fn swept(&self) -> Result<Vec<bool>, MapError> {
-        let mut swept = vec![false; self.identity.part.triangles as usize];
+    pub fn swept(&self) -> Result<BTreeSet<u32>, MapError> {
+        let mut swept = BTreeSet::new();
         for entry in self.rows()? {
             let (triangle, row) = entry?;
-            swept[triangle as usize] = !row.access.is_empty();
+            if !row.access.is_empty() {
+                swept.insert(triangle);
+            }
         }
         Ok(swept)
     }
@@ -233,6 +191,9 @@ impl PostureMap {
 
     /// Joins what is new to rows, in one transaction.
     fn change<T>(&self, news: &[(u32, T)], join: impl Fn(&mut Row, &T)) -> Result<(), MapError> {
+        if self.is_copy {
+            return Err(MapError::ReadOnly { file: self.file.clone() });
+        }
         let write = self.database.begin_write().map_err(|error| self.says(error))?;
         let mut table = write.open_table(ROWS).map_err(|error| self.says(error))?;
         let mut changed = false;
@@ -265,11 +226,18 @@ impl PostureMap {
 
     /// A row of bytes.
     fn decoded(&self, triangle: u32, bytes: &[u8]) -> Result<Row, MapError> {
-        let fits = |row: &Row| self.identity.refuses(triangle, &row.best, &row.access).is_none();
-        decode(bytes).filter(fits).ok_or_else(|| MapError::Damaged {
-            file: self.file.clone(),
-            what: format!("the row of triangle {triangle} is not what was written"),
+        let identity = &self.identity;
+        let fits = |row: &Row| {
+            row.best.len() <= usize::from(identity.keep.get())
+                && identity.refuses(triangle, &row.best, &row.access).is_none()
+        };
+        decode(bytes).filter(fits).ok_or_else(|| {
+            self.damaged(format!("the row of triangle {triangle} is not what was written"))
         })
+    }
+
+    fn damaged(&self, what: String) -> MapError {
+        MapError::Damaged { file: self.file.clone(), what }
     }
 
     fn fits(&self, triangle: u32, best: &[Record], access: &[Access]) -> Result<(), MapError> {
@@ -280,83 +248,17 @@ impl PostureMap {
     }
 
     fn says(&self, error: impl Into<redb::Error>) -> MapError {
-        MapError::of(&self.file, error)
+        let error = MapError::of(&self.file, error);
+        if self.is_copy { as_damage(error) } else { error }
     }
 }
 
-/// Writes what a map says of itself into a store that has nothing in it.
-fn write_facts(database: &Database, identity: &Identity) -> Result<(), redb::Error> {
-    let write = database.begin_write()?;
-    let mut facts = write.open_table(FACTS)?;
-    facts.insert(VERSION, NEWEST.to_le_bytes().as_slice())?;
-    facts.insert(IDENTITY, encode(identity).as_slice())?;
-    drop(facts);
-    write.open_table(ROWS)?;
-    Ok(write.commit()?)
-}
-
-/// What a map says of itself.
-fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
-    let says = |error: redb::Error| MapError::of(file, error);
-    let read = database.begin_read().map_err(|error| says(error.into()))?;
-    let facts = read.open_table(FACTS).map_err(|error| says(error.into()))?;
-    let fact = |name| {
-        let bytes = facts.get(name).map_err(|error| says(error.into()))?;
-        let bytes = bytes.map(|bytes| bytes.value().to_vec());
-        bytes.ok_or_else(|| MapError::Foreign { file: file.to_owned() })
-    };
-    let version = fact(VERSION)?;
-    let version = version.try_into().map(u32::from_le_bytes);
-    let version = version.map_err(|_| MapError::Foreign { file: file.to_owned() })?;
-    if version > NEWEST {
-        return Err(MapError::Newer { file: file.to_owned(), version, reads: NEWEST });
-    }
-    decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
-        file: file.to_owned(),
-        what: "what it says of itself is not what was written".to_owned(),
-    })
-}
-
-/// Begins a map beside its place, and gives it its name when it is whole: nobody finds half of one.
-fn begin(path: &Path, identity: &Identity) -> Result<(), MapError> {
-    let file = path.display().to_string();
-    let unwritable = |source| MapError::written(file.clone(), source);
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        // As of any new file: the system takes away what the user wants no one to do.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let new = builder.prefix(".touchoff-").tempfile_in(folder).map_err(unwritable)?;
-    let database = Database::create(new.path()).map_err(|error| MapError::of(&file, error))?;
-    write_facts(&database, identity).map_err(|error| MapError::of(&file, error))?;
-    drop(database);
-    new.as_file().sync_all().map_err(unwritable)?;
-    match new.persist_noclobber(path) {
-        // The name too; where folders cannot be synchronised, the system does it in its own time.
-        Ok(_) => {
-            #[cfg(unix)]
-            let _ = File::open(folder).and_then(|folder| folder.sync_all());
-            Ok(())
+/// An error of a copy as damage: it asks nothing of the system, so the cause is in the file.
+fn as_damage(error: MapError) -> MapError {
+    match error {
+        MapError::Unwritable { file, source } | MapError::Full { file, source } => {
+            MapError::Damaged { file, what: source.to_string() }
         }
-        // Another was faster: it is that one which is opened.
-        Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
-        Err(error) => Err(unwritable(error.error)),
+        error => error,
     }
-}
-
-/// Whether a file begins as a store does.
-fn starts_as_store(path: &Path) -> io::Result<bool> {
-    // Asked first: a pipe would be waited for.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
-    }
-    let mut start = Vec::new();
-    File::open(path)?.take(MAGIC.len() as u64).read_to_end(&mut start)?;
-    Ok(start == MAGIC)
 }

@@ -7,7 +7,8 @@ use super::row::{Label, Quantity, Row};
 use super::table::{cells, error, micros, setting};
 use super::{Facts, Measured, Plan};
 use std::fmt::{Error, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use touchoff::AtomicFile;
 
 /// What all files' names begin with.
 const NAME: &str = "work-precision";
@@ -24,19 +25,30 @@ pub fn write(
 ) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let text = page(measured, plan, command).map_err(std::io::Error::other)?;
-    std::fs::write(folder.join(format!("{NAME}.md")), text)?;
+    AtomicFile::write(folder.join(format!("{NAME}.md")), text)?;
     let lines: String = measured.rows.iter().map(|row| row.json() + "\n").collect();
-    std::fs::write(folder.join(format!("{NAME}.jsonl")), lines)?;
+    AtomicFile::write(folder.join(format!("{NAME}.jsonl")), lines)?;
     for facts in &measured.scenes {
         let rows = of(measured, &facts.scene);
         for quantity in Quantity::ALL {
             let plot = plot(&rows, &facts.scene, quantity);
             if !plot.is_empty() {
-                std::fs::write(folder.join(file(&facts.scene, quantity)), plot.svg())?;
+                AtomicFile::write(folder.join(file(&facts.scene, quantity)), plot.svg())?;
             }
         }
     }
     Ok(())
+}
+
+/// The files that [`write`] may write of these scenes.
+pub fn files<'a>(
+    folder: &'a Path,
+    scenes: impl IntoIterator<Item = &'a str>,
+) -> impl Iterator<Item = PathBuf> {
+    let each =
+        scenes.into_iter().flat_map(|scene| Quantity::ALL.map(|quantity| file(scene, quantity)));
+    let pages = ["md", "jsonl"].map(|ending| format!("{NAME}.{ending}"));
+    pages.into_iter().chain(each).map(|name| folder.join(name))
 }
 
 fn file(scene: &str, quantity: Quantity) -> String {

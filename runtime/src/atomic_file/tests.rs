@@ -1,0 +1,111 @@
+use super::*;
+
+fn names(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder).expect("a folder").flatten();
+    let mut names: Vec<String> =
+        names.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_file_is_there_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a");
+    AtomicFile::write(&path, "old").expect("written");
+    let mut file = AtomicFile::create(&path).expect("begun");
+    file.write_all(&[b'x'; 100_000]).expect("written");
+    assert_eq!(fs::read(&path).expect("read"), b"old");
+    drop(file);
+    assert_eq!(fs::read(&path).expect("read"), b"old");
+    assert_eq!(names(folder.path()), ["a"]);
+    AtomicFile::write(&path, "new").expect("written");
+    assert_eq!(fs::read(&path).expect("read"), b"new");
+    let again = AtomicFile::create(&path).expect("begun").commit_new().expect_err("it is there");
+    assert_eq!(again.kind(), io::ErrorKind::AlreadyExists);
+    assert_eq!((fs::read(&path).expect("read"), names(folder.path()).len()), (b"new".into(), 1));
+    let nowhere = AtomicFile::create(folder.path().join("no/a")).expect_err("no folder");
+    assert_eq!(nowhere.kind(), io::ErrorKind::NotFound);
+    AtomicFile::create(folder.path()).expect_err("a folder");
+}
+
+#[test]
+fn what_a_killed_process_left_is_removed_and_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name);
+    let live = AtomicFile::create(place("b")).expect("begun");
+    let kept = [".touchoff-notes", "touchoff.tmp", ".other.tmp"];
+    for name in kept.iter().chain(&[".touchoff-Ab3xyz.tmp"]) {
+        fs::write(place(name), "x").expect("written");
+    }
+    AtomicFile::write(place("a"), "a").expect("written");
+    let found = names(folder.path());
+    assert_eq!(found.len(), 5, "{found:?}");
+    assert!(kept.iter().all(|name| found.contains(&(*name).to_owned())), "{found:?}");
+    // The one that is being written is not taken for abandoned.
+    live.commit().expect("written");
+    assert!(place("b").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn permissions_are_those_of_the_old_file_or_of_any_new_one() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let [new, plain] = ["new", "plain"].map(|name| folder.path().join(name));
+    let mode = |path: &Path| fs::metadata(path).expect("there").permissions().mode() & 0o7777;
+    AtomicFile::write(&new, "").expect("written");
+    File::create(&plain).expect("created");
+    assert_eq!(mode(&new), mode(&plain));
+    fs::set_permissions(&new, fs::Permissions::from_mode(0o604)).expect("set");
+    AtomicFile::write(&new, "x").expect("written");
+    assert_eq!(mode(&new), 0o604);
+    fs::set_permissions(&new, fs::Permissions::from_mode(0o400)).expect("set");
+    // To some users everything is permitted.
+    if OpenOptions::new().write(true).open(&new).is_err() {
+        let refused = AtomicFile::create(&new).expect_err("not to be written");
+        assert_eq!(refused.kind(), io::ErrorKind::PermissionDenied);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_devices_are_written_as_what_they_are() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = |name: &str| folder.path().join(name);
+    fs::create_dir(place("in")).expect("a folder");
+    // To a file that is there, over two links, and to one that is not yet there.
+    for (link, to) in [("one", "in/two"), ("in/two", "file"), ("open", "in/later")] {
+        symlink(to, place(link)).expect("a link");
+    }
+    fs::write(place("in/file"), "old").expect("written");
+    for (link, file) in [("one", "in/file"), ("open", "in/later")] {
+        AtomicFile::write(place(link), "new").expect("written");
+        assert!(fs::symlink_metadata(place(link)).expect("there").is_symlink());
+        assert_eq!(fs::read(place(file)).expect("read"), b"new");
+    }
+    symlink("round", place("round")).expect("a link");
+    AtomicFile::create(place("round")).expect_err("it leads nowhere");
+    AtomicFile::write("/dev/null", "x").expect("taken");
+    if Path::new("/dev/full").exists() {
+        symlink("/dev/full", place("full")).expect("a link");
+        for path in [Path::new("/dev/full"), &place("full")] {
+            let error = AtomicFile::write(path, "x").expect_err("no room");
+            assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_written_to_as_such() {
+    use std::io::Read;
+    let (mut from, to) = io::pipe().expect("a pipe");
+    let path = format!("/dev/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&to));
+    AtomicFile::write(path, "through").expect("written");
+    drop(to);
+    let mut text = String::new();
+    from.read_to_string(&mut text).expect("read");
+    assert_eq!(text, "through");
+}

@@ -1,0 +1,70 @@
+//! Text from files and file names, made safe to show.
+
+use std::fmt::{self, Display, Formatter, Write};
+
+/// Text without the characters that a terminal obeys: control characters (C0, C1, delete) and those that change
+/// the direction of writing are shown as `\u001b`, four hexadecimal digits of their code, as JSON writes them. A
+/// line break is one of them, so the text stays in its line.
+///
+/// Everything that comes from a file or names one goes through here before it is shown.
+///
+/// ```
+/// assert_eq!(touchoff::Escaped("a\u{1b}[2J\nb").to_string(), r"a\u001b[2J\u000ab");
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Escaped<'a>(pub &'a str);
+
+impl Display for Escaped<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for part in self.0.split_inclusive(is_obeyed) {
+            match part.char_indices().next_back().filter(|(_, last)| is_obeyed(*last)) {
+                Some((at, last)) => write!(f, "{}\\u{:04x}", &part[..at], u32::from(last))?,
+                None => f.write_str(part)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// [`Escaped`] for whole lines: line breaks and tabs stay.
+///
+/// ```
+/// assert_eq!(touchoff::EscapedLines("a\u{7f}\n").to_string(), "a\\u007f\n");
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct EscapedLines<'a>(pub &'a str);
+
+impl Display for EscapedLines<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for part in self.0.split_inclusive(['\n', '\t']) {
+            let line = part.trim_end_matches(['\n', '\t']);
+            write!(f, "{}", Escaped(line))?;
+            part[line.len()..].chars().try_for_each(|end| f.write_char(end))?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a terminal acts on a character instead of showing it: controls, and the marks, embeddings, overrides and
+/// isolates of Unicode's bidirectional algorithm (UAX 9, section 2).
+fn is_obeyed(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_a_terminal_obeys_is_left() {
+        for code in (0..0x20).chain(0x7f..0xa0).chain([0x61c, 0x200e, 0x202e, 0x2066]) {
+            let text = format!("a{}é", char::from_u32(code).expect("a character"));
+            assert_eq!(Escaped(&text).to_string(), format!("a\\u{code:04x}é"));
+        }
+        for text in ["", "é ~", "\\", "工具"] {
+            assert_eq!(Escaped(text).to_string(), text);
+        }
+        assert_eq!(EscapedLines("a\tb\r\n\u{9b}\n\n").to_string(), "a\tb\\u000d\n\\u009b\n\n");
+    }
+}

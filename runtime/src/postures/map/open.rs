@@ -1,0 +1,221 @@
+//! How maps are opened: to be read, and to be recorded into.
+
+use super::coding::{decode, encode};
+use super::snapshot::{Draft, Header, copy};
+use super::{FACTS, IDENTITY, Identity, MapError, NEWEST, PostureMap, ROWS, VERSION, as_damage};
+use crate::AtomicFile;
+use redb::{Builder, Database, ReadableDatabase, StorageBackend as _};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::Duration;
+
+/// How often a map is copied that is written into meanwhile, and how long to wait after the first few.
+const COPIES: u32 = 200;
+const PAUSE: Duration = Duration::from_millis(5);
+/// Bytes that the store may keep of a copy: it is in memory already, and its reads are counted.
+const CACHE: usize = 0;
+
+impl PostureMap {
+    /// Opens a map to go on with it, or begins one if there is no such file. A file that was killed over is
+    /// as it was after the last batch.
+    ///
+    /// All of the file is checked. One process has it open at a time.
+    ///
+    /// # Errors
+    /// A file that belongs to another part, other tools or rules; is no map, damaged, or of a newer version;
+    /// is open in another process; or cannot be read and written.
+    pub fn open(path: impl AsRef<Path>, identity: &Identity) -> Result<PostureMap, MapError> {
+        let path = path.as_ref();
+        if let Some(what) = identity.oversized() {
+            return Err(MapError::Oversized { file: path.display().to_string(), what });
+        }
+        if matches!(path.try_exists(), Ok(false)) {
+            begin(path, identity)?;
+        }
+        // A file that is refused is not changed.
+        match read_identity(path)?.differs(identity) {
+            Some(difference) => {
+                Err(MapError::Differs { file: path.display().to_string(), difference })
+            }
+            None => open_writable(path),
+        }
+    }
+
+    /// Opens a map for what it is, to go on with it.
+    ///
+    /// # Errors
+    /// Those of [`PostureMap::open`] but of belonging; a file that is not there is one that cannot be read.
+    pub fn resume(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
+        let path = path.as_ref();
+        read_identity(path)?;
+        open_writable(path)
+    }
+
+    /// Reads a map as it is at this moment, to look at or to export; it cannot be recorded into.
+    ///
+    /// The file is copied into memory and not changed, so it needs no permission to be written, and another process,
+    /// such as a sweep, may have it open and go on meanwhile. All of it is checked.
+    ///
+    /// # Errors
+    /// Those of [`PostureMap::open`] but of belonging and of writing; a file that is not there is one that cannot be
+    /// read; one that is written into so fast that no copy has a whole.
+    pub fn read(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let (mut bytes, _) = start(path)?;
+        for attempt in 0..COPIES {
+            if attempt > 2 {
+                std::thread::sleep(PAUSE);
+            }
+            let copied = copy(&mut bytes).map_err(|source| unreadable(&file, source))?;
+            let Some((header, memory)) = copied else { continue };
+            let length = memory.len().map_err(|source| unreadable(&file, source))?;
+            if header.is_closed() && length < header.length() {
+                return Err(MapError::Truncated { file, length, whole: header.length() });
+            }
+            let mut builder = Builder::new();
+            builder.set_check_integrity_on_open(true).set_cache_size(CACHE);
+            let read = builder
+                .create_with_backend(memory.clone())
+                .map_err(|error| MapError::of(&file, error))
+                .and_then(|database| PostureMap::of(database, file.clone()))
+                .map_err(|error| truncated_or(as_damage(error), &header, length));
+            match read {
+                Ok(map) => {
+                    memory.end_check();
+                    return Ok(PostureMap { is_copy: true, ..map });
+                }
+                // A commit comes to the disk page by page: a whole one may be there the next time.
+                Err(MapError::Damaged { .. } | MapError::Truncated { .. })
+                    if is_written(&bytes) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Err(MapError::Busy { file })
+    }
+
+    /// The map in a store.
+    pub(super) fn of(database: Database, file: String) -> Result<PostureMap, MapError> {
+        let identity = read_facts(&database, &file)?;
+        Ok(PostureMap { database, identity, file, is_copy: false })
+    }
+}
+
+/// The identity of a map that is to be opened to record into it.
+fn read_identity(path: &Path) -> Result<Identity, MapError> {
+    match PostureMap::read(path) {
+        Ok(map) => Ok(map.identity),
+        // It is written into, and so it is in use.
+        Err(MapError::Busy { file }) => Err(MapError::Locked { file }),
+        Err(error) => Err(error),
+    }
+}
+
+/// Opens a map's file, whose copy was checked, to record into it.
+fn open_writable(path: &Path) -> Result<PostureMap, MapError> {
+    let file = path.display().to_string();
+    let store = Builder::new().set_check_integrity_on_open(true).open(path);
+    let database = store.map_err(|error| match error {
+        redb::DatabaseError::Storage(redb::StorageError::Io(source)) => unreadable(&file, source),
+        error => MapError::of(&file, error),
+    })?;
+    PostureMap::of(database, file)
+}
+
+/// Writes what a map says of itself into a store that has nothing in it.
+pub(super) fn write_facts(database: &Database, identity: &Identity) -> Result<(), redb::Error> {
+    let write = database.begin_write()?;
+    let mut facts = write.open_table(FACTS)?;
+    facts.insert(VERSION, NEWEST.to_le_bytes().as_slice())?;
+    facts.insert(IDENTITY, encode(identity).as_slice())?;
+    drop(facts);
+    write.open_table(ROWS)?;
+    Ok(write.commit()?)
+}
+
+/// What a map says of itself.
+fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
+    let says = |error: redb::Error| MapError::of(file, error);
+    let read = database.begin_read().map_err(|error| says(error.into()))?;
+    let facts = read.open_table(FACTS).map_err(|error| says(error.into()))?;
+    let fact = |name| {
+        let bytes = facts.get(name).map_err(|error| says(error.into()))?;
+        let bytes = bytes.map(|bytes| bytes.value().to_vec());
+        bytes.ok_or_else(|| MapError::Foreign { file: file.to_owned() })
+    };
+    let version = fact(VERSION)?;
+    let version = version.try_into().map(u32::from_le_bytes);
+    let version = version.map_err(|_| MapError::Foreign { file: file.to_owned() })?;
+    if version > NEWEST {
+        return Err(MapError::Newer { file: file.to_owned(), version, reads: NEWEST });
+    }
+    let identity: Identity = decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
+        file: file.to_owned(),
+        what: "what it says of itself is not what was written".to_owned(),
+    })?;
+    match identity.oversized() {
+        Some(what) => Err(MapError::Oversized { file: file.to_owned(), what }),
+        None => Ok(identity),
+    }
+}
+
+/// Begins a map beside its place, and gives it its name when it is whole: nobody finds half of one.
+fn begin(path: &Path, identity: &Identity) -> Result<(), MapError> {
+    let file = path.display().to_string();
+    let unwritable = |source| MapError::written(file.clone(), source);
+    let draft = Draft::default();
+    let database = Builder::new().create_with_backend(draft.clone());
+    let database = database.map_err(|error| MapError::of(&file, error))?;
+    write_facts(&database, identity).map_err(|error| MapError::of(&file, error))?;
+    database.close().map_err(|error| MapError::of(&file, error))?;
+    let bytes = draft.bytes().map_err(unwritable)?;
+    let mut new = AtomicFile::create(path).map_err(unwritable)?;
+    new.write_all(&bytes).map_err(unwritable)?;
+    match new.commit_new() {
+        // Another was faster: it is that one which is opened.
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+        done => done.map_err(unwritable),
+    }
+}
+
+/// A store's file, open to be read, and its header.
+fn start(path: &Path) -> Result<(File, Header), MapError> {
+    let file = path.display().to_string();
+    let open = || {
+        // Asked first: a pipe would be waited for.
+        if !fs::metadata(path)?.is_file() {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+        }
+        let mut bytes = File::open(path)?;
+        let header = Header::read(&mut bytes)?;
+        Ok((bytes, header))
+    };
+    match open() {
+        Ok((bytes, header)) if header.is_store() => Ok((bytes, header)),
+        Ok(_) => Err(MapError::Foreign { file }),
+        Err(source) => Err(MapError::Unreadable { file, source }),
+    }
+}
+
+/// An error, or rather that the file is too short, where that is the cause.
+fn truncated_or(error: MapError, header: &Header, length: u64) -> MapError {
+    match error {
+        MapError::Damaged { file, .. } if length < header.length() => {
+            MapError::Truncated { file, length, whole: header.length() }
+        }
+        error => error,
+    }
+}
+
+/// Whether another handle has a file open to write into it.
+fn is_written(file: &File) -> bool {
+    let locked = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
+    // A failure means that there was nothing to unlock.
+    let _ = file.unlock();
+    locked
+}
+
+fn unreadable(file: &str, source: io::Error) -> MapError {
+    MapError::Unreadable { file: file.to_owned(), source }
+}

@@ -1,0 +1,190 @@
+//! A map's file in memory: as it was at one moment, to be read, and before it is written for the first time.
+
+use redb::StorageBackend;
+use redb::backends::InMemoryBackend;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+/// What every `redb` store begins with.
+pub(super) const MAGIC: &[u8] = b"redb\x1A\x0A\xA9\x0D\x0A";
+
+/// Bytes of a store's header: its layout and two commit slots, of which each commit rewrites one.
+const HEADER: usize = 320;
+
+/// A store's header (redb's `docs/design.md`, "Database header").
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Header(Vec<u8>);
+
+impl Header {
+    /// That of a file, or as much of it as there is.
+    pub(super) fn read(file: &mut File) -> io::Result<Header> {
+        file.seek(SeekFrom::Start(0))?;
+        let mut bytes = Vec::with_capacity(HEADER);
+        file.take(HEADER as u64).read_to_end(&mut bytes)?;
+        Ok(Header(bytes))
+    }
+
+    /// Whether it is that of a store.
+    pub(super) fn is_store(&self) -> bool {
+        self.0.starts_with(MAGIC)
+    }
+
+    /// Whether the last writer closed the file, so that all of the header holds. A killed writer may leave counts of
+    /// regions that are not those of the file; they are counted again when it is opened.
+    pub(super) fn is_closed(&self) -> bool {
+        const UNCLOSED: u8 = 2;
+        self.0.get(MAGIC.len()).is_some_and(|flags| flags & UNCLOSED == 0)
+    }
+
+    /// Bytes that the file has at least, by its own account.
+    pub(super) fn length(&self) -> u64 {
+        let field = |at: usize| {
+            let bytes = self.0.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+            u128::from(bytes.map_or(0, u32::from_le_bytes))
+        };
+        let [page, head, most, full, last] = [12, 16, 20, 24, 28].map(field);
+        let last = if last > 0 { head + last } else { 0 };
+        // The header takes a page.
+        let length = page * (1 + full * (head + most) + last);
+        u64::try_from(length).unwrap_or(u64::MAX).max(HEADER as u64)
+    }
+}
+
+/// Copies a file that another process may be writing into; `None` if that committed meanwhile.
+///
+/// Pages of the last commit are not written before the next one, and every commit changes the header: a copy with the
+/// same header before and after has all pages of that commit.
+pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
+    /// Bytes that are copied at once.
+    const CHUNK: usize = 1 << 20;
+    let before = Header::read(file)?;
+    let length = file.metadata()?.len();
+    let memory = InMemoryBackend::new();
+    memory.set_len(length)?;
+    let mut chunk = vec![0; CHUNK.min(usize::try_from(length).unwrap_or(CHUNK))];
+    file.seek(SeekFrom::Start(0))?;
+    let mut at = 0;
+    while at < length {
+        let size = chunk.len().min(usize::try_from(length - at).unwrap_or(CHUNK));
+        match file.read_exact(&mut chunk[..size]) {
+            Ok(()) => memory.write(at, &chunk[..size])?,
+            // It was shortened meanwhile.
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),
+            Err(error) => return Err(error),
+        }
+        at += size as u64;
+    }
+    let same = Header::read(file)? == before && file.metadata()?.len() == length;
+    Ok(same.then(|| (before, Snapshot::new(memory, length))))
+}
+
+/// A file's copy, of which no more is read while it is checked than a tree of its pages takes.
+///
+/// A crafted file can name a page as the child of another many times over, so that a walk over some pages takes
+/// forever.
+#[derive(Clone, Debug)]
+pub(super) struct Snapshot {
+    memory: Arc<InMemoryBackend>,
+    /// Bytes that may still be read.
+    left: Arc<AtomicI64>,
+}
+
+impl Snapshot {
+    fn new(memory: InMemoryBackend, length: u64) -> Snapshot {
+        /// How often each byte may be read, and how many more: a check reads each page fewer than ten times.
+        const TIMES: u64 = 64;
+        const MORE: i64 = 1 << 24;
+        let left = i64::try_from(length.saturating_mul(TIMES)).unwrap_or(i64::MAX);
+        let left = Arc::new(AtomicI64::new(left.saturating_add(MORE)));
+        Snapshot { memory: Arc::new(memory), left }
+    }
+
+    /// Ends the check: from here on as much is read as is asked for.
+    pub(super) fn end_check(&self) {
+        self.left.store(i64::MAX, Ordering::Relaxed);
+    }
+}
+
+impl StorageBackend for Snapshot {
+    fn len(&self) -> io::Result<u64> {
+        self.memory.len()
+    }
+
+    fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
+        let size = i64::try_from(out.len()).unwrap_or(i64::MAX);
+        if self.left.fetch_sub(size, Ordering::Relaxed) < size {
+            // What is read after that fails too.
+            self.left.store(0, Ordering::Relaxed);
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "its pages form no tree"));
+        }
+        self.memory.read(offset, out)
+    }
+
+    fn set_len(&self, len: u64) -> io::Result<()> {
+        self.memory.set_len(len)
+    }
+
+    fn sync_data(&self) -> io::Result<()> {
+        self.memory.sync_data()
+    }
+
+    fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
+        self.memory.write(offset, data)
+    }
+}
+
+/// Memory that a store is made in, and whose bytes are then written to a file.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Draft(Arc<InMemoryBackend>);
+
+impl Draft {
+    /// All bytes, once the store is closed.
+    pub(super) fn bytes(&self) -> io::Result<Vec<u8>> {
+        let length = usize::try_from(self.0.len()?).map_err(io::Error::other)?;
+        let mut bytes = vec![0; length];
+        self.0.read(0, &mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+impl StorageBackend for Draft {
+    fn len(&self) -> io::Result<u64> {
+        self.0.len()
+    }
+
+    fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
+        self.0.read(offset, out)
+    }
+
+    fn set_len(&self, len: u64) -> io::Result<()> {
+        self.0.set_len(len)
+    }
+
+    fn sync_data(&self) -> io::Result<()> {
+        self.0.sync_data()
+    }
+
+    fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
+        self.0.write(offset, data)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_walk_that_does_not_end_is_ended() {
+        let memory = InMemoryBackend::new();
+        memory.set_len(4096).expect("memory");
+        let snapshot = Snapshot::new(memory, 4096);
+        let mut page = [0; 4096];
+        let reads = (0..100_000).take_while(|_| snapshot.read(0, &mut page).is_ok()).count();
+        assert_eq!(reads, 64 + (1 << 24) / 4096);
+        assert!(snapshot.read(0, &mut page[..1]).is_err());
+        snapshot.end_check();
+        assert!((0..10_000).all(|_| snapshot.read(0, &mut page).is_ok()));
+    }
+}
