@@ -41,6 +41,7 @@ pub mod cloud;
 mod cores;
 #[cfg(feature = "haptic")]
 pub mod haptic;
+mod input;
 pub mod mesh;
 mod motion;
 mod part;
