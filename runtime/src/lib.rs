@@ -43,6 +43,7 @@ mod cores;
 mod escape;
 #[cfg(feature = "haptic")]
 pub mod haptic;
+mod input;
 pub mod mesh;
 mod motion;
 mod part;

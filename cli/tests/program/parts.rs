@@ -131,3 +131,31 @@ fn saved_parts_are_felt_as_they_were() {
     let certified = run(&bench, "block.touchoff", &["--certify", "1e-6"]);
     assert!(stderr(&certified).contains("`--certify` is for meshes"), "{}", stderr(&certified));
 }
+
+#[cfg(unix)]
+#[test]
+fn only_regular_files_are_read() {
+    let bench = Bench::new();
+    let pipe = bench.folder.path().join("pipe.stl");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo");
+    assert!(made.success());
+    std::os::unix::fs::symlink("/dev/zero", bench.folder.path().join("zero.ply")).expect("a link");
+    std::os::unix::fs::symlink("/dev/zero", bench.folder.path().join("zero.touchoff"))
+        .expect("a link");
+    for part in ["pipe.stl", "zero.ply", "zero.touchoff", "."] {
+        bench.refused(part, "path.csv", "D2Ball", &["it is no regular file"]);
+    }
+    bench.refused("block.stl", "pipe.stl", "D2Ball", &["it is no regular file"]);
+}
+
+#[test]
+fn a_coordinate_far_outside_is_named() {
+    let bench = Bench::new();
+    let mut bytes = std::fs::read(bench.folder.path().join("block.stl")).expect("the block");
+    let at = 84 + 50 * 5 + 12 + 4;
+    bytes[at..at + 4].copy_from_slice(&1e13f32.to_le_bytes());
+    bench.write("far.stl", &bytes);
+    let says =
+        ["far.stl, triangle 5 (from 0), byte 350: the coordinate", "is far outside the part"];
+    bench.refused("far.stl", "path.csv", "D2Ball", &says);
+}

@@ -13,6 +13,9 @@ use std::collections::HashMap;
 const CANDIDATES: usize = 4;
 /// One in so many is put where the surface is far from all others.
 const PUT: usize = 25;
+/// Points that are held against cells for that at most, for each point and each piece: several times as many as
+/// usual.
+const MOST_HELD: usize = 1 << 12;
 /// How far that is at first, in spacings.
 const FAR: f64 = 0.95;
 /// How much nearer the next ones may be.
@@ -25,10 +28,9 @@ pub(super) fn blue(
     count: usize,
     seed: u64,
 ) -> Cloud {
-    let area = facets.area();
     let drawn = facets.even(mesh, count * CANDIDATES, seed);
     let put = count.div_ceil(PUT).min(count - 1);
-    let kept = thin::thin(&drawn.points, &drawn.normals, area, count - put);
+    let kept = thin::thin(&drawn.points, &drawn.normals, facets.spread, count - put);
     let mut cloud = Cloud::with_capacity(count, mesh.unit());
     let take = |cloud: &mut Cloud, index: usize| {
         cloud.push(drawn.points[index], drawn.normals[index], drawn.triangles[index], 0.0);
@@ -37,9 +39,10 @@ pub(super) fn blue(
 
     let mut far = FAR * surface.spacing;
     let mut farthest = surface.farthest();
+    let mut work = MOST_HELD * (count + farthest.len());
     while cloud.len() < count {
         let sites = Sites::new(surface, &cloud.points, &cloud.normals);
-        let mut holes = surface.holes(&sites, far, &mut farthest);
+        let mut holes = surface.holes(&sites, far, &mut farthest, &mut work);
         holes.sort_unstable_by(|a, b| {
             let place =
                 |hole: &Hole| (hole.triangle, <[f64; 3]>::from(hole.place).map(f64::to_bits));
@@ -53,9 +56,15 @@ pub(super) fn blue(
             }
         }
         far = NEARER * farthest.iter().copied().fold(0.0, f64::max).min(far);
-        if far <= surface.rounded() {
-            // All of the surface is at a point already.
-            (0..count - cloud.len()).for_each(|index| take(&mut cloud, index));
+        if far <= surface.rounded() || work == 0 {
+            // All of the surface is at a point already, or it takes too long to find where it is not: of the points
+            // that were drawn some more are left.
+            let mut rest = (0..drawn.len()).filter(|i| kept.binary_search(&(*i as u32)).is_err());
+            let step = (drawn.len() - kept.len()) / (count - cloud.len()).max(1);
+            while let Some(index) = rest.next().filter(|_| cloud.len() < count) {
+                take(&mut cloud, index);
+                rest.by_ref().take(step.max(1) - 1).for_each(drop);
+            }
         }
     }
     cloud

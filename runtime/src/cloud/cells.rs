@@ -11,6 +11,11 @@ use nalgebra::Point3;
 const TURNED: f64 = 2.25;
 /// Pieces that one core takes at a time.
 const TOGETHER: usize = 256;
+/// The most points that are held against the cells of a piece at first, and the least where there are many pieces.
+const MOST_CROWD: usize = 1 << 14;
+const LEAST_CROWD: usize = 1 << 12;
+/// Those of all pieces, if that leaves enough for each.
+const MOST_CROWDS: usize = 1 << 28;
 /// How far a corner can be from where it is computed, of the part's size.
 const ROUNDED: f64 = 1e-12;
 
@@ -28,41 +33,95 @@ pub(super) struct Cells {
     pub(super) radius: f64,
 }
 
+/// What points have of some pieces.
+struct Divided {
+    /// Of pieces that were divided among all points that have a part.
+    shares: Vec<(u32, f64)>,
+    /// How far each piece gets from all points at most.
+    reaches: Vec<f64>,
+    /// The other pieces, and those shares that were found.
+    crowded: Vec<(usize, Vec<(u32, f64)>)>,
+}
+
+fn add(areas: &mut [Sum], shares: Vec<(u32, f64)>) {
+    shares.into_iter().for_each(|(site, share)| areas[site as usize].add(share));
+}
+
 impl Surface {
-    /// Divides the surface.
+    /// Divides the surface. A piece that more points have a part of than can be looked at is shared among those that
+    /// were, and gets no farther from all points than its farthest corner from one of them.
     pub(super) fn cells(&self, sites: &Sites<'_>) -> Cells {
+        let mut areas = vec![Sum::default(); sites.points.len()];
+        let mut farthest = vec![0.0; self.pieces.len()];
+        let mut crowded = vec![];
+        let mut note = |some: &[usize], most: usize, crowded: &mut Vec<_>| {
+            let mut order = some.iter();
+            for divided in self.shares(sites, some, most) {
+                add(&mut areas, divided.shares);
+                let reaches = divided.reaches.into_iter().zip(&mut order);
+                reaches.for_each(|(reach, piece)| farthest[*piece] = reach);
+                crowded.extend(divided.crowded);
+            }
+        };
+        let all: Vec<usize> = (0..self.pieces.len()).collect();
+        note(&all, self.crowd(), &mut crowded);
+        // Once more, with as much work as there may be: mostly there are few of them.
+        let most = self.work(sites) / crowded.len().max(1);
+        if most > self.crowd() {
+            let some: Vec<usize> = crowded.drain(..).map(|(piece, _)| piece).collect();
+            note(&some, most, &mut crowded);
+        }
+        crowded.into_iter().for_each(|(_, shares)| add(&mut areas, shares));
+        let areas = areas.into_iter().map(Sum::value).collect();
+        Cells { areas, radius: self.radius(sites, &farthest) }
+    }
+
+    /// How many points may be held against cells beyond what is usual.
+    fn work(&self, sites: &Sites<'_>) -> usize {
+        256 * (sites.points.len() + self.pieces.len()) + (1 << 27)
+    }
+
+    /// How many points are held against the cells of a piece at first: usual are some hundred, and some thousand
+    /// where pieces are long.
+    fn crowd(&self) -> usize {
+        if self.coarse() {
+            return LEAST_CROWD / 2;
+        }
+        (MOST_CROWDS / self.pieces.len().max(1)).clamp(LEAST_CROWD, MOST_CROWD)
+    }
+
+    /// Divides some pieces, holding `most` points against the cells of each.
+    fn shares(&self, sites: &Sites<'_>, some: &[usize], most: usize) -> Vec<Divided> {
         let turned = TURNED * self.spacing * self.spacing;
-        let shares = cores::ranges(self.pieces.len(), TOGETHER, |range| {
+        cores::ranges(some.len(), TOGETHER, |range| {
             let mut room = Room::default();
-            let (mut shares, mut farthest) = (vec![], Vec::with_capacity(range.len()));
-            for piece in &self.pieces[range] {
+            let (mut shares, mut crowded) = (vec![], vec![]);
+            let mut reaches = Vec::with_capacity(range.len());
+            for index in range {
+                let piece = &self.pieces[some[index]];
                 let from = shares.len();
-                let mut most = 0f64;
-                self.divide(piece, sites, turned, &mut room, |site, cell| {
+                let mut reach = 0f64;
+                let whole = self.divide(piece, sites, turned, most, &mut room, |site, cell| {
                     shares.push((site, area(cell, &piece.normal)));
-                    most = cell.iter().map(|(v, _)| v.norm_squared()).fold(most, f64::max);
+                    reach = cell.iter().map(|(v, _)| v.norm_squared()).fold(reach, f64::max);
                 });
                 // What rounding left over or out.
                 let sum: f64 = shares[from..].iter().map(|(_, share)| share).sum();
+                let all = f64::from(piece.copies) * piece.area;
                 if sum > 0.0 {
-                    shares[from..].iter_mut().for_each(|(_, share)| *share *= piece.area / sum);
+                    shares[from..].iter_mut().for_each(|(_, share)| *share *= all / sum);
                 } else {
-                    shares.push((room.met[0], piece.area));
+                    shares.push((room.met[0], all));
                 }
                 // Cells that do not fill the piece tell nothing of what they leave.
-                let fills = sum >= (1.0 - 1e-6) * piece.area;
-                farthest.push(if fills { most.sqrt() } else { f64::INFINITY });
+                let fills = whole && sum >= (1.0 - 1e-6) * piece.area;
+                reaches.push(if fills { reach.sqrt() } else { f64::INFINITY });
+                if !whole {
+                    crowded.push((some[index], shares.split_off(from)));
+                }
             }
-            (shares, farthest)
-        });
-        let mut areas = vec![Sum::default(); sites.points.len()];
-        let mut farthest = Vec::with_capacity(self.pieces.len());
-        for (shares, distances) in shares {
-            shares.into_iter().for_each(|(site, share)| areas[site as usize].add(share));
-            farthest.extend(distances);
-        }
-        let areas = areas.into_iter().map(Sum::value).collect();
-        Cells { areas, radius: self.radius(sites, &farthest) }
+            Divided { shares, reaches, crowded }
+        })
     }
 
     /// How far the surface gets from all points, of pieces that get no farther than given.
@@ -71,17 +130,19 @@ impl Surface {
         order.sort_unstable_by(|a, b| farthest[*b].total_cmp(&farthest[*a]));
         let mut radius = 0f64;
         let mut room = Room::default();
+        let mut work = self.work(sites);
         for index in order {
             if farthest[index] <= radius {
                 break;
             }
             let piece = &self.pieces[index];
             let (mut filled, mut most) = (0.0, 0f64);
-            self.divide(piece, sites, 0.0, &mut room, |_, cell| {
+            let whole = self.divide(piece, sites, 0.0, work, &mut room, |_, cell| {
                 filled += area(cell, &piece.normal);
                 most = cell.iter().map(|(v, _)| v.norm()).fold(most, f64::max);
             });
-            if filled < (1.0 - 1e-9) * piece.area {
+            work = work.saturating_sub(room.held);
+            if !whole || filled < (1.0 - 1e-9) * piece.area {
                 // No place is farther from all points than from one.
                 let one = sites.points[room.met[0] as usize];
                 most = self.corners(piece).iter().map(|c| (c - one).norm()).fold(0.0, f64::max);
@@ -103,21 +164,23 @@ impl Surface {
 
     /// Where the surface is farther from all points than a distance, but nowhere near as far: each
     /// more than once. `farthest` is how far each piece got from fewer points, and is brought up to
-    /// date where it may be that far.
+    /// date where it may be that far. `work` is how many more
+    /// points may be held against cells.
     pub(super) fn holes(
         &self,
         sites: &Sites<'_>,
         distance: f64,
         farthest: &mut [f64],
+        work: &mut usize,
     ) -> Vec<Hole> {
         let may: Vec<usize> = (0..farthest.len()).filter(|i| farthest[*i] > distance).collect();
         let found = cores::ranges(may.len(), TOGETHER, |range| {
             let mut room = Room::default();
-            let (mut holes, mut farthest) = (vec![], vec![]);
+            let (mut holes, mut farthest, mut held) = (vec![], vec![], 0);
             for index in range {
                 let piece = &self.pieces[may[index]];
                 let mut most = 0f64;
-                self.divide(piece, sites, 0.0, &mut room, |site, cell| {
+                self.divide(piece, sites, 0.0, self.crowd(), &mut room, |site, cell| {
                     for (corner, _) in cell {
                         let away = corner.norm();
                         most = most.max(away);
@@ -128,13 +191,15 @@ impl Surface {
                     }
                 });
                 farthest.push(most);
+                held += room.held;
             }
-            (holes, farthest)
+            (holes, farthest, held)
         });
         let mut at = may.into_iter();
         let mut holes = vec![];
-        for (some, distances) in found {
+        for (some, distances, held) in found {
             holes.extend(some);
+            *work = work.saturating_sub(held);
             for (distance, piece) in distances.into_iter().zip(&mut at) {
                 farthest[piece] = distance;
             }

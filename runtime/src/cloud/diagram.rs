@@ -14,13 +14,20 @@
 //! corner is clearly off, twice the same point or its mirror image, the first has all.
 
 use super::lists::Lists;
-use super::near::Near;
+use super::near::{self, Near};
 use super::pieces::{Piece, Surface};
 use crate::cores;
 use nalgebra::{Point3, Vector3};
+use std::collections::HashSet;
 
 /// How far from a point, in spacings, most of those are that cut its cell.
 const BESIDE: f64 = 2.5;
+/// The most of these that are kept. Where a part is as large as its area says, there are some twenty.
+const MOST_BESIDE: usize = 128;
+/// What a cell costs besides the points that are held against it.
+const CELL: usize = 16;
+/// Up to here points that were met are looked through one by one.
+const FEW: usize = 64;
 /// Points that one core takes at a time.
 const TOGETHER: usize = 1 << 10;
 /// How far a corner can be computed to be beyond a line, of the terms that it is a sum of.
@@ -31,7 +38,7 @@ pub(super) struct Sites<'a> {
     pub(super) points: &'a [Point3<f64>],
     normals: &'a [Vector3<f64>],
     near: Near,
-    /// Those within `near_by` of each, the nearest first.
+    /// Those within `near_by` of each, the nearest first, [`MOST_BESIDE`] at most.
     beside: Lists,
     near_by: f64,
 }
@@ -52,6 +59,10 @@ pub(super) struct Room {
     touched: Vec<(u32, Vector3<f64>, f64, f64)>,
     /// Points whose cells are or will be looked at: the first has the piece's middle.
     pub(super) met: Vec<u32>,
+    /// The same, where they are many.
+    known: HashSet<u32>,
+    /// How many points were held against cells, and what else cells cost.
+    pub(super) held: usize,
 }
 
 impl<'a> Sites<'a> {
@@ -61,11 +72,12 @@ impl<'a> Sites<'a> {
         normals: &'a [Vector3<f64>],
     ) -> Sites<'a> {
         let near = Near::new(points);
-        let near_by = BESIDE * surface.spacing;
+        // Where the area does not tell how close points are, the nearest ones are taken.
+        let near_by = if surface.coarse() { f64::INFINITY } else { BESIDE * surface.spacing };
         let lists = cores::ranges(points.len(), TOGETHER, |range| {
             let (mut found, mut beside) = (vec![], Lists::default());
             for site in range {
-                near.within(points[site].into(), near_by, &mut found);
+                near.some_within(points[site].into(), near_by, MOST_BESIDE, &mut found);
                 found.iter().for_each(|(_, other)| beside.push(*other));
                 beside.end();
             }
@@ -78,31 +90,46 @@ impl<'a> Sites<'a> {
 
 impl Surface {
     /// Calls with each point that has a cell in a piece, and that cell's corners from the point.
-    /// `turned` is σ².
+    /// `turned` is σ². Returns whether that was all: it ends when about `most` points were held against cells.
     pub(super) fn divide(
         &self,
         piece: &Piece,
         sites: &Sites<'_>,
         turned: f64,
+        most: usize,
         room: &mut Room,
         mut with: impl FnMut(u32, &[Corner]),
-    ) {
-        let Room { found, farther, cell, cut, touched, met } = room;
+    ) -> bool {
+        let Room { found, farther, cell, cut, touched, met, known, held } = room;
         let apart =
             |site: u32| turned * (sites.normals[site as usize] - piece.normal).norm_squared();
         met.clear();
-        met.push(self.first(piece, sites, apart, found));
+        *held = 0;
+        if !known.is_empty() {
+            known.clear();
+        }
+        met.push(self.first(piece, sites, apart));
         let mut next = 0;
         while let Some(&site) = met.get(next) {
+            if next > 0 && *held >= most {
+                return false;
+            }
             next += 1;
+            *held += CELL;
             let (at, mine) = (sites.points[site as usize], apart(site));
             cell.clear();
             cell.extend(self.corners(piece).iter().map(|corner| (corner - at, EDGE)));
             touched.clear();
             let mut reach = reach_of(cell, mine);
-            let (mut list, mut all) = (sites.beside.of(site), false);
+            let beside = sites.beside.of(site);
+            let mut list = beside;
+            // How many of the nearest points may have been looked at.
+            let mut many = MOST_BESIDE;
+            let mut last = beside.last().copied().filter(|_| beside.len() == many);
+            let mut within = sites.near_by;
             'cut: loop {
                 for &other in list.iter().filter(|other| **other != site) {
+                    *held += 1;
                     let toward = sites.points[other as usize] - at;
                     let squared = toward.norm_squared();
                     if squared > reach * reach {
@@ -119,7 +146,7 @@ impl Surface {
                     if most <= slack {
                         if least >= -slack && other < site {
                             cell.clear();
-                            meet(met, other);
+                            meet(met, known, other);
                             break 'cut;
                         }
                     } else if clip(cell, cut, toward, half + slack, other) {
@@ -129,55 +156,59 @@ impl Surface {
                         reach = reach_of(cell, mine);
                     }
                 }
-                if all || reach <= sites.near_by {
+                if reach <= within && last.is_none() {
                     break;
                 }
-                all = true;
-                sites.near.within(at.into(), reach, found);
-                let near_by = sites.near_by * sites.near_by;
+                let left = most.saturating_sub(*held);
+                if left <= many {
+                    return false;
+                }
+                let from = |other: u32| near::away(sites.points[other as usize].into(), at.into());
+                let known = last.map(|last| (from(last), last));
+                let is_new = |one: &&(f64, u32)| match known {
+                    None => one.0 > within * within,
+                    Some(last) => near::nearer(&last, one).is_lt(),
+                };
+                many = (8 * many).min(left);
+                sites.near.some_within(at.into(), reach, many, found);
+                *held += found.len();
                 farther.clear();
-                farther.extend(found.iter().filter(|(d, _)| *d > near_by).map(|(_, other)| *other));
+                farther.extend(found.iter().filter(is_new).map(|(_, other)| *other));
                 list = farther;
+                last = found.last().map(|(_, last)| *last).filter(|_| found.len() == many);
+                within = reach;
             }
             if !cell.is_empty() {
                 with(site, cell);
                 let still = touched
                     .iter()
                     .filter(|(_, toward, half, slack)| over(cell, toward, *half)[1] >= -slack);
-                still.for_each(|(other, ..)| meet(met, *other));
+                still.for_each(|(other, ..)| meet(met, known, *other));
             }
         }
+        true
     }
 
     /// The point whose cell has a piece's middle.
-    fn first(
-        &self,
-        piece: &Piece,
-        sites: &Sites<'_>,
-        apart: impl Fn(u32) -> f64,
-        found: &mut Vec<(f64, u32)>,
-    ) -> u32 {
+    fn first(&self, piece: &Piece, sites: &Sites<'_>, apart: impl Fn(u32) -> f64) -> u32 {
         let corners = self.corners(piece);
         let sum: Vector3<f64> = corners.iter().map(|corner| corner - corners[0]).sum();
         let middle = corners[0] + sum / corners.len() as f64;
-        let mut within = self.spacing;
-        loop {
-            sites.near.within(middle.into(), within, found);
-            let nearest = found
-                .iter()
-                .map(|&(squared, site)| (squared + apart(site), site))
-                .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            if let Some((_, site)) = nearest.filter(|(least, _)| *least <= within * within) {
-                return site;
-            }
-            within *= 2.0;
-        }
+        sites.near.least(middle.into(), apart)
     }
 }
 
 /// Notes a point whose cell is to be looked at.
-fn meet(met: &mut Vec<u32>, other: u32) {
-    if !met.iter().rev().any(|one| *one == other) {
+fn meet(met: &mut Vec<u32>, known: &mut HashSet<u32>, other: u32) {
+    let is_new = if met.len() <= FEW {
+        !met.iter().rev().any(|one| *one == other)
+    } else {
+        if known.is_empty() {
+            known.extend(met.iter().copied());
+        }
+        known.insert(other)
+    };
+    if is_new {
         met.push(other);
     }
 }

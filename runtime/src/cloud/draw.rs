@@ -1,6 +1,7 @@
 //! Drawing points on a mesh.
 
 use super::Cloud;
+use super::copies::Copies;
 use crate::cores;
 use crate::mesh::{Mesh, Sum, area_and_normal};
 use nalgebra::{Point3, Vector3};
@@ -17,12 +18,21 @@ pub(super) struct Facets {
     normals: Vec<Vector3<f64>>,
     /// The area of all facets up to and including each.
     areas_up_to: Vec<f64>,
+    pub(super) copies: Copies,
+    /// The area of all, coincident triangles counted once: what points spread over.
+    pub(super) spread: f64,
 }
 
 impl Facets {
     pub(super) fn of(mesh: &Mesh) -> Facets {
-        let mut facets = Facets { ids: Vec::new(), normals: Vec::new(), areas_up_to: Vec::new() };
-        let mut sum = Sum::default();
+        let mut facets = Facets {
+            ids: Vec::new(),
+            normals: Vec::new(),
+            areas_up_to: Vec::new(),
+            copies: Copies::of(mesh),
+            spread: 0.0,
+        };
+        let (mut sum, mut distinct) = (Sum::default(), Sum::default());
         let mut highest = 0f64;
         for (id, corners) in (0..).zip(mesh.corners()) {
             if let Some((area, normal)) = area_and_normal(&corners) {
@@ -32,6 +42,10 @@ impl Facets {
                 facets.ids.push(id);
                 facets.normals.push(normal);
                 facets.areas_up_to.push(highest);
+                if facets.copies.count(id) > 0 {
+                    distinct.add(area);
+                    facets.spread = facets.spread.max(distinct.value());
+                }
             }
         }
         facets

@@ -3,12 +3,15 @@
 
 mod blue;
 mod cells;
+mod copies;
 mod diagram;
 mod draw;
 mod error;
 mod guess;
 mod lists;
 mod near;
+#[cfg(test)]
+mod odd;
 mod pieces;
 mod thin;
 
@@ -103,7 +106,7 @@ impl Cloud {
             return Err(CloudError::TooManyBlue { count });
         }
         let facets = Facets::of(mesh);
-        let surface = Surface::new(mesh, facets.area(), count);
+        let surface = Surface::new(mesh, &facets, count);
         Ok(blue::blue(mesh, &facets, &surface, count, seed).weighed_on(&surface))
     }
 
@@ -139,7 +142,7 @@ impl Cloud {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(CloudError::Radius { radius });
         }
-        let area = Facets::of(mesh).area();
+        let area = Facets::of(mesh).spread;
         // The covering radius in roots of a point's share, as it usually is.
         let mut usual = match sampling {
             Sampling::Blue => 0.91,
@@ -190,7 +193,7 @@ impl Cloud {
     /// is the mesh's area to rounding. And the cloud's [cover](Cloud::cover).
     #[must_use]
     pub fn weighed(self, mesh: &Mesh) -> Cloud {
-        let surface = Surface::new(mesh, Facets::of(mesh).area(), self.len());
+        let surface = Surface::new(mesh, &Facets::of(mesh), self.len());
         self.weighed_on(&surface)
     }
 
@@ -206,13 +209,13 @@ impl Cloud {
     /// ([`Cloud::weighed`]).
     #[must_use]
     pub fn thinned(&self, mesh: &Mesh, count: usize) -> Cloud {
-        let area = Facets::of(mesh).area();
+        let facets = Facets::of(mesh);
         let mut cloud = Cloud::with_capacity(count.min(self.len()), self.unit);
-        for index in thin::thin(&self.points, &self.normals, area, count.max(1)) {
+        for index in thin::thin(&self.points, &self.normals, facets.spread, count.max(1)) {
             let index = index as usize;
             cloud.push(self.points[index], self.normals[index], self.triangles[index], 0.0);
         }
-        let surface = Surface::new(mesh, area, cloud.len());
+        let surface = Surface::new(mesh, &facets, cloud.len());
         cloud.weighed_on(&surface)
     }
 

@@ -2,6 +2,8 @@
 
 use crate::tree::{Bounds, Item, WIDTH, order};
 use nalgebra::Point3;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// Points by where they are.
 pub(super) struct Near {
@@ -28,8 +30,19 @@ impl Near {
     /// Puts the points within a distance of a place into `found`: squared distance and index, the
     /// nearest first, of equally near ones that of the lower index.
     pub(super) fn within(&self, at: [f64; 3], distance: f64, found: &mut Vec<(f64, u32)>) {
+        self.some_within(at, distance, usize::MAX, found);
+    }
+
+    /// As [`Near::within`], but no more than the `most` nearest ones. At least 1.
+    pub(super) fn some_within(
+        &self,
+        at: [f64; 3],
+        distance: f64,
+        most: usize,
+        found: &mut Vec<(f64, u32)>,
+    ) {
         found.clear();
-        let squared = distance * distance;
+        let mut squared = distance * distance;
         self.visit(at, squared, self.levels.len() - 1, 0, &mut |items| {
             for item in items {
                 let away = away(item.at, at);
@@ -37,26 +50,58 @@ impl Near {
                     found.push((away, item.index));
                 }
             }
+            if found.len() / 2 >= most {
+                squared = found.select_nth_unstable_by(most - 1, nearer).1.0;
+                found.truncate(most);
+            }
             squared
         });
-        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.sort_unstable_by(nearer);
+        found.truncate(most);
     }
 
-    /// The squared distance of the `count`-th nearest point, of as many at least.
-    pub(super) fn nearest_of(&self, at: [f64; 3], count: usize) -> f64 {
-        let mut best = vec![f64::INFINITY; count];
+    /// Returns the point of the least squared distance plus what is `added` for it, of equal ones that of the
+    /// lower index.
+    pub(super) fn least(&self, at: [f64; 3], added: impl Fn(u32) -> f64) -> u32 {
+        let mut best = (f64::INFINITY, u32::MAX);
         self.visit(at, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
             for item in items {
-                let away = away(item.at, at);
-                if away < best[count - 1] {
-                    let place = best.partition_point(|b| *b <= away);
-                    best[place..].rotate_right(1);
-                    best[place] = away;
+                let sum = (away(item.at, at) + added(item.index), item.index);
+                if nearer(&sum, &best).is_lt() {
+                    best = sum;
                 }
             }
-            best[count - 1]
+            best.0
         });
-        best[count - 1]
+        best.1
+    }
+
+    /// Returns the squared distance within which points weigh `wanted`, or that of the farthest if all weigh less.
+    pub(super) fn weighing(
+        &self,
+        at: [f64; 3],
+        wanted: usize,
+        weight: impl Fn(u32) -> usize,
+    ) -> f64 {
+        let mut sum = 0;
+        let mut nearest: BinaryHeap<(Squared, usize)> = BinaryHeap::new();
+        self.visit(at, f64::INFINITY, self.levels.len() - 1, 0, &mut |items| {
+            for item in items {
+                let away = Squared(away(item.at, at));
+                if sum < wanted || nearest.peek().is_some_and(|farthest| away < farthest.0) {
+                    let weight = weight(item.index);
+                    sum += weight;
+                    nearest.push((away, weight));
+                    while let Some(farthest) = nearest.peek().filter(|f| sum - f.1 >= wanted) {
+                        sum -= farthest.1;
+                        nearest.pop();
+                    }
+                }
+            }
+            let farthest = nearest.peek().filter(|_| sum >= wanted);
+            farthest.map_or(f64::INFINITY, |farthest| farthest.0.0)
+        });
+        nearest.peek().map_or(0.0, |farthest| farthest.0.0)
     }
 
     /// Visits the leaves of a node that are within a squared distance, the nearer boxes first; a
@@ -93,8 +138,37 @@ impl Near {
     }
 }
 
+/// A squared distance, in order.
+#[derive(Clone, Copy)]
+struct Squared(f64);
+
+impl PartialEq for Squared {
+    fn eq(&self, other: &Squared) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Squared {}
+
+impl PartialOrd for Squared {
+    fn partial_cmp(&self, other: &Squared) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Squared {
+    fn cmp(&self, other: &Squared) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+/// The nearer of two points, of equally near ones that of the lower index.
+pub(super) fn nearer(a: &(f64, u32), b: &(f64, u32)) -> Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+}
+
 /// The squared distance of two places.
-fn away(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn away(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     x * x + y * y + z * z
 }

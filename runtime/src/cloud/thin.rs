@@ -19,8 +19,13 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Of a neighbour as near as can be: 40 bits, and room for 2^24 of them.
 const MOST: f32 = (1u64 << 40) as f32;
-/// The most cells along an axis.
-const CELLS: f64 = (1 << 20) as f64;
+/// Cells along an axis, after which they are numbered anew.
+const CELLS: u64 = 1 << 20;
+/// Points that are looked at about each, on average, at most. There are some fifty on a surface that is as large as its
+/// area says.
+const MOST_ABOUT: u64 = 512;
+/// How often the distance at which points crowd each other is halved where there are more.
+const HALVINGS: usize = 32;
 /// Points that one core takes at a time.
 const TOGETHER: usize = 1 << 14;
 
@@ -35,7 +40,16 @@ pub(super) fn thin(
     if excess == 0 {
         return (0..points.len() as u32).collect();
     }
-    let mut crowd = Crowd::new(points, normals, area, count);
+    // The radius of discs that would cover that area, packed as closely as can be.
+    let mut largest = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
+    let mut crowd = Crowd::new(points, normals, largest, count);
+    for _ in 0..HALVINGS {
+        if crowd.is_none() {
+            largest /= 2.0;
+            crowd = Crowd::new(points, normals, largest, count);
+        }
+    }
+    let Some(mut crowd) = crowd else { return distinct(points, count) };
     let mut gone = crowd.leave();
     // The most crowded first; of equal ones the last.
     cores::sort(&mut gone);
@@ -50,6 +64,26 @@ pub(super) fn thin(
     let kept = left.iter_mut().rev().filter(|kept| **kept);
     kept.take(still - count).for_each(|kept| *kept = false);
     (0..).zip(left).filter(|(_, kept)| *kept).map(|(index, _)| index).collect()
+}
+
+/// Which `count` of some points are left where most repeat others: those that do not, ascending.
+fn distinct(points: &[Point3<f64>], count: usize) -> Vec<u32> {
+    let place = |index: &u32| <[f64; 3]>::from(points[*index as usize]).map(f64::to_bits);
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    order.sort_unstable_by_key(|index| (place(index), *index));
+    let (mut left, mut repeated) = (vec![], vec![]);
+    for same in order.chunk_by(|a, b| place(a) == place(b)) {
+        left.push(same[0]);
+        repeated.extend(&same[1..]);
+    }
+    left.sort_unstable();
+    if left.len() > count {
+        return (0..count).map(|k| left[k * left.len() / count]).collect();
+    }
+    repeated.sort_unstable();
+    left.extend(&repeated[..count - left.len()]);
+    left.sort_unstable();
+    left
 }
 
 /// Points in the order of the cells that they lie in.
@@ -67,9 +101,14 @@ struct Crowd {
 }
 
 impl Crowd {
-    fn new(points: &[Point3<f64>], normals: &[Vector3<f64>], area: f64, count: usize) -> Crowd {
-        // The radius of discs that would cover that area, packed as closely as can be.
-        let largest = (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
+    /// Of points that crowd each other up to twice `largest`; `None` where too many are as near, as where many
+    /// triangles nearly coincide.
+    fn new(
+        points: &[Point3<f64>],
+        normals: &[Vector3<f64>],
+        largest: f64,
+        count: usize,
+    ) -> Option<Crowd> {
         let share = count as f64 / points.len() as f64;
         let least = (0.65 * (1.0 - share * share.sqrt())) as f32;
         let (mut low, mut high) = (points[0], points[0]);
@@ -77,9 +116,10 @@ impl Crowd {
             (low, high) = (low.inf(point), high.sup(point));
         }
         let unit = 2.0 * largest;
-        let edge = unit.max((high - low).max() / CELLS);
+        // Cells of one number are far apart, so their points are no neighbours.
         let key = |point: &Point3<f64>| {
-            let [x, y, z] = [0, 1, 2].map(|axis| ((point[axis] - low[axis]) / edge) as u64 + 1);
+            let [x, y, z] =
+                [0, 1, 2].map(|axis| ((point[axis] - low[axis]) / unit) as u64 % CELLS + 1);
             x << 42 | y << 21 | z
         };
         let mut keyed: Vec<(u64, u32)> = cores::ranges(points.len(), TOGETHER, |range| {
@@ -99,6 +139,11 @@ impl Crowd {
         starts.push(keyed.len() as u32);
         let rows =
             cores::ranges(keys.len(), TOGETHER, |range| rows(&keys, &starts, range)).concat();
+        let about = |row: &[[u32; 2]; 9]| row.iter().map(|[a, b]| u64::from(b - a)).sum::<u64>();
+        let sum: u64 = cell.iter().map(|cell| about(&rows[*cell as usize])).sum();
+        if sum > MOST_ABOUT * points.len() as u64 {
+            return None;
+        }
         let of = |axis: usize| {
             let places = keyed.iter().map(|(_, i)| points[*i as usize][axis] - low[axis]);
             places.map(|from| (from / unit) as f32).collect()
@@ -135,7 +180,7 @@ impl Crowd {
         let (neighbours, sums): (Vec<Lists>, Vec<Vec<u64>>) = met.into_iter().unzip();
         crowd.neighbours = Lists::joined(neighbours);
         crowd.crowded.extend(sums.into_iter().flatten().map(AtomicU64::new));
-        crowd
+        Some(crowd)
     }
 
     /// How much two points crowd each other; `None` if they are no neighbours.

@@ -36,6 +36,15 @@ impl Faces {
         self.triangles.is_empty()
     }
 
+    /// The vertices that faces have, by their numbers in order, and where they are.
+    pub(super) fn used(&self, vertices: &[Point3<f64>]) -> (Vec<usize>, Vec<Point3<f64>>) {
+        let mut is_used = vec![false; vertices.len()];
+        self.triangles.as_flattened().iter().for_each(|vertex| is_used[*vertex as usize] = true);
+        let used: Vec<usize> = (0..vertices.len()).filter(|vertex| is_used[*vertex]).collect();
+        let places = used.iter().map(|vertex| vertices[*vertex]).collect();
+        (used, places)
+    }
+
     /// The first polygon that its fan does not fill: some of its triangles face the other way.
     /// Every index must be in range.
     pub(super) fn folded(&self, vertices: &[Point3<f64>]) -> Option<Place> {

@@ -11,6 +11,7 @@ mod ply;
 mod read;
 pub mod shapes;
 mod stl;
+mod stray;
 mod survey;
 mod words;
 
@@ -19,12 +20,13 @@ use std::path::Path;
 
 use nalgebra::{Point3, Vector3};
 
-use crate::Unit;
+use crate::{Unit, input};
 
 pub use obj::ObjError;
 pub use ply::{PlyError, Points};
 pub use read::{Shape, ShapeError};
 pub use stl::StlError;
+pub use stray::Stray;
 pub use survey::Survey;
 pub use words::Place;
 
@@ -158,7 +160,7 @@ impl Mesh {
     pub fn read_stl(path: impl AsRef<Path>, unit: Unit) -> Result<Mesh, StlError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match std::fs::read(path) {
+        match input::read(path) {
             Ok(bytes) => Mesh::from_stl(&bytes, &file, unit),
             Err(source) => Err(StlError::Unreadable { file, source }),
         }

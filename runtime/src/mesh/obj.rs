@@ -4,6 +4,7 @@
 use nalgebra::Point3;
 
 use super::faces::Faces;
+use super::stray::{Stray, stray};
 use super::words::{Place, Words, number, shown};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, coordinate_holds};
 use crate::Unit;
@@ -74,6 +75,16 @@ pub enum ObjError {
         /// The file.
         file: String,
     },
+    /// A vertex is far outside the rest of the part.
+    #[error("{file}, {place}: {stray}: mend the coordinate, or export or copy the part again")]
+    Stray {
+        /// The file.
+        file: String,
+        /// Where the vertex stands.
+        place: Place,
+        /// What is wrong with it.
+        stray: Stray,
+    },
     /// The file is in order, but what it holds is no mesh.
     #[error("{file}: {source}")]
     Mesh {
@@ -119,9 +130,29 @@ impl Mesh {
         if let Some(place) = faces.folded(&vertices) {
             return Err(ObjError::Folded { file: file(), place });
         }
+        let (used, corners) = faces.used(&vertices);
+        if let Some((at, _, stray)) = stray(&corners) {
+            return Err(ObjError::Stray { file: file(), place: line_of(bytes, used[at]), stray });
+        }
         let mesh = faces.weld(&vertices, unit);
         mesh.map_err(|source| ObjError::Mesh { file: file(), source })
     }
+}
+
+/// The line of a vertex of a sound file.
+fn line_of(bytes: &[u8], vertex: usize) -> Place {
+    let mut lines = Lines { words: Words::new(bytes), name: "" };
+    let mut left = vertex + 1;
+    while lines.next() {
+        left -= usize::from(lines.word() == Some(b"v"));
+        if left == 0 {
+            break;
+        }
+        // Lines may go on.
+        while lines.word().is_some() {}
+        lines.words.skip_line();
+    }
+    Place::Line(lines.words.line)
 }
 
 /// The lines of a file, each of which may go on after a `\` and end in a comment.

@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::{Mesh, ObjError, PlyError, Points, StlError, ply};
-use crate::Unit;
+use crate::{Unit, input};
 
 /// What a file holds of a part.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +55,7 @@ impl Shape {
     pub fn read(path: impl AsRef<Path>, unit: Unit) -> Result<Shape, ShapeError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        match std::fs::read(path) {
+        match input::read(path) {
             Ok(bytes) => Shape::from_bytes(&bytes, &file, unit),
             Err(source) => Err(ShapeError::Unreadable { file, source }),
         }

@@ -5,7 +5,8 @@ use std::io;
 
 use nalgebra::{Point3, Vector3};
 
-use super::words::{Words, number, shown};
+use super::stray::{Stray, stray};
+use super::words::{Place, Words, number, shown};
 use super::{LARGEST_COORDINATE, MeshError, area_and_normal, coordinate_holds};
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.
@@ -127,6 +128,20 @@ pub enum StlError {
         /// The coordinate.
         coordinate: f32,
     },
+    /// A vertex is far outside the rest of the part.
+    #[error(
+        "{file}, triangle {triangle} (from 0), {place}: {stray}: mend the coordinate, or export or copy the part again"
+    )]
+    Stray {
+        /// The file.
+        file: String,
+        /// The triangle.
+        triangle: usize,
+        /// Where in the file the vertex stands.
+        place: Place,
+        /// What is wrong with it.
+        stray: Stray,
+    },
     /// The file is in order, but what it holds is no mesh.
     #[error("{file}: {source}")]
     Mesh {
@@ -163,7 +178,39 @@ impl Facets {
 /// A file is binary when its length is what its count says, whatever its header begins with.
 /// Failing that it is text when it begins with `solid` and its first bytes hold no NUL, which a
 /// binary file's count nearly always does.
+///
+/// A vertex far outside all others is refused.
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
+    let (facets, is_text) = facets(bytes, name)?;
+    let Some((corner, axis, stray)) = stray(facets.corners.as_flattened()) else {
+        return Ok(facets);
+    };
+    let triangle = corner / 3;
+    let place = if is_text {
+        line_of(bytes, corner)
+    } else {
+        Place::Byte(HEADER + RECORD * triangle + 4 * (3 + 3 * (corner % 3) + axis))
+    };
+    Err(StlError::Stray { file: name.to_owned(), triangle, place, stray })
+}
+
+/// The line of a corner of a sound text.
+fn line_of(bytes: &[u8], corner: usize) -> Place {
+    let mut words = Words::new(bytes);
+    let mut left = corner + 1;
+    while left > 0
+        && let Some(word) = words.next()
+    {
+        if word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"endsolid") {
+            words.skip_line();
+        }
+        left -= usize::from(word.eq_ignore_ascii_case(b"vertex"));
+    }
+    Place::Line(words.line)
+}
+
+/// The facets of a file, and whether it is text.
+fn facets(bytes: &[u8], name: &str) -> Result<(Facets, bool), StlError> {
     let file = || name.to_owned();
     if bytes.is_empty() {
         return Err(StlError::Empty { file: file() });
@@ -179,10 +226,10 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
             let expected = RECORD as u64 * u64::from(triangles);
             let found = body.len() as u64;
             if expected == found {
-                return read_binary(body, name);
+                return Ok((read_binary(body, name)?, false));
             }
             if is_text {
-                return read_ascii(bytes, name);
+                return Ok((read_ascii(bytes, name)?, true));
             }
             let (expected, found) = (expected + HEADER as u64, found + HEADER as u64);
             Err(if found < expected {
@@ -191,7 +238,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
                 StlError::Trailing { file: file(), triangles, expected, found }
             })
         }
-        None if is_text => read_ascii(bytes, name),
+        None if is_text => Ok((read_ascii(bytes, name)?, true)),
         None => Err(StlError::NotStl { file: file(), bytes: bytes.len() }),
     }
 }

@@ -22,9 +22,9 @@ mod write;
 pub use error::{Fault, ProgramError};
 pub use write::{Cutter, Heading, WriteError, apt_word};
 
-use std::fs;
 use std::path::Path;
 
+use crate::input;
 use crate::tool::{Card, Shape};
 use crate::{Pose, Unit};
 use nalgebra::{Point3, Vector3};
@@ -80,7 +80,7 @@ impl Program {
     /// Reads a program from a file.
     pub fn read(path: impl AsRef<Path>) -> Result<Program, ProgramError> {
         let file = path.as_ref().display().to_string();
-        match fs::read(path) {
+        match input::read(path) {
             Ok(bytes) => Program::parse(bytes, &file),
             Err(source) => Err(ProgramError::Read { file, source }),
         }

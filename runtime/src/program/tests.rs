@@ -67,7 +67,7 @@ fn survives_mutations() {
         b"UNITS/MM\nMULTAX/ON\nRAPID;GOTO/1,2,3,$\n0,0,1\nCYCLE/OFF\nGOTO/4,5,6\nFINI\n".to_vec(),
     ];
     for name in ["impeller_flank.apt", "ijms2021_fan_xyzijk.csv"] {
-        seeds.extend(shared(name).and_then(|path| fs::read(path).ok()));
+        seeds.extend(shared(name).and_then(|path| std::fs::read(path).ok()));
     }
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut random = move |below: usize| {

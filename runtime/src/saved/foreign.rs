@@ -3,7 +3,7 @@
 /// Letters that the beginning of every saved part has in it.
 const NAME: &[u8] = b"TOUCHOFF";
 /// How much of a file is looked at.
-const BEGINNING: usize = 512;
+pub(super) const BEGINNING: usize = 512;
 /// A binary STL file's bytes before its triangles, and of each.
 const STL: [u64; 2] = [84, 50];
 
@@ -23,10 +23,10 @@ const KNOWN: [(&[u8], &str); 12] = [
     (b"version https://git-lfs", "a pointer of Git LFS: `git lfs pull` brings the file itself"),
 ];
 
-/// What a file with these bytes seems to be.
-pub(super) fn seems(bytes: &[u8]) -> &'static str {
-    let beginning = &bytes[..bytes.len().min(BEGINNING)];
-    if bytes.is_empty() {
+/// What a file of `length` bytes that begins with these seems to be.
+pub(super) fn seems(beginning: &[u8], length: u64) -> &'static str {
+    let beginning = &beginning[..beginning.len().min(BEGINNING)];
+    if beginning.is_empty() {
         return "an empty file";
     }
     if (0..=3).any(|at| beginning.get(at..).is_some_and(|rest| rest.starts_with(NAME))) {
@@ -41,7 +41,7 @@ pub(super) fn seems(bytes: &[u8]) -> &'static str {
     }
     if let Some(count) = beginning.get(80..84) {
         let triangles = count.iter().rev().fold(0, |count, byte| count << 8 | u64::from(*byte));
-        if STL[0] + STL[1] * triangles == bytes.len() as u64 {
+        if STL[0] + STL[1] * triangles == length {
             return "an STL mesh (binary)";
         }
     }

@@ -1,4 +1,4 @@
-//! Parts in files: made once from a mesh, opened in no time.
+//! Parts in files: made once from a mesh, opened in milliseconds.
 //!
 //! **The file** is the part as it lies in memory, little-endian. A header tells what there is: the
 //! [magic bytes](layout::MAGIC), the header's checksum and length, the version, the file's length, the unit, a survey,
@@ -7,9 +7,10 @@
 //! the finest first, the boxes level by level from the root's children, the points, their normals and weights,
 //! their triangles' ids.
 //!
-//! **Opening** maps the file and checks it all: what it begins with, how long it is, every checksum, and
-//! that the lists are as long as so many points make them and end where they should. After that no query
-//! can be led out of a list. Nothing is copied.
+//! **Opening** reads the file, each list straight to where it stays, and checks it all: what it begins with, how long it
+//! is, every checksum, and that the lists are as long as so many points make them and end where they should. After that
+//! no query can be led out of a list. The lists are not mapped: a file in memory may be shortened by others, which ends
+//! the program, and no safe function can rule that out.
 
 mod error;
 mod foreign;
@@ -18,13 +19,11 @@ mod read;
 
 pub use error::SavedError;
 
-use crate::{AtomicFile, Part};
+use crate::{AtomicFile, Part, input};
 use layout::ALIGN;
-use memmap2::{Mmap, MmapOptions};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
-use std::sync::Arc;
 
 impl Part {
     /// Writes the part to a file that [`Part::open`] opens, in place of one that is there: whole, or,
@@ -45,15 +44,12 @@ impl Part {
     /// Opens what [`Part::save`] wrote. Every question has the answers of the part that was saved, bit
     /// for bit.
     ///
-    /// The part is not read but mapped into memory, which is shared with other programs that open it; it
-    /// takes some milliseconds for a million points that the system has in its cache. While a part is open its file must not
-    /// be written into or shortened: [`Part::save`] does neither, it puts a new file in place of the old
-    /// one, and so do `mv` and installers. Should another program do it all the same, answers may be wrong, a
-    /// question may panic, and the system may end the program (`SIGBUS`) when it looks for what was cut off.
-    /// Where that cannot be ruled out, open a copy.
+    /// The file is read into memory, 34 bytes for each point of each level, and then checked.
+    /// So the part does not depend on the file any more: it may be changed, shortened or removed while the part is
+    /// in use. A million points, 34 MB, take some 10 to 100 ms: mostly for fresh pages of memory.
     ///
     /// # Errors
-    /// A file that cannot be read, is no saved part, is cut off, too long or damaged, or was made by a
+    /// A file that cannot be read or is no regular one, is no saved part, is cut off, too long or damaged, or was made by a
     /// newer version.
     ///
     /// ```
@@ -72,8 +68,8 @@ impl Part {
         let path = path.as_ref();
         refuse_big_endian(path)?;
         let file = path.display().to_string();
-        match map(path) {
-            Ok(map) => read::part(&Arc::new(map), &file),
+        match input::open(path) {
+            Ok((source, length)) => read::part(source, length, &file),
             Err(source) => Err(SavedError::Unreadable { file, source }),
         }
     }
@@ -85,25 +81,6 @@ fn refuse_big_endian(path: &Path) -> Result<(), SavedError> {
         return Err(SavedError::BigEndian { file: path.display().to_string() });
     }
     Ok(())
-}
-
-/// A file in memory.
-fn map(path: &Path) -> io::Result<Mmap> {
-    // Asked first: a pipe would be waited for.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
-    }
-    let file = File::open(path)?;
-    mapped(&file)
-}
-
-#[expect(unsafe_code, reason = "a file in memory can be changed from outside")]
-fn mapped(file: &File) -> io::Result<Mmap> {
-    // All of it is about to be read: one call finds the pages of all.
-    // SAFETY: bytes that lie in a map must not change while a slice of them is held. This program does not write
-    // into files of saved parts (`replace` makes new ones), and `Part::open` demands the same of others. No bytes
-    // make an invalid value: all that they are taken for is `Pod`.
-    unsafe { MmapOptions::new().populate().map(file) }
 }
 
 /// Writes a header and sections, these filled up with zeros.

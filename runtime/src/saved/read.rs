@@ -1,27 +1,27 @@
-//! From a file's bytes to the part that they are.
+//! From a file to the part in it.
 
 use super::SavedError;
-use super::foreign::seems;
+use super::foreign::{BEGINNING, seems};
 use super::layout::{
     ALIGN, List, MAGIC, Section, Start, Stem, Surveyed, VERSION, checksums, header_checksum, lists,
     unit,
 };
 use crate::Part;
 use crate::cloud::Cover;
-use crate::tree::{Frame, Shelf, Tree, WIDTH};
+use crate::tree::{Frame, Tree, WIDTH};
 use bytemuck::Pod;
-use memmap2::Mmap;
 use nalgebra::Point3;
+use std::io::{self, Cursor, Read};
 use std::mem::size_of;
 use std::ops::Range;
-use std::sync::Arc;
 
-/// The part of a whole file, whose name is `file`.
-pub(super) fn part(map: &Arc<Mmap>, file: &str) -> Result<Part, SavedError> {
-    let reader = Reader { map, file };
-    let (start, header) = reader.start()?;
-    let mut records = Records { reader: &reader, left: &header[size_of::<Start>()..] };
-    let unsound = |what: &str| reader.unsound(what.to_owned());
+/// The part in a file of `length` bytes, whose name is `file`. Its lists are read into memory of their own, and only then
+/// checked: what becomes of the file after that does not matter.
+pub(super) fn part(source: impl Read, length: u64, file: &str) -> Result<Part, SavedError> {
+    let about = About { length, file };
+    let (start, header, mut rest) = about.start(source)?;
+    let mut records = Records { about: &about, left: &header[size_of::<Start>()..] };
+    let unsound = |what: &str| about.unsound(what.to_owned());
 
     let surveyed: Surveyed = records.next()?;
     let survey = match start.surveyed {
@@ -41,20 +41,20 @@ pub(super) fn part(map: &Arc<Mmap>, file: &str) -> Result<Part, SavedError> {
     if at != start.file || records.left.len() >= ALIGN {
         return Err(unsound("its lists do not fill it"));
     }
-    reader.check(&outlines)?;
-    let levels = outlines.iter().map(|outline| reader.tree(outline));
+    let trees = outlines.iter().enumerate();
+    let levels = trees.map(|(tree, outline)| about.tree(tree, outline, &mut rest));
     Ok(Part { levels: levels.collect::<Result<_, _>>()?, unit, survey })
 }
 
 /// A file, and what is to be said of it.
-struct Reader<'a> {
-    map: &'a Arc<Mmap>,
+struct About<'a> {
+    length: u64,
     file: &'a str,
 }
 
 /// The records of a header that have not been read yet.
 struct Records<'a> {
-    reader: &'a Reader<'a>,
+    about: &'a About<'a>,
     left: &'a [u8],
 }
 
@@ -64,46 +64,56 @@ struct Outline {
     lists: Vec<Place>,
 }
 
-/// Where a list lies: all of it, and with what fills it up.
+/// Where a list of so many bytes lies, with what fills it up.
 struct Place {
     list: List,
-    bytes: Range<usize>,
-    filled: Range<usize>,
+    bytes: usize,
+    filled: Range<u64>,
     checksum: u32,
 }
 
-impl Reader<'_> {
+impl About<'_> {
     fn unsound(&self, what: String) -> SavedError {
         SavedError::Unsound { file: self.file.to_owned(), what }
     }
 
-    fn damaged(&self, section: String, bytes: &Range<usize>) -> SavedError {
-        let (from, to) = (bytes.start as u64, bytes.end as u64);
+    fn unreadable(&self, source: io::Error) -> SavedError {
+        SavedError::Unreadable { file: self.file.to_owned(), source }
+    }
+
+    fn damaged(&self, section: String, bytes: &Range<u64>) -> SavedError {
+        let (from, to) = (bytes.start, bytes.end);
         SavedError::Damaged { file: self.file.to_owned(), section, from, to }
     }
 
-    /// What the file begins with, and its header; the file is as long as these say.
-    fn start(&self) -> Result<(Start, &[u8]), SavedError> {
-        let (bytes, file) = (&self.map[..], || self.file.to_owned());
-        let has = bytes.len() as u64;
+    /// What the file begins with, its header, and what comes after; the file is as long as these say.
+    fn start(&self, mut source: impl Read) -> Result<(Start, Vec<u8>, impl Read), SavedError> {
+        let file = || self.file.to_owned();
+        let has = self.length;
         let truncated = |needs| Err(SavedError::Truncated { file: file(), has, needs });
+        let mut bytes = Vec::new();
+        let beginning = source.by_ref().take(BEGINNING as u64).read_to_end(&mut bytes);
+        beginning.map_err(|source| self.unreadable(source))?;
         let known = bytes.len().min(MAGIC.len());
         if bytes.is_empty() || bytes[..known] != MAGIC[..known] {
-            return Err(SavedError::Foreign { file: file(), seems: seems(bytes) });
+            return Err(SavedError::Foreign { file: file(), seems: seems(&bytes, has) });
         }
         let Some(start) = bytes.get(..size_of::<Start>()) else {
             return truncated(size_of::<Start>() as u64);
         };
         let start: Start = bytemuck::pod_read_unaligned(start);
-        let length = usize::try_from(start.header).ok().filter(|length| *length <= bytes.len());
-        let Some(header) = length.and_then(|length| bytes.get(..length)) else {
+        if start.header > has {
             if start.file > has {
                 return truncated(start.file);
             }
-            return Err(self.damaged("the header".to_owned(), &(0..size_of::<Start>())));
-        };
-        if header.len() < size_of::<Start>() || header_checksum(header) != start.checksum {
-            let bytes = 0..header.len().max(size_of::<Start>());
+            return Err(self.damaged("the header".to_owned(), &(0..size_of::<Start>() as u64)));
+        }
+        let mut source = Cursor::new(bytes).chain(source);
+        let mut header = Vec::new();
+        let whole = source.by_ref().take(start.header).read_to_end(&mut header);
+        whole.map_err(|source| self.unreadable(source))?;
+        if header.len() < size_of::<Start>() || header_checksum(&header) != start.checksum {
+            let bytes = 0..header.len().max(size_of::<Start>()) as u64;
             return Err(self.damaged("the header".to_owned(), &bytes));
         }
         if start.version > VERSION {
@@ -116,30 +126,17 @@ impl Reader<'_> {
         match start.file {
             needs if needs > has => truncated(needs),
             needs if needs < has => Err(SavedError::Trailing { file: file(), has, needs }),
-            _ => Ok((start, header)),
+            _ => Ok((start, header, source)),
         }
     }
 
-    /// Checks every list's checksum.
-    fn check(&self, outlines: &[Outline]) -> Result<(), SavedError> {
-        let places = || {
-            let trees = outlines.iter().enumerate();
-            trees.flat_map(|(tree, outline)| outline.lists.iter().map(move |place| (tree, place)))
-        };
-        let sections: Vec<&[u8]> =
-            places().map(|(_, place)| &self.map[place.filled.clone()]).collect();
-        let wrong = places()
-            .zip(checksums(&sections))
-            .find(|((_, place), checksum)| place.checksum != *checksum);
-        match wrong {
-            None => Ok(()),
-            Some(((tree, place), _)) => {
-                Err(self.damaged(format!("{} of tree {tree}", place.list), &place.filled))
-            }
-        }
-    }
-
-    fn tree(&self, Outline { stem, lists }: &Outline) -> Result<Tree, SavedError> {
+    /// Reads a tree, the next in the file.
+    fn tree(
+        &self,
+        number: usize,
+        Outline { stem, lists }: &Outline,
+        source: &mut impl Read,
+    ) -> Result<Tree, SavedError> {
         let unsound = |what: &str| self.unsound(what.to_owned());
         let positive = [stem.weight, stem.radius, stem.size.into(), stem.leaf_size.into()];
         if !(stem.scale > 0.0 && positive.iter().all(|number| *number >= 0.0)) {
@@ -152,10 +149,10 @@ impl Reader<'_> {
         let (mut leaves, mut skins, mut triangles) = (None, None, None);
         for place in lists {
             match place.list {
-                List::Boxes(_) => levels.push(self.shelf(place)?),
-                List::Leaves => leaves = Some(self.shelf(place)?),
-                List::Skins => skins = Some(self.shelf(place)?),
-                List::Triangles => triangles = Some(self.shelf(place)?),
+                List::Boxes(_) => levels.push(self.list(number, place, source)?),
+                List::Leaves => leaves = Some(self.list(number, place, source)?),
+                List::Skins => skins = Some(self.list(number, place, source)?),
+                List::Triangles => triangles = Some(self.list(number, place, source)?),
             }
         }
         let (Some(leaves), Some(skins), Some(triangles)) = (leaves, skins, triangles) else {
@@ -180,9 +177,23 @@ impl Reader<'_> {
         if ends(&tree) { Ok(tree) } else { Err(unsound("a tree has boxes or points of nothing")) }
     }
 
-    fn shelf<T: Pod>(&self, place: &Place) -> Result<Shelf<T>, SavedError> {
-        let shelf = Shelf::mapped(self.map, place.bytes.clone());
-        shelf.ok_or_else(|| self.unsound(format!("{} are not where they should be", place.list)))
+    /// Reads a list, the next in the file, and checks it.
+    fn list<T: Pod>(
+        &self,
+        tree: usize,
+        place: &Place,
+        source: &mut impl Read,
+    ) -> Result<Vec<T>, SavedError> {
+        let mut list: Vec<T> = vec![T::zeroed(); place.bytes / size_of::<T>()];
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut list);
+        let mut filling = [0; ALIGN];
+        let filling = &mut filling[..place.bytes.next_multiple_of(ALIGN) - place.bytes];
+        let read = source.read_exact(bytes).and_then(|()| source.read_exact(filling));
+        read.map_err(|source| self.unreadable(source))?;
+        if filling.iter().any(|byte| *byte != 0) || checksums(&[bytes])[0] != place.checksum {
+            return Err(self.damaged(format!("{} of tree {tree}", place.list), &place.filled));
+        }
+        Ok(list)
     }
 }
 
@@ -206,7 +217,7 @@ fn ends(tree: &Tree) -> bool {
 impl Records<'_> {
     fn next<T: Pod>(&mut self) -> Result<T, SavedError> {
         let Some((record, left)) = self.left.split_at_checked(size_of::<T>()) else {
-            return Err(self.reader.unsound("its header ends too early".to_owned()));
+            return Err(self.about.unsound("its header ends too early".to_owned()));
         };
         self.left = left;
         Ok(bytemuck::pod_read_unaligned(record))
@@ -215,28 +226,25 @@ impl Records<'_> {
     /// A tree whose lists begin at `end`, which moves to where they end.
     fn outline(&mut self, end: &mut u64) -> Result<Outline, SavedError> {
         let stem: Stem = self.next()?;
-        let reader = self.reader;
+        let about = self.about;
         if stem.points == 0 || u32::try_from(stem.points).is_err() {
-            return Err(reader.unsound(format!("a tree has {} points", stem.points)));
+            return Err(about.unsound(format!("a tree has {} points", stem.points)));
         }
         let mut places = Vec::new();
         for (list, count) in lists(stem.points) {
             let section: Section = self.next()?;
             // Items have at most 384 bytes, and there are fewer than 2^32.
             let bytes = count * list.item();
-            let misplaced = || reader.unsound(format!("{list} are not where they should be"));
+            let misplaced = || about.unsound(format!("{list} are not where they should be"));
             if (section.at, section.bytes) != (*end, bytes)
                 || !section.at.is_multiple_of(ALIGN as u64)
             {
                 return Err(misplaced());
             }
             let filled_to = end.checked_add(bytes.next_multiple_of(ALIGN as u64));
-            let filled_to = filled_to.filter(|to| *to <= reader.map.len() as u64);
-            let filled_to = filled_to.ok_or_else(misplaced)?;
-            // Both are within the file, which is in memory.
-            let (at, to) = (*end as usize, filled_to as usize);
-            let bytes = at..at + bytes as usize;
-            places.push(Place { list, bytes, filled: at..to, checksum: section.checksum });
+            let filled_to = filled_to.filter(|to| *to <= about.length).ok_or_else(misplaced)?;
+            let bytes = usize::try_from(bytes).map_err(|_| misplaced())?;
+            places.push(Place { list, bytes, filled: *end..filled_to, checksum: section.checksum });
             *end = filled_to;
         }
         Ok(Outline { stem, lists: places })

@@ -1,6 +1,6 @@
 //! From a cloud to its tree.
 
-use super::{Boxes, Frame, Leaf, Shelf, Skin, Tree, WIDTH};
+use super::{Boxes, Frame, Leaf, Skin, Tree, WIDTH};
 use crate::cloud::Cloud;
 use crate::cores;
 use nalgebra::Point3;
@@ -68,12 +68,12 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
     order(&mut items);
     let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = items.chunks(WIDTH).map(lay).unzip();
     let leaf_size = boxes.iter().map(|b| outward(b.size() / 2.0)).fold(0.0, f32::max);
-    let levels = levels(boxes).into_iter().map(Shelf::from).collect();
+    let levels = levels(boxes);
     let weight = cloud.weights().iter().fold(0.0, |most: f64, weight| most.max(*weight));
     Tree {
         frame,
         levels,
-        leaves: leaves.into(),
+        leaves,
         leaf_size,
         skins: items.chunks(WIDTH).map(|items| skin(items, cloud, weight)).collect(),
         weight,

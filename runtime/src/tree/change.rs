@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector3};
 impl Tree {
     /// Takes points away, by their places. Those that stay do not move, not by a bit.
     pub(crate) fn remove(&mut self, places: impl IntoIterator<Item = usize>) {
-        let (leaves, skins) = (self.leaves.to_mut(), self.skins.to_mut());
+        let (leaves, skins) = (&mut self.leaves, &mut self.skins);
         let mut touched = Vec::new();
         for place in places {
             let (leaf, lane) = (place / WIDTH, place % WIDTH);
@@ -22,7 +22,7 @@ impl Tree {
         touched.sort_unstable();
         touched.dedup();
         let bottom = self.levels.len() - 1;
-        let all = self.levels[bottom].to_mut();
+        let all = &mut self.levels[bottom];
         for leaf in &touched {
             // The centre stays: points are stored from there.
             let half = leaf_bounds(&leaves[*leaf]);
@@ -50,8 +50,8 @@ impl Tree {
         let mut farthest = 0f64;
         let mut touched = Vec::new();
         let bottom = self.levels.len() - 1;
-        let (leaves, skins) = (self.leaves.to_mut(), self.skins.to_mut());
-        let boxes = self.levels[bottom].to_mut();
+        let (leaves, skins) = (&mut self.leaves, &mut self.skins);
+        let boxes = &mut self.levels[bottom];
         for some in moved.chunk_by(|a, b| a.0 / WIDTH == b.0 / WIDTH) {
             let leaf = some[0].0 / WIDTH;
             let (all, offset) = (&mut boxes[leaf / WIDTH], leaves[leaf].offset);
@@ -98,7 +98,7 @@ impl Tree {
             touched.iter_mut().for_each(|node| *node /= WIDTH);
             touched.dedup();
             let (above, below) = self.levels.split_at_mut(level);
-            let above = above[level - 1].to_mut();
+            let above = &mut above[level - 1];
             for node in &touched {
                 let bounds = around(&below[0][*node]);
                 above[node / WIDTH].put(node % WIDTH, &bounds);

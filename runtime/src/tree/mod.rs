@@ -16,7 +16,6 @@ mod build;
 mod candidates;
 mod change;
 mod rough;
-mod shelf;
 mod sift;
 mod view;
 mod walk;
@@ -25,7 +24,6 @@ pub(crate) use build::{Bounds, Item, levels, order};
 use candidates::Candidates;
 pub(crate) use candidates::Carried;
 pub(crate) use rough::Rough;
-pub(crate) use shelf::Shelf;
 pub(crate) use sift::Search;
 pub(crate) use view::{Sight, View};
 pub(crate) use walk::{extent, load, seen};
@@ -76,16 +74,16 @@ pub(crate) struct Frame {
 pub struct Tree {
     pub(crate) frame: Frame,
     /// From the root's children down to the leaves' boxes.
-    pub(crate) levels: Vec<Shelf<Boxes>>,
-    pub(crate) leaves: Shelf<Leaf>,
+    pub(crate) levels: Vec<Vec<Boxes>>,
+    pub(crate) leaves: Vec<Leaf>,
     /// The largest half extent of a leaf's box.
     pub(crate) leaf_size: f32,
     /// Of each leaf.
-    pub(crate) skins: Shelf<Skin>,
+    pub(crate) skins: Vec<Skin>,
     /// The largest weight; the others are parts of it.
     pub(crate) weight: f64,
     /// Of each point, in the tree's order.
-    pub(crate) triangles: Shelf<u32>,
+    pub(crate) triangles: Vec<u32>,
     pub(crate) cover: Option<Cover>,
     /// How many points were taken away.
     pub(crate) gone: usize,

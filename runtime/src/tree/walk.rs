@@ -2,7 +2,7 @@
 
 use super::rough::Sixteen;
 use super::view::{Reach, SLABS};
-use super::{Boxes, Rough, Shelf, Sight, Tree, View, WIDTH};
+use super::{Boxes, Rough, Sight, Tree, View, WIDTH};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, mask32x16, u32x16};
 use std::ops::Range;
 
@@ -206,7 +206,7 @@ pub(super) fn within<R: Rough, S: Simd>(
 fn descend<R: Rough>(
     level: Level,
     nodes: &mut [Nodes<R>; 2],
-    levels: &[Shelf<Boxes>],
+    levels: &[Vec<Boxes>],
     seen: (&Sight<R>, &View<R>),
     most: usize,
 ) -> Option<usize> {
@@ -217,7 +217,7 @@ fn descend<R: Rough>(
 fn descend_on<R: Rough, S: Simd>(
     simd: S,
     nodes: &mut [Nodes<R>; 2],
-    levels: &[Shelf<Boxes>],
+    levels: &[Vec<Boxes>],
     (sight, view): (&Sight<R>, &View<R>),
     most: usize,
 ) -> Option<usize> {

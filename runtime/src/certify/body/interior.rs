@@ -376,12 +376,12 @@ mod tests {
     }
 
     crate::tool! {
-        tool Chamfered "a chamfer of a nanometre" {
+        tool Chamfered "a chamfer of a tenth of a micrometre" {
             units mm;
             profile {
                 start (0, 0);
-                line to (4.999999, 0) as face cutting;
-                line to (5, 0.000001) as chamfer cutting;
+                line to (4.9999, 0) as face cutting;
+                line to (5, 0.0001) as chamfer cutting;
                 line to (5, 50), (0, 50) as flute;
             }
             niceness cutting: 1;

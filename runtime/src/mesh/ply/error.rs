@@ -1,6 +1,6 @@
 //! Why a PLY file is refused.
 
-use crate::mesh::{MeshError, Place};
+use crate::mesh::{MeshError, Place, Stray};
 
 /// Why a PLY file could not be read. Lines count from 1, elements and bytes from 0.
 #[derive(Debug, thiserror::Error)]
@@ -186,6 +186,20 @@ pub enum PlyError {
     NoNormals {
         /// The file.
         file: String,
+    },
+    /// A vertex is far outside the rest of the part.
+    #[error(
+        "{file}, {place}: vertex {vertex} (from 0): {stray}: mend the coordinate, or export or copy the part again"
+    )]
+    Stray {
+        /// The file.
+        file: String,
+        /// Where the vertex stands.
+        place: Place,
+        /// The vertex.
+        vertex: usize,
+        /// What is wrong with it.
+        stray: Stray,
     },
     /// The file is in order, but what it holds is no mesh.
     #[error("{file}: {source}")]

@@ -2,6 +2,7 @@
 
 use super::PlyError;
 use crate::mesh::words::{Words, shown};
+use std::collections::HashSet;
 
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Encoding {
@@ -113,6 +114,8 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words
     let ends_in_cr = matches!(lines.words.rest, [b'\r', next, ..] if *next != b'\n');
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    // The names of all elements, and of the properties of the last.
+    let (mut names, mut properties) = (HashSet::new(), HashSet::new());
     loop {
         lines.words.skip_space();
         let keyword = lines.words.next_on_line();
@@ -121,9 +124,10 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words
             Some(b"format") => encoding = Some(lines.format()?),
             Some(b"element") => {
                 let element = lines.element()?;
-                if elements.iter().any(|known| known.name == element.name) {
+                if !names.insert(element.name) {
                     return Err(lines.twice(element.name));
                 }
+                properties.clear();
                 elements.push(element);
             }
             Some(b"property") => {
@@ -131,7 +135,7 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words
                 let Some(element) = elements.last_mut() else {
                     return Err(lines.expected("`element` before the first `property`", keyword));
                 };
-                if element.properties.iter().any(|known| known.name == property.name) {
+                if !properties.insert(property.name) {
                     return Err(lines.twice(property.name));
                 }
                 element.properties.push(property);

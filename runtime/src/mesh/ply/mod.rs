@@ -13,6 +13,7 @@ use nalgebra::{Point3, Vector3};
 use self::body::{Body, Record, whole};
 use self::header::{Element, Header};
 use super::faces::Faces;
+use super::stray::{Stray, stray};
 use super::{Mesh, coordinate_holds};
 use crate::Unit;
 
@@ -95,7 +96,10 @@ impl Points {
             })?;
         }
         body.end()?;
-        Ok(points)
+        match stray(&points.places) {
+            None => Ok(points),
+            Some((vertex, _, stray)) => Err(stray_vertex(bytes, name, vertex, stray)),
+        }
     }
 }
 
@@ -148,9 +152,34 @@ impl Mesh {
         if let Some(place) = faces.folded(&vertices) {
             return Err(PlyError::Folded { file: file(), place });
         }
+        let (used, corners) = faces.used(&vertices);
+        if let Some((at, _, stray)) = stray(&corners) {
+            return Err(stray_vertex(bytes, name, used[at], stray));
+        }
         let mesh = faces.weld(&vertices, unit);
         mesh.map_err(|source| PlyError::Mesh { file: file(), source })
     }
+}
+
+/// The error for a vertex far outside the others of a sound file.
+fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Stray) -> PlyError {
+    let found = |record: Record<0>| match record.index == vertex {
+        true => Err(PlyError::Stray { file: name.to_owned(), place: record.place, vertex, stray }),
+        false => Ok(()),
+    };
+    let search = || {
+        let (header, mut body) = Body::new(bytes, name)?;
+        for element in &header.elements {
+            if element.name == b"vertex" {
+                body.read(element, [], None, found)?;
+            } else {
+                body.read(element, [], None, |_| Ok(()))?;
+            }
+        }
+        Ok(())
+    };
+    let nowhere = PlyError::NoPoints { file: name.to_owned() };
+    search().err().unwrap_or(nowhere)
 }
 
 /// Whether a PLY file holds faces, and so a mesh rather than points.

@@ -4,9 +4,8 @@ use super::layout::{List, lists};
 use super::*;
 use crate::mesh::shapes;
 use crate::scenes::{self, Path as Course};
-use crate::tree::{Shelf, Tree};
+use crate::tree::Tree;
 use crate::{Cloud, Cover, Pose, Probe, Unit};
-use memmap2::MmapMut;
 use nalgebra::Point3;
 
 crate::tool! {
@@ -23,15 +22,8 @@ crate::tool! {
     }
 }
 
-/// Bytes in memory, as a file is.
-fn map_of(bytes: &[u8]) -> Arc<Mmap> {
-    let mut map = MmapMut::map_anon(bytes.len().max(1)).expect("memory");
-    map[..bytes.len()].copy_from_slice(bytes);
-    Arc::new(map.make_read_only().expect("memory"))
-}
-
 fn open(bytes: &[u8]) -> Result<Part, SavedError> {
-    read::part(&map_of(bytes), "a.part")
+    read::part(bytes, bytes.len() as u64, "a.part")
 }
 
 fn says(bytes: &[u8]) -> String {
@@ -112,7 +104,7 @@ fn what_is_cut_stays_cut() {
     let poses = along_the_courses(100);
     let mut part = Part::detailed(&scenes::tube(), 4_000, 1).expect("a part");
     let mut opened = open(&saved(&part)).expect("opened");
-    // The own lists and the mapped ones are changed alike; and what was changed can be saved.
+    // What was opened is changed alike; and what was changed can be saved.
     for pose in &poses {
         assert_eq!(part.cut(&Ball, pose), opened.cut(&Ball, pose));
     }
@@ -146,36 +138,47 @@ fn every_tree_is_saved() {
     assert!(saved(&part) == saved(&opened), "the same part, the same bytes");
 }
 
+/// The part is in memory of its own: the file may be shortened, overwritten and removed.
 #[test]
-fn what_is_changed_is_a_copy() {
+fn what_becomes_of_the_file_does_not_matter() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("tube.part");
+    let poses = along_the_courses(100);
+    let part = Part::from_mesh(&scenes::tube(), 3_000, 1).expect("a part");
+    let expected = felt(&part, &poses);
+    part.save(&path).expect("saved");
+    let opened = Part::open(&path).expect("opened");
+    let file = File::options().write(true).open(&path).expect("the file");
+    file.set_len(0).expect("shortened");
+    assert!(felt(&opened, &poses) == expected && bits(&opened) == bits(&part));
+    fs::write(&path, vec![255; 200_000]).expect("overwritten");
+    assert!(felt(&opened, &poses) == expected && bits(&opened) == bits(&part));
+    fs::remove_file(&path).expect("removed");
+    assert!(felt(&opened, &poses) == expected);
+}
+
+/// A file that gets shorter while it is read is refused.
+#[test]
+fn what_ends_while_it_is_read_is_refused() {
     let bytes = saved(&small());
-    let map = map_of(&bytes);
-    let mut part = read::part(&map, "a.part").expect("opened");
-    let other = part.clone();
-    part.levels[0].triangles.to_mut()[3] = 77;
-    part.levels[0].triangles.to_mut()[4] = 78;
-    assert_eq!(part.tree().triangles[3..5], [77, 78]);
-    assert_eq!(other.tree().triangle(3), small().tree().triangle(3));
-    assert!(map[..] == bytes);
-    let mut own = Shelf::from(vec![1, 2]);
-    own.to_mut()[0] = 3;
-    assert_eq!((&own[..], format!("{own:?}").as_str()), (&[3, 2][..], "[3, 2]"));
+    for end in [0, 10, 300, bytes.len() - 1] {
+        assert!(read::part(&bytes[..end], bytes.len() as u64, "a.part").is_err(), "{end}");
+    }
 }
 
 #[test]
 fn lists_lie_at_multiples_of_64() {
-    let map = map_of(&saved(&small()));
-    let part = read::part(&map, "a.part").expect("opened");
+    let part = small();
+    let bytes = saved(&part);
     let tree = part.tree();
-    let places = [
-        tree.levels[0].as_ptr().addr(),
-        tree.leaves.as_ptr().addr(),
-        tree.skins.as_ptr().addr(),
-        tree.triangles.as_ptr().addr(),
+    let lists: [&[u8]; 4] = [
+        bytemuck::cast_slice(&tree.levels[0]),
+        bytemuck::cast_slice(&tree.leaves),
+        bytemuck::cast_slice(&tree.skins),
+        bytemuck::cast_slice(&tree.triangles),
     ];
-    for place in places {
-        assert_eq!(place % ALIGN, 0);
-        assert!(map.as_ptr_range().contains(&std::ptr::with_exposed_provenance(place)));
+    for list in lists {
+        assert!((0..bytes.len()).step_by(ALIGN).any(|at| bytes[at..].starts_with(list)));
     }
 }
 

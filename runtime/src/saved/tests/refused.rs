@@ -188,7 +188,7 @@ fn no_file_with_right_checksums_leads_out_of_a_list() {
     assert!(opened[0] > 1000 && opened[1] > 1000, "{opened:?}");
     // A box where there is nothing.
     let mut part = part;
-    part.levels[0].levels[0].to_mut()[0].centre = [[0.0; 16]; 3];
+    part.levels[0].levels[0][0].centre = [[0.0; 16]; 3];
     assert!(says(&saved(&part)).contains("boxes or points of nothing: the program that wrote it"));
 }
 

@@ -1,0 +1,74 @@
+//! Files as they are read: regular ones, up to a size.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The most bytes of a file that are read, 16 GiB: some 300 million triangles.
+pub(crate) const MOST_BYTES: u64 = 1 << 34;
+
+/// Opens a regular file of [`MOST_BYTES`] at most, and returns it with its length.
+///
+/// # Errors
+/// What the system says; a directory, a pipe, a socket or a device, which may be without end; a longer file.
+pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
+    let refused = |what: String| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    let irregular = || refused("it is no regular file".to_owned());
+    // Asked first: to open a pipe is to wait for its writer.
+    if !fs::metadata(&path)?.is_file() {
+        return irregular();
+    }
+    let file = File::open(path)?;
+    let facts = file.metadata()?;
+    match facts.len() {
+        _ if !facts.is_file() => irregular(),
+        bytes if bytes > MOST_BYTES => {
+            refused(format!("it has {bytes} bytes, more than the {MOST_BYTES} that are read"))
+        }
+        bytes => Ok((file, bytes)),
+    }
+}
+
+/// Reads a regular file as [`open`] opens it, as long as it was then.
+///
+/// # Errors
+/// As of [`open`], and a file that there is no memory for.
+pub(crate) fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
+    let (file, length) = open(path)?;
+    let mut bytes = Vec::new();
+    let room = usize::try_from(length).ok().filter(|room| bytes.try_reserve_exact(*room).is_ok());
+    if room.is_none() {
+        return Err(io::ErrorKind::OutOfMemory.into());
+    }
+    file.take(length).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_regular_files_are_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a");
+        fs::write(&path, b"some").expect("written");
+        assert_eq!(read(&path).expect("read"), b"some");
+        let refused = |path: &Path| read(path).expect_err("no regular file").to_string();
+        assert_eq!(refused(folder.path()), "it is no regular file");
+        #[cfg(unix)]
+        {
+            let socket = folder.path().join("socket");
+            let _listener = std::os::unix::net::UnixListener::bind(&socket).expect("a socket");
+            let pipe = folder.path().join("pipe");
+            let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+            assert!(made.expect("mkfifo").success());
+            for path in [&socket, &pipe, Path::new("/dev/zero")] {
+                assert_eq!(refused(path), "it is no regular file");
+            }
+        }
+        // A file of holes takes no room on the disk.
+        File::create(&path).and_then(|file| file.set_len(MOST_BYTES + 1)).expect("a long file");
+        assert!(refused(&path).contains("17179869185 bytes, more than the 17179869184"));
+    }
+}
