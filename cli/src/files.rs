@@ -124,10 +124,10 @@ impl Found {
 pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<Checked>, Failure> {
     let source = Interpreted::source(file)?;
     let compiled = compile_with(&source, &given.sources());
-    for report in &compiled.reports {
+    for report in compiled.reports() {
         say!("{}\n", report.render(&compiled.sources, std::io::stderr().is_terminal()));
     }
-    compiled.tool.ok_or(Failure::Files { wrong: 1, all: 1 })
+    compiled.into_tool().ok_or(Failure::Files { wrong: 1, all: 1 })
 }
 
 /// Prints files' Rust, or their plans as graphs.

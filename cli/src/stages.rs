@@ -60,11 +60,14 @@ fn stem(file: &Path) -> String {
 fn stages(file: &Path, given: &Given) -> Result<Vec<(&'static str, String)>, Failure> {
     let source = Interpreted::source(file)?;
     let compiled = compile_with(&source, &given.sources());
-    let Some(tool) = &compiled.tool else {
-        for report in &compiled.reports {
-            say!("{}\n", report.render(&compiled.sources, false));
+    let tool = match &compiled.outcome {
+        Ok(accepted) => &*accepted.tool,
+        Err(refusal) => {
+            for report in refusal.reports() {
+                say!("{}\n", report.render(&compiled.sources, false));
+            }
+            return Err(Failure::Files { wrong: 1, all: 1 });
         }
-        return Err(Failure::Files { wrong: 1, all: 1 });
     };
     let certificate = Certificate::of(tool);
     let mut proved = Vec::new();

@@ -3,6 +3,7 @@
 
 use crate::source::{Source, Sources, Span};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// How bad it is.
@@ -46,9 +47,14 @@ impl Report {
         Report { severity: Severity::Warning, ..Report::error(span, message) }
     }
 
-    /// An error that only follows from another, which is reported; this one is not.
-    pub fn follow_up(span: Span) -> Report {
+    /// An error that only follows from another one, which is reported; this one is not shown.
+    pub(crate) fn follow_up(span: Span, _: Reported) -> Report {
         Report::error(span, "")
+    }
+
+    /// Returns whether the report only follows from another one.
+    pub(crate) fn is_follow_up(&self) -> bool {
+        self.message.is_empty()
     }
 
     /// With a second place.
@@ -107,6 +113,85 @@ fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
     Snippet::source(source.text.as_str()).path(source.name.as_str())
 }
 
+/// Evidence that an error is in the list of reports. Refusing a tool takes one, and so does leaving
+/// out an error that follows from another.
+#[derive(Clone, Copy, Debug)]
+pub struct Reported(());
+
+impl Reported {
+    /// Adds an error to the reports. A [follow-up](Report::follow_up) is evidence too: it was made
+    /// from the evidence for the error that it follows from.
+    pub(crate) fn push(reports: &mut Vec<Report>, report: Report) -> Reported {
+        reports.push(Report { severity: Severity::Error, ..report });
+        Reported(())
+    }
+
+    /// Finds the evidence in a list of reports, if one of them is an error.
+    pub(crate) fn among(reports: &[Report]) -> Option<Reported> {
+        any_error(reports).then_some(Reported(()))
+    }
+}
+
+/// Fails if one of the reports is an error.
+pub(crate) fn without_error(reports: &[Report]) -> Result<(), Reported> {
+    Reported::among(reports).map_or(Ok(()), Err)
+}
+
+/// The reasons for which a tool is refused: at least one error, and the warnings beside it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// In the order of the text; one of them is an error with a message.
+    reports: Vec<Report>,
+}
+
+impl Refusal {
+    /// Refuses a tool for what was reported of it, at its name.
+    pub(crate) fn new(reports: Vec<Report>, place: Span, _: Reported) -> Refusal {
+        let mut reports = readable(reports);
+        if !any_error(&reports) {
+            // Evidence without a message is a defect; a user is told so rather than nothing.
+            reports.push(
+                Report::error(place, "this tool is refused, and the compiler did not say why")
+                    .help("this is a defect of the compiler: please report it with the file"),
+            );
+        }
+        Refusal { reports }
+    }
+
+    /// The errors and the warnings, in the order of the text.
+    pub fn reports(&self) -> &[Report] {
+        &self.reports
+    }
+
+    /// The errors alone, of which there is at least one.
+    pub fn errors(&self) -> impl Iterator<Item = &Report> {
+        self.reports.iter().filter(|report| report.severity == Severity::Error)
+    }
+}
+
+/// Returns the reports in the order of the text, each once, and no more than can be read. Warnings
+/// make room for errors.
+pub(crate) fn readable(mut reports: Vec<Report>) -> Vec<Report> {
+    reports.retain(|report| !report.is_follow_up());
+    reports.sort_by_key(|report| report.span.start);
+    // A file that is mounted twice has its mistakes once.
+    let mut seen = HashSet::new();
+    reports.retain(|report| seen.insert(report.clone()));
+    if reports.len() > MOST && any_error(&reports) {
+        reports.retain(|report| report.severity == Severity::Error);
+    }
+    if let Some(next) = reports.get(MOST).map(|report| (report.severity, report.span)) {
+        reports.truncate(MOST);
+        reports.push(match next {
+            (Severity::Error, span) => Report::error(span, "more is wrong from here on")
+                .help("mend what stands above first"),
+            (Severity::Warning, span) => Report::warning(span, "more is warned of from here on")
+                .help("look at what stands above first"),
+        });
+    }
+    reports
+}
+
 /// What can be shown of a place: whole characters of the text.
 fn visible(source: &Source, span: Span) -> Range<usize> {
     let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
@@ -133,7 +218,7 @@ pub const MOST: usize = 50;
 
 /// Whether so much is wrong that looking for more helps nobody.
 pub(crate) fn enough(reports: &[Report]) -> bool {
-    reports.iter().filter(|report| !report.message.is_empty()).count() >= MOST
+    reports.iter().filter(|report| !report.is_follow_up()).count() >= MOST
 }
 
 /// Whether any of them is an error.

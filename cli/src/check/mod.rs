@@ -33,26 +33,27 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
                 continue;
             }
         };
-        let mut compiled = compile_with(&source, &given.sources());
-        let certificate = compiled.tool.as_deref().map(Certificate::of);
-        if let (Some(tool), Some(certificate)) = (&compiled.tool, &certificate) {
+        let compiled = compile_with(&source, &given.sources());
+        let mut reports = compiled.reports().to_vec();
+        let proved = compiled.tool().map(|tool| (tool, Certificate::of(tool)));
+        if let Some((tool, certificate)) = &proved {
             // What was found while it was compiled is found again.
             for report in certificate.reports(tool) {
-                if !compiled.reports.iter().any(|known| known.span == report.span) {
-                    compiled.reports.push(report);
+                if !reports.iter().any(|known| known.span == report.span) {
+                    reports.push(report);
                 }
             }
         }
-        for report in &compiled.reports {
+        for report in &reports {
             say!("{}\n", report.render(&compiled.sources, styled));
         }
         let count = |severity: Severity| {
-            compiled.reports.iter().filter(|report| report.severity == severity).count()
+            reports.iter().filter(|report| report.severity == severity).count()
         };
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         wrong += usize::from(errors > 0);
         warned |= warnings > 0;
-        let (Some(tool), Some(certificate)) = (&compiled.tool, &certificate) else { continue };
+        let Some((tool, certificate)) = &proved else { continue };
         if json {
             serde_json::to_writer(&mut out, &Proved::of(tool, certificate))?;
             writeln!(out)?;

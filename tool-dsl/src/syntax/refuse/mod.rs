@@ -108,6 +108,12 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
     }
 }
 
+/// A text without a tool.
+pub(super) fn nothing(text: &str) -> Report {
+    let stop = Stop { text, offset: 0, at: text.len() };
+    spelling::no_tool(&stop)
+}
+
 /// A syntax error in what a tool's params are given.
 pub(super) fn given(text: &str, error: &Error<Rule>) -> Report {
     let stop = Stop { text, offset: 0, at: place(text, error) };

@@ -1,0 +1,231 @@
+//! Texts for which there is no tool: each gives an error that says why, on a small stack and at once.
+
+use std::path::PathBuf;
+use tool_dsl::source::Source;
+use tool_dsl::{Compiled, compile, compile_with, emit, format};
+
+const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
+
+fn tool(items: &str) -> String {
+    format!("tool T {{ units mm; {items} {BALL} }}")
+}
+
+/// The first error of a tool that is refused.
+#[track_caller]
+fn error(compiled: &Compiled) -> String {
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    let first = refusal.errors().next().expect("a refusal has an error");
+    assert!(first.render(&compiled.sources, false).contains(&first.message));
+    assert!(!first.message.is_empty());
+    first.message.clone()
+}
+
+#[track_caller]
+fn refused(items: &str) -> String {
+    error(&compile(&Source::new("t.tool", tool(items))))
+}
+
+/// Runs on the stack of a thread that is smaller than any default.
+fn on_small_stack<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+    let thread = std::thread::Builder::new().stack_size(SMALL);
+    thread.spawn(work).expect("a thread").join().expect("no panic")
+}
+
+/// Bytes; threads have 2 MiB by default, a process's first one mostly 8 MiB.
+const SMALL: usize = 1 << 20;
+
+/// Everything that reads a text, on a small stack.
+fn read(text: String) -> Result<(), String> {
+    on_small_stack(move || {
+        let source = Source::new("t.tool", text);
+        let _ = format::format(&source);
+        let _ = emit::tree(&source);
+        let compiled = compile(&source);
+        match compiled.tool() {
+            Some(tool) => {
+                assert!(!emit::rust(tool).is_empty() && !emit::dot(tool).is_empty());
+                Ok(())
+            }
+            None => Err(error(&compiled)),
+        }
+    })
+}
+
+#[test]
+fn names_defined_by_themselves_are_named_with_every_link() {
+    for word in ["let", "param", "curve"] {
+        assert_eq!(refused(&format!("{word} a = a;")), "`a` is defined by itself");
+        assert_eq!(
+            refused(&format!("{word} a = 2*(1 + hypot(a, 3));")),
+            "`a` is defined by itself"
+        );
+    }
+    assert_eq!(
+        refused("let a = b; let b = a;"),
+        "`a` is defined by itself: `a` needs `b`, `b` needs `a`"
+    );
+    assert_eq!(
+        refused("let a = b; curve b = d + c; param c = min(1, a); let e = c;"),
+        "`a` is defined by itself: `a` needs `b`, `b` needs `c`, `c` needs `a`"
+    );
+    let given = [Source::new("--set", "a=3")];
+    let compiled = compile_with(&Source::new("t.tool", tool("param a = a;")), &given);
+    assert_eq!(error(&compiled), "`a` is defined by itself");
+}
+
+#[test]
+fn each_cycle_is_said_once() {
+    let compiled =
+        compile(&Source::new("t.tool", tool("let a = b; let b = a; let c = a; let e = c + e;")));
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    let said: Vec<&str> = refusal.errors().map(|report| report.message.as_str()).collect();
+    assert_eq!(
+        said,
+        ["`a` is defined by itself: `a` needs `b`, `b` needs `a`", "`e` is defined by itself"]
+    );
+}
+
+#[test]
+fn a_cycle_as_long_as_a_file_is_said_too() {
+    let links: String = (0..4000).map(|k| format!("let a{k} = a{};", (k + 1) % 4000)).collect();
+    let said = read(tool(&links)).expect_err("a cycle");
+    assert!(said.starts_with("`a0` is defined by itself: `a0` needs `a1`"), "{said}");
+    assert!(said.ends_with("and 3936 links more lead back to `a0`"), "{said}");
+}
+
+/// Constants are settled before curves, so that a curve has no value in one, wherever it stands.
+#[test]
+fn a_curve_is_no_constant() {
+    for items in ["curve c = d; let a = c;", "curve c = 3; param a = c;", "curve c = 3; tip z = c;"]
+    {
+        assert!(refused(items).starts_with("`c` changes from point to point"), "{items}");
+    }
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
+    folder
+}
+
+#[test]
+fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
+    let folder = folder("cycles");
+    let profile = "profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as a cutting; }";
+    for (name, items) in [("let", "let a = a;"), ("curve", "curve a = a; niceness cutting: a;")] {
+        let part = format!("tool Part {{ units mm; {items} {profile} }}");
+        std::fs::write(folder.join(format!("{name}.tool")), part).expect("a writable folder");
+        let text = format!("tool T {{ units mm; mount \"{name}.tool\" as a; }}");
+        let compiled = compile(&Source::new("t.tool", text).held_by(folder.join("t.tool")));
+        assert_eq!(error(&compiled), "`a` is defined by itself");
+        let Err(refusal) = &compiled.outcome else { panic!("taken") };
+        let place = refusal.reports()[0].span;
+        assert!(compiled.sources.locate(place).0.name.ends_with(&format!("{name}.tool")));
+    }
+}
+
+/// Each of these once hid its nesting from the limit, or is as deep as the limit lets it be.
+#[test]
+fn nesting_is_limited_on_a_small_stack() {
+    let limit = "brackets are nested more than 64 deep";
+    let hidden = |hide: &str| {
+        let (open, close) = (format!("({hide}").repeat(5000), ")".repeat(5000));
+        read(tool(&format!("let a = {open}1{close};")))
+    };
+    for hide in ["//)\n", "/*)*/", "/*)))*/", "// \"\n", "/* /* ) */ */"] {
+        assert_eq!(hidden(hide), Err(limit.to_owned()), "{hide:?}");
+    }
+    let braces = format!("tool T {{ x {}", "{ \"}\"".repeat(5000));
+    assert_eq!(read(braces), Err(limit.to_owned()));
+    // A quote that no other ends hides nothing.
+    let quotes = format!("tool T {{ x \"a\\\n{}", "{ \"\\".repeat(5000));
+    assert_eq!(read(quotes), Err(limit.to_owned()));
+    let deepest = format!("let a = {}1{};", "(".repeat(62), ")".repeat(62));
+    assert_eq!(read(tool(&deepest)), Ok(()));
+    let comments = format!("{}{} {}", "/*".repeat(64), "*/".repeat(64), tool(""));
+    assert_eq!(read(comments.clone()), Ok(()));
+    assert!(read(format!("/*{comments}*/")).expect_err("deeper").contains("comments are nested"));
+}
+
+#[test]
+fn brackets_in_comments_and_texts_do_not_count() {
+    let many = "(".repeat(200);
+    assert_eq!(read(tool(&format!("// {many}\n /* {many} */ let a = 1;"))), Ok(()));
+    let titled = tool("").replace("tool T", &format!("tool T \"{many} /* // */\""));
+    assert_eq!(read(titled), Ok(()));
+}
+
+/// pest would try 2^n ways to read them.
+#[test]
+fn comments_that_do_not_end_are_refused_at_once() {
+    for count in [1, 30, 60] {
+        let text = format!("tool T {{ {}", "/* ".repeat(count));
+        assert_eq!(read(text), Err("this comment does not end".to_owned()));
+    }
+    assert_eq!(read("tool T { /*/".to_owned()), Err("this comment does not end".to_owned()));
+}
+
+#[test]
+fn expressions_are_limited_on_a_small_stack() {
+    // As many operands as a sum has, in as many brackets as there may be, leftmost and rightmost.
+    let left = (0..62).fold("a".to_owned(), |inner, _| format!("({inner}){}", " + a".repeat(60)));
+    let right = (0..62).fold("a".to_owned(), |inner, _| format!("{}({inner})", "a*".repeat(60)));
+    let powers =
+        (0..62).fold("a".to_owned(), |inner, _| format!("-({inner})^(-1){}", "*a/a".repeat(31)));
+    assert_eq!(read(tool(&format!("let a = 1; curve c = {right};"))), Ok(()));
+    for deep in [left, powers] {
+        let said = read(tool(&format!("let a = 1; curve c = {deep};"))).expect_err("too deep");
+        assert!(said.contains("too many steps"), "{said}");
+    }
+    let calls =
+        (0..62).fold("d".to_owned(), |inner, _| format!("max(0, {inner}{})", "+1".repeat(4)));
+    let said = read(tool(&format!("curve c = {calls};"))).expect_err("too deep");
+    assert!(said.contains("too many steps"), "{said}");
+    let tall: String = (1..=290).map(|k| format!("curve c{k} = sqrt(1 + c{});", k - 1)).collect();
+    let tall = tool(&format!("curve c0 = d; {tall} niceness ball: c290;"));
+    assert!(read(tall).is_err());
+    for signs in ["-".repeat(100_000), "not ".repeat(100_000), "+".repeat(100_000)] {
+        assert!(read(tool(&format!("let a = {signs}1;"))).is_err());
+    }
+}
+
+/// As high as an expression may be, through everything that follows it.
+#[test]
+fn the_tallest_expressions_compile_on_a_small_stack() {
+    let steps: String =
+        (1..=140).map(|k| format!("curve c{k} = max(c{} - 1e-3, 0);", k - 1)).collect();
+    let text = format!(
+        "tool T {{ units mm; curve c0 = d; {steps}
+         region ball as ball cutting where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c140; }} }}"
+    );
+    assert_eq!(read(text), Ok(()));
+    let roots: String = (1..=60).map(|k| format!("curve c{k} = sqrt(1 + c{});", k - 1)).collect();
+    let text = format!(
+        "tool T {{ units mm; curve c0 = d; {roots}
+         region ball as ball cutting where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c60; }} }}"
+    );
+    assert_eq!(read(text), Ok(()));
+}
+
+/// The files of a chain are as deep as there may be files.
+#[test]
+fn mounts_in_mounts_need_no_more_stack() {
+    let folder = folder("chain");
+    for k in 0..80 {
+        let text = format!("tool Deep {{ units mm; mount \"deep{}.tool\" as a; }}", k + 1);
+        std::fs::write(folder.join(format!("deep{k}.tool")), text).expect("a writable folder");
+    }
+    let said = on_small_stack(move || {
+        let text = "tool T { units mm; mount \"deep0.tool\" as a; }";
+        error(&compile(&Source::new("t.tool", text).held_by(folder.join("t.tool"))))
+    });
+    assert_eq!(said, "more than 64 mounted files");
+}
+
+/// Errors of syntax in texts of a line, in which every bracket once looked for the line's beginning.
+#[test]
+fn long_lines_are_refused_at_once() {
+    for braces in ["{}", "({)}", "}"] {
+        assert!(read(format!("tool T {{ {}", braces.repeat(25_000))).is_err());
+    }
+}
