@@ -1,20 +1,31 @@
 //! Tools as files: how they are laid out.
 
 use crate::failure::Failure;
+use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::format::format;
-use tool_dsl::source::{Source, Sources};
+use tool_dsl::report::escaped;
+use tool_dsl::source::{LONGEST, Source, Sources};
 
 /// Lays files out in place, or only names those that would change. A file with errors of syntax
-/// stays as it is.
-pub(crate) fn fmt(files: &[PathBuf], check: bool) -> Result<(), Failure> {
+/// stays as it is. With `json` there is one object per file on standard output.
+pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Failure> {
     let (mut wrong, mut changed) = (0, 0);
     for file in files {
-        match one(file, check)? {
+        let outcome = one(file, check, json)?;
+        match outcome {
             Outcome::Same => {}
             Outcome::Changed => changed += 1,
             Outcome::Wrong => wrong += 1,
+        }
+        if json && (check || !is_piped(file)) {
+            let mut out = io::stdout().lock();
+            let row = Row { file: file.to_string_lossy(), check, outcome };
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
+            out.flush()?;
         }
     }
     match files.len() {
@@ -24,18 +35,34 @@ pub(crate) fn fmt(files: &[PathBuf], check: bool) -> Result<(), Failure> {
     }
 }
 
+/// What `--json` says of a file.
+#[derive(Serialize)]
+struct Row<'f> {
+    file: Cow<'f, str>,
+    /// Whether the file was only looked at.
+    check: bool,
+    outcome: Outcome,
+}
+
+#[derive(Clone, Copy, Serialize)]
+#[serde(rename_all = "lowercase")]
 enum Outcome {
+    /// Laid out as it should be.
     Same,
+    /// It was, or with `--check` would be, written anew.
     Changed,
+    /// With errors, which are on standard error.
     Wrong,
 }
 
-fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
-    let piped = file == Path::new("-");
+fn one(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
+    let piped = is_piped(file);
+    let shown = file.display().to_string();
+    let shown = escaped(&shown);
     let source = match if piped { standard_input() } else { Source::read(file) } {
         Ok(source) => source,
         Err(error) => {
-            say!("error: {}: {error}", file.display());
+            say!("error: {shown}: {error}");
             return Ok(Outcome::Wrong);
         }
     };
@@ -52,11 +79,11 @@ fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
     let outcome = if formatted == source.text { Outcome::Same } else { Outcome::Changed };
     let mut out = io::stdout().lock();
     match (&outcome, check) {
-        (Outcome::Changed, true) => writeln!(out, "{}", source.name)?,
+        (Outcome::Changed, true) if !json => writeln!(out, "{}", escaped(&source.name))?,
         (_, false) if piped => out.write_all(formatted.as_bytes())?,
         (Outcome::Changed, false) => {
             if let Err(error) = replace(file, &formatted) {
-                say!("error: {}: {error}", file.display());
+                say!("error: {shown}: {error}");
                 return Ok(Outcome::Wrong);
             }
         }
@@ -66,9 +93,17 @@ fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
+fn is_piped(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+/// The text on standard input, as long as a file's may be: a longer one is cut behind that, and refused for its
+/// length.
 fn standard_input() -> io::Result<Source> {
-    let mut text = String::new();
-    io::stdin().read_to_string(&mut text)?;
+    let mut bytes = Vec::new();
+    io::stdin().take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))?;
     Ok(Source::new("<stdin>", text))
 }
 

@@ -4,12 +4,13 @@ use crate::arguments::Given;
 use crate::check;
 use crate::failure::Failure;
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use tool_dsl::prove::Certificate;
+use tool_dsl::report::escaped;
 use tool_dsl::{Checked, compile_with, emit};
-use touchoff::tool::Interpreted;
 
 /// Writes the stages of files into a folder, each file's into one of its own.
 pub(crate) fn write(folder: &Path, files: &[PathBuf], given: &Given) -> Result<(), Failure> {
@@ -42,23 +43,23 @@ pub(crate) fn check(folder: &Path, files: &[PathBuf], given: &Given) -> Result<(
     let kept = std::fs::read_dir(folder)
         .map_err(|source| Failure::Unreadable { file: folder.display().to_string(), source })?;
     for entry in kept.flatten() {
-        if !known.contains(&*entry.file_name().to_string_lossy()) {
+        if !known.contains(&*entry.file_name()) {
             stale.push(entry.path());
         }
     }
     for at in &stale {
-        say!("{}: stale", at.display());
+        say!("{}: stale", escaped(&at.display().to_string()));
     }
     if stale.is_empty() { Ok(()) } else { Err(Failure::Stale { count: stale.len() }) }
 }
 
-fn stem(file: &Path) -> String {
-    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+fn stem(file: &Path) -> &OsStr {
+    file.file_stem().unwrap_or_default()
 }
 
 /// What each stage makes of a file, by the name of its text.
 fn stages(file: &Path, given: &Given) -> Result<Vec<(&'static str, String)>, Failure> {
-    let source = Interpreted::source(file)?;
+    let source = given.source(file)?;
     let compiled = compile_with(&source, &given.sources());
     let tool = match &compiled.outcome {
         Ok(accepted) => &*accepted.tool,

@@ -35,7 +35,7 @@ use bound::{Extent, Slab};
 use model::Model;
 use plan::Plan;
 use prove::Bounds;
-use report::{Refusal, Report, Reported, any_error, without_error};
+use report::{Refusal, Report, Reported, Severity, any_error, without_error};
 use source::{Source, Sources, Span};
 use std::collections::BTreeSet;
 
@@ -120,9 +120,35 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     let start = Span { start: 0, end: 0 };
     let outcome = match compiled(&mut sources, &mut name, &mut reports) {
         Ok(tool) => Ok(Accepted { tool: Box::new(tool), warnings: report::readable(reports) }),
-        Err(reported) => Err(Refusal::new(reports, start, reported)),
+        Err(reported) => {
+            name_given(&sources, given.len(), &mut reports);
+            Err(Refusal::new(reports, start, reported))
+        }
     };
     Compiled { outcome, name, sources }
+}
+
+/// Names what the params are given beside each error of the tool's own text: a value may have broken it.
+fn name_given(sources: &Sources, count: usize, reports: &mut [Report]) {
+    let given = &sources.all()[1..=count];
+    if given.is_empty() {
+        return;
+    }
+    let texts: Vec<String> =
+        given.iter().map(|source| format!("`{}`", source.text.trim())).collect();
+    let note = format!("given: {}", texts.join(", "));
+    let is_given = |report: &Report| {
+        let (source, _) = sources.locate(report.span);
+        given.iter().any(|given| given.base == source.base)
+    };
+    for report in reports.iter_mut() {
+        if report.severity == Severity::Error && !report.is_follow_up() && !is_given(report) {
+            report.help = Some(match report.help.take() {
+                Some(help) => format!("{help}; {note}"),
+                None => note.clone(),
+            });
+        }
+    }
 }
 
 /// Compiles the first of the sources with what the others give its params. Fails only with an error

@@ -3,6 +3,7 @@
 
 use crate::source::{Source, Sources, Span};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 
@@ -91,26 +92,69 @@ impl Report {
         let mut elsewhere = None;
         if let Some((span, label)) = &self.second {
             let (other, span) = sources.locate(*span);
-            let second = AnnotationKind::Context.span(visible(other, span)).label(label.as_str());
+            let second =
+                AnnotationKind::Context.span(visible(other, span)).label(escaped_lines(label));
             if std::ptr::eq(other, source) {
                 snippet = snippet.annotation(second);
             } else {
                 elsewhere = Some(excerpt(other).annotation(second));
             }
         }
-        let mut group: Group<'_> = level.primary_title(self.message.as_str()).element(snippet);
+        let mut group: Group<'_> =
+            level.primary_title(escaped_lines(&self.message)).element(snippet);
         if let Some(elsewhere) = elsewhere {
             group = group.element(elsewhere);
         }
         if let Some(help) = &self.help {
-            group = group.element(Level::HELP.message(help.as_str()));
+            group = group.element(Level::HELP.message(escaped_lines(help)));
         }
         renderer.render(&[group])
     }
 }
 
 fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
-    Snippet::source(source.text.as_str()).path(source.name.as_str())
+    Snippet::source(harmless(&source.text)).path(escaped(&source.name))
+}
+
+/// Whether a character is a control character, or one of the marks that turn the order of a line around: what a
+/// name or a text must not bring onto a screen.
+pub(crate) fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{feff}')
+        || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Returns a text that names something, with an escape `\u{1b}` in place of every control character and every
+/// mark that turns the order of a line around.
+pub fn escaped(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let escape = |c: char| match is_hidden(c) {
+        true => c.escape_unicode().to_string(),
+        false => c.to_string(),
+    };
+    Cow::Owned(text.chars().map(escape).collect())
+}
+
+/// The lines of a text to be shown, every byte in its place. The renderer replaces one-byte control characters
+/// itself.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let replaced = |c: &char| is_hidden(*c) && c.len_utf8() > 1;
+    if !text.chars().any(|c| replaced(&c)) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |c: char| match c.len_utf8() {
+        _ if !replaced(&c) => c,
+        2 => '\u{bf}',
+        _ => '\u{fffd}',
+    };
+    Cow::Owned(text.chars().map(shown).collect())
+}
+
+/// The lines of a message, each escaped.
+fn escaped_lines(text: &str) -> String {
+    text.split('\n').map(escaped).collect::<Vec<_>>().join("\n")
 }
 
 /// Evidence that an error is in the list of reports. Refusing a tool takes one, and so does leaving

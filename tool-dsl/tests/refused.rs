@@ -229,3 +229,124 @@ fn long_lines_are_refused_at_once() {
         assert!(read(format!("tool T {{ {}", braces.repeat(25_000))).is_err());
     }
 }
+
+/// A folder with tools, and one beside it that they may not mount from.
+fn two_folders(name: &str) -> (PathBuf, PathBuf) {
+    let both = folder(name);
+    let (own, other) = (both.join("own"), both.join("other"));
+    for folder in [&own, &other] {
+        std::fs::create_dir_all(folder).expect("a writable folder");
+        let part = "profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as a cutting; }";
+        let part = format!("tool Part {{ units mm; {part} }}");
+        std::fs::write(folder.join("part.tool"), part).expect("a writable folder");
+    }
+    (own, other)
+}
+
+fn mounting(file: &str) -> Source {
+    Source::new("t.tool", format!("tool T {{ units mm; mount \"{file}\" as a; }}"))
+}
+
+#[test]
+fn mounts_stay_below_the_tools_folder() {
+    let (own, other) = two_folders("mounts");
+    let held = |file: &str| mounting(file).held_by(own.join("t.tool"));
+    assert!(compile(&held("part.tool")).tool().is_some());
+    assert!(compile(&held("../own/part.tool")).tool().is_some());
+    let whole = other.join("part.tool").display().to_string();
+    for file in ["../other/part.tool", "../none.tool", "../../x/../y.tool", "/etc/passwd", &whole] {
+        let said = error(&compile(&held(file)));
+        assert_eq!(said, format!("`{file}` does not lie below the tool's folder"));
+    }
+    // A folder above both, said from outside.
+    let above = own.parent().expect("a folder above");
+    assert!(compile(&held("../other/part.tool").within(above)).tool().is_some());
+    assert!(error(&compile(&held("/etc/passwd").within(above))).contains("does not lie below"));
+    assert!(error(&compile(&held("none.tool"))).starts_with("cannot read"));
+}
+
+#[cfg(unix)]
+#[test]
+fn links_lead_nowhere_else() {
+    let (own, other) = two_folders("links");
+    let link = own.join("link.tool");
+    let _ = std::fs::remove_file(&link);
+    std::os::unix::fs::symlink(other.join("part.tool"), &link).expect("a link");
+    let said = error(&compile(&mounting("link.tool").held_by(own.join("t.tool"))));
+    assert!(said.contains("does not lie below"), "{said}");
+}
+
+/// No line of a file that is no tool's.
+#[test]
+fn the_text_of_other_files_is_not_shown() {
+    let (own, _) = two_folders("secrets");
+    std::fs::write(own.join("key"), "secret = 1234\n").expect("a writable folder");
+    let compiled = compile(&mounting("key").held_by(own.join("t.tool")));
+    assert_eq!(error(&compiled), "`key` is not a `.tool` file");
+    for report in compiled.reports() {
+        assert!(!report.render(&compiled.sources, false).contains("secret"));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_and_pipes_are_no_tools() {
+    for device in ["/dev/zero", "/dev/null"] {
+        let error = Source::read(device).expect_err("refused").to_string();
+        assert!(error.contains("no regular file"), "{error}");
+    }
+    let error = Source::read(folder("pipes")).expect_err("a folder").to_string();
+    assert!(!error.is_empty());
+}
+
+/// Names and texts from files come onto a screen.
+#[test]
+fn what_cannot_be_seen_is_refused_or_escaped() {
+    for hidden in ["\u{1b}[31m", "\u{7f}", "\u{9b}31m", "\u{202e}", "\u{2066}", "\u{200f}"] {
+        let titled = tool("").replace("tool T", &format!("tool T \"a{hidden}b\""));
+        assert!(read(titled).expect_err("refused").contains("which cannot be seen"), "{hidden:?}");
+        let mounted = format!("tool T {{ units mm; mount \"{hidden}.tool\" as a; }}");
+        assert!(read(mounted).expect_err("refused").contains("which cannot be seen"));
+        // In a comment it may stand; where its line is shown it is replaced, and so in a file's name.
+        let source =
+            Source::new(format!("t{hidden}.tool"), tool(&format!("/*{hidden}*/ let a = b;")));
+        let compiled = compile(&source);
+        for report in compiled.reports() {
+            let shown = report.render(&compiled.sources, false);
+            assert!(
+                !shown.contains(&hidden[..hidden.chars().next().expect("one").len_utf8()]),
+                "{shown:?}"
+            );
+        }
+    }
+    assert_eq!(tool_dsl::report::escaped("a\u{1b}\u{202e}é"), "a\\u{1b}\\u{202e}é");
+}
+
+#[test]
+fn values_that_break_a_profile_are_named() {
+    let text = "tool T { units mm; param D = 6; profile { start (0, 0); line to (D/2, 0), (D/2, 9), (0, 9) as a cutting; } }";
+    let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=-1")]);
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    assert!(refusal.errors().all(|report| {
+        report.help.as_ref().is_some_and(|help| help.ends_with("given: `D=-1`"))
+    }));
+    // An error of the value itself shows it already.
+    let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=x")]);
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    assert!(refusal.errors().all(|r| r.help.as_ref().is_none_or(|help| !help.contains("given: "))));
+}
+
+#[test]
+fn profiles_that_would_take_minutes_are_refused_at_once() {
+    let zigzag = |count: usize| {
+        let points = (1..count - 2).map(|k| format!("({}, {k}), ", 10.0 + 0.5 * (k % 2) as f64));
+        let points: String = points.collect();
+        format!(
+            "tool T {{ units mm; profile {{ start (0, 0); line to (10, 0), {points}(0, {}) as a cutting; }}",
+            count - 3
+        )
+    };
+    let smooth = |count: usize| read(format!("{} regions smooth 0.05; }}", zigzag(count)));
+    assert_eq!(smooth(200), Err("`regions smooth` of more than 128 segments".to_owned()));
+    assert_eq!(smooth(24), Ok(()));
+}

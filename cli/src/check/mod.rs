@@ -14,7 +14,6 @@ use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
 use tool_dsl::report::{self, Severity};
 use tool_dsl::{Checked, compile_with};
-use touchoff::tool::Interpreted;
 
 /// The exit status where nothing is wrong but something is warned of; wrong files give 1, wrong options 2.
 const WARNED: u8 = 3;
@@ -25,7 +24,7 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
     let styled = std::io::stderr().is_terminal();
     let (mut wrong, mut warned) = (0, false);
     for file in files {
-        let source = match Interpreted::source(file) {
+        let source = match given.source(file) {
             Ok(source) => source,
             Err(error) => {
                 say!("error: {error}");
@@ -58,7 +57,8 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
             serde_json::to_writer(&mut out, &Proved::of(tool, certificate))?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{}: {}", file.display(), described(tool, warnings))?;
+            let shown = file.display().to_string();
+            writeln!(out, "{}: {}", report::escaped(&shown), described(tool, warnings))?;
             table::write(&mut out, tool, certificate)?;
         }
     }

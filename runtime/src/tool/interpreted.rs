@@ -13,7 +13,7 @@ use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Value, Walk};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
-use tool_dsl::{Accepted, Checked, compile_with, digest, model};
+use tool_dsl::{Accepted, Checked, compile_with, digest, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
@@ -49,7 +49,7 @@ impl Interpreted {
 
     /// The text of a `.tool` file.
     pub fn source(path: impl AsRef<Path>) -> Result<Source, ToolError> {
-        let file = path.as_ref().display().to_string();
+        let file = report::escaped(&path.as_ref().display().to_string()).into_owned();
         Source::read(path).map_err(|source| ToolError::Unreadable { file, source })
     }
 

@@ -211,6 +211,13 @@ impl Mounting<'_> {
             self.full = Some(reported);
             return Err(reported);
         }
+        if !syntax::begins_a_tool(&source.text) {
+            // Nothing of its text is shown: it may be any file.
+            let message = format!("`{}` is not a `.tool` file", mount.file.word);
+            let report = Report::error(mount.file.span, message)
+                .help("a mounted file begins with `tool Name {`");
+            return Err(Reported::push(self.reports, report));
+        }
         let before = self.reports.len();
         let tree = syntax::parse(&source, self.reports)?;
         Reported::among(&self.reports[before..]).map_or(Ok((source.base, tree)), Err)
@@ -223,6 +230,12 @@ impl Mounting<'_> {
             Report::error(by, format!("where is `{written}`? this text is from no file"))
                 .help("a mounted file is looked for beside the file that mounts it")
         })?;
+        if !self.sources.may_mount(&place.1) {
+            let message = format!("`{written}` does not lie below the tool's folder");
+            return Err(Report::error(by, message).help(
+                "move the file there; the program also takes a folder above both: `--root DIR`",
+            ));
+        }
         let shown = place.0.clone();
         let source = self.sources.read(by, place).cloned().map_err(|error| {
             Report::error(by, format!("cannot read `{shown}`: {error}"))

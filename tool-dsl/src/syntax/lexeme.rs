@@ -1,7 +1,7 @@
 //! The text in the pieces that the grammar's tokens have: what is a comment or a text, and what is not.
 
 use super::limits::DEEPEST;
-use super::refuse::in_name;
+use super::refuse::{FILES, in_name};
 
 /// One piece of a text, from its start to its end in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,13 @@ pub(super) enum Kind {
     Word,
     /// Any other character.
     Mark(char),
+}
+
+/// Returns whether the first word of a text is that of a tool's or a solid's file, with a name behind it.
+pub(crate) fn begins_a_tool(text: &str) -> bool {
+    let mut words = lexemes(text).filter(|lexeme| lexeme.kind != Kind::Skipped);
+    let first = words.next().map_or("", |first| &text[first.start..first.end]);
+    FILES.contains(&first) && words.next().is_some_and(|name| name.kind == Kind::Word)
 }
 
 /// The pieces of a text in order, without gaps. A quote that no other one ends on its line is a mark, as it is

@@ -12,6 +12,7 @@ mod parse;
 mod refuse;
 pub mod tree;
 
+pub(crate) use lexeme::begins_a_tool;
 pub(crate) use limits::TALLEST;
 pub use mount::given;
 pub(crate) use parse::tokens;

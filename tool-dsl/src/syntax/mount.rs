@@ -37,6 +37,7 @@ impl Reader<'_> {
         span: Span,
     ) -> Option<Mount> {
         let mut file = self.name(&inner.next()?);
+        self.reports.extend(refuse::hidden(&file.word, file.span));
         file.word = file.word.trim_matches('"').to_owned();
         let (name, cutting) = self.surface(inner.next()?);
         let mut mount = Mount { file, name: name?, cutting, with: Vec::new(), at: None, span };

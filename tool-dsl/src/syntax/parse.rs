@@ -88,7 +88,10 @@ impl Reader<'_> {
                         );
                     }
                 }
-                Rule::text => title = Some(pair.as_str().trim_matches('"').to_owned()),
+                Rule::text => {
+                    title = Some(pair.as_str().trim_matches('"').to_owned());
+                    self.reports.extend(refuse::hidden(pair.as_str(), self.span(&pair)));
+                }
                 Rule::stray if enough(self.reports) => {}
                 Rule::stray => items.extend(self.stray(&pair)),
                 Rule::k_tool | Rule::k_solid => {}
