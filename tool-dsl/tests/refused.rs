@@ -350,3 +350,21 @@ fn profiles_that_would_take_minutes_are_refused_at_once() {
     assert_eq!(smooth(200), Err("`regions smooth` of more than 128 segments".to_owned()));
     assert_eq!(smooth(24), Ok(()));
 }
+
+/// What compiling proves is not denied by a proof that ends at its budget.
+#[test]
+fn a_proof_that_ends_early_takes_nothing_back() {
+    let points: String =
+        (1..238).map(|k| format!("({}, {k}), ", 10.0 + 0.5 * (k % 2) as f64)).collect();
+    let text = format!(
+        "tool T {{ units mm; profile {{ start (0, 0); line to (10, 0), {points}(0, 237) as a cutting; }} }}"
+    );
+    let compiled = compile(&Source::new("t.tool", text));
+    let tool = compiled.tool().expect("a tool");
+    let certificate = tool_dsl::prove::Certificate::of(tool);
+    assert!(certificate.boxes < 35_000, "{}", certificate.boxes);
+    assert_eq!((certificate.lipschitz(), tool.bounds.lipschitz), (None, Some(1.0)));
+    let reports = certificate.reports(tool);
+    let help = reports.iter().filter_map(|report| report.help.as_deref()).next();
+    assert!(help.is_some_and(|help| help.contains("at most 1 times the distance")), "{help:?}");
+}
