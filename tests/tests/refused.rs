@@ -84,7 +84,7 @@ fn what_outgrows_its_means_is_refused() {
         + &(1..=28).map(|k| format!("curve c{k} = c{0} + c{0};", k - 1)).collect::<String>()
         + "region r where hypot(d, z - 3) <= 3, c28 <= 4e9 { depth: 3 - hypot(d, z - 3); }";
     assert!(compiled(&doubled).tool().is_some());
-    assert!(compiled(&doubled.replace("c0 = d;", "c0 = sqrt(d^2 + 1);")).tool.is_some());
+    assert!(compiled(&doubled.replace("c0 = d;", "c0 = sqrt(d^2 + 1);")).tool().is_some());
 }
 
 /// One mistake is said once, however often the name it defines is used.
