@@ -17,8 +17,7 @@ use touchoff_tests::oracle::reference::{At, Reference};
 
 fn checked(source: &Source) -> Box<Checked> {
     let compiled = compile(source);
-    let said: Vec<&str> = compiled.reports().iter().map(|report| report.message.as_str()).collect();
-    compiled.into_tool().unwrap_or_else(|| panic!("{said:?}"))
+    compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
 }
 
 fn of_library(name: &str) -> Box<Checked> {
