@@ -98,7 +98,11 @@ fn command(wanted: &Bench) -> String {
         (&wanted.part, wanted.unit, &wanted.tool, &wanted.path)
     {
         let [part, path] = [part, path].map(|path| name(path));
-        words.push(format!("--part {part} --unit {} --tool {tool} --path {path}", unit.word()));
+        words.push(format!(
+            "--part {part} --unit {} --tool {} --path {path}",
+            unit.word(),
+            tool.display()
+        ));
     }
     if let Some(folder) = &wanted.out {
         words.push(format!("--out {}", folder.display()));

@@ -4,8 +4,10 @@ use crate::arguments::Given;
 use crate::failure::Failure;
 use crate::output::{Output, show};
 use serde::Serialize;
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use tool_dsl::report::escaped;
 use tool_dsl::{Checked, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
@@ -80,7 +82,7 @@ pub(crate) fn tools(files: &[PathBuf], given: &Given, json: bool) -> Result<(), 
 
 /// The tool of a file; what was to be warned of is said.
 fn load(file: &Path, given: &Given) -> Result<Interpreted, Failure> {
-    let tool = Interpreted::parse_with(&Interpreted::source(file)?, &given.sources())?;
+    let tool = Interpreted::parse_with(&given.source(file)?, &given.sources())?;
     if !tool.warnings().is_empty() {
         say!("{}", tool.warnings());
     }
@@ -95,10 +97,11 @@ pub(crate) enum Found {
 
 impl Found {
     /// Finds what `--tool` says.
-    pub(crate) fn find(name: &str, given: &Given) -> Result<Found, Failure> {
+    pub(crate) fn find(name: &OsStr, given: &Given) -> Result<Found, Failure> {
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return Ok(Found::File(Box::new(load(Path::new(name), given)?)));
         }
+        let name = &*name.to_string_lossy();
         if !given.is_none() {
             return Err(Failure::NothingToSet("a compiled tool has its values"));
         }
@@ -109,7 +112,7 @@ impl Found {
             let known = TOOLS.iter().map(|tool| &*tool.card().name);
             let nearest = known.min_by_key(|known| distance(known));
             let meant = nearest.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
-            Failure::UnknownTool { name: name.to_owned(), meant }
+            Failure::UnknownTool { name: escaped(name).into_owned(), meant }
         })
     }
 
@@ -123,12 +126,12 @@ impl Found {
 
 /// A file's tool; what there is to say of the file is said.
 pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<Checked>, Failure> {
-    let source = Interpreted::source(file)?;
+    let source = given.source(file)?;
     let compiled = compile_with(&source, &given.sources());
-    for report in &compiled.reports {
+    for report in compiled.reports() {
         show(report, &compiled.sources);
     }
-    compiled.tool.ok_or(Failure::Files { wrong: 1, all: 1 })
+    compiled.into_tool().ok_or(Failure::Files { wrong: 1, all: 1 })
 }
 
 /// Prints files' Rust, or their plans as graphs.

@@ -2,21 +2,31 @@
 
 use crate::failure::Failure;
 use crate::output::{Output, show};
+use serde::Serialize;
+use std::borrow::Cow;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use tool_dsl::format::format;
-use tool_dsl::source::{Source, Sources};
+use tool_dsl::source::{LONGEST, Source, Sources};
 use touchoff::AtomicFile;
 
 /// Lays files out in place, or only names those that would change. A file with errors of syntax
-/// stays as it is.
-pub(crate) fn fmt(files: &[PathBuf], check: bool) -> Result<(), Failure> {
+/// stays as it is. With `json` there is one object per file on standard output.
+pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Failure> {
     let (mut wrong, mut changed) = (0, 0);
     for file in files {
-        match one(file, check)? {
+        let outcome = one(file, check, json)?;
+        match outcome {
             Outcome::Same => {}
             Outcome::Changed => changed += 1,
             Outcome::Wrong => wrong += 1,
+        }
+        if json && (check || !is_piped(file)) {
+            let mut out = Output::lines();
+            let row = Row { file: file.to_string_lossy(), check, outcome };
+            serde_json::to_writer(&mut out, &row)?;
+            writeln!(out)?;
+            out.flush()?;
         }
     }
     match files.len() {
@@ -26,18 +36,33 @@ pub(crate) fn fmt(files: &[PathBuf], check: bool) -> Result<(), Failure> {
     }
 }
 
+/// What `--json` says of a file.
+#[derive(Serialize)]
+struct Row<'f> {
+    file: Cow<'f, str>,
+    /// Whether the file was only looked at.
+    check: bool,
+    outcome: Outcome,
+}
+
+#[derive(Clone, Copy, Serialize)]
+#[serde(rename_all = "lowercase")]
 enum Outcome {
+    /// Laid out as it should be.
     Same,
+    /// It was, or with `--check` would be, written anew.
     Changed,
+    /// With errors, which are on standard error.
     Wrong,
 }
 
-fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
-    let piped = file == Path::new("-");
+fn one(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
+    let piped = is_piped(file);
+    let shown = file.display();
     let source = match if piped { standard_input() } else { Source::read(file) } {
         Ok(source) => source,
         Err(error) => {
-            say!("error: {}: {error}", file.display());
+            say!("error: {shown}: {error}");
             return Ok(Outcome::Wrong);
         }
     };
@@ -53,7 +78,7 @@ fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
     };
     let outcome = if formatted == source.text { Outcome::Same } else { Outcome::Changed };
     match (&outcome, check) {
-        (Outcome::Changed, true) => {
+        (Outcome::Changed, true) if !json => {
             let mut out = Output::lines();
             writeln!(out, "{}", source.name)?;
             out.flush()?;
@@ -65,7 +90,7 @@ fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
         }
         (Outcome::Changed, false) => {
             if let Err(error) = AtomicFile::write(file, &formatted) {
-                say!("error: {}: {error}", file.display());
+                say!("error: {shown}: {error}");
                 return Ok(Outcome::Wrong);
             }
         }
@@ -74,8 +99,16 @@ fn one(file: &Path, check: bool) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
+fn is_piped(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+/// The text on standard input, as long as a file's may be: a longer one is cut behind that, and refused for its
+/// length.
 fn standard_input() -> io::Result<Source> {
-    let mut text = String::new();
-    io::stdin().read_to_string(&mut text)?;
+    let mut bytes = Vec::new();
+    io::stdin().take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))?;
     Ok(Source::new("<stdin>", text))
 }

@@ -49,7 +49,7 @@ fn main() -> ExitCode {
             stages::check(&folder, &files, &given)
         }
         Some(Command::Expand { files, plan, given, .. }) => files::expand(&files, plan, &given),
-        Some(Command::Fmt { check, files }) => fmt::fmt(&files, check),
+        Some(Command::Fmt { check, files }) => fmt::fmt(&files, check, arguments.json),
         Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),
     };
     ended(done.map(|()| ExitCode::SUCCESS))

@@ -5,12 +5,13 @@ use crate::check;
 use crate::failure::Failure;
 use crate::output::{refuse_inputs, show, unwritable, write_file};
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use tool_dsl::prove::Certificate;
+use tool_dsl::report::escaped;
 use tool_dsl::{Checked, compile_with, emit};
-use touchoff::tool::Interpreted;
 
 /// Writes the stages of files into a folder, each file's into one of its own.
 pub(crate) fn write(folder: &Path, files: &[PathBuf], given: &Given) -> Result<(), Failure> {
@@ -43,18 +44,18 @@ pub(crate) fn check(folder: &Path, files: &[PathBuf], given: &Given) -> Result<(
     let kept = std::fs::read_dir(folder)
         .map_err(|source| Failure::Unreadable { file: folder.display().to_string(), source })?;
     for entry in kept.flatten() {
-        if !known.contains(&*entry.file_name().to_string_lossy()) {
+        if !known.contains(&*entry.file_name()) {
             stale.push(entry.path());
         }
     }
     for at in &stale {
-        say!("{}: stale", at.display());
+        say!("{}: stale", escaped(&at.display().to_string()));
     }
     if stale.is_empty() { Ok(()) } else { Err(Failure::Stale { count: stale.len() }) }
 }
 
-fn stem(file: &Path) -> String {
-    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+fn stem(file: &Path) -> &OsStr {
+    file.file_stem().unwrap_or_default()
 }
 
 /// The names of the stages' texts.
@@ -66,13 +67,16 @@ fn stages(
     file: &Path,
     given: &Given,
 ) -> Result<impl Iterator<Item = (&'static str, String)> + use<>, Failure> {
-    let source = Interpreted::source(file)?;
+    let source = given.source(file)?;
     let compiled = compile_with(&source, &given.sources());
-    let Some(tool) = &compiled.tool else {
-        for report in &compiled.reports {
-            show(report, &compiled.sources);
+    let tool = match &compiled.outcome {
+        Ok(accepted) => &*accepted.tool,
+        Err(refusal) => {
+            for report in refusal.reports() {
+                show(report, &compiled.sources);
+            }
+            return Err(Failure::Files { wrong: 1, all: 1 });
         }
-        return Err(Failure::Files { wrong: 1, all: 1 });
     };
     let certificate = Certificate::of(tool);
     let mut proved = Vec::new();

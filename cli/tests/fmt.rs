@@ -72,6 +72,47 @@ fn check_names_what_would_change() {
 }
 
 #[test]
+fn json_has_an_object_per_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, loose) = write(folder.path(), "loose.tool", LOOSE);
+    let (_, laid) = write(folder.path(), "laid.tool", LAID);
+    let (_, broken) = write(folder.path(), "broken.tool", BROKEN);
+    let output = touchoff(&["fmt", "--check", "--json", &loose, &laid, &broken], "");
+    assert_eq!(output.status.code(), Some(1));
+    let rows: Vec<serde_json::Value> = text(&output.stdout)
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("an object per line"))
+        .collect();
+    for (row, (file, outcome)) in
+        rows.iter().zip([(&loose, "changed"), (&laid, "same"), (&broken, "wrong")])
+    {
+        assert_eq!((&row["file"], &row["outcome"]), (&file.as_str().into(), &outcome.into()));
+    }
+    assert_eq!(rows.len(), 3);
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_are_no_utf8_are_names() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join(std::ffi::OsStr::from_bytes(b"fr\xe4ser.tool"));
+    std::fs::write(&file, LAID).expect("a writable folder");
+    for command in ["check", "tools", "expand", "draw", "fmt"] {
+        let output = Command::new(env!("CARGO_BIN_EXE_touchoff")).arg(command).arg(&file).output();
+        let output = output.expect("the program runs");
+        assert!(output.status.success(), "{command}: {}", text(&output.stderr));
+    }
+    // The tool is found; the part is what is missing.
+    let output = Command::new(env!("CARGO_BIN_EXE_touchoff"))
+        .args(["verify", "--part", "none.stl", "--unit", "mm", "--program", "none.apt", "--tool"])
+        .arg(&file)
+        .output()
+        .expect("the program runs");
+    assert!(!text(&output.stderr).contains("UTF-8"), "{}", text(&output.stderr));
+}
+
+#[test]
 fn standard_input_goes_to_standard_output() {
     let output = touchoff(&["fmt", "-"], LOOSE);
     assert!(output.status.success());

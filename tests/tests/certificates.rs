@@ -17,8 +17,7 @@ use touchoff_tests::oracle::reference::{At, Reference};
 
 fn checked(source: &Source) -> Box<Checked> {
     let compiled = compile(source);
-    let said: Vec<&str> = compiled.reports.iter().map(|report| report.message.as_str()).collect();
-    compiled.tool.unwrap_or_else(|| panic!("{said:?}"))
+    compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
 }
 
 fn of_library(name: &str) -> Box<Checked> {
@@ -250,8 +249,8 @@ fn jumps_are_found() {
     let said = |depth: &str| {
         let source = Source::new("core.tool", core(depth));
         let compiled = compile(&source);
-        assert!(compiled.tool.is_none());
-        compiled.reports.into_iter().map(|report| report.message).collect::<Vec<_>>()
+        assert!(compiled.tool().is_none());
+        compiled.reports().iter().map(|report| report.message.clone()).collect::<Vec<_>>()
     };
     // 4 instead of 2 at the core.
     let wrong = said("2*(3 - r)");

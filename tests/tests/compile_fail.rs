@@ -83,7 +83,7 @@ fn the_terminal_says_the_same() {
         let Some(source) = tool(&program) else { continue };
         let compiled = compile(&source);
         let lines: Vec<&str> = said.lines().map(str::trim).collect();
-        let errors = compiled.reports.iter().filter(|r| r.severity == Severity::Error);
+        let errors = compiled.reports().iter().filter(|r| r.severity == Severity::Error);
         for report in errors {
             let place = program.display();
             let help = report.help.as_ref().unwrap_or_else(|| panic!("no remedy in {place}"));

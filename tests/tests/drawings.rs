@@ -8,7 +8,7 @@ use tool_dsl::{Checked, compile, emit};
 
 fn tool(name: &str, text: &str) -> Box<Checked> {
     let compiled = compile(&Source::new(name, text));
-    compiled.tool.unwrap_or_else(|| panic!("{name}: {:?}", compiled.reports))
+    compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
 }
 
 fn library(file: &str) -> Box<Checked> {

@@ -35,7 +35,7 @@ const FUNCTIONS: [&str; 16] = [
 fn generated(file: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
     let source = Source::read(path).expect("the library has the file");
-    let tool = compile(&source).tool.expect("a tool of the library has no error");
+    let tool = compile(&source).into_tool().expect("a tool of the library has no error");
     emit::rust(&tool)
 }
 

@@ -50,7 +50,7 @@ impl Example {
     fn compiles(source: &Source) -> Option<String> {
         let compiled = compile(source);
         let render = |report: &Report| report.render(&compiled.sources, false);
-        let said: Vec<String> = compiled.reports.iter().map(render).collect();
+        let said: Vec<String> = compiled.reports().iter().map(render).collect();
         (!said.is_empty()).then(|| said.join("\n"))
     }
 
@@ -60,7 +60,8 @@ impl Example {
             return Some(format!("which error? write `{WORD}…` where it stands"));
         };
         let (line, expected) = (before.lines().count(), after.lines().next().unwrap_or_default());
-        let reports = compile(source).reports;
+        let compiled = compile(source);
+        let reports = compiled.reports();
         let found = reports.iter().any(|report| {
             let stands = source.text[..report.span.start].matches('\n').count() + 1;
             report.severity == Severity::Error

@@ -117,7 +117,7 @@ fn what_passes_keeps_its_bounds() {
         let text = std::fs::read_to_string(folder.join(name)).expect("the library has the file");
         let mut draw = Draw::new(5);
         for text in broken(&text) {
-            let Some(tool) = compile(&Source::new(name, &text)).tool else {
+            let Some(tool) = compile(&Source::new(name, &text)).into_tool() else {
                 refused += 1;
                 continue;
             };
@@ -141,7 +141,7 @@ fn what_passes_keeps_its_bounds() {
 fn broken_tools_of_the_library_are_found_out() {
     let (mut found, mut missed) = (0, Vec::new());
     for (seed, source) in library().iter().enumerate() {
-        let whole = *compile(source).tool.expect("the library compiles");
+        let whole = *compile(source).into_tool().expect("the library compiles");
         let proved = Certificate::of(&whole);
         // Of a tool whose own proof is open little can be said of a broken one.
         if !proved.undecided.is_empty() {

@@ -12,15 +12,15 @@ fn compiled(items: &str) -> Compiled {
 /// The messages of a text that must be refused.
 fn refused(items: &str) -> String {
     let compiled = compiled(items);
-    assert!(any_error(&compiled.reports) && compiled.tool.is_none(), "{items} was taken");
-    compiled.reports.iter().map(|r| r.message.as_str()).collect::<Vec<_>>().join("; ")
+    assert!(any_error(compiled.reports()) && compiled.tool().is_none(), "{items} was taken");
+    compiled.reports().iter().map(|r| r.message.as_str()).collect::<Vec<_>>().join("; ")
 }
 
 /// A sum whose second part is no constant is computed before it is compared.
 #[test]
 fn an_expanded_sphere_compiles() {
     let ball = "region ball where z*z - 6mm*z + d^2 <= 0 { depth: 3 - hypot(d, z - 3); }";
-    let tool = compiled(ball).tool.expect("a ball");
+    let tool = compiled(ball).into_tool().expect("a ball");
     let code = emit::rust(&tool);
     let contains = code.split("fn contains(").nth(1).expect("it has one");
     assert!(
@@ -45,7 +45,7 @@ fn the_envelope_reaches_the_end() {
         "region a where d <= 1, 0 <= z <= 40 { depth: min(1 - d, min(z, 40.00003 - z)); direction: (1, 0); }
          region b where d <= 1, 40 <= z <= 40.00003 { depth: min(1 - d, 40.00003 - z); direction: (1, 0); }",
     );
-    let tool = tool.tool.expect("a cylinder in two");
+    let tool = tool.into_tool().expect("a cylinder in two");
     assert!(tool.envelope.iter().any(|slab| slab.high >= 40.00003));
 }
 
@@ -55,7 +55,7 @@ fn small_tools_are_looked_at_as_closely() {
         region a where hypot(d, z - r) <= r { depth: r - hypot(d, z - r); }
         region b where hypot(d, z - 1.5*r) <= r { depth: r - hypot(d, z - 1.5*r); } }";
     let compiled = compile(&Source::new("t.tool", text));
-    assert!(compiled.reports.iter().any(|report| report.message.contains("overlap")));
+    assert!(compiled.reports().iter().any(|report| report.message.contains("overlap")));
 }
 
 #[test]
@@ -83,8 +83,8 @@ fn what_outgrows_its_means_is_refused() {
     let doubled = "curve c0 = d;".to_owned()
         + &(1..=28).map(|k| format!("curve c{k} = c{0} + c{0};", k - 1)).collect::<String>()
         + "region r where hypot(d, z - 3) <= 3, c28 <= 4e9 { depth: 3 - hypot(d, z - 3); }";
-    assert!(compiled(&doubled).tool.is_some());
-    assert!(compiled(&doubled.replace("c0 = d;", "c0 = sqrt(d^2 + 1);")).tool.is_some());
+    assert!(compiled(&doubled).tool().is_some());
+    assert!(compiled(&doubled.replace("c0 = d;", "c0 = sqrt(d^2 + 1);")).tool().is_some());
 }
 
 /// One mistake is said once, however often the name it defines is used.
@@ -107,8 +107,13 @@ fn a_pose_beyond_all_parts_is_refused() {
 fn what_is_only_worth_knowing() {
     let said = |items: &str| {
         let compiled = compiled(items);
-        assert!(compiled.tool.is_some(), "{items}");
-        compiled.reports.iter().map(|report| report.message.clone()).collect::<Vec<_>>().join("; ")
+        assert!(compiled.tool().is_some(), "{items}");
+        compiled
+            .reports()
+            .iter()
+            .map(|report| report.message.clone())
+            .collect::<Vec<_>>()
+            .join("; ")
     };
     let ball =
         |depth: &str| format!("region ball where hypot(d, z - 3) <= 3 {{ depth: {depth}; }}");

@@ -109,8 +109,8 @@ fn a_block_of_other_sides() {
         let given = [("w", w), ("l", l), ("h", h)]
             .map(|(name, value)| Source::new("a test", format!("{name} = {value}")));
         let compiled = compile_with(&block, &given);
-        assert!(compiled.reports.is_empty(), "{:?}", compiled.reports);
-        let tool = compiled.tool.expect("a block");
+        assert!(compiled.reports().is_empty(), "{:?}", compiled.reports());
+        let tool = compiled.into_tool().expect("a block");
         let mut reference = Interpreter::new(&tool);
         let mut draw = Draw::new(7);
         let half = [w, l, h].map(|side| f64::from(side) / 2.0);
@@ -150,18 +150,18 @@ fn solid(items: &str) -> tool_dsl::Compiled {
 
 fn taken(items: &str) -> Checked {
     let compiled = solid(items);
-    assert!(!any_error(&compiled.reports), "{:?}", compiled.reports);
-    *compiled.tool.expect("no error, so a solid")
+    assert!(!any_error(compiled.reports()), "{:?}", compiled.reports());
+    *compiled.into_tool().expect("no error, so a solid")
 }
 
 /// The only message of a text that must be refused, and its help.
 fn refused(items: &str) -> String {
     let compiled = solid(items);
-    assert!(any_error(&compiled.reports) && compiled.tool.is_none(), "{items} was taken");
+    assert!(any_error(compiled.reports()) && compiled.tool().is_none(), "{items} was taken");
     let said = |r: &tool_dsl::report::Report| {
         format!("{}: {}", r.message, r.help.clone().unwrap_or_default())
     };
-    compiled.reports.iter().map(said).collect::<Vec<_>>().join("; ")
+    compiled.reports().iter().map(said).collect::<Vec<_>>().join("; ")
 }
 
 const BALL: &str = "region b where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z);";
@@ -188,9 +188,9 @@ fn coordinates_of_the_other_kind_are_named() {
     assert_eq!(message, "`d` exists in a `tool` only: in a `solid` write `hypot(x, y)`");
     let tool = "tool T { units mm; region r where hypot(d, z - 3) <= 3, y <= 4 { depth: 3 - hypot(d, z - 3); } }";
     let compiled = compile(&Source::new("t.tool", tool));
-    assert_eq!(compiled.reports.len(), 1);
-    assert_eq!(compiled.reports[0].message, "`y` exists in a `solid` only");
-    let help = compiled.reports[0].help.clone().expect("a remedy");
+    assert_eq!(compiled.reports().len(), 1);
+    assert_eq!(compiled.reports()[0].message, "`y` exists in a `solid` only");
+    let help = compiled.reports()[0].help.clone().expect("a remedy");
     assert!(help.contains("`d`, the distance from the axis"), "{help}");
     assert!(refused("let x = 3;").contains("`x` is a coordinate and cannot be defined"));
     assert!(refused("let d = 3;").contains("`d` belongs to the language"));
@@ -252,7 +252,7 @@ fn mistakes_come_with_a_point() {
 #[test]
 fn other_beginnings() {
     let message = |text: &str| {
-        let report = compile(&Source::new("t.tool", text)).reports.remove(0);
+        let report = compile(&Source::new("t.tool", text)).reports()[0].clone();
         format!("{}: {}", report.message, report.help.unwrap_or_default())
     };
     assert_eq!(

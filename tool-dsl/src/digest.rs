@@ -88,7 +88,7 @@ mod tests {
     fn of(text: &str, given: &str) -> u64 {
         let given = if given.is_empty() { vec![] } else { vec![Source::new("given", given)] };
         let compiled = compile_with(&Source::new("ball.tool", text), &given);
-        digest(&compiled.tool.expect("a tool without errors"))
+        digest(&compiled.into_tool().expect("a tool without errors"))
     }
 
     #[test]

@@ -102,6 +102,18 @@ impl Formula {
         }
     }
 
+    /// The curve of the first atom that is not yet decided: the first that [`Formula::open`] lists.
+    pub fn first_open(&self, signs: &[Signs]) -> Option<CurveIndex> {
+        match self {
+            Formula::Const(_) => None,
+            Formula::Atom { curve, .. } => self.decided(signs).is_none().then_some(*curve),
+            Formula::All(parts) | Formula::Any(parts) => {
+                let open = || parts.iter().find_map(|part| part.first_open(signs));
+                self.decided(signs).is_none().then(open).flatten()
+            }
+        }
+    }
+
     /// The atoms whose curve is not yet decided, in order.
     pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {

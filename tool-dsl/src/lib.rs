@@ -33,11 +33,11 @@ pub use digest::digest;
 
 use bound::{Extent, Slab};
 use model::Model;
-use plan::{Plan, Tree};
+use plan::Plan;
 use prove::Bounds;
-use report::{Report, any_error};
-use source::{Source, Sources};
-use std::collections::{BTreeSet, HashSet};
+use report::{Refusal, Report, Reported, Severity, any_error, without_error};
+use source::{Source, Sources, Span};
+use std::collections::BTreeSet;
 
 /// A tool that was looked over and found good, with everything that is emitted about it.
 #[derive(Clone, Debug)]
@@ -54,28 +54,53 @@ pub struct Checked {
     pub bounds: Bounds,
 }
 
-/// What came of compiling a text.
+/// What came of compiling a text: a tool, or the errors for which there is none.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// The tool, if there is no error.
-    pub tool: Option<Box<Checked>>,
+    /// The tool and its warnings, or why it is refused.
+    pub outcome: Result<Accepted, Refusal>,
     /// The tool's name, if the text got so far.
     pub name: Option<String>,
-    /// Errors and warnings.
-    pub reports: Vec<Report>,
-    /// The texts that these speak of.
+    /// The texts that the reports speak of.
     pub sources: Sources,
+}
+
+/// A tool without an error.
+#[derive(Clone, Debug)]
+pub struct Accepted {
+    /// The tool.
+    pub tool: Box<Checked>,
+    /// What is worth knowing of it, in the order of the text.
+    pub warnings: Vec<Report>,
 }
 
 impl Compiled {
     /// The same tool as another Rust type.
     #[must_use]
     pub fn named(mut self, name: &str) -> Compiled {
-        if let Some(tool) = &mut self.tool {
-            name.clone_into(&mut tool.model.name);
+        if let Ok(accepted) = &mut self.outcome {
+            name.clone_into(&mut accepted.tool.model.name);
         }
         self.name = self.name.map(|_| name.to_owned());
         self
+    }
+
+    /// The tool, if it is not refused.
+    pub fn tool(&self) -> Option<&Checked> {
+        self.outcome.as_ref().ok().map(|accepted| &*accepted.tool)
+    }
+
+    /// The tool itself, if it is not refused.
+    pub fn into_tool(self) -> Option<Box<Checked>> {
+        self.outcome.ok().map(|accepted| accepted.tool)
+    }
+
+    /// Errors and warnings, in the order of the text.
+    pub fn reports(&self) -> &[Report] {
+        match &self.outcome {
+            Ok(accepted) => &accepted.warnings,
+            Err(refusal) => refusal.reports(),
+        }
     }
 }
 
@@ -90,82 +115,88 @@ pub fn compile(source: &Source) -> Compiled {
 /// unit.
 pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     let mut sources = Sources::new(source.clone(), given.iter().cloned());
-    let (tree, mut reports) = syntax::parse(sources.own());
+    let mut reports = Vec::new();
+    let mut name = None;
+    let start = Span { start: 0, end: 0 };
+    let outcome = match compiled(&mut sources, &mut name, &mut reports) {
+        Ok(tool) => Ok(Accepted { tool: Box::new(tool), warnings: report::readable(reports) }),
+        Err(reported) => {
+            name_given(&sources, given.len(), &mut reports);
+            Err(Refusal::new(reports, start, reported))
+        }
+    };
+    Compiled { outcome, name, sources }
+}
+
+/// Names what the params are given beside each error of the tool's own text: a value may have broken it.
+fn name_given(sources: &Sources, count: usize, reports: &mut [Report]) {
+    let given = &sources.all()[1..=count];
+    if given.is_empty() {
+        return;
+    }
+    let texts: Vec<String> =
+        given.iter().map(|source| format!("`{}`", source.text.trim())).collect();
+    let note = format!("given: {}", texts.join(", "));
+    let is_given = |report: &Report| {
+        let (source, _) = sources.locate(report.span);
+        given.iter().any(|given| given.base == source.base)
+    };
+    for report in reports.iter_mut() {
+        if report.severity == Severity::Error && !report.is_follow_up() && !is_given(report) {
+            report.help = Some(match report.help.take() {
+                Some(help) => format!("{help}; {note}"),
+                None => note.clone(),
+            });
+        }
+    }
+}
+
+/// Compiles the first of the sources with what the others give its params. Fails only with an error
+/// among the reports, and never succeeds with one.
+fn compiled(
+    sources: &mut Sources,
+    name: &mut Option<String>,
+    reports: &mut Vec<Report>,
+) -> Result<Checked, Reported> {
+    let tree = syntax::parse(sources.own(), reports);
     let mut settings = Vec::new();
     for source in &sources.all()[1..] {
-        let (given, found) = syntax::given(source);
-        settings.extend(given);
-        reports.extend(found);
+        settings.extend(syntax::given(source, reports));
     }
-    let Some(tree) = tree else { return Compiled { tool: None, name: None, reports, sources } };
-    let name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
-    let (model, found) = resolve::resolve(&tree, &settings, &mut sources);
+    let tree = tree?;
+    *name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
+    let mut found = Vec::new();
+    let model = resolve::resolve(&tree, &settings, sources, &mut found);
     let broken: BTreeSet<&str> = tree.broken.iter().map(String::as_str).collect();
-    let said = any_error(&reports);
-    reports.extend(found.into_iter().filter(|report| !said || !follows(report, &broken)));
-    let tool = match model {
-        Some(model) if !any_error(&reports) => match check(model, &mut reports) {
-            Ok(tool) => Some(Box::new(tool)),
-            Err(report) => {
-                reports.push(report);
-                None
-            }
-        },
-        _ => None,
-    };
-    let tool = tool.filter(|_| !any_error(&reports));
-    Compiled { tool, name, reports: told(reports), sources }
+    let unread = any_error(reports);
+    reports.extend(found.into_iter().filter(|report| !unread || !follows(report, &broken)));
+    let model = model?;
+    without_error(reports)?;
+    check(model, reports)
 }
 
-/// What is told of all that was found: in the order of the text, each mistake once, and no more
-/// than can be read.
-fn told(mut reports: Vec<Report>) -> Vec<Report> {
-    reports.sort_by_key(|report| report.span.start);
-    // A file that is mounted twice has its mistakes once.
-    let mut seen = HashSet::new();
-    reports.retain(|report| seen.insert(report.clone()));
-    if reports.len() > report::MOST {
-        let next = reports[report::MOST].span;
-        reports.truncate(report::MOST);
-        reports.push(
-            Report::error(next, "more is wrong from here on").help("mend what stands above first"),
-        );
-    }
-    reports
-}
-
-fn check(mut model: Model, reports: &mut Vec<Report>) -> Result<Checked, Report> {
-    finite(&model)?;
+fn check(mut model: Model, reports: &mut Vec<Report>) -> Result<Checked, Reported> {
+    finite(&model).map_err(|report| Reported::push(reports, report))?;
     let extent = match bound::extent(&model) {
         Ok(extent) => extent,
         // A curve that has no value somewhere has no bound either: say so.
         Err(report) => {
             reports.extend(look::undefined(&model));
-            return if any_error(reports) { Ok(Checked::nothing(model)) } else { Err(report) };
+            let undefined = Reported::among(reports);
+            return Err(undefined.unwrap_or_else(|| Reported::push(reports, report)));
         }
     };
     reports.extend(look::look(&model, &extent));
-    if any_error(reports) {
-        // The plan would only repeat what is wrong.
-        return Ok(Checked::nothing(model));
-    }
+    // The plan would only repeat what is wrong.
+    without_error(reports)?;
     let envelope = bound::envelope(&model, &extent);
-    let plan = plan::plan(&mut model, &extent)?;
+    let plan = plan::plan(&mut model, &extent).map_err(|report| Reported::push(reports, report))?;
     let mut tool = Checked { model, extent, envelope, plan, bounds: Bounds::NONE };
     let (bounds, found) = Bounds::of(&tool);
     tool.bounds = bounds;
     reports.extend(found);
+    without_error(reports)?;
     Ok(tool)
-}
-
-impl Checked {
-    /// A tool of which something is wrong: its errors stand beside it and it goes no further.
-    fn nothing(mut model: Model) -> Checked {
-        let outside = Tree::Leaf(model.graph.int(0));
-        let plan = Plan { owner: Tree::Leaf(None), inside: Tree::Leaf(false), outside };
-        let extent = Extent::of(model.domain.whole(0.0), 0.0);
-        Checked { model, extent, envelope: Vec::new(), plan, bounds: Bounds::NONE }
-    }
 }
 
 /// Every constant that code needs is a double.

@@ -2,16 +2,24 @@
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// The longest text that is read, in bytes.
-pub(crate) const LONGEST: usize = 1 << 20;
+pub const LONGEST: usize = 1 << 20;
 
 /// The text of a file, or why it cannot be one of a tool.
 fn text(path: &Path) -> io::Result<String> {
     let wrong = |why: String| io::Error::new(io::ErrorKind::InvalidData, why);
+    let kind = std::fs::metadata(path)?;
+    // Asked before it is opened: to open a pipe waits for who writes it.
+    if !kind.is_file() && !kind.is_dir() {
+        return Err(wrong("it is no regular file: save the text as a file first".to_owned()));
+    }
+    if kind.len() > LONGEST as u64 {
+        return Err(wrong(format!("it is longer than {LONGEST} bytes")));
+    }
     let mut bytes = Vec::new();
     File::open(path)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes)?;
     if bytes.len() > LONGEST {
@@ -22,6 +30,11 @@ fn text(path: &Path) -> io::Result<String> {
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
         wrong(format!("line {line} is no UTF-8 text: save it as UTF-8"))
     })
+}
+
+/// The folder of a file.
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }
 
 /// A stretch of text, in bytes: of a source's, or of all [`Sources`] one behind the other.
@@ -56,6 +69,8 @@ pub struct Source {
     pub(crate) base: usize,
     /// The file that holds it.
     path: Option<PathBuf>,
+    /// The folder below which files may be mounted, if not that of the file.
+    root: Option<PathBuf>,
     /// Where each token came from, if it was not a file.
     tokens: Option<Vec<(Span, proc_macro2::Span)>>,
     /// The `mount` that asked for it.
@@ -65,7 +80,15 @@ pub struct Source {
 impl Source {
     /// A source from the text of a file.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
-        Source { name: name.into(), text: text.into(), base: 0, path: None, tokens: None, by: None }
+        Source {
+            name: name.into(),
+            text: text.into(),
+            base: 0,
+            path: None,
+            root: None,
+            tokens: None,
+            by: None,
+        }
     }
 
     /// A source from a file, known by its path.
@@ -83,6 +106,18 @@ impl Source {
     pub fn held_by(mut self, path: impl Into<PathBuf>) -> Source {
         self.path = Some(path.into());
         self
+    }
+
+    /// With the folder below which files may be mounted: [that of the file](Source::held_by), if nothing is said.
+    #[must_use]
+    pub fn within(mut self, root: impl Into<PathBuf>) -> Source {
+        self.root = Some(root.into());
+        self
+    }
+
+    /// The folder below which files may be mounted.
+    fn root(&self) -> Option<&Path> {
+        self.root.as_deref().or_else(|| self.path.as_deref().map(folder))
     }
 
     /// A source from the tokens inside `tool! { … }`: written out one space after each unless
@@ -166,7 +201,7 @@ impl Source {
 
     /// A path that this text mentions: for people, and where it leads.
     fn beside(&self, file: &str) -> Option<(String, PathBuf)> {
-        let near = |path: &Path| path.parent().unwrap_or(Path::new("")).join(file);
+        let near = |path: &Path| folder(path).join(file);
         let shown = match self.tokens {
             Some(_) => file.to_owned(),
             None => near(Path::new(&self.name)).display().to_string(),
@@ -244,6 +279,23 @@ impl Sources {
     /// from nowhere.
     pub(crate) fn beside(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
         self.locate(by).0.beside(file)
+    }
+
+    /// Returns whether a file lies below the folder that mounted files have to lie below, links followed. Of a
+    /// file that does not exist its name decides.
+    pub(crate) fn may_mount(&self, path: &Path) -> bool {
+        let Some(root) = self.own().root() else { return false };
+        let root = if root == Path::new("") { Path::new(".") } else { root };
+        let real = |path: &Path| {
+            let beside =
+                || Ok(folder(path).canonicalize()?.join(path.file_name().unwrap_or_default()));
+            path.canonicalize()
+                .or_else(|_| beside())
+                .or_else(|_: io::Error| std::path::absolute(path))
+        };
+        let (Ok(root), Ok(wanted)) = (real(root), real(path)) else { return false };
+        let leads_up = wanted.components().any(|part| part == Component::ParentDir);
+        wanted.starts_with(root) && !leads_up
     }
 
     /// Reads a file that a `mount` mentions, unless it was read before.

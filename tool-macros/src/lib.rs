@@ -174,13 +174,15 @@ fn documents() -> bool {
 
 /// A tool's code, or a stand-in for one that has errors, and these.
 fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
-    let mut tokens = match (&compiled.tool, &compiled.name) {
-        (Some(tool), _) if documents() => emit::documented(tool),
-        (Some(tool), _) => emit::emit(tool),
-        (None, Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::skeleton(name),
+    let mut tokens = match (&compiled.outcome, &compiled.name) {
+        (Ok(accepted), _) if documents() => emit::documented(&accepted.tool),
+        (Ok(accepted), _) => emit::emit(&accepted.tool),
+        (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::skeleton(name),
         _ => quote! {},
     };
-    tokens.extend(said::errors(compiled, place));
+    if let Err(refusal) = &compiled.outcome {
+        tokens.extend(said::errors(refusal, &compiled.sources, place));
+    }
     // Cargo rebuilds when a file that is included changes.
     for file in compiled.sources.files() {
         let file = file.display().to_string();

@@ -2,17 +2,15 @@
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use tool_dsl::Compiled;
-use tool_dsl::report::{Report, Severity};
+use tool_dsl::report::{Refusal, Report};
 use tool_dsl::source::Sources;
 
 /// A tool's errors: one that stands in the program's own text at its token, one that stands in a
 /// mounted file at the mount, with its file's line; all others together at the macro's call.
-pub(crate) fn errors(compiled: &Compiled, place: Span) -> TokenStream {
-    let sources = &compiled.sources;
+pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> TokenStream {
     let mut tokens = TokenStream::new();
     let mut rest = Vec::new();
-    for report in compiled.reports.iter().filter(|r| r.severity == Severity::Error) {
+    for report in refusal.errors() {
         let (source, inside) = sources.locate(report.span);
         match (source.tokens_at(inside), sources.tokens_at(report.span)) {
             (Some(place), _) => tokens.extend(error(&in_words(report, sources), place)),

@@ -5,8 +5,10 @@ pub(crate) mod postures;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use nalgebra::Point3;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use tool_dsl::source::Source;
+use touchoff::tool::{Interpreted, ToolError};
 use touchoff::{Law, Sampling, Unit, Weights};
 
 /// The exit statuses of all commands.
@@ -126,6 +128,9 @@ pub(crate) struct Given {
     /// A value for a `param` of the `.tool` file, as the language writes it: `--set D=0.25inch`.
     #[arg(long, value_name = "PARAM=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
+    /// The folder below which the `.tool` file may mount others [default: its own].
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
 }
 
 impl Given {
@@ -136,6 +141,15 @@ impl Given {
     /// The values as the compiler reads them.
     pub(crate) fn sources(&self) -> Vec<Source> {
         self.set.iter().map(|text| Source::new("--set", text)).collect()
+    }
+
+    /// The text of a `.tool` file, with the folder below which it may mount others.
+    pub(crate) fn source(&self, file: &Path) -> Result<Source, ToolError> {
+        let source = Interpreted::source(file)?;
+        Ok(match &self.root {
+            Some(root) => source.within(root),
+            None => source,
+        })
     }
 }
 
@@ -180,7 +194,7 @@ pub(crate) struct Sample {
     pub(crate) part: PartFile,
     /// The tool that a tolerance is meant for, by name or as a `.tool` file [default: one of exact depths].
     #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: Option<String>,
+    pub(crate) tool: Option<OsString>,
     #[command(flatten)]
     pub(crate) given: Given,
     /// Where the points go.
@@ -194,7 +208,7 @@ pub(crate) struct Run {
     pub(crate) part: PartFile,
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: String,
+    pub(crate) tool: OsString,
     #[command(flatten)]
     pub(crate) given: Given,
     /// The path: a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`, or APT-CL.
@@ -221,7 +235,7 @@ pub(crate) struct Verify {
     pub(crate) mesh: MeshFile,
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: String,
+    pub(crate) tool: OsString,
     #[command(flatten)]
     pub(crate) given: Given,
     /// The program: APT-CL, or a table of `x,y,z,i,j,k` or `x,y,z,qx,qy,qz,qw`.
@@ -253,7 +267,7 @@ pub(crate) struct Haptic {
     pub(crate) part: PartFile,
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: String,
+    pub(crate) tool: OsString,
     #[command(flatten)]
     pub(crate) given: Given,
     /// What is held: `hand`, a simulated one that presses the tool onto the part; `path FILE`, a path played once;
@@ -321,7 +335,7 @@ pub(crate) struct Bench {
     pub(crate) unit: Option<Unit>,
     /// A compiled tool by name, or any `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
-    pub(crate) tool: Option<String>,
+    pub(crate) tool: Option<OsString>,
     #[command(flatten)]
     pub(crate) given: Given,
     /// The tool's path along the part: a table, or APT-CL.

@@ -3,6 +3,7 @@
 use super::{MeshFile, above_zero, allowance, point};
 use clap::{Args, ValueEnum};
 use nalgebra::Point3;
+use std::ffi::OsString;
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 
@@ -12,7 +13,7 @@ pub(crate) struct Sweep {
     pub(crate) mesh: MeshFile,
     /// Compiled tools by name, or `.tool` files.
     #[arg(long, required = true, num_args = 1.., value_delimiter = ',', value_name = "NAME|FILE.tool")]
-    pub(crate) tools: Vec<String>,
+    pub(crate) tools: Vec<OsString>,
     /// Directions that each hemisphere has.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u16).range(1..=2000), allow_hyphen_values = true)]
     pub(crate) directions: u16,
@@ -75,7 +76,7 @@ pub(crate) struct Path {
     pub(crate) part: PathBuf,
     /// The tool, one of the map's: by name or as a `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool")]
-    pub(crate) tool: String,
+    pub(crate) tool: OsString,
     /// How deep the part may be in what cuts, at stops and between them [default: the map's tolerance].
     #[arg(long, value_name = "LENGTH", value_parser = above_zero, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,

@@ -15,7 +15,6 @@ use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
 use tool_dsl::report::{self, Severity};
 use tool_dsl::{Checked, compile_with};
-use touchoff::tool::Interpreted;
 
 /// The exit status where nothing is wrong but something is warned of; wrong files give 1, wrong options 2.
 const WARNED: u8 = 3;
@@ -25,7 +24,7 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
     let mut out = Output::lines();
     let (mut wrong, mut warned) = (0, false);
     for file in files {
-        let source = match Interpreted::source(file) {
+        let source = match given.source(file) {
             Ok(source) => source,
             Err(error) => {
                 say!("error: {error}");
@@ -33,31 +32,33 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
                 continue;
             }
         };
-        let mut compiled = compile_with(&source, &given.sources());
-        let certificate = compiled.tool.as_deref().map(Certificate::of);
-        if let (Some(tool), Some(certificate)) = (&compiled.tool, &certificate) {
+        let compiled = compile_with(&source, &given.sources());
+        let mut reports = compiled.reports().to_vec();
+        let proved = compiled.tool().map(|tool| (tool, Certificate::of(tool)));
+        if let Some((tool, certificate)) = &proved {
             // What was found while it was compiled is found again.
             for report in certificate.reports(tool) {
-                if !compiled.reports.iter().any(|known| known.span == report.span) {
-                    compiled.reports.push(report);
+                if !reports.iter().any(|known| known.span == report.span) {
+                    reports.push(report);
                 }
             }
         }
-        for report in &compiled.reports {
+        for report in &reports {
             show(report, &compiled.sources);
         }
         let count = |severity: Severity| {
-            compiled.reports.iter().filter(|report| report.severity == severity).count()
+            reports.iter().filter(|report| report.severity == severity).count()
         };
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         wrong += usize::from(errors > 0);
         warned |= warnings > 0;
-        let (Some(tool), Some(certificate)) = (&compiled.tool, &certificate) else { continue };
+        let Some((tool, certificate)) = &proved else { continue };
         if json {
             serde_json::to_writer(&mut out, &Proved::of(tool, certificate))?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{}: {}", file.display(), described(tool, warnings))?;
+            let shown = file.display().to_string();
+            writeln!(out, "{}: {}", report::escaped(&shown), described(tool, warnings))?;
             table::write(&mut out, tool, certificate)?;
         }
     }

@@ -14,7 +14,7 @@ pub(crate) fn write(
     certificate: &Certificate,
 ) -> std::io::Result<()> {
     let model = &tool.model;
-    writeln!(out, "\n  {}\n", verdict(certificate))?;
+    writeln!(out, "\n  {}\n", verdict(tool, certificate))?;
     let wide = |names: &mut dyn Iterator<Item = usize>| names.max().unwrap_or(0).max(8);
     let names = wide(&mut model.regions.iter().map(|region| region.name.len()));
     writeln!(
@@ -97,7 +97,7 @@ fn direction(tool: &Checked, facts: &RegionFacts) -> String {
 }
 
 /// What a tool's depth is to the distance to its surface.
-fn verdict(certificate: &Certificate) -> String {
+fn verdict(tool: &Checked, certificate: &Certificate) -> String {
     let proved = |bound: Option<f64>| bound.map(figure);
     let boxes = certificate.boxes;
     match (proved(certificate.least()), proved(certificate.lipschitz())) {
@@ -110,6 +110,12 @@ fn verdict(certificate: &Certificate) -> String {
         (None, Some(most)) => format!(
             "proved in {boxes} boxes: depth is at most {most} times the distance to the surface and \
              changes by at most {most} times the way; how much less it may be is not proved"
+        ),
+        // A profile's depth is the distance by construction, and regions by hand may be decided in fewer boxes.
+        _ if tool.bounds.lipschitz.is_some() => format!(
+            "proved while compiling: depth is at most {} times the distance to the surface; not proved \
+             once more in {boxes} boxes",
+            proved(tool.bounds.lipschitz).unwrap_or_default()
         ),
         _ => format!(
             "not proved in {boxes} boxes: that depth goes on without jumps; depth bounds no distance"
@@ -130,6 +136,14 @@ fn pair(tool: &Checked, border: &Border) -> String {
 
 fn range(value: Interval) -> String {
     let [low, high] = [value.low, value.high].map(short);
+    if !value.high.is_finite() {
+        // No bound was found, which is not to say that there is such a value.
+        return if value.low.is_finite() {
+            format!("{low} or more")
+        } else {
+            "not bounded".to_owned()
+        };
+    }
     if low == high { low } else { format!("{low} to {high}") }
 }
 

@@ -21,7 +21,6 @@ pub use error::SavedError;
 
 use crate::{AtomicFile, Part, input};
 use layout::ALIGN;
-use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 

@@ -28,7 +28,7 @@ those of the whole tool; by a **direction** that leads elsewhere than straight d
     let mut missed = Vec::new();
     let (mut all, mut by_kind) = ([0; 7], vec![[0; 2]; KINDS.len()]);
     for (seed, source) in library().iter().enumerate() {
-        let whole = *compile(source).tool.ok_or("a tool of the library has an error")?;
+        let whole = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
         let proved = Certificate::of(&whole);
         let mut counts = [0; 7];
         for mutant in mutants(&whole, EACH, seed as u64) {

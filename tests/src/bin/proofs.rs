@@ -23,7 +23,7 @@ agree to the tolerance. **Open** are boxes where the proof did not come to an en
 |---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|"
     );
     for source in sources() {
-        let tool = compile(&source).tool.ok_or("a tool of the library has an error")?;
+        let tool = compile(&source).into_tool().ok_or("a tool of the library has an error")?;
         let start = Instant::now();
         let proved = Certificate::of(&tool);
         let took = 1e3 * start.elapsed().as_secs_f64();

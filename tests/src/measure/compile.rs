@@ -71,7 +71,7 @@ pub fn times(source: &Source, count: usize) -> Times {
         .map(|_| {
             let start = Instant::now();
             let compiled = compile(source);
-            let tokens = emit::emit(&compiled.tool.expect("a tool of the library"));
+            let tokens = emit::emit(&compiled.into_tool().expect("a tool of the library"));
             let time = start.elapsed().as_secs_f64();
             assert!(!tokens.is_empty());
             time
@@ -105,7 +105,7 @@ pub struct Parts {
 /// # Panics
 /// If it has an error.
 pub fn parts(source: &Source) -> Parts {
-    let tool = compile(source).tool.expect("a tool of the library");
+    let tool = compile(source).into_tool().expect("a tool of the library");
     let regions = &tool.model.regions;
     let pieces = regions.iter().filter(|region| !region.name.contains('/')).count();
     Parts {

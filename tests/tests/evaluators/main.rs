@@ -28,8 +28,8 @@ fn text(file: &str) -> Source {
 /// The tool of a text, checked for the reference interpreter.
 fn checked(source: &Source) -> Checked {
     let compiled = compile(source);
-    assert_eq!(compiled.reports, [], "a tool of the library has nothing to report");
-    *compiled.tool.expect("no report, so a tool")
+    assert_eq!(compiled.reports(), [], "a tool of the library has nothing to report");
+    *compiled.into_tool().expect("no report, so a tool")
 }
 
 /// The tool of a text as it is loaded at run time.

@@ -12,14 +12,14 @@ fn with(text: &str, given: &[&str]) -> Compiled {
 }
 
 fn radius(compiled: &Compiled) -> f64 {
-    compiled.tool.as_ref().unwrap_or_else(|| panic!("{}", said(compiled))).extent.radius
+    compiled.tool().unwrap_or_else(|| panic!("{}", said(compiled))).extent.radius
 }
 
 #[track_caller]
 fn refused(text: &str, given: &[&str], words: &[&str]) {
     let compiled = with(text, given);
     let said = said(&compiled);
-    assert!(compiled.tool.is_none(), "taken");
+    assert!(compiled.tool().is_none(), "taken");
     for word in words {
         assert!(said.contains(word), "`{word}` is missing in:\n{said}");
     }

@@ -229,7 +229,7 @@ fn the_plane_cuts_a_concave_arc() {
     let text = mounts("mount \"neck.tool\" as neck; mount \"er16.tool\" as nut at z = 2;");
     let source = tool_dsl::source::Source::new("own.tool", text);
     let compiled = tool_dsl::compile(&source.held_by(folder.path().join("own.tool")));
-    let joined = compiled.tool.expect("a tool without errors");
+    let joined = compiled.into_tool().expect("a tool without errors");
     let written = tool(&mounts(
         "profile {
             start (0, 0);

@@ -20,7 +20,7 @@ fn source(text: &str) -> Source {
 
 fn said(compiled: &Compiled) -> String {
     let all: Vec<String> =
-        compiled.reports.iter().map(|report| report.render(&compiled.sources, false)).collect();
+        compiled.reports().iter().map(|report| report.render(&compiled.sources, false)).collect();
     all.join("\n")
 }
 
@@ -29,7 +29,7 @@ fn tool(text: &str) -> Box<Checked> {
     let compiled = compile(&source(text));
     let said = said(&compiled);
     assert_eq!(said, "", "{text}");
-    compiled.tool.expect("a tool without errors")
+    compiled.into_tool().expect("a tool without errors")
 }
 
 fn mounts(items: &str) -> String {

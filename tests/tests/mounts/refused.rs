@@ -10,7 +10,7 @@ use tool_dsl::source::Source;
 fn refused(items: &str, words: &[&str]) {
     let compiled = compile(&source(&mounts(items)));
     let said = said(&compiled);
-    assert!(compiled.tool.is_none(), "taken: {items}");
+    assert!(compiled.tool().is_none(), "taken: {items}");
     for word in words {
         assert!(said.contains(word), "`{word}` is missing in:\n{said}");
     }

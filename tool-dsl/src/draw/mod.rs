@@ -133,7 +133,7 @@ mod tests {
 
     fn tool(text: &str) -> Box<Checked> {
         let compiled = compile(&Source::new("test.tool", text));
-        compiled.tool.unwrap_or_else(|| panic!("{:?}", compiled.reports))
+        compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
     }
 
     /// The areas of the regions of the exact fig. 7.3, in closed form.

@@ -11,8 +11,7 @@ use std::fmt::Write;
 
 /// The syntax tree of a text, an item a line, without places.
 pub fn tree(source: &Source) -> String {
-    let (tree, _) = syntax::parse(source);
-    let Some(tree) = tree else { return String::new() };
+    let Ok(tree) = syntax::parse(source, &mut Vec::new()) else { return String::new() };
     let head = format!("{:?} {} {:?}\n", tree.domain, tree.name.word, tree.title);
     tree.items.iter().fold(head, |text, item| text + &unplaced(&format!("{item:?}")) + "\n")
 }

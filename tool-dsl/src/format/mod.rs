@@ -29,8 +29,8 @@ const STEP: usize = 4;
 
 /// Lays out a tool's text. One with errors of syntax gives these instead.
 pub fn format(source: &Source) -> Result<String, Vec<Report>> {
-    let (_, reports) = syntax::parse(source);
-    if any_error(&reports) {
+    let mut reports = Vec::new();
+    if syntax::parse(source, &mut reports).is_err() || any_error(&reports) {
         return Err(reports);
     }
     layout(&source.text).map_err(|report| vec![report])

@@ -8,12 +8,13 @@ use super::{LARGEST, Tree, costs};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
 use crate::model::{Model, Over, Section};
-use crate::regionalise::cells::Cell;
+use crate::regionalise::cells;
 use crate::regionalise::cut::{Cut, Cutter, Piece};
 use crate::regionalise::outline::{self, Point, minus, norm};
 use crate::regionalise::overlay;
 use crate::regionalise::shape::Shape;
 use crate::report::Report;
+use std::cell::Cell;
 use std::rc::Rc;
 
 /// Chords of a curved edge, at first and where so few misled.
@@ -76,7 +77,7 @@ pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> boo
 fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, Tree<Id>), Report> {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
-    let whole = |cell: &Cell, owner| overlay::piece(cell, owner, &shapes, size);
+    let whole = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
 
     let mut all = Ground::default();
     for cell in &inner {
@@ -129,7 +130,7 @@ impl Ground {
     /// Adds a cell's pieces, and its points as far as their owner is known.
     fn add(
         &mut self,
-        cell: &Cell,
+        cell: &cells::Cell,
         pieces: impl IntoIterator<Item = Piece>,
         owner: impl Fn(Point) -> Option<Option<usize>>,
     ) {
@@ -152,14 +153,20 @@ impl Over {
 
     /// The region of a point of a part, unless it is as good as on a border.
     fn owner(&self, part: usize, p: Point, shapes: &[Shape<'_>], size: f64) -> Option<usize> {
+        let near = Cell::new(false);
         let holds = |sign: i8| {
             let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
-                0 => f64::from(sign),
+                0 => {
+                    near.set(true);
+                    f64::from(sign)
+                }
                 _ => shapes[curve].value(p),
             };
             self.conditions.iter().position(|condition| condition.holds(&value))
         };
-        let (low, high) = (holds(-1)?, holds(1)?);
+        let low = holds(-1)?;
+        // Off every curve that was asked for, the sign does not matter.
+        let high = if near.get() { holds(1)? } else { low };
         if low == high { self.region(part, low) } else { None }
     }
 }

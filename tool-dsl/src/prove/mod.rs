@@ -234,7 +234,14 @@ impl Certificate {
                         model.shown(first.cell.middle())
                     ),
                 )
-                .help("bounds of depth by the distance are then not available"),
+                .help(match tool.bounds.lipschitz {
+                    Some(most) => format!(
+                        "that depth is at most {} times the distance to the surface was proved while \
+                         the tool was compiled, and stands",
+                        figure(most)
+                    ),
+                    None => "bounds of depth by the distance are then not available".to_owned(),
+                }),
             );
         }
         reports

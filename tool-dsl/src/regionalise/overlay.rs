@@ -39,34 +39,37 @@ pub(crate) fn divided(
     size: f64,
 ) -> Vec<(Piece, Vec<usize>)> {
     let mut parts = Vec::new();
-    divide(piece, vec![ANY; shapes.len()], conditions, shapes, size, &mut parts);
+    divide(piece, (vec![ANY; shapes.len()], 0), conditions, shapes, size, &mut parts);
     parts
 }
 
+/// The signs of the curves all over a piece, and how many conditions they decide, from the first on. Signs only
+/// become known, so what is decided stays so.
+type Known = (Vec<Signs>, usize);
+
 fn divide(
     piece: Piece,
-    mut signs: Vec<Signs>,
+    (mut signs, mut decided): Known,
     conditions: &[Formula],
     shapes: &[Shape<'_>],
     size: f64,
     parts: &mut Vec<(Piece, Vec<usize>)>,
 ) {
     loop {
-        let mut open = Vec::new();
-        for condition in conditions {
-            condition.open(&signs, &mut open);
-        }
-        let Some((curve, _)) = open.first().copied() else {
+        let open = conditions[decided..].iter().enumerate();
+        let mut open = open.filter_map(|(k, condition)| Some((k, condition.first_open(&signs)?)));
+        let Some((before, curve)) = open.next() else {
             let holds = |k: &usize| conditions[*k].decided(&signs) == Some(true);
             parts.push((piece, (0..conditions.len()).filter(holds).collect()));
             return;
         };
+        decided += before;
         match piece.cut(Cutter { shapes, curve, size }) {
             Cut::Both(below, above) => {
                 for (part, sign) in [(below, NEGATIVE), (above, POSITIVE)] {
                     signs[curve] = sign;
                     if let Some(part) = part {
-                        divide(part, signs.clone(), conditions, shapes, size, parts);
+                        divide(part, (signs.clone(), decided), conditions, shapes, size, parts);
                     }
                 }
                 return;

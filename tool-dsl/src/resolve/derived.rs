@@ -44,6 +44,10 @@ pub(super) fn derived(
     reports: &mut Vec<Report>,
 ) -> FromProfile {
     laws.check(&surfaces, reports);
+    if let Err(report) = divider.in_limits(&outline) {
+        reports.push(report);
+        return FromProfile::default();
+    }
     let reversed: Vec<Segment> = outline.iter().rev().map(Segment::reversed).collect();
     let inner = Partition::new(outline.clone(), false);
     let outer = Partition::new(reversed, true);

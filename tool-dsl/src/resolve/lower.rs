@@ -6,8 +6,9 @@ use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::{Number, RANGE};
-use crate::report::{Report, nearest};
+use crate::report::{Report, Reported, nearest};
 use crate::source::Span;
+use crate::syntax::TALLEST;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 
@@ -47,13 +48,12 @@ pub(super) struct Lowering {
     pub(super) values: BTreeMap<String, Value>,
     /// Where each name is defined, above or below.
     pub(super) declared: BTreeMap<String, Span>,
+    /// The names without a value, each with the evidence that its definition was refused.
+    pub(super) broken: BTreeMap<String, Reported>,
 }
 
 /// The largest constant on the way to a length, 2^1000: powers of lengths fit.
 const LARGEST: f64 = 1.071508607186267e301;
-
-/// The most operations upon each other; whatever walks an expression goes as deep.
-const TALLEST: u32 = 300;
 
 pub(super) type Lowered = Result<(Id, Dimension), Report>;
 
@@ -92,6 +92,19 @@ impl Lowering {
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
+    }
+
+    /// Reports a definition that was refused, and remembers its name.
+    pub(super) fn note(
+        &mut self,
+        name: &Name,
+        defined: Result<(), Report>,
+        reports: &mut Vec<Report>,
+    ) {
+        if let Err(report) = defined {
+            let reported = Reported::push(reports, report);
+            self.broken.insert(name.word.clone(), reported);
+        }
     }
 
     /// An expression that must come out constant, for what.
@@ -227,9 +240,17 @@ impl Lowering {
             return Ok((self.coordinate_here(coordinate), LENGTH));
         }
         let Some(value) = self.values.get_mut(word) else {
+            if let Some(reported) = self.broken.get(word) {
+                return Err(Report::follow_up(span, *reported));
+            }
             if let Some(definition) = self.declared.get(word) {
-                if definition.start < span.start {
-                    return Err(Report::follow_up(span));
+                // Constants are settled before curves, wherever these stand.
+                if definition.start < span.start
+                    && let May::Constants(what) = may
+                {
+                    return Err(
+                        not_constant(span, &format!("`{word}`"), what).and(*definition, "a curve")
+                    );
                 }
                 return Err(Report::error(span, format!("`{word}` is used above its definition"))
                     .and(*definition, "defined here")

@@ -2,6 +2,7 @@
 
 mod call;
 mod condition;
+mod cycle;
 mod derived;
 mod dimension;
 mod direction;
@@ -19,7 +20,7 @@ mod scope;
 use crate::domain::Domain;
 use crate::model::{Model, Surface, Unit};
 use crate::regionalise::outline::Segment;
-use crate::report::{Report, any_error, enough, nearest};
+use crate::report::{Report, Reported, enough, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
@@ -32,37 +33,29 @@ use over::Divider;
 use std::collections::BTreeMap;
 
 /// Resolves a tool with what its params are given; the files that it mounts are read on the way.
-/// The model comes back only if nothing is wrong.
+/// Fails only with an error among the reports, and never succeeds with one that it adds.
 pub fn resolve(
     tool: &Tool,
     given: &[Definition],
     sources: &mut Sources,
-) -> (Option<Model>, Vec<Report>) {
-    let (model, mut reports) = settle(tool, given, sources);
-    reports.retain(|report| !report.message.is_empty());
-    (model, reports)
-}
-
-fn settle(
-    tool: &Tool,
-    given: &[Definition],
-    sources: &mut Sources,
-) -> (Option<Model>, Vec<Report>) {
-    let mut reports = Vec::new();
-    let unit = match unit(tool) {
-        Ok(unit) => unit,
-        Err(report) => return (None, vec![report]),
-    };
+    reports: &mut Vec<Report>,
+) -> Result<Model, Reported> {
+    let unit = unit(tool).map_err(|report| Reported::push(reports, report))?;
     let mut lowering = Lowering::of(tool, unit);
-    let given = given::from_outside(given, (tool.domain, unit), &mut reports);
-    given::untaken(tool, &given, &mut reports);
-    constants(tool, &given, &mut lowering, &mut reports);
-    let misplaced = tool.domain == Domain::Space && without_axis(tool, &mut reports);
-    frame(tool, &mut lowering, &mut reports);
+    let given = given::from_outside(given, (tool.domain, unit), reports);
+    given::untaken(tool, &given, reports);
+    constants(tool, &given, &mut lowering, reports);
+    let misplaced = match tool.domain {
+        Domain::Space => without_axis(tool, reports),
+        Domain::HalfPlane => None,
+    };
+    frame(tool, &mut lowering, reports);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
-        reports.extend(lowering.curve(definition).err());
-        if enough(&reports) {
-            return (None, reports);
+        lowering.curve(definition, reports);
+        if enough(reports)
+            && let Some(reported) = Reported::among(reports)
+        {
+            return Err(reported);
         }
     }
     let mut curves = Curves::default();
@@ -76,10 +69,10 @@ fn settle(
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let shape = if misplaced { None } else { shape(tool, &mut reports) };
+    let shape = if misplaced.is_some() { None } else { shape(tool, reports) };
     let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
-            let outline = profile::outline(profile, &mut lowering, &mut reports);
+            let outline = profile::outline(profile, &mut lowering, reports);
             outline.map(|(outline, surfaces)| Outlined {
                 outline,
                 surfaces,
@@ -88,28 +81,32 @@ fn settle(
             })
         }
         Shape::Mounts(mounts) => {
-            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, &mut reports)
+            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, reports)
         }
     });
+    let mut without_shape = misplaced;
     let FromProfile { surfaces, regions, section } = match outlined {
-        Some(Some(Outlined { outline, surfaces, along, span })) => {
+        Some(Ok(Outlined { outline, surfaces, along, span })) => {
             let laws = Laws::new(&laws, along);
             let whole = (outline, surfaces, span);
-            let divider = divider(tool, &mut reports);
-            derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, &mut reports)
+            let divider = divider(tool, reports);
+            derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, reports)
         }
-        Some(None) => FromProfile::default(),
-        None if misplaced => FromProfile::default(),
+        Some(Err(reported)) => {
+            without_shape = Some(reported);
+            FromProfile::default()
+        }
+        None if misplaced.is_some() => FromProfile::default(),
         None => {
             let laws = Laws::new(&laws, BTreeMap::new());
             let (surfaces, regions) =
-                region::regions(tool, &laws, &mut lowering, &mut curves, &mut reports);
+                region::regions(tool, &laws, &mut lowering, &mut curves, reports);
             FromProfile { surfaces, regions, section: None }
         }
     };
-    let first = first_curves(tool, &mut lowering, &mut curves, &mut reports);
-    if any_error(&reports) {
-        return (None, reports);
+    let first = first_curves(tool, &mut lowering, &mut curves, reports);
+    if let Some(reported) = without_shape.or(Reported::among(reports)) {
+        return Err(reported);
     }
     for (word, value) in &lowering.values {
         if !value.used {
@@ -119,7 +116,7 @@ fn settle(
             );
         }
     }
-    let model = Model {
+    Ok(Model {
         domain: tool.domain,
         name: tool.name.word.clone(),
         name_span: tool.name.span,
@@ -132,13 +129,12 @@ fn settle(
         regions,
         first,
         section,
-    };
-    (Some(model), reports)
+    })
 }
 
-/// What only a tool has, in a solid; whether there is any.
-fn without_axis(tool: &Tool, reports: &mut Vec<Report>) -> bool {
-    let before = reports.len();
+/// Refuses what only a tool has, in a solid.
+fn without_axis(tool: &Tool, reports: &mut Vec<Report>) -> Option<Reported> {
+    let mut refused = None;
     for item in &tool.items {
         let (span, word, why) = match item {
             Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
@@ -148,12 +144,11 @@ fn without_axis(tool: &Tool, reports: &mut Vec<Report>) -> bool {
             Item::Regions { span, .. } => (*span, "regions", "it has regions by hand"),
             _ => continue,
         };
-        reports.push(
-            Report::error(span, format!("`{word}` exists in a `tool` only"))
-                .help(format!("a `solid` has no axis: {why}")),
-        );
+        let report = Report::error(span, format!("`{word}` exists in a `tool` only"));
+        let help = format!("a `solid` has no axis: {why}");
+        refused = Some(Reported::push(reports, report.help(help)));
     }
-    reports.len() > before
+    refused
 }
 
 /// What divides a profile's inside: `regions smooth`, or regions by hand.
@@ -300,14 +295,19 @@ fn unit(tool: &Tool) -> Result<Unit, Report> {
     })
 }
 
-/// `let` and `param`, in order.
+/// `let` and `param`, in order. Names that are defined by themselves are reported first, those of
+/// curves too, and stay without a value.
 fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports: &mut Vec<Report>) {
+    lowering.broken = cycle::refused(definitions(tool, |_| true), reports);
     for item in &tool.items {
         let (definition, is_param) = match item {
             Item::Let(definition) => (definition, false),
             Item::Param(definition) => (definition, true),
             _ => continue,
         };
+        if lowering.broken.contains_key(&definition.name.word) {
+            continue;
+        }
         let value = lowering.constant(&definition.value, "a `let`");
         let value = value.and_then(|value| match is_param {
             true => given::value_of(definition, value, given, lowering.unit),
@@ -318,7 +318,7 @@ fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports:
             let id = lowering.graph.number(value);
             lowering.define(&definition.name, (id, dimension))
         });
-        reports.extend(defined.err());
+        lowering.note(&definition.name, defined, reports);
         if enough(reports) {
             break;
         }
@@ -391,8 +391,8 @@ fn curve_of(
     curves: &mut Curves,
 ) -> Result<Option<usize>, Report> {
     let Some(value) = lowering.values.get_mut(&name.word) else {
-        if lowering.declared.contains_key(&name.word) {
-            return Err(Report::follow_up(name.span));
+        if let Some(reported) = lowering.broken.get(&name.word) {
+            return Err(Report::follow_up(name.span, *reported));
         }
         let report = Report::error(name.span, format!("unknown curve `{}`", name.word));
         return Err(match nearest(&name.word, lowering.values.keys().map(String::as_str)) {

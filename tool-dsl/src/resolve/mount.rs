@@ -13,8 +13,8 @@ use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::check::check;
 use crate::regionalise::outline::{Segment, reach};
-use crate::report::{Report, any_error, figure};
-use crate::source::{Sources, Span};
+use crate::report::{Report, Reported, figure};
+use crate::source::{Source, Sources, Span};
 use crate::syntax;
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
 use std::collections::BTreeMap;
@@ -60,16 +60,14 @@ pub(super) fn assembled(
     lowering: &mut Lowering,
     sources: &mut Sources,
     reports: &mut Vec<Report>,
-) -> Option<Outlined> {
-    let mut mounting = Mounting { sources, reports, chain: Vec::new(), mounted: 0 };
+) -> Result<Outlined, Reported> {
+    let mut mounting = Mounting { sources, reports, chain: Vec::new(), mounted: 0, full: None };
     mounting.chain.push(mounting.sources.own().base);
     let part = mounting.assemble(mounts, lowering)?;
     let mut scopes = Vec::new();
     for mut scope in part.scopes {
         for definition in &scope.curves {
-            let value =
-                scope.lowering.on(&mut lowering.graph, |lowering| lowering.curve(definition));
-            reports.extend(value.err());
+            scope.lowering.on(&mut lowering.graph, |lowering| lowering.curve(definition, reports));
         }
         scopes.push(scope.lowering);
     }
@@ -78,7 +76,7 @@ pub(super) fn assembled(
         Some((surface.name.clone(), Along { lowering: scopes[scope].clone(), value }))
     });
     let along = along.collect();
-    Some(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
+    Ok(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
 }
 
 /// What goes on while files are mounted.
@@ -88,13 +86,16 @@ struct Mounting<'a> {
     /// The files that are being mounted, each by the one before, by where their texts begin.
     chain: Vec<usize>,
     mounted: usize,
+    /// Evidence that too many files are mounted.
+    full: Option<Reported>,
 }
 
 impl Mounting<'_> {
     /// The parts of a tool joined into one, in the unit of the file that mounts them.
-    fn assemble(&mut self, mounts: &[&Mount], lowering: &mut Lowering) -> Option<Part> {
+    fn assemble(&mut self, mounts: &[&Mount], lowering: &mut Lowering) -> Result<Part, Reported> {
         let before = self.reports.len();
         let mut parts = Vec::new();
+        let mut refused = None;
         for (index, mount) in mounts.iter().enumerate() {
             if let Some(first) = mounts[..index].iter().find(|m| m.name.word == mount.name.word) {
                 self.reports.push(
@@ -109,30 +110,40 @@ impl Mounting<'_> {
             let at = self.place(mount, index, lowering);
             let given = given::from_mount(&mount.with, lowering, self.reports);
             let part = self.open(mount, &given, &mut lowering.graph);
-            if let (Some(at), Some((part, unit))) = (at, part) {
-                parts.push((*mount, at, part.placed(mount, &unit.to(lowering.unit))));
+            match (at, part) {
+                (Ok(at), Ok((part, unit))) => {
+                    parts.push((*mount, at, part.placed(mount, &unit.to(lowering.unit))));
+                }
+                (Err(reported), _) | (_, Err(reported)) => refused = Some(reported),
             }
         }
-        if any_error(&self.reports[before..]) {
-            return None;
+        if let Some(reported) = refused.or(Reported::among(&self.reports[before..])) {
+            return Err(reported);
         }
         let mut parts = parts.into_iter();
-        let (mut last, mut height, mut whole) = parts.next()?;
+        let (mut last, mut height, mut whole) = parts.next().ok_or_else(|| {
+            let nothing = Report::error(lowering.frame.tip_span, "nothing is mounted");
+            Reported::push(self.reports, nothing.help("write `mount \"FILE.tool\" as NAME;`"))
+        })?;
         for (mount, at, part) in parts {
-            if let Err(report) = whole.carry((last, &height), (mount, &at), part) {
-                self.reports.push(report);
-                return None;
-            }
+            whole
+                .carry((last, &height), (mount, &at), part)
+                .map_err(|report| Reported::push(self.reports, report))?;
             (last, height) = (mount, at);
         }
         whole.drop_what_is_gone();
         let shown = |[d, z]: [f64; 2]| format!("({}, {})", figure(d), figure(z));
         self.reports.extend(check(&whole.outline, shown));
-        (!any_error(&self.reports[before..])).then_some(whole)
+        Reported::among(&self.reports[before..]).map_or(Ok(whole), Err)
     }
 
     /// Where a mount puts its tip.
-    fn place(&mut self, mount: &Mount, index: usize, lowering: &mut Lowering) -> Option<Number> {
+    fn place(
+        &mut self,
+        mount: &Mount,
+        index: usize,
+        lowering: &mut Lowering,
+    ) -> Result<Number, Reported> {
         if mount.name.word == "cutting" {
             self.reports.push(
                 Report::error(mount.name.span, "no part is called `cutting`")
@@ -145,23 +156,21 @@ impl Mounting<'_> {
                     .help("drop it: each surface of the mounted file says so for itself"),
             );
         }
-        match (index, &mount.at) {
-            (0, None) => Some(Number::int(0)),
-            (0, Some(at)) => {
-                self.reports.push(
-                    Report::error(at.span, "the first mount keeps its place")
-                        .help("drop `at`: its tip is the tool's, at z = 0"),
-                );
-                None
-            }
+        let wrong = match (index, &mount.at) {
+            (0, None) => return Ok(Number::int(0)),
+            (0, Some(at)) => Report::error(at.span, "the first mount keeps its place")
+                .help("drop `at`: its tip is the tool's, at z = 0"),
             (_, None) => {
                 let report = format!("where along the axis does `{}` begin?", mount.name.word);
                 let help = "write `at z = …`, from the first mount's tip";
-                self.reports.push(Report::error(mount.span, report).help(help));
-                None
+                Report::error(mount.span, report).help(help)
             }
-            (_, Some(at)) => lowering.length(at, "`at`").map_err(|r| self.reports.push(r)).ok(),
-        }
+            (_, Some(at)) => match lowering.length(at, "`at`") {
+                Ok(height) => return Ok(height),
+                Err(report) => report,
+            },
+        };
+        Err(Reported::push(self.reports, wrong))
     }
 
     /// Reads and resolves a mounted file as far as its profile, and says its unit.
@@ -170,67 +179,77 @@ impl Mounting<'_> {
         mount: &Mount,
         given: &[Given<'_>],
         graph: &mut Graph,
-    ) -> Option<(Part, Unit)> {
+    ) -> Result<(Part, Unit), Reported> {
         let (base, tree) = self.read(mount)?;
         let before = self.reports.len();
-        let unit = unit(&tree).map_err(|report| self.reports.push(report)).ok()?;
+        let unit = unit(&tree).map_err(|report| Reported::push(self.reports, report))?;
         let mut lowering = Lowering::of(&tree, unit);
         self.chain.push(base);
         let part = lowering.on(graph, |lowering| self.part(mount, &tree, given, lowering));
         self.chain.pop();
-        let mut part = part.filter(|_| !any_error(&self.reports[before..]))?;
+        let mut part = part?;
+        if let Some(reported) = Reported::among(&self.reports[before..]) {
+            return Err(reported);
+        }
         part.scopes.push(Scope { lowering, curves: curves(&tree) });
-        Some((part, unit))
+        Ok((part, unit))
     }
 
     /// The tree of a mounted file, and where its text begins.
-    fn read(&mut self, mount: &Mount) -> Option<(usize, Tool)> {
-        let (written, by) = (mount.file.word.as_str(), mount.file.span);
-        let Some(place) = self.sources.beside(by, written) else {
-            self.reports.push(
-                Report::error(by, format!("where is `{written}`? this text is from no file"))
-                    .help("a mounted file is looked for beside the file that mounts it"),
-            );
-            return None;
-        };
-        let shown = place.0.clone();
-        let source = match self.sources.read(by, place) {
-            Ok(source) => source.clone(),
-            Err(error) => {
-                self.reports.push(
-                    Report::error(by, format!("cannot read `{shown}`: {error}"))
-                        .help("the path is relative to the file that mounts it"),
-                );
-                return None;
-            }
-        };
-        if let Some(first) = self.chain.iter().position(|base| *base == source.base) {
-            let name = |base: &usize| {
-                self.sources.locate(Span { start: *base, end: *base }).0.name.as_str()
-            };
-            let mut chain: Vec<&str> = self.chain[first..].iter().map(name).collect();
-            chain.push(&source.name);
-            let message = format!("`{written}` mounts itself: {}", chain.join(" mounts "));
-            self.reports.push(
-                Report::error(by, message).help("mount a file that does not lead back to this one"),
-            );
-            return None;
-        }
+    fn read(&mut self, mount: &Mount) -> Result<(usize, Tool), Reported> {
+        let source = self.source(mount).map_err(|report| Reported::push(self.reports, report))?;
         self.mounted += 1;
         if self.mounted > MOST {
+            let by = mount.file.span;
             // Once is enough, however many follow.
-            let message = if self.mounted == MOST + 1 {
-                format!("more than {MOST} mounted files")
-            } else {
-                String::new()
+            let report = match self.full {
+                Some(reported) => Report::follow_up(by, reported),
+                None => Report::error(by, format!("more than {MOST} mounted files"))
+                    .help("write some of them as one file"),
             };
-            self.reports.push(Report::error(by, message).help("write some of them as one file"));
-            return None;
+            let reported = Reported::push(self.reports, report);
+            self.full = Some(reported);
+            return Err(reported);
         }
-        let (tree, reports) = syntax::parse(&source);
-        let broken = any_error(&reports);
-        self.reports.extend(reports);
-        tree.filter(|_| !broken).map(|tree| (source.base, tree))
+        if !syntax::begins_a_tool(&source.text) {
+            // Nothing of its text is shown: it may be any file.
+            let message = format!("`{}` is not a `.tool` file", mount.file.word);
+            let report = Report::error(mount.file.span, message)
+                .help("a mounted file begins with `tool Name {`");
+            return Err(Reported::push(self.reports, report));
+        }
+        let before = self.reports.len();
+        let tree = syntax::parse(&source, self.reports)?;
+        Reported::among(&self.reports[before..]).map_or(Ok((source.base, tree)), Err)
+    }
+
+    /// The text of a mounted file.
+    fn source(&mut self, mount: &Mount) -> Result<Source, Report> {
+        let (written, by) = (mount.file.word.as_str(), mount.file.span);
+        let place = self.sources.beside(by, written).ok_or_else(|| {
+            Report::error(by, format!("where is `{written}`? this text is from no file"))
+                .help("a mounted file is looked for beside the file that mounts it")
+        })?;
+        if !self.sources.may_mount(&place.1) {
+            let message = format!("`{written}` does not lie below the tool's folder");
+            return Err(Report::error(by, message).help(
+                "move the file there; the program also takes a folder above both: `--root DIR`",
+            ));
+        }
+        let shown = place.0.clone();
+        let source = self.sources.read(by, place).cloned().map_err(|error| {
+            Report::error(by, format!("cannot read `{shown}`: {error}"))
+                .help("the path is relative to the file that mounts it")
+        })?;
+        let Some(first) = self.chain.iter().position(|base| *base == source.base) else {
+            return Ok(source);
+        };
+        let name =
+            |base: &usize| self.sources.locate(Span { start: *base, end: *base }).0.name.as_str();
+        let mut chain: Vec<&str> = self.chain[first..].iter().map(name).collect();
+        chain.push(&source.name);
+        let message = format!("`{written}` mounts itself: {}", chain.join(" mounts "));
+        Err(Report::error(by, message).help("mount a file that does not lead back to this one"))
     }
 
     /// A mounted file's solid and its niceness.
@@ -240,23 +259,21 @@ impl Mounting<'_> {
         tree: &Tool,
         given: &[Given<'_>],
         lowering: &mut Lowering,
-    ) -> Option<Part> {
+    ) -> Result<Part, Reported> {
         let before = self.reports.len();
         if tree.domain == Domain::Space {
             let file = &mount.file;
             let report =
                 format!("`{}` is a solid without an axis and cannot be mounted", file.word);
-            self.reports.push(
-                Report::error(file.span, report)
-                    .help("only outlines can be joined: mount a `tool`"),
-            );
-            return None;
+            let report = Report::error(file.span, report)
+                .help("only outlines can be joined: mount a `tool`");
+            return Err(Reported::push(self.reports, report));
         }
         given::untaken(tree, given, self.reports);
         constants(tree, given, lowering, self.reports);
         frame(tree, lowering, self.reports);
-        if any_error(&self.reports[before..]) {
-            return None;
+        if let Some(reported) = Reported::among(&self.reports[before..]) {
+            return Err(reported);
         }
         let mut part = match shape(tree, self.reports) {
             Some(Shape::Profile(profile)) => {
@@ -270,14 +287,10 @@ impl Mounting<'_> {
                 let file = &mount.file;
                 let regions = tree.items.iter().any(|item| matches!(item, Item::Region(_)));
                 let has = if regions { "has regions but no profile" } else { "has no profile" };
-                self.reports.push(
-                    Report::error(
-                        file.span,
-                        format!("`{}` {has} and cannot be mounted", file.word),
-                    )
-                    .help("only outlines can be joined: write it as a `profile`"),
-                );
-                return None;
+                let message = format!("`{}` {has} and cannot be mounted", file.word);
+                let report = Report::error(file.span, message)
+                    .help("only outlines can be joined: write it as a `profile`");
+                return Err(Reported::push(self.reports, report));
             }
         };
         let laws: Vec<&Law> = tree
@@ -294,7 +307,7 @@ impl Mounting<'_> {
                 *niceness = Some((own, law.value.clone()));
             }
         }
-        Some(part)
+        Ok(part)
     }
 }
 

@@ -42,6 +42,18 @@ enum Kind<'t> {
 }
 
 impl Divider<'_> {
+    /// Refuses an outline that would take minutes to divide.
+    pub(super) fn in_limits(&self, outline: &[Segment]) -> Result<(), Report> {
+        match self {
+            Divider::Smooth(length) if outline.len() > MOST_SMOOTH => {
+                let message = format!("`regions smooth` of more than {MOST_SMOOTH} segments");
+                Err(Report::error(length.span, message)
+                    .help("write `regions nearest;`, or arcs instead of many short lines"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The conditions, if there are any.
     pub(super) fn conditions(
         &self,
@@ -115,6 +127,10 @@ fn written(
         }
     }
 }
+
+/// The most segments of a profile with `regions smooth`: the cells of each corner are laid over those of each
+/// segment.
+const MOST_SMOOTH: usize = 128;
 
 /// The cells of the outline with rounded corners, of which directions are taken.
 fn fans<'t>(

@@ -5,7 +5,7 @@ use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
 use crate::regionalise::outline::{Circle, Place, Segment, doubles, minus, norm};
-use crate::report::{Report, enough, figure};
+use crate::report::{Report, Reported, enough, figure, without_error};
 use crate::source::Span;
 use crate::syntax::tree::{Arc, Expr, Piece, Profile, Round, Tuple};
 
@@ -21,14 +21,12 @@ pub(super) fn outline(
     profile: &Profile,
     lowering: &mut Lowering,
     reports: &mut Vec<Report>,
-) -> Option<(Vec<Segment>, Vec<Surface>)> {
+) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
     let before = reports.len();
     if let Some(beyond) = profile.pieces.get(MOST) {
-        reports.push(
-            Report::error(beyond.span, format!("more than {MOST} segments"))
-                .help("arcs say in one segment what many short lines say"),
-        );
-        return None;
+        let report = Report::error(beyond.span, format!("more than {MOST} segments"))
+            .help("arcs say in one segment what many short lines say");
+        return Err(Reported::push(reports, report));
     }
     let mut surfaces = Vec::new();
     let mut segments = Vec::new();
@@ -47,18 +45,12 @@ pub(super) fn outline(
             break;
         }
     }
-    if reports.len() > before {
-        return None;
-    }
+    without_error(&reports[before..])?;
     off_axis(profile, &segments, reports);
-    if reports.len() > before {
-        return None;
-    }
+    without_error(&reports[before..])?;
     let frame = lowering.frame.clone();
     reports.extend(check(&segments, shown));
-    if reports.len() > before {
-        return None;
-    }
+    without_error(&reports[before..])?;
     // The turn into the tool's frame may turn the sense over; then the walk is turned too.
     let to_tool = |place: &Place| [place[0].clone(), frame.to_tool(&place[1])];
     let mut outline: Vec<Segment> = segments
@@ -74,7 +66,7 @@ pub(super) fn outline(
     if frame.down {
         outline.reverse();
     }
-    Some((outline, surfaces))
+    Ok((outline, surfaces))
 }
 
 fn shown([d, z]: [f64; 2]) -> String {

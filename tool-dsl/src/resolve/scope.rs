@@ -23,6 +23,7 @@ impl Lowering {
             scale: Number::int(1),
             values: BTreeMap::new(),
             declared: BTreeMap::new(),
+            broken: BTreeMap::new(),
         }
     }
 
@@ -68,8 +69,15 @@ impl Lowering {
         if coordinate == Coord::Z { self.frame.file_z(&mut self.graph, id) } else { id }
     }
 
-    /// A function of the coordinates that gets a name.
-    pub(super) fn curve(&mut self, definition: &Definition) -> Result<(), Report> {
+    /// Gives a name to a function of the coordinates, or reports why it has none.
+    pub(super) fn curve(&mut self, definition: &Definition, reports: &mut Vec<Report>) {
+        if !self.broken.contains_key(&definition.name.word) {
+            let defined = self.curve_value(definition);
+            self.note(&definition.name, defined, reports);
+        }
+    }
+
+    fn curve_value(&mut self, definition: &Definition) -> Result<(), Report> {
         let value = self.lower(&definition.value, May::Coordinates)?;
         if value.1 == Dimension::Angle {
             let report = Report::error(definition.value.span, "a curve is no angle");

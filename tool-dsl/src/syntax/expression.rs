@@ -1,6 +1,7 @@
 //! Expressions: pairs of pest to sums, products and what they are made of.
 
 use super::Rule;
+use super::limits::TALLEST;
 use super::parse::Reader;
 use super::tree::{Binary, Expr, ExprKind, Name};
 use crate::number::{Number, RANGE};
@@ -12,56 +13,102 @@ use std::str::FromStr;
 /// The most operands of one sum or product.
 const OPERANDS: usize = 64;
 
+/// An expression, and how many operations it has upon each other.
+type Tall = (Expr, u32);
+
 impl Reader<'_> {
+    /// Reads an expression. One with too many operations upon each other is cut short, and reported.
     pub(super) fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
+        let mut beyond = None;
+        let (expr, _) = self.tree(pair, &mut beyond);
+        if let Some(span) = beyond {
+            let message = "this expression is built of too many steps upon each other";
+            self.reports.push(
+                Report::error(span, message)
+                    .help(format!("at most {TALLEST}: name a part of it with `let` or `curve`")),
+            );
+        }
+        expr
+    }
+
+    /// As deep as brackets are nested, which is limited; the place where the expression was cut short goes to
+    /// `beyond`.
+    fn tree(&mut self, pair: Pair<'_, Rule>, beyond: &mut Option<Span>) -> Tall {
         let span = self.span(&pair);
-        let kind = match pair.as_rule() {
-            Rule::expr | Rule::product => return self.chain(pair.into_inner()),
+        let nothing = || (ExprKind::Name(String::new()), 0);
+        let (kind, height) = match pair.as_rule() {
+            Rule::expr | Rule::product => return self.chain(pair.into_inner(), beyond),
             Rule::group => match pair.into_inner().next() {
-                Some(inner) => return Expr { span, ..self.expr(inner) },
-                None => ExprKind::Name(String::new()),
+                Some(inner) => {
+                    let (inner, height) = self.tree(inner, beyond);
+                    (inner.kind, height)
+                }
+                None => nothing(),
             },
             Rule::signed | Rule::signed_atom => {
                 let mut inner = pair.into_inner();
                 match (inner.next(), inner.next()) {
-                    (Some(_), Some(operand)) => ExprKind::Neg(Box::new(self.expr(operand))),
-                    (Some(operand), None) => return self.expr(operand),
-                    _ => ExprKind::Name(String::new()),
+                    (Some(_), Some(operand)) => {
+                        let (operand, height) = self.tree(operand, beyond);
+                        if height == TALLEST {
+                            *beyond = beyond.or(Some(span));
+                            return (operand, height);
+                        }
+                        (ExprKind::Neg(Box::new(operand)), height + 1)
+                    }
+                    (Some(operand), None) => return self.tree(operand, beyond),
+                    _ => nothing(),
                 }
             }
             Rule::power => {
                 let mut inner = pair.into_inner();
                 match (inner.next(), inner.next()) {
-                    (Some(base), Some(exponent)) => ExprKind::Binary(
-                        Binary::Pow,
-                        Box::new(self.expr(base)),
-                        Box::new(self.expr(exponent)),
-                    ),
-                    (Some(base), None) => return self.expr(base),
-                    _ => ExprKind::Name(String::new()),
+                    (Some(base), Some(exponent)) => {
+                        let base = self.tree(base, beyond);
+                        let exponent = self.tree(exponent, beyond);
+                        return binary(Binary::Pow, base, exponent, span, beyond);
+                    }
+                    (Some(base), None) => return self.tree(base, beyond),
+                    _ => nothing(),
                 }
             }
-            Rule::number => self.number(pair.as_str(), span),
+            Rule::number => (self.number(pair.as_str(), span), 0),
             Rule::call => {
                 let mut inner = pair.into_inner();
                 match inner.next() {
                     Some(name) => {
                         let name = self.name(&name);
-                        ExprKind::Call(name, inner.map(|part| self.expr(part)).collect())
+                        let (mut arguments, mut tallest) = (Vec::new(), 0);
+                        for part in inner {
+                            let (argument, height) = self.tree(part, beyond);
+                            tallest = tallest.max(height);
+                            arguments.push(argument);
+                        }
+                        if tallest == TALLEST {
+                            *beyond = beyond.or(Some(span));
+                            return (
+                                Expr { kind: ExprKind::Number(Number::int(1), None), span },
+                                0,
+                            );
+                        }
+                        (ExprKind::Call(name, arguments), tallest + 1)
                     }
-                    None => ExprKind::Name(String::new()),
+                    None => nothing(),
                 }
             }
-            _ => ExprKind::Name(pair.as_str().trim().to_owned()),
+            _ => (ExprKind::Name(pair.as_str().trim().to_owned()), 0),
         };
-        Expr { kind, span }
+        (Expr { kind, span }, height.min(TALLEST))
     }
 
     /// `a + b - c` and `a * b / c`, both from the left.
-    fn chain(&mut self, mut inner: Pairs<'_, Rule>) -> Expr {
+    fn chain(&mut self, mut inner: Pairs<'_, Rule>, beyond: &mut Option<Span>) -> Tall {
         let mut left = match inner.next() {
-            Some(first) => self.expr(first),
-            None => Expr { kind: ExprKind::Name(String::new()), span: Span { start: 0, end: 0 } },
+            Some(first) => self.tree(first, beyond),
+            None => {
+                let span = Span { start: 0, end: 0 };
+                (Expr { kind: ExprKind::Name(String::new()), span }, 0)
+            }
         };
         let mut operands = 1;
         while let (Some(operator), Some(right)) = (inner.next(), inner.next()) {
@@ -77,9 +124,9 @@ impl Reader<'_> {
                 "*" => Binary::Mul,
                 _ => Binary::Div,
             };
-            let right = self.expr(right);
-            let span = left.span.to(right.span);
-            left = Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), span };
+            let right = self.tree(right, beyond);
+            let span = left.0.span.to(right.0.span);
+            left = binary(operator, left, right, span, beyond);
         }
         left
     }
@@ -102,6 +149,23 @@ impl Reader<'_> {
         });
         ExprKind::Number(value, suffix)
     }
+}
+
+/// Two operands, or the first alone where the limit is reached.
+fn binary(
+    operator: Binary,
+    left: Tall,
+    right: Tall,
+    span: Span,
+    beyond: &mut Option<Span>,
+) -> Tall {
+    let tallest = left.1.max(right.1);
+    if tallest == TALLEST {
+        *beyond = beyond.or(Some(right.0.span));
+        return left;
+    }
+    let kind = ExprKind::Binary(operator, Box::new(left.0), Box::new(right.0));
+    (Expr { kind, span }, tallest + 1)
 }
 
 /// How much of a number token is the number; the rest is its unit.

@@ -1,6 +1,8 @@
-//! How much of everything a text may hold. Nesting is counted before pest runs, which goes as deep.
+//! How much of everything a text may hold. Nesting is counted before pest runs, which goes as deep: in the pieces
+//! that pest's own tokens have, so that no bracket of a comment or a text counts.
 
 use super::Rule;
+use super::lexeme::{Kind, Lexeme, lexemes};
 use crate::report::Report;
 use crate::source::{LONGEST, Span};
 use pest::iterators::{Pair, Pairs};
@@ -9,8 +11,12 @@ use pest::iterators::{Pair, Pairs};
 const LONGEST_NAME: usize = 100;
 /// The most items of a file.
 const MOST: usize = 4096;
-/// The deepest nesting of brackets.
-const DEEPEST: usize = 64;
+/// The deepest nesting of brackets, and that of comments.
+pub(super) const DEEPEST: usize = 64;
+/// The most operations upon each other: in an expression as it is written, and between a value and a coordinate.
+/// Whatever walks an expression goes as deep.
+pub(crate) const TALLEST: u32 = 300;
+
 /// A name, or a list of items, that is longer than any that people write.
 pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
     let place = |pair: &Pair<'_, Rule>, length: usize| {
@@ -35,46 +41,36 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
     )
 }
 
-/// The text's length, its comments and its brackets.
+/// The text's length, its comments and its brackets. A comment that does not end is refused here: pest would
+/// try the comments within it in all combinations.
 pub(super) fn within_limits(text: &str) -> Result<(), Report> {
     if text.len() > LONGEST {
         let end = Span { start: 0, end: 1 };
         return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
             .help(format!("a tool's text has at most {LONGEST} bytes")));
     }
-    let (mut comments, mut at) = (0usize, 0);
-    while let Some(pair) = text.as_bytes().get(at..at + 2) {
-        match pair {
-            b"/*" => comments += 1,
-            b"*/" => comments = comments.saturating_sub(1),
-            _ => {
-                at += 1;
-                continue;
-            }
-        }
-        if comments > DEEPEST {
-            let span = Span { start: at, end: at + 2 };
-            return Err(Report::error(
-                span,
-                format!("comments are nested more than {DEEPEST} deep"),
-            )
-            .help("close them with `*/`"));
-        }
-        at += 2;
-    }
     let mut depth = 0usize;
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
-            b'(' | b'{' | b'[' => depth += 1,
-            b')' | b'}' | b']' => depth = depth.saturating_sub(1),
+    for Lexeme { start, end, kind } in lexemes(text) {
+        match kind {
+            Kind::Mark('(' | '{' | '[') => depth += 1,
+            Kind::Mark(')' | '}' | ']') => depth = depth.saturating_sub(1),
+            Kind::Unended => {
+                let opens = Span { start, end: start + 2 };
+                return Err(
+                    Report::error(opens, "this comment does not end").help("close it with `*/`")
+                );
+            }
+            Kind::TooDeep => {
+                let span = Span { start: end - 2, end };
+                let message = format!("comments are nested more than {DEEPEST} deep");
+                return Err(Report::error(span, message).help("close them with `*/`"));
+            }
             _ => {}
         }
         if depth > DEEPEST {
-            return Err(Report::error(
-                Span { start: at, end: at + 1 },
-                format!("brackets are nested more than {DEEPEST} deep"),
-            )
-            .help("name a part of the expression with `let` or `curve`"));
+            let message = format!("brackets are nested more than {DEEPEST} deep");
+            return Err(Report::error(Span { start, end }, message)
+                .help("name a part of the expression with `let` or `curve`"));
         }
     }
     Ok(())

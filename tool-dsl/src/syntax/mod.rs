@@ -5,12 +5,15 @@
 //! not hide the next.
 
 mod expression;
+mod lexeme;
 mod limits;
 mod mount;
 mod parse;
 mod refuse;
 pub mod tree;
 
+pub(crate) use lexeme::begins_a_tool;
+pub(crate) use limits::TALLEST;
 pub use mount::given;
 pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};

@@ -9,24 +9,25 @@ use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::Pair;
 
-/// Reads what a tool's params are given from outside its file: `D = 0.25inch, flute = 18`.
-pub fn given(source: &Source) -> (Vec<Definition>, Vec<Report>) {
+/// Reads what a tool's params are given from outside its file: `D = 0.25inch, flute = 18`. What is
+/// wrong is added to the reports.
+pub fn given(source: &Source, reports: &mut Vec<Report>) -> Vec<Definition> {
     pest::set_error_detail(true);
-    if let Err(report) = within_limits(&source.text) {
-        return (Vec::new(), vec![report.behind(source.base)]);
-    }
-    let pairs = match Grammar::parse(Rule::given, &source.text) {
+    let text = &source.text;
+    let pairs = within_limits(text).and_then(|()| {
+        Grammar::parse(Rule::given, text).map_err(|error| refuse::given(text, &error))
+    });
+    let pairs = match pairs {
         Ok(pairs) => pairs,
-        Err(error) => {
-            let report = refuse::given(&source.text, &error);
-            return (Vec::new(), vec![report.behind(source.base)]);
+        Err(report) => {
+            reports.push(report.behind(source.base));
+            return Vec::new();
         }
     };
-    let (mut reports, mut broken) = (Vec::new(), Vec::new());
-    let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
+    let mut broken = Vec::new();
+    let mut reader = Reader { offset: source.base, reports, broken: &mut broken };
     let settings = pairs.flatten().filter(|pair| pair.as_rule() == Rule::setting);
-    let given = settings.filter_map(|pair| reader.definition(pair.into_inner())).collect();
-    (given, reports)
+    settings.filter_map(|pair| reader.definition(pair.into_inner())).collect()
 }
 
 impl Reader<'_> {
@@ -36,6 +37,7 @@ impl Reader<'_> {
         span: Span,
     ) -> Option<Mount> {
         let mut file = self.name(&inner.next()?);
+        self.reports.extend(refuse::hidden(&file.word, file.span));
         file.word = file.word.trim_matches('"').to_owned();
         let (name, cutting) = self.surface(inner.next()?);
         let mut mount = Mount { file, name: name?, cutting, with: Vec::new(), at: None, span };

@@ -5,7 +5,7 @@ use super::refuse::{self, in_name};
 use super::tree::*;
 use super::{Grammar, Rule};
 use crate::domain::Domain;
-use crate::report::{Report, enough};
+use crate::report::{Report, Reported, enough};
 use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
@@ -29,29 +29,24 @@ const TAKEN: [&str; 14] = [
 ];
 
 /// Reads a tool. What could be read comes back even beside errors, so that later steps can report
-/// theirs; without a tool's name nothing can.
-pub fn parse(source: &Source) -> (Option<Tool>, Vec<Report>) {
+/// theirs; without a tool's name nothing can, which fails with an error among the reports.
+pub fn parse(source: &Source, reports: &mut Vec<Report>) -> Result<Tool, Reported> {
     // With the tokens that would have fitted, not the rules alone.
     pest::set_error_detail(true);
-    let mut reports = Vec::new();
-    if let Err(report) = within_limits(&source.text) {
-        return (None, vec![report.behind(source.base)]);
-    }
-    let pairs = match Grammar::parse(Rule::file, &source.text) {
-        Ok(pairs) => pairs,
-        Err(error) => {
-            let report = refuse::syntax(&source.text, 0, &error);
-            return (None, vec![report.behind(source.base)]);
-        }
-    };
-    if let Some(report) = too_much(pairs.clone()) {
-        return (None, vec![report.behind(source.base)]);
-    }
+    let text = &source.text;
+    let pairs = within_limits(text)
+        .and_then(|()| {
+            Grammar::parse(Rule::file, text).map_err(|error| refuse::syntax(text, 0, &error))
+        })
+        .and_then(|pairs| too_much(pairs.clone()).map_or(Ok(pairs), Err));
+    let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
+    let pair = pairs
+        .and_then(|pairs| pairs.flatten().find(whole).ok_or_else(|| refuse::nothing(text)))
+        .map_err(|report| Reported::push(reports, report.behind(source.base)))?;
     let mut broken = Vec::new();
-    let tool = pairs.flatten().find(|pair| matches!(pair.as_rule(), Rule::tool | Rule::solid));
-    let mut reader = Reader { offset: source.base, reports: &mut reports, broken: &mut broken };
-    let tool = tool.map(|pair| reader.tool(pair));
-    (tool.map(|tool| Tool { broken, ..tool }), reports)
+    let mut reader = Reader { offset: source.base, reports, broken: &mut broken };
+    let tool = reader.tool(pair);
+    Ok(Tool { broken, ..tool })
 }
 
 pub(super) struct Reader<'a> {
@@ -93,7 +88,10 @@ impl Reader<'_> {
                         );
                     }
                 }
-                Rule::text => title = Some(pair.as_str().trim_matches('"').to_owned()),
+                Rule::text => {
+                    title = Some(pair.as_str().trim_matches('"').to_owned());
+                    self.reports.extend(refuse::hidden(pair.as_str(), self.span(&pair)));
+                }
                 Rule::stray if enough(self.reports) => {}
                 Rule::stray => items.extend(self.stray(&pair)),
                 Rule::k_tool | Rule::k_solid => {}

@@ -100,7 +100,8 @@ fn take(answers: &mut Vec<Answer>, found: Answer) {
 /// If the library has no tool of that name.
 pub fn read(name: &str) -> (Interpreted, tool_dsl::Checked) {
     for source in compile::library() {
-        let compiled = tool_dsl::compile(&source).tool.expect("a tool of the library has no error");
+        let compiled =
+            tool_dsl::compile(&source).into_tool().expect("a tool of the library has no error");
         if compiled.model.name == name {
             let interpreted = Interpreted::parse(&source).expect("it has none");
             return (interpreted, *compiled);

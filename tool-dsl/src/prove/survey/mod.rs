@@ -25,6 +25,9 @@ const SMALL: f64 = 1.0 / 1024.0;
 const FINEST: f64 = TOLERANCE / 10.0;
 /// More claims to a box are not compared two by two.
 const CROWD: usize = 48;
+/// Boxes times regions that a proof may take: a box takes longer the more regions there are. Up to 217 regions, the
+/// budget of boxes alone counts.
+const WORK: usize = 7_600_000;
 /// Inside a region a box is divided until its slope is known so well.
 const SLACK: f64 = 0.02;
 /// A border where depth may fall less steeply is looked at in smaller boxes.
@@ -126,6 +129,7 @@ impl<'t> Survey<'t> {
 
     fn run(&mut self, budget: usize) {
         let mut boxes = Boxes::new(self.tool.extent.cell());
+        let budget = budget.min(WORK / self.tool.model.regions.len().max(1));
         while let Some(cell) = boxes.next() {
             let claims = self.cover.claims(cell);
             let mut owners: Vec<Option<usize>> = claims.iter().map(|claim| claim.owner).collect();

@@ -1,6 +1,7 @@
 //! Brackets that nothing closes, or that close nothing.
 
-use super::{ITEMS, Stop, first_token, in_name};
+use super::super::lexeme::{Kind, Lexeme, lexemes};
+use super::{ITEMS, Stop, first_token};
 use crate::report::Report;
 
 /// Words that begin an item and nothing else.
@@ -28,11 +29,27 @@ pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Report> {
     })
 }
 
-/// How far in a place's line begins, and whether it begins with that place.
-fn indent(text: &str, at: usize) -> Option<(usize, bool)> {
-    let start = text[..at].rfind('\n')? + 1;
-    let width = text[start..].find(|c: char| !c.is_ascii_whitespace())?;
-    Some((width, start + width == at))
+/// Where the lines of a text begin, and how far in their first characters stand.
+struct Lines(Vec<(usize, Option<usize>)>);
+
+impl Lines {
+    fn of(text: &str) -> Lines {
+        let mut start = 0;
+        let line = |line: &str| {
+            let from = start;
+            start += line.len();
+            (from, line.find(|c: char| !c.is_ascii_whitespace()))
+        };
+        Lines(text.split_inclusive('\n').map(line).collect())
+    }
+
+    /// How far in the line of a place begins, and whether it begins with that place. Nothing for the first
+    /// line.
+    fn indent(&self, at: usize) -> Option<(usize, bool)> {
+        let line = self.0.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
+        let (start, width) = self.0[line];
+        width.filter(|_| line > 0).map(|width| (width, start + width == at))
+    }
 }
 
 /// The first brackets of a text that do not match.
@@ -45,27 +62,22 @@ struct Brackets {
 impl Brackets {
     fn of(text: &str) -> Brackets {
         let mut found = Brackets::default();
+        let lines = Lines::of(text);
         let mut open: Vec<(usize, char)> = Vec::new();
-        let (mut at, mut begins) = (0, true);
+        let mut begins = true;
         // An item inside another's braces: those were not closed.
         let mut swallows = None;
-        while let Some(c) = text[at..].chars().next() {
-            let rest = &text[at..];
-            let length = match c {
-                '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
-                '/' if rest.starts_with("/*") => rest.find("*/").map_or(rest.len(), |end| end + 2),
-                '"' => rest[1..].find(['"', '\n']).map_or(rest.len(), |end| end + 2),
-                _ if in_name(c) => rest.find(|c| !in_name(c)).unwrap_or(rest.len()),
-                _ => c.len_utf8(),
-            };
-            match c {
-                '(' | '{' => open.push((at, c)),
-                ')' | '}' => {
+        let whole = super::FILES.contains(&super::word(text.trim_start()));
+        let file = text.find('{').filter(|_| whole);
+        for Lexeme { start: at, end, kind } in lexemes(text) {
+            match kind {
+                Kind::Mark(c @ ('(' | '{')) => open.push((at, c)),
+                Kind::Mark(c @ (')' | '}')) => {
                     let fits = |(_, other): &(usize, char)| (*other == '(') == (c == ')');
                     match open.last().copied().filter(fits) {
                         Some((begun, _)) => {
                             // A brace farther left than its block belongs to what is about that.
-                            let left = indent(text, at).zip(indent(text, begun));
+                            let left = lines.indent(at).zip(lines.indent(begun));
                             if c == '}' && left.is_some_and(|(own, other)| own.1 && own.0 < other.0)
                             {
                                 swallows = swallows.or(Some((begun, '{')));
@@ -82,19 +94,15 @@ impl Brackets {
                         }
                     }
                 }
-                _ if begins && begins_an_item(&rest[..length]) && swallows.is_none() => {
+                Kind::Word if begins && swallows.is_none() && begins_an_item(&text[at..end]) => {
                     let innermost = open.iter().rev().find(|(_, bracket)| *bracket == '{');
-                    let whole = super::FILES.contains(&super::word(text.trim_start()));
-                    let of_file = |first: usize| whole && Some(first) == text.find('{');
-                    swallows = innermost.copied().filter(|(first, _)| !of_file(*first));
+                    swallows = innermost.copied().filter(|(first, _)| Some(*first) != file);
                 }
                 _ => {}
             }
-            let blank = c.is_ascii_whitespace() || rest.starts_with("//") || rest.starts_with("/*");
-            if !blank {
-                begins = matches!(c, ';' | '{' | '}');
+            if kind != Kind::Skipped {
+                begins = matches!(kind, Kind::Mark(';' | '{' | '}'));
             }
-            at += length;
         }
         if !open.is_empty() {
             found.open = found.open.or(swallows).or(open.last().copied());

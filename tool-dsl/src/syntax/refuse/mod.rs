@@ -5,13 +5,13 @@ mod expected;
 mod spelling;
 
 use super::Rule;
-use crate::report::{Report, nearest};
+use crate::report::{Report, is_hidden, nearest};
 use crate::source::Span;
 use expected::expected;
 use pest::error::{Error, InputLocation};
 
 /// What a file is.
-const FILES: [&str; 2] = ["tool", "solid"];
+pub(super) const FILES: [&str; 2] = ["tool", "solid"];
 const ITEMS: [&str; 13] = [
     "units",
     "let",
@@ -106,6 +106,20 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
         expected if expected.is_empty() => report,
         expected => report.help(format!("expected {expected}")),
     }
+}
+
+/// A text between quotes with a character that must not come onto a screen.
+pub(super) fn hidden(text: &str, place: Span) -> Option<Report> {
+    let found = text.chars().find(|c| is_hidden(*c))?;
+    let message =
+        format!("this text has the character U+{:04X}, which cannot be seen", found as u32);
+    Some(Report::error(place, message).help("delete it: texts are shown as they are written"))
+}
+
+/// A text without a tool.
+pub(super) fn nothing(text: &str) -> Report {
+    let stop = Stop { text, offset: 0, at: text.len() };
+    spelling::no_tool(&stop)
 }
 
 /// A syntax error in what a tool's params are given.

@@ -171,10 +171,7 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Report> {
     }
     let read = stop.text.trim_matches(BLANK);
     if stop.offset == 0 && stop.rest().is_empty() && word(read).is_empty() {
-        return Some(
-            Report::error(stop.next(0), "there is no tool in this text")
-                .help("write `tool Name { units mm; … }`"),
-        );
+        return Some(no_tool(stop));
     }
     let mut start = 0;
     for line in stop.text.split_inclusive('\n') {
@@ -191,6 +188,12 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Report> {
     let before = stop.before();
     let open = before.matches("/*").count() > before.matches("*/").count();
     open.then(|| comment(before.rfind("/*").unwrap_or_default()))
+}
+
+/// A text that ends without a tool.
+pub(super) fn no_tool(stop: &Stop<'_>) -> Report {
+    Report::error(stop.next(0), "there is no tool in this text")
+        .help("write `tool Name { units mm; … }`")
 }
 
 /// A name with a dash, or one that begins with a digit.

@@ -1,0 +1,117 @@
+//! Names that are defined by themselves.
+
+use crate::report::{Report, Reported};
+use crate::source::Span;
+use crate::syntax::tree::{Definition, Expr, ExprKind};
+use std::collections::BTreeMap;
+
+/// The most links of a cycle that a message lists.
+const LISTED: usize = 64;
+
+/// Reports each cycle of definitions once, with its links, and returns the names on them. Of two
+/// definitions of one name the first counts.
+pub(super) fn refused<'t>(
+    definitions: impl Iterator<Item = &'t Definition>,
+    reports: &mut Vec<Report>,
+) -> BTreeMap<String, Reported> {
+    let mut of_name: BTreeMap<&str, &Definition> = BTreeMap::new();
+    for definition in definitions {
+        of_name.entry(&definition.name.word).or_insert(definition);
+    }
+    let mut refused = BTreeMap::new();
+    let mut done: BTreeMap<&str, bool> = BTreeMap::new();
+    // In the order of the text, so that a cycle begins at its first definition.
+    let mut roots: Vec<&Definition> = of_name.values().copied().collect();
+    roots.sort_by_key(|definition| definition.name.span.start);
+    for root in roots {
+        if done.contains_key(root.name.word.as_str()) {
+            continue;
+        }
+        // The path from the root, each with the names that are still to follow. No recursion: a
+        // chain of definitions may be as long as a file.
+        done.insert(&root.name.word, false);
+        let mut path = vec![Step::new(root, root.name.span)];
+        while let Some(step) = path.last_mut() {
+            let Some((word, place)) = step.open.pop() else {
+                done.insert(&step.definition.name.word, true);
+                path.pop();
+                continue;
+            };
+            let Some(next) = of_name.get(word) else { continue };
+            match done.get(word) {
+                Some(true) => {}
+                Some(false) => {
+                    let first = path.iter().position(|step| step.definition.name.word == word);
+                    let cycle = &path[first.unwrap_or_default()..];
+                    let known = cycle.iter().any(|step| refused.contains_key(step.word()));
+                    if !known {
+                        let reported = Reported::push(reports, report(cycle, place));
+                        refused.extend(cycle.iter().map(|step| (step.word().to_owned(), reported)));
+                    }
+                }
+                None => {
+                    done.insert(word, false);
+                    path.push(Step::new(next, place));
+                }
+            }
+        }
+    }
+    refused
+}
+
+/// A definition on the path, where the one before mentions it, and what it mentions itself.
+struct Step<'t> {
+    definition: &'t Definition,
+    place: Span,
+    open: Vec<(&'t str, Span)>,
+}
+
+impl<'t> Step<'t> {
+    fn new(definition: &'t Definition, place: Span) -> Step<'t> {
+        let mut open = mentioned(&definition.value);
+        open.reverse();
+        Step { definition, place, open }
+    }
+
+    fn word(&self) -> &'t str {
+        &self.definition.name.word
+    }
+}
+
+/// The names that an expression mentions, in the order of the text.
+fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
+    let mut names = Vec::new();
+    let mut open = vec![expr];
+    while let Some(expr) = open.pop() {
+        match &expr.kind {
+            ExprKind::Number(..) => {}
+            ExprKind::Name(word) => names.push((word.as_str(), expr.span)),
+            ExprKind::Call(_, arguments) => open.extend(arguments.iter().rev()),
+            ExprKind::Neg(inner) => open.push(inner),
+            ExprKind::Binary(_, left, right) => open.extend([&**right, &**left]),
+        }
+    }
+    names
+}
+
+/// The error for a cycle; its last definition mentions the first one at `place`.
+fn report(cycle: &[Step<'_>], place: Span) -> Report {
+    let first = cycle[0].word();
+    if let [_] = cycle {
+        return Report::error(place, format!("`{first}` is defined by itself"))
+            .help("write its value: a name has one only below its definition");
+    }
+    let links: Vec<String> = cycle
+        .iter()
+        .zip(cycle.iter().skip(1).chain(&cycle[..1]))
+        .take(LISTED)
+        .map(|(step, next)| format!("`{}` needs `{}`", step.word(), next.word()))
+        .collect();
+    let more = match cycle.len() - links.len() {
+        0 => String::new(),
+        more => format!(", and {more} links more lead back to `{first}`"),
+    };
+    Report::error(place, format!("`{first}` is defined by itself: {}{more}", links.join(", ")))
+        .and(cycle[1].place, "the first link")
+        .help("give one of them a value of its own")
+}

@@ -1,0 +1,370 @@
+//! Texts for which there is no tool: each gives an error that says why, on a small stack and at once.
+
+use std::path::PathBuf;
+use tool_dsl::source::Source;
+use tool_dsl::{Compiled, compile, compile_with, emit, format};
+
+const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
+
+fn tool(items: &str) -> String {
+    format!("tool T {{ units mm; {items} {BALL} }}")
+}
+
+/// The first error of a tool that is refused.
+#[track_caller]
+fn error(compiled: &Compiled) -> String {
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    let first = refusal.errors().next().expect("a refusal has an error");
+    assert!(first.render(&compiled.sources, false).contains(&first.message));
+    assert!(!first.message.is_empty());
+    first.message.clone()
+}
+
+#[track_caller]
+fn refused(items: &str) -> String {
+    error(&compile(&Source::new("t.tool", tool(items))))
+}
+
+/// Runs on the stack of a thread that is smaller than any default.
+fn on_small_stack<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+    let thread = std::thread::Builder::new().stack_size(SMALL);
+    thread.spawn(work).expect("a thread").join().expect("no panic")
+}
+
+/// Bytes; threads have 2 MiB by default, a process's first one mostly 8 MiB.
+const SMALL: usize = 1 << 20;
+
+/// Everything that reads a text, on a small stack.
+fn read(text: String) -> Result<(), String> {
+    on_small_stack(move || {
+        let source = Source::new("t.tool", text);
+        let _ = format::format(&source);
+        let _ = emit::tree(&source);
+        let compiled = compile(&source);
+        match compiled.tool() {
+            Some(tool) => {
+                assert!(!emit::rust(tool).is_empty() && !emit::dot(tool).is_empty());
+                Ok(())
+            }
+            None => Err(error(&compiled)),
+        }
+    })
+}
+
+#[test]
+fn names_defined_by_themselves_are_named_with_every_link() {
+    for word in ["let", "param", "curve"] {
+        assert_eq!(refused(&format!("{word} a = a;")), "`a` is defined by itself");
+        assert_eq!(
+            refused(&format!("{word} a = 2*(1 + hypot(a, 3));")),
+            "`a` is defined by itself"
+        );
+    }
+    assert_eq!(
+        refused("let a = b; let b = a;"),
+        "`a` is defined by itself: `a` needs `b`, `b` needs `a`"
+    );
+    assert_eq!(
+        refused("let a = b; curve b = d + c; param c = min(1, a); let e = c;"),
+        "`a` is defined by itself: `a` needs `b`, `b` needs `c`, `c` needs `a`"
+    );
+    let given = [Source::new("--set", "a=3")];
+    let compiled = compile_with(&Source::new("t.tool", tool("param a = a;")), &given);
+    assert_eq!(error(&compiled), "`a` is defined by itself");
+}
+
+#[test]
+fn each_cycle_is_said_once() {
+    let compiled =
+        compile(&Source::new("t.tool", tool("let a = b; let b = a; let c = a; let e = c + e;")));
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    let said: Vec<&str> = refusal.errors().map(|report| report.message.as_str()).collect();
+    assert_eq!(
+        said,
+        ["`a` is defined by itself: `a` needs `b`, `b` needs `a`", "`e` is defined by itself"]
+    );
+}
+
+#[test]
+fn a_cycle_as_long_as_a_file_is_said_too() {
+    let links: String = (0..4000).map(|k| format!("let a{k} = a{};", (k + 1) % 4000)).collect();
+    let said = read(tool(&links)).expect_err("a cycle");
+    assert!(said.starts_with("`a0` is defined by itself: `a0` needs `a1`"), "{said}");
+    assert!(said.ends_with("and 3936 links more lead back to `a0`"), "{said}");
+}
+
+/// Constants are settled before curves, so that a curve has no value in one, wherever it stands.
+#[test]
+fn a_curve_is_no_constant() {
+    for items in ["curve c = d; let a = c;", "curve c = 3; param a = c;", "curve c = 3; tip z = c;"]
+    {
+        assert!(refused(items).starts_with("`c` changes from point to point"), "{items}");
+    }
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
+    folder
+}
+
+#[test]
+fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
+    let folder = folder("cycles");
+    let profile = "profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as a cutting; }";
+    for (name, items) in [("let", "let a = a;"), ("curve", "curve a = a; niceness cutting: a;")] {
+        let part = format!("tool Part {{ units mm; {items} {profile} }}");
+        std::fs::write(folder.join(format!("{name}.tool")), part).expect("a writable folder");
+        let text = format!("tool T {{ units mm; mount \"{name}.tool\" as a; }}");
+        let compiled = compile(&Source::new("t.tool", text).held_by(folder.join("t.tool")));
+        assert_eq!(error(&compiled), "`a` is defined by itself");
+        let Err(refusal) = &compiled.outcome else { panic!("taken") };
+        let place = refusal.reports()[0].span;
+        assert!(compiled.sources.locate(place).0.name.ends_with(&format!("{name}.tool")));
+    }
+}
+
+/// Each of these once hid its nesting from the limit, or is as deep as the limit lets it be.
+#[test]
+fn nesting_is_limited_on_a_small_stack() {
+    let limit = "brackets are nested more than 64 deep";
+    let hidden = |hide: &str| {
+        let (open, close) = (format!("({hide}").repeat(5000), ")".repeat(5000));
+        read(tool(&format!("let a = {open}1{close};")))
+    };
+    for hide in ["//)\n", "/*)*/", "/*)))*/", "// \"\n", "/* /* ) */ */"] {
+        assert_eq!(hidden(hide), Err(limit.to_owned()), "{hide:?}");
+    }
+    let braces = format!("tool T {{ x {}", "{ \"}\"".repeat(5000));
+    assert_eq!(read(braces), Err(limit.to_owned()));
+    // A quote that no other ends hides nothing.
+    let quotes = format!("tool T {{ x \"a\\\n{}", "{ \"\\".repeat(5000));
+    assert_eq!(read(quotes), Err(limit.to_owned()));
+    let deepest = format!("let a = {}1{};", "(".repeat(62), ")".repeat(62));
+    assert_eq!(read(tool(&deepest)), Ok(()));
+    let comments = format!("{}{} {}", "/*".repeat(64), "*/".repeat(64), tool(""));
+    assert_eq!(read(comments.clone()), Ok(()));
+    assert!(read(format!("/*{comments}*/")).expect_err("deeper").contains("comments are nested"));
+}
+
+#[test]
+fn brackets_in_comments_and_texts_do_not_count() {
+    let many = "(".repeat(200);
+    assert_eq!(read(tool(&format!("// {many}\n /* {many} */ let a = 1;"))), Ok(()));
+    let titled = tool("").replace("tool T", &format!("tool T \"{many} /* // */\""));
+    assert_eq!(read(titled), Ok(()));
+}
+
+/// pest would try 2^n ways to read them.
+#[test]
+fn comments_that_do_not_end_are_refused_at_once() {
+    for count in [1, 30, 60] {
+        let text = format!("tool T {{ {}", "/* ".repeat(count));
+        assert_eq!(read(text), Err("this comment does not end".to_owned()));
+    }
+    assert_eq!(read("tool T { /*/".to_owned()), Err("this comment does not end".to_owned()));
+}
+
+#[test]
+fn expressions_are_limited_on_a_small_stack() {
+    // As many operands as a sum has, in as many brackets as there may be, leftmost and rightmost.
+    let left = (0..62).fold("a".to_owned(), |inner, _| format!("({inner}){}", " + a".repeat(60)));
+    let right = (0..62).fold("a".to_owned(), |inner, _| format!("{}({inner})", "a*".repeat(60)));
+    let powers =
+        (0..62).fold("a".to_owned(), |inner, _| format!("-({inner})^(-1){}", "*a/a".repeat(31)));
+    assert_eq!(read(tool(&format!("let a = 1; curve c = {right};"))), Ok(()));
+    for deep in [left, powers] {
+        let said = read(tool(&format!("let a = 1; curve c = {deep};"))).expect_err("too deep");
+        assert!(said.contains("too many steps"), "{said}");
+    }
+    let calls =
+        (0..62).fold("d".to_owned(), |inner, _| format!("max(0, {inner}{})", "+1".repeat(4)));
+    let said = read(tool(&format!("curve c = {calls};"))).expect_err("too deep");
+    assert!(said.contains("too many steps"), "{said}");
+    let tall: String = (1..=290).map(|k| format!("curve c{k} = sqrt(1 + c{});", k - 1)).collect();
+    let tall = tool(&format!("curve c0 = d; {tall} niceness ball: c290;"));
+    assert!(read(tall).is_err());
+    for signs in ["-".repeat(100_000), "not ".repeat(100_000), "+".repeat(100_000)] {
+        assert!(read(tool(&format!("let a = {signs}1;"))).is_err());
+    }
+}
+
+/// As high as an expression may be, through everything that follows it.
+#[test]
+fn the_tallest_expressions_compile_on_a_small_stack() {
+    let steps: String =
+        (1..=140).map(|k| format!("curve c{k} = max(c{} - 1e-3, 0);", k - 1)).collect();
+    let text = format!(
+        "tool T {{ units mm; curve c0 = d; {steps}
+         region ball as ball cutting where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c140; }} }}"
+    );
+    assert_eq!(read(text), Ok(()));
+    let roots: String = (1..=60).map(|k| format!("curve c{k} = sqrt(1 + c{});", k - 1)).collect();
+    let text = format!(
+        "tool T {{ units mm; curve c0 = d; {roots}
+         region ball as ball cutting where hypot(d, z - 3) <= 3 {{ depth: 3 - hypot(d, z - 3); niceness: c60; }} }}"
+    );
+    assert_eq!(read(text), Ok(()));
+}
+
+/// The files of a chain are as deep as there may be files.
+#[test]
+fn mounts_in_mounts_need_no_more_stack() {
+    let folder = folder("chain");
+    for k in 0..80 {
+        let text = format!("tool Deep {{ units mm; mount \"deep{}.tool\" as a; }}", k + 1);
+        std::fs::write(folder.join(format!("deep{k}.tool")), text).expect("a writable folder");
+    }
+    let said = on_small_stack(move || {
+        let text = "tool T { units mm; mount \"deep0.tool\" as a; }";
+        error(&compile(&Source::new("t.tool", text).held_by(folder.join("t.tool"))))
+    });
+    assert_eq!(said, "more than 64 mounted files");
+}
+
+/// Errors of syntax in texts of a line, in which every bracket once looked for the line's beginning.
+#[test]
+fn long_lines_are_refused_at_once() {
+    for braces in ["{}", "({)}", "}"] {
+        assert!(read(format!("tool T {{ {}", braces.repeat(25_000))).is_err());
+    }
+}
+
+/// A folder with tools, and one beside it that they may not mount from.
+fn two_folders(name: &str) -> (PathBuf, PathBuf) {
+    let both = folder(name);
+    let (own, other) = (both.join("own"), both.join("other"));
+    for folder in [&own, &other] {
+        std::fs::create_dir_all(folder).expect("a writable folder");
+        let part = "profile { start (0, 0); line to (1, 0), (1, 9), (0, 9) as a cutting; }";
+        let part = format!("tool Part {{ units mm; {part} }}");
+        std::fs::write(folder.join("part.tool"), part).expect("a writable folder");
+    }
+    (own, other)
+}
+
+fn mounting(file: &str) -> Source {
+    Source::new("t.tool", format!("tool T {{ units mm; mount \"{file}\" as a; }}"))
+}
+
+#[test]
+fn mounts_stay_below_the_tools_folder() {
+    let (own, other) = two_folders("mounts");
+    let held = |file: &str| mounting(file).held_by(own.join("t.tool"));
+    assert!(compile(&held("part.tool")).tool().is_some());
+    assert!(compile(&held("../own/part.tool")).tool().is_some());
+    let whole = other.join("part.tool").display().to_string();
+    for file in ["../other/part.tool", "../none.tool", "../../x/../y.tool", "/etc/passwd", &whole] {
+        let said = error(&compile(&held(file)));
+        assert_eq!(said, format!("`{file}` does not lie below the tool's folder"));
+    }
+    // A folder above both, said from outside.
+    let above = own.parent().expect("a folder above");
+    assert!(compile(&held("../other/part.tool").within(above)).tool().is_some());
+    assert!(error(&compile(&held("/etc/passwd").within(above))).contains("does not lie below"));
+    assert!(error(&compile(&held("none.tool"))).starts_with("cannot read"));
+}
+
+#[cfg(unix)]
+#[test]
+fn links_lead_nowhere_else() {
+    let (own, other) = two_folders("links");
+    let link = own.join("link.tool");
+    let _ = std::fs::remove_file(&link);
+    std::os::unix::fs::symlink(other.join("part.tool"), &link).expect("a link");
+    let said = error(&compile(&mounting("link.tool").held_by(own.join("t.tool"))));
+    assert!(said.contains("does not lie below"), "{said}");
+}
+
+/// No line of a file that is no tool's.
+#[test]
+fn the_text_of_other_files_is_not_shown() {
+    let (own, _) = two_folders("secrets");
+    std::fs::write(own.join("key"), "secret = 1234\n").expect("a writable folder");
+    let compiled = compile(&mounting("key").held_by(own.join("t.tool")));
+    assert_eq!(error(&compiled), "`key` is not a `.tool` file");
+    for report in compiled.reports() {
+        assert!(!report.render(&compiled.sources, false).contains("secret"));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_and_pipes_are_no_tools() {
+    for device in ["/dev/zero", "/dev/null"] {
+        let error = Source::read(device).expect_err("refused").to_string();
+        assert!(error.contains("no regular file"), "{error}");
+    }
+    let error = Source::read(folder("pipes")).expect_err("a folder").to_string();
+    assert!(!error.is_empty());
+}
+
+/// Names and texts from files come onto a screen.
+#[test]
+fn what_cannot_be_seen_is_refused_or_escaped() {
+    for hidden in ["\u{1b}[31m", "\u{7f}", "\u{9b}31m", "\u{202e}", "\u{2066}", "\u{200f}"] {
+        let titled = tool("").replace("tool T", &format!("tool T \"a{hidden}b\""));
+        assert!(read(titled).expect_err("refused").contains("which cannot be seen"), "{hidden:?}");
+        let mounted = format!("tool T {{ units mm; mount \"{hidden}.tool\" as a; }}");
+        assert!(read(mounted).expect_err("refused").contains("which cannot be seen"));
+        // In a comment it may stand; where its line is shown it is replaced, and so in a file's name.
+        let source =
+            Source::new(format!("t{hidden}.tool"), tool(&format!("/*{hidden}*/ let a = b;")));
+        let compiled = compile(&source);
+        for report in compiled.reports() {
+            let shown = report.render(&compiled.sources, false);
+            assert!(
+                !shown.contains(&hidden[..hidden.chars().next().expect("one").len_utf8()]),
+                "{shown:?}"
+            );
+        }
+    }
+    assert_eq!(tool_dsl::report::escaped("a\u{1b}\u{202e}é"), "a\\u{1b}\\u{202e}é");
+}
+
+#[test]
+fn values_that_break_a_profile_are_named() {
+    let text = "tool T { units mm; param D = 6; profile { start (0, 0); line to (D/2, 0), (D/2, 9), (0, 9) as a cutting; } }";
+    let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=-1")]);
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    assert!(refusal.errors().all(|report| {
+        report.help.as_ref().is_some_and(|help| help.ends_with("given: `D=-1`"))
+    }));
+    // An error of the value itself shows it already.
+    let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=x")]);
+    let Err(refusal) = &compiled.outcome else { panic!("taken") };
+    assert!(refusal.errors().all(|r| r.help.as_ref().is_none_or(|help| !help.contains("given: "))));
+}
+
+#[test]
+fn profiles_that_would_take_minutes_are_refused_at_once() {
+    let zigzag = |count: usize| {
+        let points = (1..count - 2).map(|k| format!("({}, {k}), ", 10.0 + 0.5 * (k % 2) as f64));
+        let points: String = points.collect();
+        format!(
+            "tool T {{ units mm; profile {{ start (0, 0); line to (10, 0), {points}(0, {}) as a cutting; }}",
+            count - 3
+        )
+    };
+    let smooth = |count: usize| read(format!("{} regions smooth 0.05; }}", zigzag(count)));
+    assert_eq!(smooth(200), Err("`regions smooth` of more than 128 segments".to_owned()));
+    assert_eq!(smooth(24), Ok(()));
+}
+
+/// What compiling proves is not denied by a proof that ends at its budget.
+#[test]
+fn a_proof_that_ends_early_takes_nothing_back() {
+    let points: String =
+        (1..238).map(|k| format!("({}, {k}), ", 10.0 + 0.5 * (k % 2) as f64)).collect();
+    let text = format!(
+        "tool T {{ units mm; profile {{ start (0, 0); line to (10, 0), {points}(0, 237) as a cutting; }} }}"
+    );
+    let compiled = compile(&Source::new("t.tool", text));
+    let tool = compiled.tool().expect("a tool");
+    let certificate = tool_dsl::prove::Certificate::of(tool);
+    assert!(certificate.boxes < 35_000, "{}", certificate.boxes);
+    assert_eq!((certificate.lipschitz(), tool.bounds.lipschitz), (None, Some(1.0)));
+    let reports = certificate.reports(tool);
+    let help = reports.iter().filter_map(|report| report.help.as_deref()).next();
+    assert!(help.is_some_and(|help| help.contains("at most 1 times the distance")), "{help:?}");
+}
