@@ -78,7 +78,8 @@ impl Surface {
 
     /// How many points may be held against cells beyond what is usual.
     fn work(&self, sites: &Sites<'_>) -> usize {
-        256 * (sites.points.len() + self.pieces.len()) + (1 << 27)
+        let any = if self.coarse() { 1 << 22 } else { 1 << 27 };
+        256 * (sites.points.len() + self.pieces.len()) + any
     }
 
     /// How many points are held against the cells of a piece at first: usual are some hundred, and some thousand
