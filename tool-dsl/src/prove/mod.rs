@@ -10,6 +10,7 @@ mod aim;
 mod cover;
 mod kink;
 mod parting;
+mod range;
 mod root;
 mod rounding;
 mod slope;

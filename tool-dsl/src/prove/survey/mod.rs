@@ -6,6 +6,7 @@ use super::aim::{self, Aim};
 use super::cover::{Boxes, Claim, Cover, reach};
 use super::kink::ROUNDING;
 use super::parting::{Pair, Parting};
+use super::range::Ranges;
 use super::rounding::Errors;
 use super::slope::{Slope, Slopes};
 use super::witness::Witness;
@@ -315,6 +316,19 @@ impl<'t> Survey<'t> {
             cell: Cell { sides: at.map(|at| Interval::new(at, at)) },
             what: "that the solid ends on the profile".to_owned(),
         }));
+        let mut ranges = Ranges {
+            cover: &mut self.cover,
+            slopes: &mut self.slopes,
+            whole: self.tool.extent.cell(),
+        };
+        if self.alone {
+            let known = self.regions.iter_mut().zip(&self.tool.model.regions).enumerate();
+            for (index, (facts, region)) in known {
+                if let Some(facts) = facts {
+                    facts.niceness = ranges.niceness(index, region, facts.niceness);
+                }
+            }
+        }
         let facts = self.regions.into_iter().zip(shares).zip(self.aims).enumerate();
         let regions: Vec<RegionFacts> = facts
             .map(|(index, ((facts, share), aim))| RegionFacts {

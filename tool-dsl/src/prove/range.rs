@@ -1,0 +1,171 @@
+//! Between what a region's niceness lies, over the points of the region alone.
+//!
+//! An enclosure over a box that sticks out of the region holds for points outside the tool too, where
+//! `1 - depth/r` is more than 1. So boxes are divided by branch and bound, and in each the niceness is
+//! enclosed together with the depth. With `λ` the rate at which niceness falls with depth in the middle
+//! of the box, the sum `s = niceness + λ depth` hardly changes in it; by the mean value theorem it is
+//! within `s(middle) + (∇niceness + λ ∇depth)·(box - middle)`. No point of the region has a depth below 0,
+//! so that niceness is at most the upper end of that, less `λ` times the least depth, if `λ` is not
+//! negative. For a niceness that is affine in depth the excess falls with the square of the box.
+
+use super::cover::Cover;
+use super::slope::{Slope, Slopes};
+use crate::bound::halves;
+use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::model::Region;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// How many boxes are divided for one end of a range.
+const BOXES: usize = 2_000;
+
+/// Ends are told to this part of the range, or of 1.
+const FINE: f64 = 1e-4;
+
+/// A box, and what the end that is looked for is at most in it.
+struct Open {
+    bound: f64,
+    cell: Cell,
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Open) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Open) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Open) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Open {}
+
+/// What a range is computed from.
+pub(super) struct Ranges<'s, 't> {
+    pub(super) cover: &'s mut Cover<'t>,
+    pub(super) slopes: &'s mut Slopes<'t>,
+    pub(super) whole: Cell,
+}
+
+impl Ranges<'_, '_> {
+    /// Encloses the niceness of a region that is known to lie within `known`.
+    pub(super) fn niceness(&mut self, index: usize, region: &Region, known: Interval) -> Interval {
+        let high = self.most(index, region, 1.0, known.high);
+        let low = -self.most(index, region, -1.0, -known.low);
+        Interval { low, high }
+    }
+
+    /// What `sign` times the niceness is at most.
+    fn most(&mut self, index: usize, region: &Region, sign: f64, known: f64) -> f64 {
+        let mut open = BinaryHeap::from([Open { bound: known, cell: self.whole }]);
+        let mut seen = f64::NEG_INFINITY;
+        for _ in 0..BOXES {
+            let Some(Open { bound, cell }) = open.pop() else { return seen };
+            if bound - seen <= FINE * bound.abs().max(1.0) {
+                return bound;
+            }
+            for cell in halves(cell) {
+                let claims = self.cover.claims(cell);
+                if !claims.iter().any(|claim| claim.owner == Some(index)) {
+                    continue;
+                }
+                let Some((here, middle)) = self.enclose(region, sign, cell) else { continue };
+                let at = point(cell.middle());
+                let owns = self.cover.claims(at).iter().all(|claim| claim.owner == Some(index));
+                if owns {
+                    seen = seen.max(middle);
+                }
+                open.push(Open { bound: here.min(bound), cell });
+            }
+        }
+        open.peek().map_or(seen, |open| open.bound)
+    }
+
+    /// What `sign` times the niceness is at most in a box, and what it is in its middle; nothing if the box
+    /// has no point that is inside.
+    fn enclose(&mut self, region: &Region, sign: f64, cell: Cell) -> Option<(f64, f64)> {
+        self.slopes.set(point(cell.middle()));
+        let [depth, nice] = [region.depth, region.niceness].map(|id| self.slopes.get(id).value);
+        self.slopes.set(cell);
+        let (over, of) = (self.slopes.get(region.depth), self.slopes.get(region.niceness));
+        if over.value.high < 0.0 {
+            return None;
+        }
+        let signed = |value: Interval| value.times(Interval::new(sign, sign));
+        let plain = signed(of.value).high;
+        let rate = -sign * rate(&over, &of);
+        let with = Interval::new(rate, rate);
+        let mut sum = signed(nice).plus(with.times(depth));
+        for axis in 0..3 {
+            let slope = signed(of.parts[axis]).plus(with.times(over.parts[axis]));
+            let middle = cell.middle()[axis];
+            sum = sum.plus(slope.times(cell.sides[axis].plus(Interval::new(-middle, -middle))));
+        }
+        let inside = Interval { low: over.value.low.max(0.0), high: over.value.high };
+        let bound = sum.plus(with.times(inside).negated()).high;
+        let bound = if bound.is_nan() { plain } else { bound.min(plain) };
+        Some((bound, signed(nice).middle()))
+    }
+}
+
+/// How niceness changes with depth, by the middles of their slopes; 0 where that is not a number.
+fn rate(depth: &Slope, niceness: &Slope) -> f64 {
+    let along = |one: &Slope, other: &Slope| -> f64 {
+        (0..3).map(|k| one.parts[k].middle() * other.parts[k].middle()).sum()
+    };
+    let rate = along(depth, niceness) / along(depth, depth);
+    if rate.is_finite() { rate } else { 0.0 }
+}
+
+/// A box of one point.
+fn point(at: [f64; 3]) -> Cell {
+    Cell { sides: at.map(|at| ZERO.plus(Interval::new(at, at))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Certificate;
+    use crate::compile;
+    use crate::source::Source;
+
+    /// The ranges of a tool's regions, by name.
+    fn ranges(text: &str) -> Vec<(String, [f64; 2])> {
+        let compiled = compile(&Source::new("a.tool", text));
+        let tool = compiled.into_tool().expect("a tool");
+        let facts = Certificate::of(&tool).regions;
+        let names = tool.model.regions.iter().map(|region| region.name.clone());
+        names.zip(facts.iter().map(|facts| [facts.niceness.low, facts.niceness.high])).collect()
+    }
+
+    #[test]
+    fn niceness_is_told_over_the_region_alone() {
+        let ball = "tool Ball { units mm; profile { start (0, 0); arc to (3, 3) center (0, 3) as ball cutting;
+                    line to (3, 20), (0, 20) as shank; } niceness cutting: 1 - depth/3; }";
+        for (name, [low, high]) in
+            ranges(ball).into_iter().filter(|(name, _)| name.contains("ball"))
+        {
+            assert!((-1e-3..=0.0).contains(&low), "{name}: {low}");
+            assert!((1.0..=1.0 + 2e-4).contains(&high), "{name}: {high}");
+        }
+    }
+
+    /// A niceness that is no function of depth: 1 in the middle of the flute's height, 0 at its ends.
+    #[test]
+    fn niceness_by_height_is_told_as_well() {
+        let mill = "tool Mill { units mm; profile { start (0, 0); line to (3, 0) as face;
+                    line to (3, 20) as flute cutting; line to (0, 20) as top; }
+                    niceness cutting: 1 - ((z - 10)/10)^2; }";
+        let found = ranges(mill);
+        let (_, [low, high]) =
+            found.iter().find(|(name, _)| name.contains("flute")).expect("a flute");
+        assert!((-1e-3..=1e-9).contains(low) && (1.0..=1.0 + 2e-4).contains(high), "{low} {high}");
+    }
+}
