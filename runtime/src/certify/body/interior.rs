@@ -266,9 +266,9 @@ impl Interior<'_> {
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(low, high);
             if self.is_free(normals.point(s, middle), middle) {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         low
