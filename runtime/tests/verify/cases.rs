@@ -53,7 +53,9 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
     assert_eq!((found.from, found.line, found.stop, found.rapid), (Some(2), 3, 1, false));
     // The ball is 0.5 deep wherever its lowest point is over the pillar.
     assert!((25.0 / 60.0..=35.0 / 60.0).contains(&found.part), "{found:?}");
-    let Kind::Deep { surface: 0, allowed, depth: [low, high], most, .. } = found.kind else {
+    let Kind::Deep { surface: 0, allowed, depth: [low, high], most, through: false, .. } =
+        found.kind
+    else {
         panic!("{found:?}")
     };
     assert!(
@@ -88,6 +90,19 @@ fn a_flute_that_gouges_does_not_hide_what_rubs() {
     };
     assert!(kept == 1.0 && low <= 0.5 && 0.5 <= high && least > 0.4 && least <= low, "{near:?}");
     assert_eq!(check(&pillar(), &higher(-23.0), 0.0, &margin).findings, []);
+}
+
+#[test]
+fn what_goes_right_through_says_so() {
+    // The axis of the tool, upright, goes through the pillar from side to side, 6 below its top.
+    let text = "GOTO/-30,0,-6,0,0,1\nGOTO/30,0,-6,0,0,1\nFINI\n";
+    let report = check(&pillar(), text, 0.01, &[]);
+    let through: Vec<(Option<usize>, bool)> = report
+        .findings
+        .iter()
+        .map(|found| (found.kind.surface(), matches!(found.kind, Kind::Deep { through: true, .. })))
+        .collect();
+    assert_eq!(through, [(Some(0), true), (Some(1), true)]);
 }
 
 #[test]

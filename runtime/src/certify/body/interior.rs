@@ -348,6 +348,7 @@ const STEPS: u32 = 256;
 mod tests {
     use super::*;
     use crate::Tool;
+    use crate::certify::body::owners::Owners;
 
     crate::tool! {
         tool Slender "a flat end, a long flute" {
@@ -415,6 +416,22 @@ mod tests {
         assert!(face.place[1] < 0.5 && face.feature == 0, "{face:?}");
         let [chamfer] = of(&Chamfered, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
         assert_eq!(chamfer.feature, 1);
+    }
+
+    #[test]
+    fn the_greatest_depth_is_that_of_the_middle() {
+        let section = Section::new(Dumbbell.card(), 1e-12).expect("a function of z");
+        let of = |surface: usize| Owners::of(&section, |k| k == surface).greatest_depth(&section);
+        // The middle of a cylinder of 3 mm radius, the neck's, and again.
+        for (surface, depth) in [(0, 3.0), (2, 3.0)] {
+            assert!((0.99 * depth..=depth).contains(&of(surface)), "{surface}: {}", of(surface));
+        }
+        assert!((1.0..3.0).contains(&of(1)), "{}", of(1));
+        let section = Section::new(Slender.card(), 1e-12).expect("a function of z");
+        for surface in 0..3 {
+            let depth = Owners::of(&section, |k| k == surface).greatest_depth(&section);
+            assert!((0.495..=0.5).contains(&depth), "{surface}: {depth}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::certify::body::feature::{Feature, Place, minus, norm};
 use crate::certify::body::section::{Section, Slab};
+use std::collections::BinaryHeap;
 
 /// Features, by their places in the section's list.
 #[derive(Clone, Debug, Default)]
@@ -133,28 +134,38 @@ impl Owners {
         zone
     }
 
-    /// How deep the deepest place is that these own: no less than a hundredth below, unless the budget is
-    /// spent before.
+    /// How deep the deepest place is that these own, to a hundredth; no less than that if the budget is spent
+    /// before.
     ///
-    /// By rectangles that are halved, as depth changes by no more than the way.
+    /// By rectangles that are halved, the one that may be deepest first: depth changes by no more than the way.
     pub(crate) fn greatest_depth(&self, section: &Section) -> f64 {
         let mut greatest = 0.0;
-        let mut stack: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
+        let mut rectangles: Vec<Rectangle> = Vec::new();
+        // Numbers that are not negative are in the order of their bits.
+        let mut open: BinaryHeap<(u64, usize)> = BinaryHeap::new();
+        let mut halves: Vec<Rectangle> = section.slabs.iter().map(Rectangle::of).collect();
         for _ in 0..LOOKS {
-            let Some(rectangle) = stack.pop() else { break };
-            let (middle, reach) = rectangle.ball();
-            let depth = section.signed(middle);
-            let owner = |feature: usize| section.features[feature].away(middle);
-            let owner = section.owned(self).map(owner).fold(f64::INFINITY, f64::min);
-            if depth >= 0.0 && owner <= depth + section.error {
-                greatest = depth.max(greatest);
+            for rectangle in halves.drain(..) {
+                let (middle, reach) = rectangle.ball();
+                let depth = section.signed(middle);
+                let away = section.owned(self).map(|owner| section.features[owner].away(middle));
+                let owner = away.fold(f64::INFINITY, f64::min);
+                if depth >= 0.0 && owner <= depth + section.error {
+                    greatest = depth.max(greatest);
+                }
+                if owner <= depth.abs() + 2.0 * reach + section.error && depth + reach >= 0.0 {
+                    open.push(((depth + reach).to_bits(), rectangles.len()));
+                    rectangles.push(rectangle);
+                }
             }
-            let owned = owner <= depth.abs() + 2.0 * reach + section.error;
-            if owned && depth + reach > 1.01 * greatest + section.error {
-                stack.extend(rectangle.halves());
+            let Some((bound, index)) = open.pop() else { return greatest };
+            let bound = f64::from_bits(bound);
+            if bound <= 1.01 * greatest + section.error {
+                return greatest;
             }
+            halves.extend(rectangles[index].halves());
         }
-        greatest
+        open.peek().map_or(greatest, |(bound, _)| f64::from_bits(*bound))
     }
 
     /// Where depth is restricted to what these own, it can be greatest at a place that is as far from three

@@ -7,6 +7,7 @@ use crate::scenes::{self, Path as Course};
 use crate::tree::Tree;
 use crate::{Cloud, Cover, Pose, Probe, Unit};
 use nalgebra::Point3;
+use std::fs::{self, File};
 
 crate::tool! {
     tool Ball "a ball on a straight shank" {
