@@ -78,7 +78,7 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         turns: led.turns.map(f64::to_degrees),
         way: ways(&led.stops),
         upside_down: led.stops.iter().filter(|stop| below(stop)).count(),
-        first_upside_down: led.stops.iter().position(|stop| below(stop)).map(|stop| stop + 1),
+        first_upside_down: led.stops.iter().position(below).map(|stop| stop + 1),
     };
     let name = wanted.to.display().to_string();
     let program = Program::new(&name, Some(unit), led.stops)?;
