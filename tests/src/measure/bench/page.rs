@@ -40,7 +40,7 @@ pub fn write(
     Ok(())
 }
 
-/// The files that [`write`] may write of these scenes.
+/// The files that [`write()`] may write of these scenes.
 pub fn files<'a>(
     folder: &'a Path,
     scenes: impl IntoIterator<Item = &'a str>,
