@@ -2,11 +2,11 @@
 
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
-use touchoff::Unit;
 use touchoff::certify::Facets;
 use touchoff::mesh::shapes;
 use touchoff::postures::sweep::Sweep;
 use touchoff::postures::{Directions, Rules};
+use touchoff::{Mesh, Unit};
 use touchoff_tests::measure::postures::free::{Part, Verdict};
 use touchoff_tests::measure::postures::parts::relief;
 use touchoff_tests::measure::postures::stand::Posture;
@@ -102,4 +102,33 @@ fn a_plate_is_reached_from_all_above_it() {
     for angle in solid {
         assert!((angle - std::f64::consts::TAU).abs() < 0.03, "{angle}");
     }
+}
+
+/// A roof over a plate: the tool as it is fits between, so that it need not stick out farther, however wide the
+/// holder is taken to go on above.
+#[test]
+fn no_stick_out_is_more_than_that_of_the_tool() {
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
+    };
+    let plate = block([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
+    let roof = block([-300.0, -300.0, 60.0], [300.0, 300.0, 65.0]);
+    let vertices = [plate.vertices(), roof.vertices()].concat();
+    let after = plate.vertices().len() as u32;
+    let above = roof.triangles().iter().map(|corners| corners.map(|corner| corner + after));
+    let triangles = plate.triangles().iter().copied().chain(above).collect();
+    let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
+    let facets = Facets::new(&mesh);
+    let directions = Directions::spread(200);
+    let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
+    let tool = tools_library::find("BallEr16").expect("a tool");
+    let sweep = Sweep::new((&mesh, &facets), vec![tool], &directions, rules, NonZeroU16::MIN)
+        .expect("a sweep");
+    let mut needed = Vec::new();
+    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
+        needed.extend(batch.rows.iter().filter_map(|(_, row)| row.access[0].stickout));
+        ControlFlow::Continue(())
+    });
+    assert!(needed.len() > 2 && needed.iter().all(|needed| *needed <= 30.0), "{needed:?}");
+    assert!(needed.contains(&30.0), "nothing asks for all of it: {needed:?}");
 }

@@ -67,8 +67,6 @@ struct Reader {
     tape: Tape,
     axis: Option<[f64; 3]>,
     rapid: bool,
-    /// The line of `LOADTL`.
-    loaded: Option<usize>,
     path_ended: bool,
     finished: bool,
 }
@@ -95,7 +93,7 @@ impl Reader {
             "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
-            "LOADTL" => self.load(line)?,
+            "LOADTL" | "TOOLNO" => self.load(line, &word)?,
             "CUTTER" => self.cutter(line, rest)?,
             // Diameter, corner, height and angles of a mill, as NX writes them.
             "TLDATA" if let Some(mill) = rest.strip_prefix("MILL,") => {
@@ -162,12 +160,12 @@ impl Reader {
         }
     }
 
-    /// A tool is loaded: one of a program.
-    fn load(&mut self, line: usize) -> Result<(), Fault> {
-        if let Some(first) = self.loaded.replace(line) {
-            return Err(Fault::SecondTool { first });
+    /// A tool is named or loaded: one of a program.
+    fn load(&mut self, line: usize, word: &str) -> Result<(), Fault> {
+        if let Some((first, _)) = self.tape.ignored.iter().find(|(_, known)| known == word) {
+            return Err(Fault::SecondTool { first: *first });
         }
-        self.tape.ignored.push((line, "LOADTL".to_owned()));
+        self.tape.ignored.push((line, word.to_owned()));
         Ok(())
     }
 

@@ -16,12 +16,12 @@ const VERBATIM: [&str; 2] = ["INSERT", "LETTER"];
 /// that the positions have already been computed with, speeds and feeds, coolant, stops and waits, the
 /// block numbers and the file of the post-processor, planes that only other words use, displays.
 #[rustfmt::skip]
-const INERT: [&str; 38] = [
+const INERT: [&str; 37] = [
     "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
     "INTOL", "OUTTOL", "TOLER", "LINTOL", "MCHTOL", "CUT",
     "FEDRAT", "FEDTO", "SPINDL", "COOLNT", "OPSTOP", "STOP", "DELAY", "DWELL", "END", "REWIND",
     "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY",
-    "TOOL PATH", "TLDATA", "TOOLNO",
+    "TOOL PATH", "TLDATA",
 ];
 
 /// Words that move the tool, or decide whether and how often it moves.

@@ -6,6 +6,7 @@ use crate::Pose;
 use crate::certify::Certifier;
 use crate::motion::Motion;
 use crate::program::Stop;
+use crate::tool::Piece;
 use nalgebra::Point3;
 
 /// Where a program goes beside where the part is. Lengths are in the part's unit, places in its frame.
@@ -50,7 +51,12 @@ impl Verifier<'_> {
         let card = self.tool.card();
         let length = card.unit.to(self.facets.unit());
         let cutting = card.outline.iter().filter(|piece| card.surfaces[piece.surface].cutting);
-        let radius = cutting.flat_map(|piece| [piece.from[0], piece.to[0]]).fold(0.0, f64::max);
+        let widest = |piece: &Piece| {
+            let bulge = piece.circle.filter(|circle| circle.convex);
+            let bulge = bulge.map_or(0.0, |circle| circle.centre[0] + circle.radius);
+            piece.from[0].max(piece.to[0]).max(bulge)
+        };
+        let radius = cutting.map(widest).fold(0.0, f64::max);
         let radius = if radius > 0.0 { radius } else { card.radius() };
         let diameter = 2.0 * radius * length;
         let mut search = Search {
