@@ -13,6 +13,7 @@
 use super::words::{is_prose, pass_over};
 use super::{Fault, Located, Stop, Tape, axis_pose, lines, number, shown};
 use crate::Unit;
+use std::collections::BTreeMap;
 use std::mem;
 
 /// The positions of an APT-CL program.
@@ -67,6 +68,10 @@ struct Reader {
     tape: Tape,
     axis: Option<[f64; 3]>,
     rapid: bool,
+    /// Whether there was a `GOTO`.
+    went: bool,
+    /// What was said of the tool, by its word: the line, and the arguments.
+    tools: BTreeMap<String, (usize, Vec<String>)>,
     path_ended: bool,
     finished: bool,
 }
@@ -87,18 +92,15 @@ impl Reader {
         match word.as_str() {
             "GOTO" => {
                 let rapid = mem::take(&mut self.rapid);
+                self.went = true;
                 self.position(line, "GOTO", rest, rapid).map_err(cut)?;
             }
             "FROM" => self.position(line, "FROM", rest, true).map_err(cut)?,
             "RAPID" if rest.is_empty() => self.rapid = true,
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
-            "LOADTL" | "TOOLNO" => self.load(line, &word)?,
-            "CUTTER" => self.cutter(line, rest)?,
-            // Diameter, corner, height and angles of a mill, as NX writes them.
-            "TLDATA" if let Some(mill) = rest.strip_prefix("MILL,") => {
-                let ends = mill.match_indices(',').nth(1).map_or(mill.len(), |(comma, _)| comma);
-                self.cutter(line, &mill[..ends])?;
+            "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
+                self.tool(line, &word, rest)?;
             }
             "FINI" => self.finished = true,
             // So NX ends the path of an operation; `FINI` may follow.
@@ -160,28 +162,49 @@ impl Reader {
         }
     }
 
-    /// A tool is named or loaded: one of a program.
-    fn load(&mut self, line: usize, word: &str) -> Result<(), Fault> {
-        if let Some((first, _)) = self.tape.ignored.iter().find(|(_, known)| known == word) {
-            return Err(Fault::SecondTool { first: *first });
+    /// A statement of which tool is at the positions: one of a program, before them.
+    fn tool(&mut self, line: usize, word: &str, rest: &str) -> Result<(), Fault> {
+        let upper = rest.to_ascii_uppercase();
+        let mut arguments: Vec<String> = upper.split(',').map(|part| part.trim().into()).collect();
+        if word == "TOOL PATH" {
+            // Its name is none of the tool's.
+            let tool = arguments.iter().position(|part| part == "TOOL");
+            arguments.drain(..tool.unwrap_or(0));
         }
-        self.tape.ignored.push((line, word.to_owned()));
+        match self.tools.get(word) {
+            Some((first, known)) if *known != arguments || word == "LOADTL" => {
+                return Err(Fault::SecondTool { first: *first });
+            }
+            None if self.went => return Err(Fault::LateTool { word: word.to_owned() }),
+            _ => {}
+        }
+        match (word, &arguments[..]) {
+            ("CUTTER", all) => self.cutter(line, all)?,
+            // Diameter, corner, height, and the angles of side and end, as NX writes a mill.
+            ("TLDATA", [kind, diameter, corner, more @ ..]) if kind == "MILL" => {
+                let values = [diameter, corner].map(String::as_str).map(number);
+                let [diameter, corner] = [values[0].clone()?, values[1].clone()?];
+                let angle = |at: usize| more.get(at).map_or(Ok(0.0), |angle| number(angle));
+                let (side, end) = (angle(1)?, angle(2)?);
+                let place = [0.5 * diameter - corner, corner];
+                let all = vec![diameter, corner, place[0], place[1], end, side];
+                self.tape.cutters.push((line, all));
+            }
+            _ => {}
+        }
+        if word != "CUTTER" {
+            self.tape.ignored.push((line, word.to_owned()));
+        }
+        self.tools.insert(word.to_owned(), (line, arguments));
         Ok(())
     }
 
     /// The cutter that positions are of.
-    fn cutter(&mut self, line: usize, rest: &str) -> Result<(), Fault> {
-        let values = rest.split(',').map(number).collect::<Result<Vec<f64>, Fault>>()?;
-        match &self.tape.cutter {
-            Some((first, known)) if known.iter().zip(&values).any(|(one, other)| one != other) => {
-                Err(Fault::SecondTool { first: *first })
-            }
-            Some(_) => Ok(()),
-            None => {
-                self.tape.cutter = Some((line, values));
-                Ok(())
-            }
-        }
+    fn cutter(&mut self, line: usize, arguments: &[String]) -> Result<(), Fault> {
+        let values =
+            arguments.iter().map(|part| number(part)).collect::<Result<Vec<f64>, Fault>>()?;
+        self.tape.cutters.push((line, values));
+        Ok(())
     }
 
     /// A word that is none of those read: passed over, or refused.
@@ -299,8 +322,35 @@ mod tests {
             let said = refusal(&text);
             assert!(said.starts_with("part.cl:5: "), "{word}: {said}");
         }
-        let text = "GOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI";
-        assert_eq!(program(text).stops.len(), 2);
+        for word in [
+            "FEDRAT/100 GOTO/0,0,-5",
+            "FEDRAT/RAPID",
+            "STOP/GOTO/0,0,-5",
+            "ISN/5 GODLTA/0,0,-5",
+            "TITLES/x$\nGOTO/0,0,-5",
+            "TLAXIS/0,0,1",
+            "tldata/mill,50,0,30,0,0",
+            "TLDATA/MILL ,50,0",
+            "TLDATA/MILL,2,1,30,20,45",
+            "TLDATA/BALL,50,25",
+            "CUTTER/2,1,0,1,45,30",
+            "TOOLNO/2",
+            "TOOL PATH/B,TOOL,D50",
+            "LOADTL/1",
+        ] {
+            let text = format!(
+                "TOOL PATH/A,TOOL,D2\nTLDATA/MILL,2,1\nTOOLNO/1\nLOADTL/1\nCUTTER/2\nGOTO/1,2,3\n{word}\nFINI\n"
+            );
+            assert!(refusal(&text).starts_with("part.cl:7: "), "{word}: {}", refusal(&text));
+        }
+        assert_eq!(
+            refusal("FROM/0,0,9\nGOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI"),
+            "part.cl:3: LOADTL comes after positions, which are of another tool: give one program per tool"
+        );
+        for hidden in ["\u{c}", "\u{b}", "\u{85}", "\u{2028}", "\u{2029}", "\u{1b}"] {
+            let said = refusal(format!("GOTO/1,2,3\nFEDRAT/100 {hidden}GOTO/0,0,-5\nFINI"));
+            assert!(said.contains("part.cl:2: the character `\\u{"), "{said}");
+        }
     }
 
     #[test]

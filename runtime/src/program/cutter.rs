@@ -8,7 +8,7 @@ use crate::tool::Card;
 const ROUNDED: f64 = 1e-3;
 
 impl Program {
-    /// Compares the arguments of APT's `CUTTER` with a tool; `part` is the unit of a program that states
+    /// Compares the arguments of APT's `CUTTER`, and of NX's `TLDATA/MILL`, with a tool; `part` is the unit of a program that states
     /// none. Returns the line of a `CUTTER` that cannot be compared: two numbers do not describe the tool
     /// (see [`Cutter::of`]).
     ///
@@ -20,16 +20,16 @@ impl Program {
     /// If one is not the tool's.
     pub fn check_cutter(&self, card: &Card, part: Unit) -> Result<Option<usize>, ProgramError> {
         let unit = self.unit.unwrap_or(part);
-        let Some((line, stated)) = &self.cutter else { return Ok(None) };
+        let Some((first, _)) = self.cutters.first() else { return Ok(None) };
         let Some(Cutter { diameter, corner }) = Cutter::of(card, unit) else {
-            return Ok(Some(*line));
+            return Ok(Some(*first));
         };
         let expected = [diameter, corner, 0.5 * diameter - corner, corner, 0.0, 0.0];
         let alike =
             |(stated, expected): (&f64, &f64)| (stated - expected).abs() <= ROUNDED * diameter;
-        if stated.iter().zip(&expected).all(alike) {
-            return Ok(None);
-        }
+        let other =
+            self.cutters.iter().find(|(_, stated)| !stated.iter().zip(&expected).all(alike));
+        let Some((line, stated)) = other else { return Ok(None) };
         let list: Vec<String> = stated.iter().map(f64::to_string).collect();
         Err(ProgramError::Cutter {
             file: self.file.clone(),

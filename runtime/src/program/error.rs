@@ -196,6 +196,24 @@ pub enum Fault {
         /// The word.
         word: String,
     },
+    /// A word that is passed over, with a motion in its arguments.
+    #[error("{word} has another statement in its arguments: give each a line of its own")]
+    Swallowed {
+        /// The word.
+        word: String,
+    },
+    /// A tool that is named after positions.
+    #[error("{word} comes after positions, which are of another tool: give one program per tool")]
+    LateTool {
+        /// The word.
+        word: String,
+    },
+    /// A control character, or one that some programs take for the end of a line.
+    #[error("the character {shown} is neither a blank nor the end of a line: remove it")]
+    Control {
+        /// How it is written.
+        shown: String,
+    },
     /// A second tool, or a second cutter.
     #[error("another tool than that of line {first}: give one program per tool")]
     SecondTool {

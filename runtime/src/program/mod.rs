@@ -42,8 +42,8 @@ pub struct Program {
     file: String,
     /// Of a program that was read.
     unit_line: Option<usize>,
-    /// The arguments of APT's `CUTTER`, in the program's unit, and its line.
-    cutter: Option<(usize, Vec<f64>)>,
+    /// What APT says of the cutter, as arguments of `CUTTER` in the program's unit, each with its line.
+    cutters: Vec<(usize, Vec<f64>)>,
 }
 
 /// One position of a program.
@@ -74,7 +74,7 @@ impl Program {
         if stops.is_empty() {
             return Err(ProgramError::NoPosition { file });
         }
-        Ok(Program { unit, stops, ignored: Vec::new(), file, unit_line: None, cutter: None })
+        Ok(Program { unit, stops, ignored: Vec::new(), file, unit_line: None, cutters: Vec::new() })
     }
 
     /// Reads a program from a file.
@@ -97,7 +97,7 @@ impl Program {
                 unit_line: tape.unit.map(|(_, line)| line),
                 stops: tape.stops,
                 ignored: tape.ignored,
-                cutter: tape.cutter,
+                cutters: tape.cutters,
                 file,
             }),
         }
@@ -151,7 +151,7 @@ struct Tape {
     stops: Vec<Stop>,
     unit: Option<(Unit, usize)>,
     ignored: Vec<(usize, String)>,
-    cutter: Option<(usize, Vec<f64>)>,
+    cutters: Vec<(usize, Vec<f64>)>,
 }
 
 /// Bytes to text to positions.
@@ -175,13 +175,29 @@ fn assemble(bytes: &[u8]) -> Result<Tape, Located> {
 fn decode(bytes: &[u8]) -> Result<&str, Located> {
     let bad = match std::str::from_utf8(bytes) {
         Ok(text) => match text.find('\0') {
-            None => return Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
+            None => return plain(text.strip_prefix('\u{feff}').unwrap_or(text)),
             Some(byte) => byte,
         },
         Err(error) => error.valid_up_to(),
     };
     let line = lines(&String::from_utf8_lossy(&bytes[..bad])).count();
     Err((line, Fault::NotText { byte: bad }))
+}
+
+/// The text, if no character in it hides a line from a reader or shows one that is none.
+fn plain(text: &str) -> Result<&str, Located> {
+    let hidden = |c: char| {
+        c.is_control() && !matches!(c, '\t' | '\r' | '\n') || matches!(c, '\u{2028}' | '\u{2029}')
+    };
+    match text.find(hidden) {
+        None => Ok(text),
+        Some(byte) => {
+            let line = lines(&text[..byte]).count();
+            let shown =
+                text[byte..].chars().take(1).flat_map(char::escape_unicode).collect::<String>();
+            Err((line, Fault::Control { shown: format!("`{shown}`") }))
+        }
+    }
 }
 
 /// The lines, trimmed and numbered from 1, whether they end in LF, CRLF or a lone CR.

@@ -16,12 +16,12 @@ const VERBATIM: [&str; 2] = ["INSERT", "LETTER"];
 /// that the positions have already been computed with, speeds and feeds, coolant, stops and waits, the
 /// block numbers and the file of the post-processor, planes that only other words use, displays.
 #[rustfmt::skip]
-const INERT: [&str; 37] = [
+const INERT: [&str; 35] = [
     "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
     "INTOL", "OUTTOL", "TOLER", "LINTOL", "MCHTOL", "CUT",
     "FEDRAT", "FEDTO", "SPINDL", "COOLNT", "OPSTOP", "STOP", "DELAY", "DWELL", "END", "REWIND",
     "CLEARP", "CLRSRF", "SELCTL", "PAINT", "DISPLY", "PLOT", "NOPLOT", "NOPOST", "VERIFY",
-    "TOOL PATH", "TLDATA",
+
 ];
 
 /// Words that move the tool, or decide whether and how often it moves.
@@ -42,6 +42,9 @@ const FRAMES: [&str; 21] = [
     "PLANE", "SCALE", "MIRROR", "CUTCOM", "OFSTNO", "FIXOFF", "THICK", "OFFSET", "MODE", "HEAD",
     "TURRET",
 ];
+
+/// Words that no argument of a word that is passed over is.
+const MOVING: [&str; 4] = ["GOTO", "FROM", "GODLTA", "RAPID"];
 
 /// Returns whether a line is prose to its end.
 pub(super) fn is_prose(line: &str) -> bool {
@@ -64,6 +67,11 @@ pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, Fault> {
         return Err(Fault::Verbatim { word: (*verbatim).to_owned() });
     }
     if INERT.contains(&word) || is_inert_with(word, arguments) {
+        // Where a line's end is lost, a motion stands among the arguments.
+        let moves = |part: &str| MOVING.iter().any(|word| part.eq_ignore_ascii_case(word));
+        if arguments.contains('/') || arguments.split([' ', ',', '\t']).any(moves) {
+            return Err(Fault::Swallowed { word: word.to_owned() });
+        }
         return Ok(word.to_owned());
     }
     if is_g_code(word) {
@@ -99,7 +107,6 @@ fn is_inert_with(word: &str, arguments: &str) -> bool {
         "CYCLE" | "CUTCOM" | "OPSKIP" => is("OFF"),
         "TRACUT" | "COPY" => is("NOMORE"),
         "MODE" => is("ABSOL"),
-        "TLAXIS" => is("0,0,1"),
         "ORIGIN" | "TRANS" | "THICK" => {
             numbers().is_ok_and(|values| values.iter().all(|v| *v == 0.0))
         }

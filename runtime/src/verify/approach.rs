@@ -134,7 +134,10 @@ impl Search<'_> {
         let mut least = Vec::with_capacity(stops.len());
         let mut before: Option<(f64, &Pose)> = None;
         for stop in stops {
-            let kept = before.map_or(0.0, |(low, pose)| low - self.travel(pose, &stop.pose));
+            let kept = before.map_or(0.0, |(low, pose)| {
+                let travel = self.travel(pose, &stop.pose);
+                low - travel - 4.0 * f64::EPSILON * (low + travel)
+            });
             let kept = if kept > self.distance { kept } else { self.ask(&stop.pose, stop.line) };
             least.push(kept);
             if self.distance == 0.0 {
@@ -164,7 +167,8 @@ impl Search<'_> {
     fn span(&mut self, motion: &Motion, span: Span, (line, halvings): (usize, u32)) -> Option<f64> {
         let Span { times: [from, to], least: [first, last], travel } = span;
         // A point that is `s` of the way from one end is no nearer than either end's distance less the way.
-        let kept = 0.5 * (first + last - travel);
+        let rounding = 4.0 * f64::EPSILON * (first.abs() + last.abs() + travel);
+        let kept = 0.5 * (first + last - travel) - rounding;
         if kept >= (1.0 - FINE) * self.distance {
             return Some(kept);
         }
