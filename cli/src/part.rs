@@ -85,7 +85,7 @@ pub(crate) fn load(wanted: &PartFile, card: Option<&Card>, fine: Fine) -> Result
 
 /// What is said where a mesh does not tell what is inside.
 pub(crate) const NO_INSIDE: &str = "whether the tool is inside the material is unknown: the part's mesh leaks, is \
-                                    inside out or not consistently oriented";
+                                    not consistently oriented, or is inside out as a whole or in a piece";
 
 /// Refuses a part of which it is not known what is inside, unless its surface alone is asked for.
 pub(crate) fn has_inside(facets: &Facets, part: &Path, surface_only: bool) -> Result<(), Failure> {

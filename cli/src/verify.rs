@@ -145,6 +145,13 @@ fn status(report: &Report, wanted: &Verify) -> u8 {
             status = NOT_CHECKED;
         }
     }
+    if report.nothing_restricted {
+        say!(
+            "not verified: no surface of the tool can be deeper than it may be by more than the resolution; lower \
+             `--tolerance`, `--allow` or `--resolution`"
+        );
+        status = NOT_CHECKED;
+    }
     if report.approach.is_far() && !wanted.anyway {
         say!(
             "not verified: the program never comes within the tool's diameter of the part; is it the right part, \

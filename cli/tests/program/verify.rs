@@ -179,6 +179,13 @@ fn a_program_that_never_comes_near_is_not_verified() {
     let output = verify(&bench, "across.csv", "D2Ball", &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("nearest approach: 0."), "{}", stderr(&output));
+    // Nothing can be so deep that it would be found.
+    for more in [&["--tolerance", "10"][..], &["--resolution", "10"]] {
+        let output = verify(&bench, "across.csv", "D2Ball", more);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("no surface of the tool can be deeper than it may be"), "{said}");
+    }
     bench.write("one.csv", "0,0,0.5,0,0,1\n");
     let output = verify(&bench, "one.csv", "D2Ball", &[]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));

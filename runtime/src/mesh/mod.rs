@@ -28,6 +28,7 @@ pub use read::{Shape, ShapeError};
 pub use stl::StlError;
 pub use stray::Stray;
 pub use survey::Survey;
+pub(crate) use survey::inverted;
 pub use words::Place;
 
 /// The largest coordinate a mesh may have, of either sign. Up to here areas and volumes, which

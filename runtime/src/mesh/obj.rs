@@ -27,6 +27,19 @@ pub enum ObjError {
         /// What does.
         found: String,
     },
+    /// A line may hold a part of the surface in a form that is not read.
+    #[error(
+        "{file}, line {line}: `{word}` is not read and may be a part of the surface: export the part as faces, \
+         `f` lines"
+    )]
+    Unread {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// The word that it begins with.
+        word: String,
+    },
     /// A vertex is nowhere.
     #[error(
         "{file}, line {line}: the coordinate `{coordinate}` is not a finite number within \
@@ -95,11 +108,19 @@ pub enum ObjError {
     },
 }
 
+/// Words whose lines hold no surface: attributes of vertices, points and lines, names, materials, and
+/// how faces are shaded.
+const SKIPPED: [&[u8]; 13] = [
+    b"vn", b"vt", b"vp", b"p", b"l", b"o", b"g", b"s", b"mg", b"mtllib", b"usemtl", b"usemap",
+    b"maplib",
+];
+
 impl Mesh {
     /// Reads the faces of an OBJ file as a mesh, whose numbers are in `unit` (OBJ states none);
     /// `name` stands for the file in errors. No bytes make it panic.
     ///
-    /// Of all its lines those of `v` and `f` are read, with indices from 1 or back from -1 and
+    /// Of all its lines those of `v` and `f` are read, names, materials and attributes are skipped, and
+    /// any other, such as a free-form surface, is refused. Faces may be written with indices from 1 or back from -1 and
     /// with or without `/vt/vn`; objects, groups and materials all become one mesh. Polygons and
     /// equal corners are treated as in [`Mesh::from_ply`]. The format does not say how much there
     /// is: a file that was cut off between faces shows as a leak in the [survey](Mesh::survey).
@@ -119,6 +140,10 @@ impl Mesh {
                     let place = Place::Line(lines.words.line);
                     lines.face(vertices.len(), &mut corners)?;
                     faces.push(place, &corners);
+                }
+                Some(word) if !SKIPPED.contains(&word) => {
+                    let (file, line, word) = (file(), lines.words.line, shown(word));
+                    return Err(ObjError::Unread { file, line, word });
                 }
                 _ => {}
             }
@@ -268,6 +293,21 @@ mod tests {
     fn refusal(bytes: impl AsRef<[u8]>) -> String {
         let refused = Mesh::from_obj(bytes.as_ref(), "part.obj", UNIT);
         refused.expect_err("it should be refused").to_string()
+    }
+
+    /// What may be a part of the surface is not passed over.
+    #[test]
+    fn a_surface_that_is_not_read_is_refused() {
+        let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        for word in ["fo 1 2 3", "F 1 2 3", "surf 0 1 0 1 1 2 3", "call other.obj", "curv 0 1 1 2"]
+        {
+            let text = format!("{faces}{word}\n");
+            let found = Mesh::from_obj(text.as_bytes(), "a.obj", Unit::Millimetre);
+            let said = found.expect_err(word).to_string();
+            assert!(said.starts_with("a.obj, line 5: `"), "{said}");
+        }
+        let text = format!("mtllib a\no b\ng c\ns 1\nusemtl d\n{faces}l 1 2\np 1\n");
+        assert!(Mesh::from_obj(text.as_bytes(), "a.obj", Unit::Millimetre).is_ok());
     }
 
     #[test]

@@ -248,6 +248,22 @@ fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
     mesh.triangles().iter().filter(whole).flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
 }
 
+/// Returns the triangles of shells with a negative volume: voids, or pieces that are inside out.
+pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
+    let (shell_of, count) = shells(mesh);
+    let [low, high] = mesh.bounds();
+    let origin = nalgebra::center(&low, &high);
+    let mut volumes = vec![0.0; count];
+    let shell = |triangle: &[u32; 3]| shell_of[triangle[0] as usize] as usize;
+    for (corners, triangle) in mesh.corners().zip(mesh.triangles()) {
+        if let Some((share, normal)) = area_and_normal(&corners) {
+            volumes[shell(triangle)] += normal.dot(&(corners[0] - origin)) * share / 3.0;
+        }
+    }
+    let is_inverted = |(_, triangle): &(u32, &[u32; 3])| volumes[shell(triangle)] < 0.0;
+    (0..).zip(mesh.triangles()).filter(is_inverted).map(|(id, _)| id).collect()
+}
+
 /// The shell of each vertex and how many there are, by union and find. A vertex that no triangle
 /// uses is in none, and its entry says nothing.
 fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {

@@ -36,6 +36,9 @@ pub struct Report {
     pub inside_known: bool,
     /// How near the tool comes to the part.
     pub approach: Approach,
+    /// Whether nothing could have been found: every surface may be as deep as it can be, less the resolution, in
+    /// all modes that the program uses.
+    pub nothing_restricted: bool,
 }
 
 /// Something wrong with one motion, or with the stop that a program begins at.

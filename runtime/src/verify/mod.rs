@@ -168,7 +168,19 @@ impl<'a> Verifier<'a> {
             approach: self.approach(stops, &findings)?,
             findings,
             inside_known: self.facets.has_inside(),
+            nothing_restricted: !self.restricts(stops)?,
         })
+    }
+
+    /// Whether a surface of the tool could be deeper than it may be, or nearer.
+    fn restricts(&self, stops: &[Stop]) -> Result<bool, VerifyError> {
+        let certifier = Certifier::new(self.facets, self.tool)?;
+        let greatest = |surface| certifier.greatest_depth(surface).unwrap_or(f64::INFINITY);
+        let modes =
+            [false, true].into_iter().filter(|mode| stops.iter().any(|stop| stop.rapid == *mode));
+        Ok(modes
+            .flat_map(|rapid| self.limits(rapid).into_iter().enumerate())
+            .any(|(surface, limit)| limit < 0.0 || limit + self.resolution < greatest(surface)))
     }
 
     /// How deep each surface may be.

@@ -2,6 +2,7 @@
 
 use super::flat::Plane;
 use super::flats::Flats;
+use crate::mesh::inverted;
 use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
 use crate::{Mesh, Unit};
 use nalgebra::Point3;
@@ -34,6 +35,9 @@ pub struct Facets {
 /// coordinate; what is not there is NaN.
 #[derive(Clone, Debug)]
 pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
+
+/// So far beside a triangle, as a part of the part's size, it is looked whether its shell is a void.
+const BESIDE: f64 = 1e-9;
 
 /// What is no farther from a plane is in it, in the part's unit: a part of what rounding makes of a place.
 pub(crate) fn flat(frame: &Frame) -> f64 {
@@ -85,7 +89,8 @@ impl Facets {
             inside.chunks(below).map(Plane::of).collect()
         });
         let ids: Vec<u32> = items.iter().map(|item| item.index).collect();
-        Facets {
+        let survey = mesh.survey();
+        let mut facets = Facets {
             flats: Flats::new(mesh, &ids, &corners, flat(&frame)),
             planes: planes.collect(),
             leaves: leaves.collect(),
@@ -94,8 +99,21 @@ impl Facets {
             ids,
             frame,
             unit: mesh.unit(),
-            solid: mesh.survey().solid(),
-        }
+            solid: survey.solid(),
+        };
+        facets.solid &= survey.inverted_shells == 0 || facets.voids_are_voids(mesh);
+        facets
+    }
+
+    /// Whether shells that face inward are voids in the material: beside none of their triangles does the
+    /// surface go around a point less than 0 times, as it does inside a piece that is inside out.
+    fn voids_are_voids(&self, mesh: &Mesh) -> bool {
+        let off = BESIDE * f64::from(self.frame.size) * self.frame.scale;
+        inverted(mesh).into_iter().all(|id| {
+            let [a, b, c] = mesh.triangle(id);
+            let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+            mesh.normal(id).is_none_or(|normal| !self.is_negative(middle + normal * off))
+        })
     }
 
     /// The lowest and the highest corner of the box about the triangles.

@@ -69,6 +69,12 @@ impl Facets {
         Location::Undecided
     }
 
+    /// Whether the surface goes around a point less than 0 times, if a ray tells.
+    pub(super) fn is_negative(&self, point: Point3<f64>) -> bool {
+        let windings = (0..RAYS).map(|ray| self.winding(point, direction(ray)));
+        windings.flatten().next().is_some_and(|winding| winding < 0)
+    }
+
     /// How often the surface goes around a point, by what a ray crosses; what it does where that does not
     /// tell.
     fn winding(&self, point: Point3<f64>, way: Vector3<f64>) -> Result<i32, Crossing> {
@@ -154,6 +160,29 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A piece that is inside out, beside a good one or sticking out of it, leaves no inside; a void does.
+    #[test]
+    fn a_piece_inside_out_leaves_no_inside() {
+        let block = |low: f64, high: f64, at: f64| {
+            let [low, high] = [low, high].map(|z| Point3::new(z + at, z, z));
+            shapes::cuboid(low, high, Unit::Millimetre).expect("a block")
+        };
+        let with = |small: crate::Mesh, turned: bool| {
+            let large = block(-10.0, 10.0, 0.0);
+            let after = large.vertices().len() as u32;
+            let vertices = [large.vertices(), small.vertices()].concat();
+            let turn = |[a, b, c]: [u32; 3]| if turned { [b, a, c] } else { [a, b, c] };
+            let more = small.triangles().iter().map(|corners| turn(corners.map(|k| k + after)));
+            let triangles = large.triangles().iter().copied().chain(more).collect();
+            crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
+        };
+        let has_inside = |small, turned| Facets::new(&with(small, turned)).has_inside();
+        assert!(has_inside(block(-2.0, 2.0, 30.0), false));
+        assert!(has_inside(block(-2.0, 2.0, 0.0), true));
+        assert!(!has_inside(block(-2.0, 2.0, 30.0), true));
+        assert!(!has_inside(block(-2.0, 2.0, 10.0), true));
     }
 
     /// An ulp beside a face is still decided.

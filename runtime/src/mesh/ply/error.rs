@@ -26,6 +26,16 @@ pub enum PlyError {
         /// What does.
         found: String,
     },
+    /// A part of the surface is written in a form that is not read.
+    #[error(
+        "{file} has a surface in `{unread}` too, which is not read: export the part as faces alone"
+    )]
+    Unread {
+        /// The file.
+        file: String,
+        /// The element or list.
+        unread: String,
+    },
     /// The header gives one name to two things.
     #[error("{file}, line {line}: there is a second `{name}`: give each its own name")]
     Twice {

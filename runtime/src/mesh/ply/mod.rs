@@ -14,6 +14,7 @@ use self::body::{Body, Record, whole};
 use self::header::{Element, Header};
 use super::faces::Faces;
 use super::stray::{Stray, stray};
+use super::words::shown;
 use super::{Mesh, coordinate_holds};
 use crate::Unit;
 
@@ -22,6 +23,9 @@ pub(super) use self::header::begins;
 
 /// What writers call the list of a face's corners.
 const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// Elements that are surfaces too, and are not read.
+const STRIPS: [&[u8]; 3] = [b"tristrips", b"trifans", b"patches"];
 
 const COORDINATE_RULE: &str = "finite and within 1e60";
 
@@ -110,7 +114,8 @@ impl Mesh {
     /// A face of more than three corners is cut into triangles from its first corner, and refused
     /// where these do not fill it; ids count the resulting triangles. Corners with equal
     /// coordinates become one vertex, as in [`Mesh::read_stl`]: exporters double the vertices of
-    /// sharp edges. Other elements and properties are skipped.
+    /// sharp edges. Other elements and properties are skipped, but
+    /// triangle strips and a second list of corners, which are refused.
     ///
     /// # Errors
     /// See [`PlyError`].
@@ -126,6 +131,12 @@ impl Mesh {
         let Some((face, list)) = list else {
             return Err(PlyError::NoFaces { file: file() });
         };
+        let strips = header.elements.iter().find(|element| STRIPS.contains(&element.name));
+        let second = LISTS.into_iter().find(|other| *other != list && face.list(other).is_some());
+        let unread = strips.map(|strips| shown(strips.name)).or(second.map(str::to_owned));
+        if let Some(unread) = unread {
+            return Err(PlyError::Unread { file: file(), unread });
+        }
         let mut vertices = Vec::new();
         let mut faces = Faces::default();
         let mut corners = Vec::new();

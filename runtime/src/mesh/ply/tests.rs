@@ -389,3 +389,21 @@ fn survives_any_bytes() {
         }
     }
 }
+
+/// Triangle strips and a second list of corners are surfaces too.
+#[test]
+fn a_surface_that_is_not_read_is_refused() {
+    let vertices = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let face = "element face 1\nproperty list uchar int vertex_index\n";
+    let body = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let refused = |header: String| {
+        let found = Mesh::from_ply(header.as_bytes(), "a.ply", Unit::Millimetre);
+        found.expect_err("a surface that is not read").to_string()
+    };
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    let said = refused(format!("{vertices}{face}{strips}{body}4 0 1 2 -1\n"));
+    assert!(said.contains("`tristrips`"), "{said}");
+    let lists = format!("{face}property list uchar int vertex_indices\n");
+    let said = refused(format!("{vertices}{lists}{}", body.replace("3 0 1 2", "3 0 1 2 3 0 1 2")));
+    assert!(said.contains("has a surface in `vertex_ind"), "{said}");
+}

@@ -6,7 +6,7 @@ use super::methods::{Budgeted, Precision, Proved};
 use super::plan::Plan;
 use super::reference::{Reference, in_contact};
 use super::row::{Label, Row};
-use super::{Facts, Failure, Sink, peers};
+use super::{Facts, Failure, Sink, peers, progress};
 use touchoff::certify::{Certifier, Facets};
 use touchoff::{Graded, Law, Mesh, Part, Pose, Unit};
 
@@ -53,7 +53,7 @@ pub(super) fn measure(
         all.push(know(scene, mesh, &facets, plan)?);
     }
     for (from_last, count) in plan.points.iter().rev().enumerate().rev() {
-        eprintln!("{count} points");
+        progress(&format!("{count} points"));
         let kinds = kinds(mesh, *count, plan.seed, |cloud| cloud)?;
         let detailed = match from_last {
             0 => Some(Part::detailed(mesh, *count, plan.seed)?),
@@ -85,7 +85,7 @@ fn know<'t>(
         let poses = scene.poses.clone();
         return Ok(Known { scene, poses, truth: None, thesis: None });
     }
-    eprintln!("the truth of {}", scene.name);
+    progress(&format!("the truth of {}", scene.name));
     let tool = scene.cutter.tool();
     let poses = in_contact(facets, tool, &scene.poses)?;
     if poses.is_empty() {
@@ -162,7 +162,7 @@ fn add_peers(lineup: &mut Lineup<'_>, mesh: &Mesh, kinds: &[Kind], points: bool,
 /// Times, then errors.
 fn rows(lineup: &mut Lineup<'_>, known: &Known<'_>, plan: &Plan) -> Vec<Row> {
     let name = &known.scene.name;
-    eprintln!("  {name}");
+    progress(&format!("  {name}"));
     // A short path is gone along again, no more often than it takes.
     let again = LEAST.min(plan.path / 2).div_ceil(known.poses.len()).max(1);
     let poses: Vec<Pose> =

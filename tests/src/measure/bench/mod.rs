@@ -131,7 +131,7 @@ pub fn measure(
     rayon::current_num_threads();
     let pinned = pin();
     for patch in Patch::ALL.into_iter().filter(|patch| words.contains(&patch.name())) {
-        eprintln!("{}", patch.name());
+        progress(patch.name());
         scenes.push(closed::measure(patch, plan, &mut both)?);
     }
     let tube_scenes = along_the_tube(words, plan);
@@ -170,4 +170,10 @@ fn along_the_tube(words: &[&str], plan: &Plan) -> Vec<Along<'static>> {
         all.push(scene("apart", about, false, &|k| apart(GAP, k, count)));
     }
     all
+}
+
+/// Says on standard error what is measured; where nobody reads that, nothing is lost.
+fn progress(words: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "{words}");
 }
