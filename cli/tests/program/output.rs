@@ -9,7 +9,7 @@ use std::process::{Command, Output, Stdio};
 /// 0.5 deep in the block, and never outside of it again.
 const GOUGES: &str =
     "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
-const CLEAR: &str = "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/9,0,3,0,0,1\nFINI\n";
+const CLEAR: &str = "UNITS/MM\nGOTO/-9,0,1,0,0,1\nGOTO/9,0,1,0,0,1\nFINI\n";
 const GOOD: &str = "tool Good {
     units mm;
     profile { start (0, 0); line to (2, 0), (2, 9), (0, 9) as body cutting; }
