@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tool_dsl::report::Report;
-use tool_dsl::source::Sources;
+use tool_dsl::source::{Source, Sources};
 use touchoff::{AtomicFile, EscapedLines};
 
 /// Standard output.
@@ -111,7 +111,8 @@ pub(crate) fn unwritable(file: &Path, source: io::Error) -> Failure {
     Failure::Unwritable { file: file.display().to_string(), source }
 }
 
-/// Refuses outputs that are inputs, before anything is read or written: the same file under any name, by links too.
+/// Refuses outputs that are inputs, before anything is written: the same file under any name, by links too, and files
+/// that a tool's file mounts.
 ///
 /// # Errors
 /// [`Failure::IsInput`] for the first of them.
@@ -121,14 +122,27 @@ pub(crate) fn refuse_inputs<'a>(
 ) -> Result<(), Failure> {
     let inputs: Vec<&Path> = inputs.into_iter().collect();
     for output in outputs {
-        for input in &inputs {
-            if is_same_file(output, input) {
+        // What is not there is no input.
+        for input in inputs.iter().filter(|_| output.is_file()) {
+            let mounted = mounted(input);
+            let mut all = std::iter::once(*input).chain(mounted.iter().map(PathBuf::as_path));
+            if let Some(input) = all.find(|input| is_same_file(output, input)) {
                 let [output, input] = [output, input].map(|file| file.display().to_string());
                 return Err(Failure::IsInput { output, input });
             }
         }
     }
     Ok(())
+}
+
+/// The files that a tool's file mounts, as far as it can be read.
+fn mounted(tool: &Path) -> Vec<PathBuf> {
+    if tool.extension().is_none_or(|extension| extension != "tool") {
+        return Vec::new();
+    }
+    let Ok(source) = Source::read(tool) else { return Vec::new() };
+    let compiled = tool_dsl::compile(&source);
+    compiled.sources.all().iter().filter_map(|source| source.path().map(Path::to_owned)).collect()
 }
 
 /// Whether two paths lead to one regular file that is there.

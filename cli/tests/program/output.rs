@@ -250,7 +250,10 @@ fn an_output_that_is_an_input_is_refused() {
     let haptic =
         ["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--seconds", "0.1"];
     let leads = ["path", &map, "--part", &part, "--tool"];
-    let commands: [&[&str]; 12] = [
+    let mounting =
+        bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
+    let commands: [&[&str]; 13] = [
+        &["draw", &mounting, "-o", &drawn],
         &["map", &map, "--to", &to_map],
         &["map", &map, "--part", &part, "--to", &to_part],
         &[&leads[..], &["D2Ball", "--stepover", "1", "--to", &to_map]].concat(),
