@@ -245,13 +245,13 @@ fn an_output_that_is_an_input_is_refused() {
     let folder = bench.folder.path().display().to_string();
     let rows = bench.write("work-precision.jsonl", "0,0,1,0,0,1\n");
     let bench_of = ["bench", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &rows];
+    let mounting =
+        bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
     let kept = content(bench.folder.path());
     let stages = place("stages");
     let haptic =
         ["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--seconds", "0.1"];
     let leads = ["path", &map, "--part", &part, "--tool"];
-    let mounting =
-        bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
     let commands: [&[&str]; 13] = [
         &["draw", &mounting, "-o", &drawn],
         &["map", &map, "--to", &to_map],
