@@ -135,8 +135,8 @@ fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
         briefly(&check(&large, text, 0.1, &any)),
         [(1, "inside", None), (2, "inside", None)]
     );
-    // All of the tool but its shank is allowed to be anywhere, and its nut is in the open.
-    let deep = block([-200.0, -200.0, -200.0], [200.0, 200.0, 25.5]);
+    // All of the tool but its shank is allowed to be anywhere, and its nut ends in the open.
+    let deep = block([-200.0, -200.0, -200.0], [200.0, 200.0, 38.0]);
     let limits = [any[0], any[1], ("nut", f64::INFINITY)];
     let shank = briefly(&check(&deep, text, 0.1, &limits));
     assert_eq!(shank, [(1, "inside", Some(2)), (2, "inside", Some(2))]);
