@@ -73,7 +73,12 @@ impl Bench {
         self.refused_with(2, ("block.stl", path, "D2Ball"), words);
     }
 
-    fn refused_with(&self, status: i32, (part, path, tool): (&str, &str, &str), words: &[&str]) {
+    pub(super) fn refused_with(
+        &self,
+        status: i32,
+        (part, path, tool): (&str, &str, &str),
+        words: &[&str],
+    ) {
         let output = self.run(part, path, tool, &["--json"]);
         let said = stderr(&output);
         assert_eq!(output.status.code(), Some(status), "{said}");

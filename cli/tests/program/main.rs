@@ -373,10 +373,9 @@ fn files_are_drawn() {
 #[test]
 fn a_solid_wants_full_poses() {
     let bench = Bench::new();
-    bench.refused(
-        "block.stl",
-        "path.csv",
-        "Block",
+    bench.refused_with(
+        2,
+        ("block.stl", "path.csv", "Block"),
         &["path.csv:2", "an axis does not place `Block`", "give a quaternion"],
     );
     bench.write("full.csv", "x,y,z,qx,qy,qz,qw\n0,0,1,0,0,0,1\n0,0,-0.5,0,0,0,1\n");

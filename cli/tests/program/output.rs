@@ -290,12 +290,7 @@ fn a_program_that_is_cut_short_is_refused() {
     let half = whole.lines().take(whole.lines().count() / 2).collect::<Vec<_>>().join("\n");
     bench.write("cut.csv", &half);
     let line = half.lines().count();
-    bench.refused(
-        "block.stl",
-        "cut.csv",
-        "D2Ball",
-        &[&format!("cut.csv:{line}: the table stops here")],
-    );
+    bench.refused_program("cut.csv", &[&format!("cut.csv:{line}: the table stops here")]);
 }
 
 #[test]
