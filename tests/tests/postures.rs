@@ -104,19 +104,24 @@ fn a_plate_is_reached_from_all_above_it() {
     }
 }
 
-/// A roof over a plate: the tool as it is fits between, so that it need not stick out farther, however wide the
-/// holder is taken to go on above.
+/// A plate in the middle of a hollow block: the tool as it is fits in, so that it need not stick out farther, however
+/// far the holder is taken to go on above.
 #[test]
 fn no_stick_out_is_more_than_that_of_the_tool() {
     let block = |low: [f64; 3], high: [f64; 3]| {
         shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
     };
     let plate = block([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
-    let roof = block([-300.0, -300.0, 60.0], [300.0, 300.0, 65.0]);
-    let vertices = [plate.vertices(), roof.vertices()].concat();
-    let after = plate.vertices().len() as u32;
-    let above = roof.triangles().iter().map(|corners| corners.map(|corner| corner + after));
-    let triangles = plate.triangles().iter().copied().chain(above).collect();
+    let [outer, hollow] = [80.0, 60.0].map(|half| block([-half; 3], [half; 3]));
+    let vertices = [plate.vertices(), outer.vertices(), hollow.vertices()].concat();
+    let moved = |corners: &[u32; 3], after: u32| corners.map(|corner| corner + after);
+    let outside = outer.triangles().iter().map(|corners| moved(corners, 8));
+    // The void's triangles face inward.
+    let inside = hollow.triangles().iter().map(|corners| {
+        let [a, b, c] = moved(corners, 16);
+        [b, a, c]
+    });
+    let triangles = plate.triangles().iter().copied().chain(outside).chain(inside).collect();
     let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
     let facets = Facets::new(&mesh);
     let directions = Directions::spread(200);
