@@ -1,5 +1,5 @@
-//! Whether what may not be in a part is inside it: no triangle shows that, so a point of each of its
-//! connected pieces is asked for.
+//! Containment in the material: no triangle shows that a part of the tool is wholly inside, so a point of each
+//! connected piece is asked for.
 
 use crate::certify::body::{Body, interior};
 use crate::certify::part::Location;
@@ -81,7 +81,7 @@ impl Cores {
 }
 
 impl Setting<'_> {
-    /// Where what may not be in the part is. Call only if no triangle is deeper than its surface's limit by
+    /// Returns where what may not be in the part is. Call only if no triangle is deeper than its surface's limit by
     /// more than `tolerance`, in the tool's unit.
     pub(crate) fn containment(
         &self,
@@ -105,7 +105,7 @@ impl Setting<'_> {
         found
     }
 
-    /// Whether what may not be in the part is one connected piece.
+    /// Returns whether what may not be in the part is one connected piece.
     #[cfg(feature = "postures")]
     pub(crate) fn is_one_piece(&self, (card, cores): (&Card, &mut Cores), tolerance: f64) -> bool {
         cores.deeper_than(&self.body, card, tolerance).is_some_and(|cores| cores.len() == 1)

@@ -286,7 +286,7 @@ impl<'a> Certifier<'a> {
         Some(owners.greatest_depth(section) * self.setting.length)
     }
 
-    /// Whether what may not be in the part is one piece: the points that are deeper than their limit by twice
+    /// Returns whether what may not be in the part is one piece: the points that are deeper than their limit by twice
     /// what rounding adds, which [`Certifier::is_too_deep`] tells.
     #[cfg(feature = "postures")]
     pub(crate) fn is_one_piece(&mut self) -> bool {
@@ -407,7 +407,7 @@ pub(crate) enum Touch {
     Undecided(f64),
 }
 
-/// Whether a triangle is deeper than rules allow.
+/// Returns whether a triangle is deeper than rules allow.
 fn touches(
     setting: &Setting<'_>,
     rules: &[Question],

@@ -223,7 +223,7 @@ impl Mesh {
     /// The smallest box around all triangles: its lowest and highest corner.
     pub fn bounds(&self) -> [Point3<f64>; 2] {
         let corners = self.triangles.iter().flatten();
-        bounds(corners.map(|&vertex| &self.vertices[vertex as usize]))
+        bounds(corners.map(|&vertex| self.vertices[vertex as usize]))
     }
 
     /// What the mesh is: closed or not, which way it is oriented, how large, what is odd about
@@ -241,7 +241,7 @@ impl Mesh {
 /// A mesh from the corners of its facets; the first of equal corners gives the vertex
 /// its coordinates.
 fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
-    let [low, high] = bounds(corners.iter().flatten());
+    let [low, high] = bounds(corners.iter().flatten().copied());
     let noise = (high - low).amax() * NOISE;
     let mut known = HashMap::new();
     let mut vertices = Vec::new();
@@ -268,9 +268,9 @@ fn weld(corners: &[[Point3<f64>; 3]], unit: Unit) -> Result<Mesh, MeshError> {
 }
 
 /// The smallest box around some points; without any, an empty one.
-fn bounds<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> [Point3<f64>; 2] {
+pub(crate) fn bounds(points: impl IntoIterator<Item = Point3<f64>>) -> [Point3<f64>; 2] {
     let nothing = [f64::INFINITY, f64::NEG_INFINITY].map(|c| Point3::new(c, c, c));
-    points.into_iter().fold(nothing, |[low, high], p| [low.inf(p), high.sup(p)])
+    points.into_iter().fold(nothing, |[low, high], p| [low.inf(&p), high.sup(&p)])
 }
 
 /// Whether a number may be a coordinate; NaN compares false.

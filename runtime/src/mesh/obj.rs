@@ -295,7 +295,7 @@ mod tests {
         refused.expect_err("it should be refused").to_string()
     }
 
-    /// What may be a part of the surface is not passed over.
+    /// A line that may be a part of the surface is not passed over.
     #[test]
     fn a_surface_that_is_not_read_is_refused() {
         let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

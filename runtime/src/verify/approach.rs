@@ -4,6 +4,7 @@
 use super::{Finding, Kind, Verifier, VerifyError};
 use crate::Pose;
 use crate::certify::Certifier;
+use crate::mesh;
 use crate::motion::Motion;
 use crate::program::Stop;
 use crate::tool::Piece;
@@ -79,22 +80,16 @@ impl Verifier<'_> {
             }
         }
         let Search { distance, line, .. } = search;
-        let tips = || stops.iter().map(|stop| stop.pose.tip());
+        let tips = stops.iter().map(|stop| stop.pose.tip());
         Ok(Approach {
             part: self.facets.bounds(),
-            program: around(tips()),
+            program: mesh::bounds(tips),
             distance,
             line,
             diameter,
             keeps,
         })
     }
-}
-
-/// The box about points.
-fn around(points: impl Iterator<Item = Point3<f64>>) -> [Point3<f64>; 2] {
-    let none = [Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3])];
-    points.fold(none, |[low, high], point| [low.inf(&point), high.sup(&point)])
 }
 
 /// The search for where the tool is nearest.
@@ -109,7 +104,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// How far any point of the tool goes at most from one pose to another.
+    /// Returns how far any point of the tool goes at most from one pose to another.
     fn travel(&self, from: &Pose, to: &Pose) -> f64 {
         match Motion::new(from, to) {
             Ok(motion) => motion.way().norm() + motion.angle() * self.reach,
@@ -148,7 +143,7 @@ impl Search<'_> {
         least
     }
 
-    /// What all motions keep, to a part of the nearest distance; `None` if that is not shown.
+    /// Returns what all motions keep, to a part of the nearest distance; `None` if that is not shown.
     fn motions(&mut self, stops: &[Stop], least: &[f64]) -> Option<f64> {
         let mut kept = f64::INFINITY;
         for (pair, ends) in stops.windows(2).zip(least.windows(2)) {
@@ -163,7 +158,7 @@ impl Search<'_> {
         Some(kept.min(ends))
     }
 
-    /// What a span of a motion keeps.
+    /// Returns what a span of a motion keeps.
     fn span(&mut self, motion: &Motion, span: Span, (line, halvings): (usize, u32)) -> Option<f64> {
         let Span { times: [from, to], least: [first, last], travel } = span;
         // A point that is `s` of the way from one end is no nearer than either end's distance less the way.

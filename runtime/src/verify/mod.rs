@@ -157,8 +157,12 @@ impl<'a> Verifier<'a> {
         program.check_unit(self.facets.unit())?;
         program.check_cutter(self.tool.card(), self.facets.unit())?;
         let stops = &program.stops;
+        let certifier = Certifier::new(self.facets, self.tool)?;
+        let surfaces = 0..self.allowed.len();
+        let greatest = |surface| certifier.greatest_depth(surface).unwrap_or(f64::INFINITY);
+        let greatest: Vec<f64> = surfaces.map(greatest).collect();
         let found = cores::ranges(stops.len(), TOGETHER, |range| {
-            let mut checker = Checker::new(self)?;
+            let mut checker = Checker::new(self, &greatest)?;
             Ok(range.flat_map(|stop| checker.stop(stops, stop)).collect::<Vec<_>>())
         });
         let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
@@ -168,19 +172,18 @@ impl<'a> Verifier<'a> {
             approach: self.approach(stops, &findings)?,
             findings,
             inside_known: self.facets.has_inside(),
-            nothing_restricted: !self.restricts(stops)?,
+            nothing_restricted: !self.restricts(stops, &greatest),
         })
     }
 
-    /// Whether a surface of the tool could be deeper than it may be, or nearer.
-    fn restricts(&self, stops: &[Stop]) -> Result<bool, VerifyError> {
-        let certifier = Certifier::new(self.facets, self.tool)?;
-        let greatest = |surface| certifier.greatest_depth(surface).unwrap_or(f64::INFINITY);
+    /// Returns whether a surface of the tool could be deeper than it may be, or nearer, given how deep each can be
+    /// at all.
+    fn restricts(&self, stops: &[Stop], greatest: &[f64]) -> bool {
         let modes =
             [false, true].into_iter().filter(|mode| stops.iter().any(|stop| stop.rapid == *mode));
-        Ok(modes
-            .flat_map(|rapid| self.limits(rapid).into_iter().enumerate())
-            .any(|(surface, limit)| limit < 0.0 || limit + self.resolution < greatest(surface)))
+        modes
+            .flat_map(|rapid| self.limits(rapid).into_iter().zip(greatest))
+            .any(|(limit, greatest)| limit < 0.0 || limit + self.resolution < *greatest)
     }
 
     /// How deep each surface may be.
@@ -204,22 +207,21 @@ struct Checker<'a> {
 struct Mode<'a> {
     certifier: Certifier<'a>,
     limits: Vec<f64>,
-    /// How deep each surface can be at all, of those that were asked for.
-    greatest: Vec<Option<f64>>,
+    /// The greatest depth that each surface can have.
+    greatest: &'a [f64],
 }
 
 /// What is no less deep than this part of the greatest depth that there is goes right through.
 const THROUGH: f64 = 0.98;
 
 impl<'a> Checker<'a> {
-    fn new(of: &Verifier<'a>) -> Result<Checker<'a>, VerifyError> {
+    fn new(of: &Verifier<'a>, greatest: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
         let mode = |rapid| {
             let limits = of.limits(rapid);
             let mut certifier = Certifier::new(of.facets, of.tool)?.budget(of.budget);
             for (surface, limit) in of.tool.card().surfaces.iter().zip(&limits) {
                 certifier = certifier.allow(&surface.name, *limit)?;
             }
-            let greatest = vec![None; limits.len()];
             Ok::<_, VerifyError>(Mode { certifier, limits, greatest })
         };
         Ok(Checker { modes: [mode(false)?, mode(true)?], resolution: of.resolution })
@@ -276,10 +278,7 @@ impl Mode<'_> {
                     found.push((at, Kind::Near { surface, margin, distance, least, witness }));
                 }
                 Along::Deeper { at, depth, most, witness } => {
-                    let greatest = self.greatest[surface].get_or_insert_with(|| {
-                        self.certifier.greatest_depth(surface).unwrap_or(f64::INFINITY)
-                    });
-                    let through = depth[1] >= THROUGH * *greatest;
+                    let through = depth[1] >= THROUGH * self.greatest[surface];
                     found
                         .push((at, Kind::Deep { surface, allowed, depth, most, through, witness }));
                 }

@@ -94,7 +94,7 @@ impl Normals {
         })
     }
 
-    /// How far the parameter goes.
+    /// Returns how far the parameter goes.
     fn end(&self) -> f64 {
         match self {
             Normals::Line { length, .. } => *length,
@@ -254,12 +254,12 @@ impl Interior<'_> {
         }
     }
 
-    /// Whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
+    /// Returns whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
     fn is_free(&self, p: Place, t: f64) -> bool {
         p[0] >= 0.0 && self.section.away(p) >= t - NEARLY * self.section.error
     }
 
-    /// How far a normal that is at least `least` long goes before something else of the profile is as near
+    /// Returns how far a normal that is at least `least` long goes before something else of the profile is as near
     /// as its foot, or to the axis.
     fn length(&self, normals: &Normals, s: f64, least: f64) -> f64 {
         let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.size)];
@@ -274,7 +274,7 @@ impl Interior<'_> {
         low
     }
 
-    /// How far about a point of the tool all points are deeper than the limit of their nearest feature by
+    /// Returns how far about a point of the tool all points are deeper than the limit of their nearest feature by
     /// more than `more`; nothing if that is not shown.
     ///
     /// Let the point be `d` deep. No point within `r` of it is less than `d - r` deep, and its nearest
@@ -289,7 +289,7 @@ impl Interior<'_> {
         features.map(of).fold(depth, f64::min)
     }
 
-    /// Whether the straight way between two points is shown to stay in the interior.
+    /// Returns whether the straight way between two points is shown to stay in the interior.
     fn connects(&self, from: Place, to: Place, more: f64) -> bool {
         let way = minus(to, from);
         let length = norm(way);

@@ -134,7 +134,7 @@ impl Owners {
         zone
     }
 
-    /// How deep the deepest place is that these own, to a hundredth; no less than that if the budget is spent
+    /// Returns how deep the deepest place is that these own, to a hundredth; no less than that if the budget is spent
     /// before.
     ///
     /// By rectangles that are halved, the one that may be deepest first: depth changes by no more than the way.

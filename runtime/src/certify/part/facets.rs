@@ -2,7 +2,7 @@
 
 use super::flat::Plane;
 use super::flats::Flats;
-use crate::mesh::inverted;
+use crate::mesh::{self, inverted};
 use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
 use crate::{Mesh, Unit};
 use nalgebra::Point3;
@@ -105,7 +105,7 @@ impl Facets {
         facets
     }
 
-    /// Whether shells that face inward are voids in the material: beside none of their triangles does the
+    /// Returns whether shells that face inward are voids in the material: beside none of their triangles does the
     /// surface go around a point less than 0 times, as it does inside a piece that is inside out.
     fn voids_are_voids(&self, mesh: &Mesh) -> bool {
         let off = BESIDE * f64::from(self.frame.size) * self.frame.scale;
@@ -118,9 +118,7 @@ impl Facets {
 
     /// The lowest and the highest corner of the box about the triangles.
     pub fn bounds(&self) -> [Point3<f64>; 2] {
-        let corners = self.corners.iter().flatten().map(|corner| Point3::from(*corner));
-        let none = [Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3])];
-        corners.fold(none, |[low, high], corner| [low.inf(&corner), high.sup(&corner)])
+        mesh::bounds(self.corners.iter().flatten().map(|corner| Point3::from(*corner)))
     }
 
     /// How many triangles there are.
@@ -133,7 +131,7 @@ impl Facets {
         self.ids.is_empty()
     }
 
-    /// Whether it is known what is inside: the mesh is closed, consistently oriented, and not inside out.
+    /// Returns whether it is known what is inside: the mesh is closed, consistently oriented, and not inside out.
     pub fn has_inside(&self) -> bool {
         self.solid
     }

@@ -45,7 +45,7 @@ enum Crossing {
 }
 
 impl Facets {
-    /// Where a point of the world is, in the part's unit.
+    /// Returns where a point of the world is, in the part's unit.
     ///
     /// The answer is exact for the point's doubles and the triangles' corners as they were read, unless
     /// products of four lengths overflow or underflow.
@@ -69,13 +69,13 @@ impl Facets {
         Location::Undecided
     }
 
-    /// Whether the surface goes around a point less than 0 times, if a ray tells.
+    /// Returns whether the surface goes around a point less than 0 times, if a ray tells.
     pub(super) fn is_negative(&self, point: Point3<f64>) -> bool {
         let windings = (0..RAYS).map(|ray| self.winding(point, direction(ray)));
         windings.flatten().next().is_some_and(|winding| winding < 0)
     }
 
-    /// How often the surface goes around a point, by what a ray crosses; what it does where that does not
+    /// Returns how often the surface goes around a point, by what a ray crosses; what it does where that does not
     /// tell.
     fn winding(&self, point: Point3<f64>, way: Vector3<f64>) -> Result<i32, Crossing> {
         let p = self.frame.inside([point.x, point.y, point.z]);
@@ -110,7 +110,7 @@ impl Facets {
     }
 }
 
-/// What the straight way from a point to another does at a triangle.
+/// Returns what the straight way from a point to another does at a triangle.
 fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
     let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
