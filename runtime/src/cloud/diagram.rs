@@ -26,6 +26,8 @@ const BESIDE: f64 = 2.5;
 const MOST_BESIDE: usize = 128;
 /// What a cell costs besides the points that are held against it.
 const CELL: usize = 16;
+/// What one of the nearest points costs, found and sorted, beside one that is held against a cell.
+const FOUND: usize = 4;
 /// Up to here points that were met are looked through one by one.
 const FEW: usize = 64;
 /// Points that one core takes at a time.
@@ -171,7 +173,7 @@ impl Surface {
                 };
                 many = (8 * many).min(left);
                 sites.near.some_within(at.into(), reach, many, found);
-                *held += found.len();
+                *held += FOUND * found.len();
                 farther.clear();
                 farther.extend(found.iter().filter(is_new).map(|(_, other)| *other));
                 list = farther;

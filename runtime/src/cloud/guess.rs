@@ -137,7 +137,7 @@ impl Places {
         &self.sides[start..self.ends[place]]
     }
 
-    /// How many points a place has.
+    /// Returns how many points a place has.
     fn count(&self, place: u32) -> usize {
         let sides = self.sides(place);
         sides[sides.len() - 1].points.end - sides[0].points.start

@@ -17,7 +17,7 @@ fn pieces(mesh: &Mesh, count: usize) -> usize {
     Surface::new(mesh, &Facets::of(mesh), count).pieces.len()
 }
 
-/// How far the corners of triangles and places between them are from all points.
+/// Returns how far the corners of triangles and places between them are from all points.
 fn farthest(mesh: &Mesh, cloud: &Cloud) -> f64 {
     let between = |[a, b, c]: [Point3<f64>; 3], k: usize| {
         let (u, v) = ((k % 11) as f64 / 10.0, (k / 11) as f64 / 10.0);

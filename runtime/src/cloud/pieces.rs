@@ -108,7 +108,7 @@ impl Surface {
         }
     }
 
-    /// Whether triangles are too long to be cut for the points' spacing.
+    /// Returns whether triangles are too long to be cut for the points' spacing.
     pub(super) fn coarse(&self) -> bool {
         self.grain > self.spacing
     }
