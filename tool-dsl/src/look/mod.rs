@@ -2,6 +2,7 @@
 //! never reached or say nonsense. What is found comes with the point where it was found.
 
 mod fault;
+mod laws;
 
 use crate::bound::Extent;
 use crate::domain::Domain;
@@ -72,10 +73,15 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
             for (p, _) in &cell.samples {
                 let point = [p[0], 0.0, p[1]];
                 if let Some(owner) = look.owner(point) {
-                    look.felt(&model.regions[owner], point);
+                    look.felt(owner, point);
                 }
             }
         }
+        for beside in laws::beside(&section.outline) {
+            let [at, way] = beside.map(|[d, z]| [d, 0.0, z]);
+            look.toward_surface(at, way);
+        }
+        look.on_axis(extent);
         return look.found;
     }
     look.scale(extent);
@@ -98,6 +104,9 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
         for (a, b) in pairs.take(if outside.is_empty() { 0 } else { CROSSINGS }) {
             look.crossing(*a, *b);
         }
+        if model.domain == Domain::HalfPlane {
+            look.on_axis(extent);
+        }
     }
     look.found
 }
@@ -115,6 +124,8 @@ struct Look<'m> {
     undefined: bool,
     /// The largest value of each curve.
     scales: Vec<f64>,
+    /// The largest magnitude and niceness of each region at the points looked at.
+    largest: Vec<[f64; 2]>,
 }
 
 impl<'m> Look<'m> {
@@ -136,6 +147,7 @@ impl<'m> Look<'m> {
             beaten: vec![Vec::new(); model.regions.len()],
             undefined: false,
             scales: vec![0.0; model.curves.len()],
+            largest: vec![[0.0; 2]; model.regions.len()],
         }
     }
 
@@ -253,12 +265,14 @@ impl<'m> Look<'m> {
         }
         let owner = owner?;
         self.wins[owner] += 1;
-        self.felt(&self.model.regions[owner], point);
+        self.felt(owner, point);
         Some(owner)
     }
 
     /// Values that make no sense.
-    fn felt(&mut self, region: &Region, point: [f64; 3]) {
+    fn felt(&mut self, owner: usize, point: [f64; 3]) {
+        let region = &self.model.regions[owner];
+        self.measure(owner);
         let (name, place) = (&region.name, self.place(point));
         let get = |id: Id| self.evaluator.get(id);
         let said = region.said;
@@ -368,7 +382,7 @@ impl<'m> Look<'m> {
             return;
         }
         let away = [0, 1, 2].map(|k| outside[k] - inside[k]);
-        let way = away[0].hypot(away[1]).hypot(away[2]) / self.size;
+        let way = norm(away) / self.size;
         let mut slope = |step: f64| {
             let behind = at((good - step / way).max(0.0));
             let same = self.owner(behind) == Some(owner);
@@ -385,7 +399,12 @@ impl<'m> Look<'m> {
                  in step with the distance to the surface",
             ));
         }
+        self.toward_surface(point, away.map(|part| -part));
     }
+}
+
+fn norm([x, y, z]: [f64; 3]) -> f64 {
+    x.hypot(y).hypot(z)
 }
 
 /// A depth where the solid ends.

@@ -63,7 +63,7 @@ impl Ranges<'_, '_> {
         Interval { low, high }
     }
 
-    /// What `sign` times the niceness is at most.
+    /// Returns what `sign` times the niceness is at most.
     fn most(&mut self, index: usize, region: &Region, sign: f64, known: f64) -> f64 {
         let mut open = BinaryHeap::from([Open { bound: known, cell: self.whole }]);
         let mut seen = f64::NEG_INFINITY;
@@ -89,7 +89,7 @@ impl Ranges<'_, '_> {
         open.peek().map_or(seen, |open| open.bound)
     }
 
-    /// What `sign` times the niceness is at most in a box, and what it is in its middle; nothing if the box
+    /// Returns what `sign` times the niceness is at most in a box, and what it is in its middle; nothing if the box
     /// has no point that is inside.
     fn enclose(&mut self, region: &Region, sign: f64, cell: Cell) -> Option<(f64, f64)> {
         self.slopes.set(point(cell.middle()));

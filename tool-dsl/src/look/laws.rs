@@ -1,0 +1,162 @@
+//! What `magnitude` and `niceness` are where samples of the inside do not get: toward the surface, at its corners
+//! and on the axis.
+
+use super::fault::Fault;
+use super::{Look, norm};
+use crate::bound::Extent;
+use crate::expr::Id;
+use crate::regionalise::outline::{Point, Segment, stations};
+use crate::report::{Report, figure};
+use crate::source::Span;
+
+/// Points along a piece of a profile.
+const STATIONS: usize = 8;
+/// Points on the axis.
+const ON_AXIS: i32 = 200;
+/// How far inside the surface values are compared, in sizes of the tool.
+const NEAR: f64 = 1e-10;
+const FAR: f64 = 1e-5;
+/// A value is said to grow without bound if it is so much larger near the surface than farther in. There
+/// `1/sqrt(depth)` is 316 times as large, and a logarithm twice.
+const GROWN: f64 = 100.0;
+/// It is also so much larger than at all points looked at, so that a value that passes through 0 is none of these.
+const BEYOND: f64 = 1000.0;
+
+/// Returns points on an outline, in the half plane's coordinates, and the way from each into the material: along its
+/// pieces and at the corners between them.
+pub(super) fn beside(outline: &[Segment]) -> Vec<[Point; 2]> {
+    let each: Vec<Vec<[Point; 2]>> =
+        outline.iter().map(|segment| stations(segment, STATIONS)).collect();
+    let corners = outline.iter().zip(each.windows(2)).filter_map(|(segment, beside)| {
+        let [[_, one], [_, other]] = [beside[0].last()?, beside[1].first()?];
+        Some([segment.ends()[1], [one[0] + other[0], one[1] + other[1]]])
+    });
+    let corners: Vec<[Point; 2]> = corners.collect();
+    each.into_iter().flatten().chain(corners).collect()
+}
+
+impl Look<'_> {
+    /// The laws of a region: their names, values and places in the text.
+    fn laws(&self, owner: usize) -> [(&'static str, Id, Span); 2] {
+        let region = &self.model.regions[owner];
+        [
+            ("magnitude", region.magnitude, region.said.magnitude),
+            ("niceness", region.niceness, region.said.niceness),
+        ]
+    }
+
+    /// Notes how large the laws are at the point where it is.
+    pub(super) fn measure(&mut self, owner: usize) {
+        for (law, (_, id, _)) in self.laws(owner).into_iter().enumerate() {
+            let value = self.evaluator.get(id).abs();
+            let largest = &mut self.largest[owner][law];
+            *largest = largest.max(if value.is_finite() { value } else { 0.0 });
+        }
+    }
+
+    /// Reports laws that have no value just inside a point of the surface, or that grow without bound toward it.
+    /// `way` leads into the material and has any length but 0.
+    pub(super) fn toward_surface(&mut self, at: [f64; 3], way: [f64; 3]) {
+        let length = norm(way);
+        let inside = |part: f64| [0, 1, 2].map(|k| at[k] + way[k] / length * part * self.size);
+        let [near, far] = [NEAR, FAR].map(inside);
+        let Some(owner) = self.owner(near) else { return };
+        self.without_value(owner, near);
+        let values = self.laws(owner).map(|(_, id, _)| self.evaluator.get(id).abs());
+        if self.owner(far) != Some(owner) {
+            return;
+        }
+        for (law, (what, id, span)) in self.laws(owner).into_iter().enumerate() {
+            let (near, far) = (values[law], self.evaluator.get(id).abs());
+            if near > GROWN * far && near > BEYOND * self.largest[owner][law] {
+                let (name, place) = (&self.model.regions[owner].name, self.place(at));
+                let message = format!(
+                    "`{what}` of {name} grows without bound toward the surface: it is {} beside {place}",
+                    figure(near)
+                );
+                self.report(
+                    Report::warning(span, message).help(
+                        "add a length to what it is divided by: contact begins on the surface",
+                    ),
+                );
+            }
+        }
+    }
+
+    /// Reports laws that have no value on the axis.
+    pub(super) fn on_axis(&mut self, extent: &Extent) {
+        for step in 0..=ON_AXIS {
+            let part = f64::from(step) / f64::from(ON_AXIS);
+            let point = [0.0, 0.0, extent.low + part * (extent.high - extent.low)];
+            if let Some(owner) = self.owner(point) {
+                self.without_value(owner, point);
+            }
+        }
+    }
+
+    /// Reports laws that have no value at the point where it is.
+    fn without_value(&mut self, owner: usize, point: [f64; 3]) {
+        for (what, id, span) in self.laws(owner) {
+            if !self.evaluator.get(id).is_finite() {
+                let (name, place) = (&self.model.regions[owner].name, self.place(point));
+                let report = Fault::of(&self.model.graph, &self.evaluator, id)
+                    .report(span, &format!("at {place}, in `{what}` of {name}"));
+                self.report(report);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile;
+    use crate::source::Source;
+
+    /// What is said of tools with a law: a profile whose magnitude it is, one whose niceness it is, and one of regions
+    /// written by hand.
+    fn said(law: &str) -> [Vec<String>; 3] {
+        let profile = "profile { start (0, 0); line to (2, 0) as face cutting; arc to (3, 1) center (2, 1) as corner
+                       cutting; line to (3, 20) as flute cutting; line to (0, 20) as top; }";
+        let by_hand = "d <= 3, 0 <= z <= 3 { depth: min(z, 3 - d, 3 - z)";
+        [
+            format!("{profile} magnitude: {law};"),
+            format!("{profile} niceness cutting: {law};"),
+            format!("region all where {by_hand}; magnitude: {law}; }}"),
+        ]
+        .map(|items| {
+            let compiled =
+                compile(&Source::new("a.tool", format!("tool A {{ units mm; {items} }}")));
+            compiled.reports().iter().map(|report| report.message.clone()).collect()
+        })
+    }
+
+    #[test]
+    fn laws_that_have_no_value_at_the_surface_are_reported() {
+        let unbounded = "grows without bound toward the surface";
+        for (law, words) in [
+            ("1/depth", unbounded),
+            ("1/sqrt(depth)", unbounded),
+            ("1/z", unbounded),
+            ("sqrt(depth - 0.001)", "square root of a negative number"),
+            ("1/d", "division by zero at (0, "),
+        ] {
+            for said in said(law) {
+                assert!(said.iter().any(|message| message.contains(words)), "{law}: {said:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn laws_that_are_steep_or_vanish_at_the_surface_are_not() {
+        for law in [
+            "1/(depth + 0.001)",
+            "5*sqrt(depth)",
+            "depth^1.5",
+            "(1 - depth/10)^2",
+            "1/(1 + d)",
+            "1000000*depth",
+        ] {
+            assert_eq!(said(law).concat(), Vec::<String>::new(), "{law}");
+        }
+    }
+}
