@@ -7,8 +7,8 @@ use crate::output::{Output, refuse_inputs, unwritable};
 use crate::program;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use touchoff::Unit;
 use touchoff::mesh::Shape;
+use touchoff::{AtomicFile, Unit};
 use touchoff_tests::measure::bench::{self, Own, Plan, Row};
 
 /// Measures, and prints a row at a time.
@@ -21,6 +21,11 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
         let tool = wanted.tool.as_deref().map(Path::new);
         let inputs = part.into_iter().chain(tool).chain(wanted.path.as_deref());
         refuse_inputs(outputs.iter().map(PathBuf::as_path), inputs)?;
+        // Before minutes are spent: a folder that cannot be written is known now.
+        std::fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))?;
+        for output in &outputs {
+            AtomicFile::create(output).map_err(|source| unwritable(output, source))?;
+        }
     }
     let found = match &wanted.tool {
         Some(name) => Some(Found::find(name, &wanted.given)?),

@@ -4,18 +4,22 @@ use touchoff::mesh::MeshError;
 use touchoff::tool::ToolError;
 use touchoff::{CloudError, ProgramError};
 
+/// The exit status of a session that a signal ended, as shells have it.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 impl Failure {
     /// The exit status: 2 where the options are wrong or an input cannot be taken as what was asked for, 1 for all
     /// else.
     pub(crate) fn status(&self) -> u8 {
         match self {
             Failure::IsInput { .. } | Failure::Program(_) | Failure::NoInside { .. } => 2,
+            Failure::Interrupted => INTERRUPTED,
             _ => 1,
         }
     }
 }
 
-/// What ends the program with an exit status other than 0.
+/// The reason for which the program ends with an exit status other than 0.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// Run time against error could not be measured.
@@ -30,6 +34,9 @@ pub(crate) enum Failure {
     /// There is no such device.
     #[error("{0}")]
     Device(String),
+    /// A signal ended a session.
+    #[error("the session was interrupted: all of it until then was kept")]
+    Interrupted,
     /// Nobody speaks for a SpaceMouse.
     #[error("{socket}: {source}: is `spacenavd` running?")]
     Spacenav {
@@ -204,7 +211,7 @@ pub(crate) enum Failure {
     /// A drawing could not be made into pixels.
     #[error("the drawing could not be made a PNG: {0}; an `.svg` needs no pixels")]
     Pixels(String),
-    /// What is to be written is also read.
+    /// An output is also an input.
     #[error("`{output}` is `{input}`, which is read: write to another file")]
     IsInput {
         /// The output.

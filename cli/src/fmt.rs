@@ -36,11 +36,11 @@ pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Fail
     }
 }
 
-/// What `--json` says of a file.
+/// The row of a file in `--json`.
 #[derive(Serialize)]
 struct Row<'f> {
     file: Cow<'f, str>,
-    /// Whether the file was only looked at.
+    /// True if the file was only looked at.
     check: bool,
     outcome: Outcome,
 }

@@ -1,4 +1,4 @@
-//! What the program writes: standard output, standard error, and which files it may write.
+//! Outputs: standard output, standard error, and the files that may be written.
 
 use crate::failure::Failure;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
@@ -145,7 +145,7 @@ fn mounted(tool: &Path) -> Vec<PathBuf> {
     compiled.sources.all().iter().filter_map(|source| source.path().map(Path::to_owned)).collect()
 }
 
-/// Whether two paths lead to one regular file that is there.
+/// Returns whether two paths lead to one regular file that is there.
 #[cfg(unix)]
 fn is_same_file(one: &Path, other: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;

@@ -47,7 +47,7 @@ impl Table {
     }
 }
 
-/// What is kept of a session. What cannot be written is told at once and kept no longer; the loop goes on.
+/// The recordings of a session. One that cannot be written is reported at once and ends; the loop goes on.
 pub(super) struct Kept<'a> {
     table: Option<Table>,
     recorder: Option<Recorder<'a>>,

@@ -3,7 +3,7 @@
 mod kept;
 
 use crate::arguments::{Haptic, Wielded};
-use crate::failure::Failure;
+use crate::failure::{Failure, INTERRUPTED};
 use crate::files::Found;
 use crate::output::{Output, refuse_inputs};
 use crate::part::{self, Fine};
@@ -13,7 +13,8 @@ use nalgebra::{Point3, Vector3};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use touchoff::certify::Facets;
 use touchoff::haptic::{
@@ -147,7 +148,7 @@ fn wield(
     };
     let probe = Probe::new(part, tool).law(wanted.law);
     let (mut watch, mut latest, mut samples) = watched(ROOM);
-    let stop = AtomicBool::new(false);
+    let stop = stopped_by_signals();
     let looped = |watch: &mut Watch| {
         let realtime = Realtime {
             priority: wanted.realtime.then_some(80),
@@ -180,7 +181,24 @@ fn wield(
     record.take(&mut samples);
     let kept = record.end();
     if json { said(&report, wanted) } else { told(&report, wanted) }?;
-    kept
+    kept?;
+    if stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+/// Returns a flag that Ctrl-C and the other signals that end a program set, so that a session ends in order and
+/// what was recorded is kept. The second signal ends the program at once.
+fn stopped_by_signals() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let handled = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    });
+    if let Err(error) = handled {
+        say!("Ctrl-C will not end the session in order: {error}");
+    }
+    stop
 }
 
 /// Where it is, on one line.

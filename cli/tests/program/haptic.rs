@@ -110,3 +110,37 @@ fn what_is_no_device_is_refused_with_a_remedy() {
         assert_eq!(haptic(&bench, &wrong).status.code(), Some(2), "{wrong:?}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_session_that_is_interrupted_keeps_its_record() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+    let bench = Bench::new();
+    let place = |name: &str| bench.folder.path().join(name).display().to_string();
+    let table = place("record.csv");
+    for signal in ["INT", "TERM"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_touchoff"))
+            .args(["haptic", "--part", &place("block.stl"), "--unit", "mm", "--tool", "D2Ball"])
+            .args(["--points", "2000", "--seconds", "600", "--record", &table])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
+        // It runs when it shows where it is.
+        let shown = lines.by_ref().map_while(Result::ok).find(|line| line.contains("  tip "));
+        assert!(shown.is_some());
+        let sent =
+            Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status();
+        assert!(sent.expect("a shell's kill").success());
+        let last = lines.map_while(Result::ok).last().expect("a line");
+        assert!(last.contains("interrupted"), "{last}");
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(130));
+        assert!(stdout(&output).contains("cycles at 1000 Hz"), "{}", stdout(&output));
+        let record = std::fs::read_to_string(&table).expect("a record");
+        assert!(record.lines().count() > 100 && record.ends_with('\n'), "{signal}");
+        std::fs::remove_file(&table).expect("a record");
+    }
+}

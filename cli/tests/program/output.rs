@@ -277,6 +277,18 @@ fn an_output_that_is_an_input_is_refused() {
     assert_eq!(fs::read_to_string(&staged).expect("a file"), GOOD);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_page_that_cannot_be_written_is_told_before_it_is_measured() {
+    let bench = Bench::new();
+    let file = bench.write("file", "");
+    for folder in ["/proc/page", &file] {
+        let output = touchoff(&["bench", "--quick", "--out", folder]);
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(output.stdout.is_empty() && stderr(&output).contains(&format!("`{folder}")));
+    }
+}
+
 #[test]
 fn a_program_that_is_cut_short_is_refused() {
     let bench = Bench::new();

@@ -115,7 +115,7 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
     refused("block.apt", "Fig73", &[], "it is not known which surface is the nearest");
 }
 
-/// What could be a motion is refused with its line, by every command that reads programs.
+/// A statement that could be a motion is refused with its line, by every command that reads programs.
 #[test]
 fn words_that_could_move_the_tool_are_refused() {
     let bench = Bench::new();
