@@ -45,7 +45,7 @@ impl Display for EscapedLines<'_> {
     }
 }
 
-/// Whether a terminal acts on a character instead of showing it: controls, and the marks, embeddings, overrides and
+/// Returns whether a terminal acts on a character instead of showing it: controls, and the marks, embeddings, overrides and
 /// isolates of Unicode's bidirectional algorithm (UAX 9, section 2).
 fn is_obeyed(c: char) -> bool {
     c.is_control()

@@ -116,7 +116,7 @@ fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
     Snippet::source(harmless(&source.text)).path(escaped(&source.name))
 }
 
-/// Whether a character is a control character, or one of the marks that turn the order of a line around: what a
+/// Returns whether a character is a control character, or one of the marks that turn the order of a line around: what a
 /// name or a text must not bring onto a screen.
 pub(crate) fn is_hidden(c: char) -> bool {
     c.is_control()

@@ -281,6 +281,11 @@ impl Sources {
         self.locate(by).0.beside(file)
     }
 
+    /// The folder below which mounted files have to lie, where it was [given](Source::within).
+    pub(crate) fn given_root(&self) -> Option<&Path> {
+        self.own().root.as_deref()
+    }
+
     /// Returns whether a file lies below the folder that mounted files have to lie below, links followed. Of a
     /// file that does not exist its name decides.
     pub(crate) fn may_mount(&self, path: &Path) -> bool {

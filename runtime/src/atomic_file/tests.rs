@@ -109,3 +109,10 @@ fn a_pipe_is_written_to_as_such() {
     from.read_to_string(&mut text).expect("read");
     assert_eq!(text, "through");
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_written_is_told_without_the_temporary() {
+    let error = AtomicFile::create("/proc/report.txt").expect_err("no file can be made there");
+    assert!(error.raw_os_error().is_some() && !error.to_string().contains(SUFFIX), "{error}");
+}

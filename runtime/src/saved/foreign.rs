@@ -23,7 +23,7 @@ const KNOWN: [(&[u8], &str); 12] = [
     (b"version https://git-lfs", "a pointer of Git LFS: `git lfs pull` brings the file itself"),
 ];
 
-/// What a file of `length` bytes that begins with these seems to be.
+/// Returns what a file of `length` bytes that begins with these seems to be.
 pub(super) fn seems(beginning: &[u8], length: u64) -> &'static str {
     let beginning = &beginning[..beginning.len().min(BEGINNING)];
     if beginning.is_empty() {

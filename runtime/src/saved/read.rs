@@ -86,7 +86,7 @@ impl About<'_> {
         SavedError::Damaged { file: self.file.to_owned(), section, from, to }
     }
 
-    /// What the file begins with, its header, and what comes after; the file is as long as these say.
+    /// Returns what the file begins with, its header, and what comes after; the file is as long as these say.
     fn start(&self, mut source: impl Read) -> Result<(Start, Vec<u8>, impl Read), SavedError> {
         let file = || self.file.to_owned();
         let has = self.length;

@@ -231,7 +231,11 @@ impl Mounting<'_> {
                 .help("a mounted file is looked for beside the file that mounts it")
         })?;
         if !self.sources.may_mount(&place.1) {
-            let message = format!("`{written}` does not lie below the tool's folder");
+            let below = match self.sources.given_root() {
+                Some(root) => format!("`{}`", root.display()),
+                None => "the tool's folder".to_owned(),
+            };
+            let message = format!("`{written}` does not lie below {below}");
             return Err(Report::error(by, message).help(
                 "move the file there; the program also takes a folder above both: `--root DIR`",
             ));

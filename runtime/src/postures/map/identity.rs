@@ -149,7 +149,7 @@ impl Identity {
         access.iter().any(stray).then_some("it has other directions than the map")
     }
 
-    /// What a map has no place for so many of, if there are: tools are told by 16 bits, and between directions there
+    /// Returns what a map has no place for so many of, if there are: tools are told by 16 bits, and between directions there
     /// are tables that grow with the square of their number.
     pub(super) fn oversized(&self) -> Option<String> {
         let (tools, directions) = (self.tools.len(), self.directions.len());

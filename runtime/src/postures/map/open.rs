@@ -134,7 +134,7 @@ pub(super) fn write_facts(database: &Database, identity: &Identity) -> Result<()
     Ok(write.commit()?)
 }
 
-/// What a map says of itself.
+/// Returns what a map says of itself.
 fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
     let says = |error: redb::Error| MapError::of(file, error);
     let read = database.begin_read().map_err(|error| says(error.into()))?;
@@ -208,7 +208,7 @@ fn truncated_or(error: MapError, header: &Header, length: u64) -> MapError {
     }
 }
 
-/// Whether another handle has a file open to write into it.
+/// Returns whether another handle has a file open to write into it.
 fn is_written(file: &File) -> bool {
     let locked = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
     // A failure means that there was nothing to unlock.

@@ -26,12 +26,12 @@ impl Header {
         Ok(Header(bytes))
     }
 
-    /// Whether it is that of a store.
+    /// Returns whether it is that of a store.
     pub(super) fn is_store(&self) -> bool {
         self.0.starts_with(MAGIC)
     }
 
-    /// Whether the last writer closed the file, so that all of the header holds. A killed writer may leave counts of
+    /// Returns whether the last writer closed the file, so that all of the header holds. A killed writer may leave counts of
     /// regions that are not those of the file; they are counted again when it is opened.
     pub(super) fn is_closed(&self) -> bool {
         const UNCLOSED: u8 = 2;

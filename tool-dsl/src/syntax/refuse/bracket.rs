@@ -43,7 +43,7 @@ impl Lines {
         Lines(text.split_inclusive('\n').map(line).collect())
     }
 
-    /// How far in the line of a place begins, and whether it begins with that place. Nothing for the first
+    /// Returns how far in the line of a place begins, and whether it begins with that place. Nothing for the first
     /// line.
     fn indent(&self, at: usize) -> Option<(usize, bool)> {
         let line = self.0.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
