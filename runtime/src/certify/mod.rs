@@ -329,7 +329,8 @@ impl<'a> Certifier<'a> {
     /// [allowed](Certifier::allow) by more than a tolerance, in the part's unit; one below what rounding
     /// adds is taken as that.
     ///
-    /// A motion says nothing of spin, so that of a solid without an axis all is undecided.
+    /// A motion says nothing of spin, so that of a solid without an axis all is undecided. So it is of tools and parts
+    /// larger than some 1e15 of the tool's unit.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -363,7 +364,7 @@ impl<'a> Certifier<'a> {
     /// # Ok(()) }
     /// ```
     pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
-        if self.card.shape != Shape::Revolved {
+        if self.card.shape != Shape::Revolved || self.setting.margin() > work::MARGIN {
             return Sweep::Undecided(0.0);
         }
         let Certifier { setting, card, whole, rules, cores, budget, sweeper, .. } = self;

@@ -248,20 +248,33 @@ fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
     mesh.triangles().iter().filter(whole).flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
 }
 
-/// Returns the triangles of shells with a negative volume: voids, or pieces that are inside out.
+/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece goes on across
+/// edges of two triangles only, so that pieces which touch in a vertex or along an edge are told apart.
 pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
-    let (shell_of, count) = shells(mesh);
     let [low, high] = mesh.bounds();
     let origin = nalgebra::center(&low, &high);
-    let mut volumes = vec![0.0; count];
-    let shell = |triangle: &[u32; 3]| shell_of[triangle[0] as usize] as usize;
-    for (corners, triangle) in mesh.corners().zip(mesh.triangles()) {
-        if let Some((share, normal)) = area_and_normal(&corners) {
-            volumes[shell(triangle)] += normal.dot(&(corners[0] - origin)) * share / 3.0;
+    let mut parent: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
+    let mut uses: Vec<([u32; 2], u32)> = (0..)
+        .zip(mesh.triangles())
+        .flat_map(|(id, [a, b, c])| {
+            [[a, b], [b, c], [c, a]].map(|[x, y]| ([*x.min(y), *x.max(y)], id))
+        })
+        .collect();
+    uses.sort_unstable();
+    for edge in uses.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, one), (_, other)] = edge {
+            let [one, other] = [one, other].map(|id| root(&mut parent, *id));
+            parent[one.max(other) as usize] = one.min(other);
         }
     }
-    let is_inverted = |(_, triangle): &(u32, &[u32; 3])| volumes[shell(triangle)] < 0.0;
-    (0..).zip(mesh.triangles()).filter(is_inverted).map(|(id, _)| id).collect()
+    let mut volumes = vec![0.0; parent.len()];
+    for (id, corners) in (0..).zip(mesh.corners()) {
+        if let Some((share, normal)) = area_and_normal(&corners) {
+            let piece = root(&mut parent, id) as usize;
+            volumes[piece] += normal.dot(&(corners[0] - origin)) * share / 3.0;
+        }
+    }
+    (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
 }
 
 /// The shell of each vertex and how many there are, by union and find. A vertex that no triangle

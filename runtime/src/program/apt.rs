@@ -10,7 +10,7 @@
 //! Words that can neither move the tool nor change what positions mean are listed in
 //! [`Program::ignored`](super::Program::ignored); every other word is refused (`words` has the list).
 
-use super::words::{is_prose, pass_over};
+use super::words::{is_prose, pass_over, refuse_motions};
 use super::{Fault, Located, Stop, Tape, axis_pose, lines, number, shown};
 use crate::Unit;
 use std::collections::BTreeMap;
@@ -100,10 +100,12 @@ impl Reader {
             "MULTAX" => self.multax(rest)?,
             "UNITS" => self.units(line, rest)?,
             "LOADTL" | "TOOLNO" | "CUTTER" | "TLDATA" | "TOOL PATH" => {
+                refuse_motions(&word, rest)?;
                 self.tool(line, &word, rest)?;
             }
-            "FINI" => self.finished = true,
             // So NX ends the path of an operation; `FINI` may follow.
+            "FINI" | "END-OF-PATH" if !rest.is_empty() => return Err(Fault::Swallowed { word }),
+            "FINI" => self.finished = true,
             "END-OF-PATH" => self.path_ended = true,
             other => self.other(line, text, other, rest)?,
         }
@@ -328,6 +330,15 @@ mod tests {
             "STOP/GOTO/0,0,-5",
             "ISN/5 GODLTA/0,0,-5",
             "TITLES/x$\nGOTO/0,0,-5",
+            "FEDRAT/100 GOHOME",
+            "FEDRAT/ 5,CYCLE,DRILL,0,0,-5",
+            "FEDRAT/ 5 GO TO 0,0,-5",
+            "FEDRAT/GOTO(1)",
+            "CUT/TLLFT,GOFWD",
+            "OPSTOP/GOHOME",
+            "TOOLNO/1,GOTO,0,0,-5",
+            "FINI/GOTO/0,0,-5",
+            "END-OF-PATH/GOTO/0,0,-5",
             "TLAXIS/0,0,1",
             "tldata/mill,50,0,30,0,0",
             "TLDATA/MILL ,50,0",
@@ -342,6 +353,21 @@ mod tests {
                 "TOOL PATH/A,TOOL,D2\nTLDATA/MILL,2,1\nTOOLNO/1\nLOADTL/1\nCUTTER/2\nGOTO/1,2,3\n{word}\nFINI\n"
             );
             assert!(refusal(&text).starts_with("part.cl:7: "), "{word}: {}", refusal(&text));
+        }
+        for word in [
+            "LOADTL/1 GOTO/0,0,-5",
+            "LOADTL/1 $\nGOTO/0,0,-5",
+            "TLDATA/DRILL,2 GOTO/0,0,-5",
+            "TLDATA/MILL,2,1,75,0,0,GOTO/0,0,-5",
+            "TOOLNO/1,GOTO/0,0,-5",
+            "TOOL PATH/A,GODLTA/0,0,-5",
+            "TOOL PATH/A GOTO/0,0,-5,TOOL,B",
+        ] {
+            let said = refusal(format!("FROM/0,0,50\n{word}\nGOTO/0,0,1\nFINI\n"));
+            assert!(
+                said.starts_with("part.cl:2: ") && said.contains("another statement"),
+                "{said}"
+            );
         }
         assert_eq!(
             refusal("FROM/0,0,9\nGOTO/1,2,3\nLOADTL/2\nGOTO/4,5,6\nFINI"),

@@ -43,8 +43,8 @@ const FRAMES: [&str; 21] = [
     "TURRET",
 ];
 
-/// Words that no argument of a word that is passed over is.
-const MOVING: [&str; 4] = ["GOTO", "FROM", "GODLTA", "RAPID"];
+/// Words of motions that are read: no argument is one of them, nor begins with `GO`.
+const MOTIONS: [&str; 3] = ["GOTO", "FROM", "RAPID"];
 
 /// Returns whether a line is prose to its end.
 pub(super) fn is_prose(line: &str) -> bool {
@@ -67,12 +67,12 @@ pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, Fault> {
         return Err(Fault::Verbatim { word: (*verbatim).to_owned() });
     }
     if INERT.contains(&word) || is_inert_with(word, arguments) {
-        // Where a line's end is lost, a motion stands among the arguments.
-        let moves = |part: &str| MOVING.iter().any(|word| part.eq_ignore_ascii_case(word));
-        if arguments.contains('/') || arguments.split([' ', ',', '\t']).any(moves) {
-            return Err(Fault::Swallowed { word: word.to_owned() });
-        }
-        return Ok(word.to_owned());
+        refuse_motions(word, arguments)?;
+        let moves = |part: &str| MOVES.contains(&part) || FRAMES.contains(&part);
+        return match parts(&arguments.to_ascii_uppercase()).any(moves) {
+            true => Err(Fault::Swallowed { word: word.to_owned() }),
+            false => Ok(word.to_owned()),
+        };
     }
     if is_g_code(word) {
         return Err(Fault::GCode { block: super::shown(word) });
@@ -87,6 +87,25 @@ pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, Fault> {
     match known(&MOVES) {
         Some(word) => Err(Fault::Moves { word }),
         None => Err(Fault::UnknownWord { word: super::shown(word) }),
+    }
+}
+
+/// The words and numbers among arguments.
+fn parts(arguments: &str) -> impl Iterator<Item = &str> {
+    arguments.split([' ', ',', '\t', '(', ')', '=']).filter(|part| !part.is_empty())
+}
+
+/// Looks for a motion among the arguments of a word, where it stands if a line's end is lost.
+///
+/// # Errors
+/// If there is one.
+pub(super) fn refuse_motions(word: &str, arguments: &str) -> Result<(), Fault> {
+    let upper = arguments.to_ascii_uppercase();
+    let moves =
+        |part: &str| MOTIONS.contains(&part) || part.starts_with("GO") && MOVES.contains(&part);
+    match upper.contains('/') || parts(&upper).any(moves) {
+        true => Err(Fault::Swallowed { word: word.to_owned() }),
+        false => Ok(()),
     }
 }
 

@@ -101,11 +101,11 @@ impl Facets {
             unit: mesh.unit(),
             solid: survey.solid(),
         };
-        facets.solid &= survey.inverted_shells == 0 || facets.voids_are_voids(mesh);
+        facets.solid = facets.solid && facets.voids_are_voids(mesh);
         facets
     }
 
-    /// Returns whether shells that face inward are voids in the material: beside none of their triangles does the
+    /// Returns whether pieces that face inward are voids in the material: beside none of their triangles does the
     /// surface go around a point less than 0 times, as it does inside a piece that is inside out.
     fn voids_are_voids(&self, mesh: &Mesh) -> bool {
         let off = BESIDE * f64::from(self.frame.size) * self.frame.scale;

@@ -61,8 +61,9 @@ impl Facets {
         for ray in 0..RAYS {
             match self.winding(point, direction(ray)) {
                 Ok(winding) if winding > 0 => return Location::Inside,
-                Ok(_) => return Location::Outside,
-                Err(Crossing::Begins) => return Location::Undecided,
+                Ok(0) => return Location::Outside,
+                // Material and its opposite: an inside-out lobe of a surface that crosses itself.
+                Ok(_) | Err(Crossing::Begins) => return Location::Undecided,
                 Err(_) => {}
             }
         }
@@ -183,6 +184,41 @@ mod tests {
         assert!(has_inside(block(-2.0, 2.0, 0.0), true));
         assert!(!has_inside(block(-2.0, 2.0, 30.0), true));
         assert!(!has_inside(block(-2.0, 2.0, 10.0), true));
+        // Beside it in one vertex, which they share.
+        let [low, high] = [10.0, 14.0].map(|c| Point3::new(c, c, c));
+        let mesh = with(shapes::cuboid(low, high, Unit::Millimetre).expect("a block"), true);
+        let first = |k: &u32| {
+            let place = mesh.vertices()[*k as usize];
+            mesh.vertices().iter().position(|other| *other == place).unwrap_or_default() as u32
+        };
+        let welded = mesh.triangles().iter().map(|corners| corners.each_ref().map(first)).collect();
+        let welded = crate::Mesh::new(mesh.vertices().to_vec(), welded, Unit::Millimetre);
+        assert!(!Facets::new(&welded.expect("a mesh")).has_inside());
+    }
+
+    /// A prism over a bow tie: material in one lobe, its opposite in the other.
+    #[test]
+    fn what_a_surface_goes_around_the_wrong_way_is_undecided() {
+        let tie = [[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 3.0]];
+        let vertices = [0.0, 2.0].map(|z| tie.map(|[x, y]| Point3::new(x, y, z))).concat();
+        let caps = [[1, 0, 2], [2, 0, 3], [4, 5, 6], [4, 6, 7]];
+        let walls = (0..4u32).flat_map(|k| {
+            let next = (k + 1) % 4;
+            [[k, next, next + 4], [k, next + 4, k + 4]]
+        });
+        let triangles: Vec<[u32; 3]> = caps.into_iter().chain(walls).collect();
+        let turned = triangles.iter().map(|[a, b, c]| [*b, *a, *c]).collect();
+        for triangles in [triangles, turned] {
+            let mesh = crate::Mesh::new(vertices.clone(), triangles, Unit::Millimetre);
+            let facets = Facets::new(&mesh.expect("a mesh"));
+            let mut found = [[0.5, 1.5, 1.0], [3.5, 1.5, 1.0]].map(|at| facets.locate(at.into()));
+            if facets.has_inside() {
+                found.sort_by_key(|location| *location != Location::Inside);
+                assert_eq!(found, [Location::Inside, Location::Undecided]);
+            } else {
+                assert_eq!(found, [Location::Unknown; 2]);
+            }
+        }
     }
 
     /// An ulp beside a face is still decided.
