@@ -210,7 +210,8 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     /// More often than chance and a few other processes would have it.
     const TRIES: usize = 16;
     for _ in 0..TRIES {
-        let file = builder.tempfile_in(folder).map_err(plain)?;
+        // Without the temporary's name, which nobody asked for.
+        let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
         match file.as_file().try_lock() {
             // Another process took it for abandoned before it was locked, and removes it.
             Err(TryLockError::WouldBlock) => {}
@@ -220,13 +221,6 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
         }
     }
     Err(io::Error::other("temporary files there are removed as soon as they are made"))
-}
-
-/// Returns what the system said, without the temporary's name, which nobody asked for.
-fn plain(error: io::Error) -> io::Error {
-    let said = error.get_ref().and_then(std::error::Error::source);
-    let code = said.and_then(|said| said.downcast_ref::<io::Error>()?.raw_os_error());
-    code.map_or(error, io::Error::from_raw_os_error)
 }
 
 /// Removes the temporaries of a folder whose writers are gone. What cannot be removed stays.
