@@ -188,8 +188,11 @@ impl Polynomial {
             return None;
         }
         let [dd, dz, zz] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(|m| self.factor(m));
-        let bent = 4.0 * dd * zz - dz * dz;
-        if dd + zz == 0.0 || bent < -1e-12 * (dd * dd + dz * dz + zz * zz) || dd * zz < 0.0 {
+        let exact = |monomial: Monomial| self.0.get(&monomial).cloned().unwrap_or(Number::int(0));
+        let [of_d, of_both, of_z] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(exact);
+        let bent = &(&Number::int(4) * &(&of_d * &of_z)) - &(&of_both * &of_both);
+        let sizes = dd * dd + dz * dz + zz * zz;
+        if dd + zz == 0.0 || bent.to_f64() < -2f64.powi(-190) * sizes || dd * zz < 0.0 {
             return None;
         }
         let left = self.where_zero(line)?;

@@ -1,4 +1,11 @@
 //! Fourier and Motzkin's elimination: what linear conditions say of fewer variables.
+//!
+//! Doubles choose what is combined, and take what is small for rounding. A result is believed once the combination
+//! that led to it was made again with 256 bits ([`Condition::exactly`]).
+
+use crate::number::Number;
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// A residue below this, relative to the curve's largest coefficient, or to the unit that conditions are
 /// in, is rounding.
@@ -6,12 +13,130 @@ pub(super) const ROUNDING: f64 = 1e-12;
 /// The most conditions that elimination may grow to.
 const CONDITIONS: usize = 600;
 
-/// `Σ factor · variable + constant ≤ 0`, or `< 0`.
+/// What is left of cancelled numbers of 256 bits, as a part of their sizes.
+pub(super) const EXACT_ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 95) as f64);
+
+/// `Σ factor · variable + constant`, with 256 bits.
+#[derive(Clone, Debug)]
+pub(super) struct Exact {
+    pub(super) factors: Vec<Number>,
+    pub(super) constant: Number,
+}
+
+impl Exact {
+    /// The sum of multiples of two.
+    pub(super) fn combined(&self, by: &Number, other: &Exact, other_by: &Number) -> Exact {
+        let sum = |a: &Number, b: &Number| match (a.is_zero(), b.is_zero()) {
+            (true, true) => Number::int(0),
+            (false, true) => a * by,
+            (true, false) => b * other_by,
+            (false, false) => &(a * by) + &(b * other_by),
+        };
+        let factors = self.factors.iter().zip(&other.factors).map(|(a, b)| sum(a, b)).collect();
+        Exact { factors, constant: sum(&self.constant, &other.constant) }
+    }
+}
+
+/// `Σ factor · variable + constant ≤ 0`, or `< 0`, but for a positive factor.
 #[derive(Clone, Debug)]
 pub(super) struct Condition {
     pub(super) factors: Vec<f64>,
     pub(super) constant: f64,
     pub(super) strict: bool,
+    origin: Origin,
+}
+
+/// What a condition was combined from.
+#[derive(Clone, Debug)]
+enum Origin {
+    Given(Rc<Exact>),
+    Sum(Rc<Sum>),
+}
+
+/// The multiples of two conditions in which a variable cancels: of the first, which bounds it from above, and of the
+/// second, which bounds it from below.
+#[derive(Debug)]
+struct Sum {
+    upper: Origin,
+    lower: Origin,
+    variable: usize,
+}
+
+/// A condition combined with 256 bits, and the sizes of what its factors and its constant are sums of.
+struct Combined {
+    exact: Rc<Exact>,
+    sizes: Vec<f64>,
+    size: f64,
+}
+
+impl Condition {
+    pub(super) fn given(exact: &Rc<Exact>, strict: bool) -> Condition {
+        Condition {
+            factors: exact.factors.iter().map(Number::to_f64).collect(),
+            constant: exact.constant.to_f64(),
+            strict,
+            origin: Origin::Given(Rc::clone(exact)),
+        }
+    }
+
+    pub(super) fn with_strict(self, strict: bool) -> Condition {
+        Condition { strict, ..self }
+    }
+
+    /// The condition's factor of a variable and its constant with 256 bits, and what of the constant may be rounding,
+    /// if it bounds that variable alone, or nothing if none is `wanted`. The factor may be as small as rounding.
+    pub(super) fn exactly(&self, wanted: Option<usize>) -> Option<(Number, Number, f64)> {
+        let Combined { exact, sizes, size } = &*combined(&self.origin, &mut HashMap::new());
+        let mut factor = Number::int(0);
+        for (variable, value) in exact.factors.iter().enumerate() {
+            let noise = EXACT_ROUNDING * sizes[variable];
+            if Some(variable) == wanted {
+                factor = value.clone();
+            } else if !value.is_zero() && !(value.to_f64().abs() <= noise) {
+                return None;
+            }
+        }
+        size.is_finite().then(|| (factor, exact.constant.clone(), EXACT_ROUNDING * size))
+    }
+
+    /// Whether it says of nothing what is not so, and with 256 bits too.
+    pub(super) fn is_absurd(&self) -> bool {
+        let least = if self.strict { -ROUNDING } else { 0.0 };
+        self.constant > least
+            && self.exactly(None).is_some_and(|(_, constant, noise)| {
+                constant.to_f64() >= if self.strict { -noise } else { 2.0 * noise }
+                    && (self.strict || !constant.is_zero())
+            })
+    }
+}
+
+/// Combines again what a condition was combined from; each part once.
+fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> Rc<Combined> {
+    let sum = match origin {
+        Origin::Given(exact) => {
+            let sizes = exact.factors.iter().map(|factor| factor.to_f64().abs()).collect();
+            let size = exact.constant.to_f64().abs();
+            return Rc::new(Combined { exact: Rc::clone(exact), sizes, size });
+        }
+        Origin::Sum(sum) => sum,
+    };
+    if let Some(known) = known.get(&Rc::as_ptr(sum)) {
+        return Rc::clone(known);
+    }
+    let [a, b] = [&sum.upper, &sum.lower].map(|origin| combined(origin, known));
+    let (x, y) = (-&b.exact.factors[sum.variable], a.exact.factors[sum.variable].clone());
+    // With factors about 1, whatever they were combined from.
+    let scale = Number::from_f64(x.to_f64().abs().max(y.to_f64().abs()).log2().floor().exp2());
+    let down = |n: &Number| scale.as_ref().and_then(|scale| n.over(scale)).unwrap_or(n.clone());
+    let (x, y) = (down(&x), down(&y));
+    let mut exact = a.exact.combined(&x, &b.exact, &y);
+    exact.factors[sum.variable] = Number::int(0);
+    let [of_x, of_y] = [x.to_f64().abs(), y.to_f64().abs()];
+    let both = |a: f64, b: f64| a * of_x + b * of_y;
+    let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| both(*a, *b)).collect();
+    let result = Rc::new(Combined { exact: Rc::new(exact), sizes, size: both(a.size, b.size) });
+    known.insert(Rc::as_ptr(sum), Rc::clone(&result));
+    result
 }
 
 /// Conditions in a unit of their own, a power of two near the largest constant; and that unit. So what is
@@ -76,7 +201,9 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
                 a.factors.iter().zip(&b.factors).map(|(f, g)| f * x + g * y).collect();
             factors[variable] = 0.0;
             let constant = a.constant * x + b.constant * y;
-            rest.push(Condition { factors, constant, strict: a.strict || b.strict });
+            let sum = Sum { upper: a.origin.clone(), lower: b.origin.clone(), variable };
+            let strict = a.strict || b.strict;
+            rest.push(Condition { factors, constant, strict, origin: Origin::Sum(Rc::new(sum)) });
         }
     }
     Some(rest)
@@ -93,13 +220,12 @@ fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
         match kept.iter_mut().find(same) {
             Some(other) => {
                 let above = condition.constant - other.constant;
-                // What differs by rounding is the same, and one of both is strict if the other is.
+                // What differs by rounding is the same, and the strict one of both says more.
                 let same = above.abs() <= ROUNDING * condition.constant.abs().max(1.0);
-                let strict = same && (condition.strict || other.strict);
-                if above > 0.0 {
+                let stricter = condition.strict && !other.strict;
+                if if same && condition.strict != other.strict { stricter } else { above > 0.0 } {
                     *other = condition;
                 }
-                other.strict |= strict;
             }
             None => kept.push(condition),
         }

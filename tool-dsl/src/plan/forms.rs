@@ -1,7 +1,7 @@
 //! Expressions as linear forms in the coordinates, and in monomials and roots of them, each taken for a
 //! variable of its own; and what is known of such variables.
 
-use super::eliminate::ROUNDING;
+use super::eliminate::EXACT_ROUNDING;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Encloser};
 use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
@@ -25,23 +25,43 @@ pub(super) enum Variable {
 }
 
 /// `Σ factor · variable + constant`
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Form {
-    pub(super) factors: BTreeMap<usize, f64>,
-    pub(super) constant: f64,
+    pub(super) factors: BTreeMap<usize, Number>,
+    pub(super) constant: Number,
+}
+
+impl Default for Form {
+    fn default() -> Form {
+        Form { factors: BTreeMap::new(), constant: Number::int(0) }
+    }
 }
 
 impl Form {
     fn variable(variable: usize) -> Form {
-        Form { factors: BTreeMap::from([(variable, 1.0)]), constant: 0.0 }
+        Form { factors: BTreeMap::from([(variable, Number::int(1))]), ..Form::default() }
     }
 
-    fn plus(mut self, other: &Form, factor: f64) -> Form {
+    pub(super) fn plus(mut self, other: &Form, factor: &Number) -> Form {
+        let sum = |own: &Number, more: &Number| {
+            let more = factor * more;
+            // What cancels but for the last bits is nothing.
+            if own.agrees(&-&more) { Number::int(0) } else { own + &more }
+        };
         for (variable, more) in &other.factors {
-            *self.factors.entry(*variable).or_default() += factor * more;
+            let own = self.factors.entry(*variable).or_insert(Number::int(0));
+            *own = sum(own, more);
         }
-        self.constant += factor * other.constant;
+        self.constant = sum(&self.constant, &other.constant);
         self
+    }
+
+    fn signed(self, other: &Form, negative: bool) -> Form {
+        self.plus(other, &Number::int(if negative { -1 } else { 1 }))
+    }
+
+    fn negated(&self) -> Form {
+        Form::default().signed(self, true)
     }
 }
 
@@ -90,12 +110,12 @@ impl<'m> Variables<'m> {
         for id in parts {
             let form = match (polynomial(&id), self.graph.node(id)) {
                 (Some(polynomial), _) => self.of_polynomial(polynomial),
-                (None, Node::Neg(a)) => Form::default().plus(&forms[a], -1.0),
-                (None, Node::Add(a, b)) => forms[a].clone().plus(&forms[b], 1.0),
-                (None, Node::Sub(a, b)) => forms[a].clone().plus(&forms[b], -1.0),
+                (None, Node::Neg(a)) => forms[a].negated(),
+                (None, Node::Add(a, b)) => forms[a].clone().signed(&forms[b], false),
+                (None, Node::Sub(a, b)) => forms[a].clone().signed(&forms[b], true),
                 (None, Node::Mul(factor, b)) => {
-                    let factor = self.graph.constant(*factor).map_or(0.0, Number::to_f64);
-                    Form::default().plus(&forms[b], factor)
+                    let factor = self.graph.constant(*factor).cloned();
+                    Form::default().plus(&forms[b], &factor.unwrap_or(Number::int(0)))
                 }
                 _ => Form::variable(self.of(Variable::Root(id))),
             };
@@ -108,7 +128,7 @@ impl<'m> Variables<'m> {
     pub(super) fn compared(&mut self, value: Id, cell: Cell) -> Option<Form> {
         let [a, b] = squares_compared(self.graph, value)?;
         let a = self.unsquared(&a, cell)?;
-        Some(a.plus(&self.unsquared(&b, cell)?, -1.0))
+        Some(a.signed(&self.unsquared(&b, cell)?, true))
     }
 
     fn unsquared(&mut self, squared: &Squared, cell: Cell) -> Option<Form> {
@@ -119,7 +139,7 @@ impl<'m> Variables<'m> {
                 let value = encloser.get(a);
                 match (value.low >= 0.0, value.high <= 0.0) {
                     (true, _) => self.form(a),
-                    (_, true) => Some(Form::default().plus(&self.form(a)?, -1.0)),
+                    (_, true) => Some(self.form(a)?.negated()),
                     _ => Some(Form::variable(self.of(Variable::Size(a)))),
                 }
             }
@@ -134,16 +154,17 @@ impl<'m> Variables<'m> {
         let mut facts = Vec::new();
         for (root, at) in self.roots() {
             let Some(point) = self.centre(root) else { continue };
-            let size = point.values().fold(1.0, |size: f64, at| size.max(at.abs()));
-            let minus = Form::default().plus(&Form::variable(at), -1.0);
+            let minus = Form::variable(at).negated();
             for form in &forms {
-                let slope: f64 = form.factors.values().map(|factor| factor * factor).sum();
-                let value = form.factors.iter().try_fold(form.constant, |sum, (at, factor)| {
-                    Some(sum + factor * point.get(at)?)
-                });
-                let zero = value.is_some_and(|value| value.abs() < ROUNDING * size);
-                if zero && (slope - 1.0).abs() < ROUNDING {
-                    facts.extend([1.0, -1.0].map(|sign| minus.clone().plus(form, sign)));
+                let squares = form.factors.values().map(|factor| factor * factor);
+                let slope = squares.fold(Number::int(0), |sum, square| &sum + &square);
+                let terms = form.factors.iter().map(|(at, factor)| Some(factor * point.get(at)?));
+                let Some(terms) = terms.collect::<Option<Vec<Number>>>() else { continue };
+                let value = terms.iter().fold(form.constant.clone(), |sum, term| &sum + term);
+                let sizes = terms.iter().chain([&form.constant]).map(|term| term.to_f64().abs());
+                let zero = value.to_f64().abs() <= EXACT_ROUNDING * sizes.sum::<f64>();
+                if zero && slope.agrees(&Number::int(1)) {
+                    facts.extend([false, true].map(|sign| minus.clone().signed(form, sign)));
                 }
             }
         }
@@ -159,15 +180,15 @@ impl<'m> Variables<'m> {
     }
 
     /// The point from which a root is the distance, by coordinate.
-    fn centre(&mut self, root: Id) -> Option<BTreeMap<usize, f64>> {
+    fn centre(&mut self, root: Id) -> Option<BTreeMap<usize, Number>> {
         let (parts, all) = squares(self.graph, root);
         let mut point = BTreeMap::new();
         for part in parts {
             let form = self.form(part)?;
             let mut factors = form.factors.iter();
             let (variable, factor) = factors.next()?;
-            let alone = factors.next().is_none() && factor.abs() == 1.0;
-            point.insert(*variable, alone.then_some(-form.constant / factor)?);
+            let alone = factors.next().is_none() && factor.abs() == Number::int(1);
+            point.insert(*variable, alone.then(|| &-&form.constant * factor)?);
         }
         all.then_some(point)
     }
@@ -176,9 +197,9 @@ impl<'m> Variables<'m> {
         let mut form = Form::default();
         for (monomial, factor) in polynomial.terms() {
             if monomial == [0; 4] {
-                form.constant = factor.to_f64();
+                form.constant = factor.clone();
             } else {
-                form.factors.insert(self.of(Variable::Monomial(monomial)), factor.to_f64());
+                form.factors.insert(self.of(Variable::Monomial(monomial)), factor.clone());
             }
         }
         form
@@ -190,7 +211,7 @@ impl<'m> Variables<'m> {
     pub(super) fn facts(&mut self) -> (Vec<Form>, Vec<(usize, Vec<Form>)>) {
         let (mut facts, mut choices) = (Vec::new(), Vec::new());
         for (variable, at) in self.known.clone() {
-            let minus = Form::default().plus(&Form::variable(at), -1.0);
+            let minus = Form::variable(at).negated();
             let mut parts = Vec::new();
             match variable {
                 Variable::Monomial(monomial) => {
@@ -217,7 +238,7 @@ impl<'m> Variables<'m> {
                     if all && parts.len() == count && (count == 1 || self.of_space) {
                         let side = |signs: usize| {
                             parts.iter().enumerate().fold(Form::variable(at), |sum, (k, part)| {
-                                sum.plus(part, if signs >> k & 1 == 0 { 1.0 } else { -1.0 })
+                                sum.signed(part, signs >> k & 1 != 0)
                             })
                         };
                         choices.push((at, (0..1 << count).map(side).collect()));
@@ -225,7 +246,7 @@ impl<'m> Variables<'m> {
                 }
             }
             for part in parts {
-                facts.extend([1.0, -1.0].map(|sign| minus.clone().plus(&part, sign)));
+                facts.extend([false, true].map(|sign| minus.clone().signed(&part, sign)));
             }
             facts.push(minus);
         }

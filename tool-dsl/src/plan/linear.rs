@@ -1,22 +1,24 @@
 //! Curves that are linear in the coordinates, or in monomials and roots of them, each taken for a
 //! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
-//! sees where borders meet in a corner, to a part in 10^12.
+//! sees where borders meet in a corner. What it says is shown with the 256 bits of constants.
 
-use super::eliminate::{Condition, ROUNDING, in_own_unit, scaled, without};
+use super::eliminate::{Condition, Exact, ROUNDING, in_own_unit, scaled, without};
 use super::forms::{Form, Variable, Variables, compares_roots};
 use crate::expr::Id;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
 use crate::expr::polynomial::monomial_of;
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
+use crate::number::Number;
+use std::rc::Rc;
 
 /// The most combinations of choices.
 const CHOICES: usize = 8;
 
 /// The curves that are linear in the coordinates or in monomials of them.
 pub(crate) struct Linear {
-    /// Each curve as a linear form, if it is one, and behind them regions' depths.
-    forms: Vec<Option<(Vec<f64>, f64)>>,
+    /// Each curve that is a linear form, and behind them regions' depths.
+    forms: Vec<Option<Known>>,
     variables: usize,
     /// The variable that is the coordinate along each axis that the domain has.
     axes: [Option<usize>; 3],
@@ -24,6 +26,25 @@ pub(crate) struct Linear {
     facts: Vec<Condition>,
     /// Conditions of which one holds everywhere, for each of several roots.
     choices: Vec<(usize, Vec<Condition>)>,
+}
+
+/// A linear form.
+struct Known {
+    exact: Rc<Exact>,
+    /// That it is not positive, and that it is not negative.
+    sides: [Condition; 2],
+    /// Whether a factor is so small beside another that doubles would lose it as rounding: fewer conditions prove less.
+    is_lost: bool,
+}
+
+impl Known {
+    fn new([exact, opposite]: [Rc<Exact>; 2]) -> Known {
+        let sides = [&exact, &opposite].map(|form| Condition::given(form, false));
+        let sizes = || sides[0].factors.iter().map(|factor| factor.abs());
+        let largest = sizes().fold(0.0, f64::max);
+        let is_lost = sizes().any(|size| size != 0.0 && size < 1e3 * ROUNDING * largest);
+        Known { exact, sides, is_lost }
+    }
 }
 
 impl Linear {
@@ -64,15 +85,16 @@ impl Linear {
         }
         let count = variables.count();
         let dense = |form: Form| {
-            let all = (0..count).map(|v| form.factors.get(&v).copied().unwrap_or(0.0));
-            (all.collect(), form.constant)
+            let all = (0..count).map(|v| form.factors.get(&v).cloned().unwrap_or(Number::int(0)));
+            Rc::new(Exact { factors: all.collect(), constant: form.constant })
         };
-        let condition = |form: Form| {
-            let (factors, constant) = dense(form);
-            Condition { factors, constant, strict: false }
+        let both = |form: Form| {
+            let opposite = Form::default().plus(&form, &Number::int(-1));
+            Known::new([form, opposite].map(dense))
         };
+        let condition = |form: Form| Condition::given(&dense(form), false);
         Linear {
-            forms: forms.into_iter().map(|form| form.map(dense)).collect(),
+            forms: forms.into_iter().map(|form| form.map(both)).collect(),
             variables: count,
             axes,
             facts: facts.into_iter().map(condition).collect(),
@@ -94,19 +116,31 @@ impl Linear {
 
     fn range(&self, signs: &[Signs], wanted: usize) -> Interval {
         let (conditions, unit) = in_own_unit(self.conditions(signs));
-        let size = conditions.iter().fold(0f64, |m, c| m.max(c.constant.abs()));
         let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
         let Some(conditions) = without(conditions, others) else { return EVERYTHING };
         let mut range = EVERYTHING;
         for condition in conditions.into_iter().map(scaled) {
-            let (factor, constant) = (condition.factors[wanted], condition.constant);
-            // With what elimination rounds.
-            let end = -constant / factor;
-            let slack = ROUNDING * (size + end.abs());
-            if factor > ROUNDING {
-                range.high = range.high.min(unit * (end + slack));
-            } else if factor < -ROUNDING {
-                range.low = range.low.max(unit * (end - slack));
+            let double = condition.factors[wanted];
+            let end = -unit * condition.constant / double;
+            let tighter = match double {
+                _ if double > ROUNDING => end < range.high,
+                _ if double < -ROUNDING => end > range.low,
+                _ => false,
+            };
+            let exact = || condition.exactly(Some(wanted));
+            let Some((factor, constant, noise)) =
+                Some(()).filter(|()| tighter).and_then(|()| exact())
+            else {
+                continue;
+            };
+            let Some(end) = (-&constant).over(&factor).map(|end| Interval::about(&end)) else {
+                continue;
+            };
+            let slack = noise / factor.to_f64().abs();
+            if double > 0.0 && !factor.is_negative() {
+                range.high = range.high.min((end.high + slack).next_up());
+            } else if double < 0.0 && factor.is_negative() {
+                range.low = range.low.max((end.low - slack).next_down());
             }
         }
         range
@@ -115,28 +149,21 @@ impl Linear {
     fn conditions(&self, signs: &[Signs]) -> Vec<Condition> {
         let mut conditions = self.facts.clone();
         for (form, sign) in self.forms.iter().zip(signs) {
-            let Some((factors, constant)) = form else { continue };
-            // What would be lost as rounding must not take part: fewer conditions prove less.
-            let largest = factors.iter().fold(0f64, |m, f| m.max(f.abs()));
-            if factors.iter().any(|f| *f != 0.0 && f.abs() < 1e3 * ROUNDING * largest) {
+            let Some(Known { sides: [form, opposite], is_lost: false, .. }) = form else {
                 continue;
-            }
-            let mut add = |factor: f64, strict: bool| {
-                conditions.push(Condition {
-                    factors: factors.iter().map(|f| f * factor).collect(),
-                    constant: constant * factor,
-                    strict,
-                });
+            };
+            let mut add = |form: &Condition, strict: bool| {
+                conditions.push(form.clone().with_strict(strict));
             };
             match *sign {
-                NEGATIVE => add(1.0, true),
-                POSITIVE => add(-1.0, true),
+                NEGATIVE => add(form, true),
+                POSITIVE => add(opposite, true),
                 ZERO => {
-                    add(1.0, false);
-                    add(-1.0, false);
+                    add(form, false);
+                    add(opposite, false);
                 }
-                s if s == NEGATIVE | ZERO => add(1.0, false),
-                s if s == POSITIVE | ZERO => add(-1.0, false),
+                s if s == NEGATIVE | ZERO => add(form, false),
+                s if s == POSITIVE | ZERO => add(opposite, false),
                 _ => {}
             }
         }
@@ -151,11 +178,12 @@ impl Linear {
     /// lines elimination overlooks nothing.
     pub(super) fn judged(&self, signs: &[Signs]) -> Option<bool> {
         let rest = self.without_any(self.conditions(signs))?;
-        if absurd(&rest) {
+        if rest.iter().any(Condition::is_absurd) {
             return Some(true);
         }
-        let straight = |form: &Option<(Vec<f64>, f64)>| {
-            form.as_ref().is_some_and(|(factors, _)| {
+        let straight = |form: &Option<Known>| {
+            form.as_ref().is_some_and(|form| {
+                let factors = &form.sides[0].factors;
                 let bent = |v: usize| factors[v] != 0.0 && !self.axes.contains(&Some(v));
                 !(0..self.variables).any(bent)
             })
@@ -168,31 +196,23 @@ impl Linear {
     pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
         let mut conditions = self.conditions(signs);
         let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
-        if let Some((factors, constant)) = depth {
-            conditions.push(Condition {
-                factors: factors.iter().map(|factor| -factor).collect(),
-                constant: -constant,
-                strict: false,
-            });
-        }
+        conditions.extend(depth.map(|depth| depth.sides[1].clone()));
         self.absurd(conditions)
     }
 
     /// Whether one region is nowhere deeper than another, or than the outside, where curves have
     /// these signs.
     pub(crate) fn no_deeper(&self, signs: &[Signs], a: Option<usize>, b: Option<usize>) -> bool {
-        let nothing = (vec![0.0; self.variables], 0.0);
+        let zero = Number::int(0);
+        let nothing = Exact { factors: vec![zero.clone(); self.variables], constant: zero };
         let form = |region: Option<usize>| match region {
-            Some(region) => self.forms[signs.len() + region].as_ref(),
+            Some(region) => self.forms[signs.len() + region].as_ref().map(|form| &*form.exact),
             None => Some(&nothing),
         };
         let (Some(a), Some(b)) = (form(a), form(b)) else { return false };
+        let deeper = b.combined(&Number::int(1), a, &Number::int(-1));
         let mut conditions = self.conditions(signs);
-        conditions.push(Condition {
-            factors: b.0.iter().zip(&a.0).map(|(b, a)| b - a).collect(),
-            constant: b.1 - a.1,
-            strict: true,
-        });
+        conditions.push(Condition::given(&Rc::new(deeper), true));
         self.absurd(conditions)
     }
 
@@ -236,7 +256,7 @@ impl Linear {
     }
 
     fn none_keeps(&self, conditions: Vec<Condition>) -> bool {
-        self.without_any(conditions).is_some_and(|rest| absurd(&rest))
+        self.without_any(conditions).is_some_and(|rest| rest.iter().any(Condition::is_absurd))
     }
 
     /// What remains of conditions, in their own unit, when all variables may be anything.
@@ -245,8 +265,35 @@ impl Linear {
     }
 }
 
-/// Whether conditions on nothing are not kept.
-fn absurd(conditions: &[Condition]) -> bool {
-    let absurd = |c: &Condition| c.constant > if c.strict { -ROUNDING } else { ROUNDING };
-    conditions.iter().any(absurd)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile;
+    use crate::source::Source;
+
+    /// `d < 1` and `d > 1 - 1e-13` hold in a thin ring, which doubles cannot tell from nothing.
+    #[test]
+    fn what_only_rounding_contradicts_is_no_contradiction() {
+        let ball = "hypot(d, z - 3) <= 3";
+        let text = format!(
+            "tool Ball {{ units mm; curve a = d - 1; curve b = d - 0.9999999999999;
+               region core where {ball}, b <= 0 {{ depth: 3 - hypot(d, z - 3); }}
+               region ring where {ball}, 0 <= b, a <= 0 {{ depth: 3 - hypot(d, z - 3); }}
+               region shell where {ball}, 0 <= a {{ depth: 3 - hypot(d, z - 3); }} }}"
+        );
+        let tool = compile(&Source::new("a.tool", text)).into_tool().expect("a tool");
+        let curves = &tool.model.curves;
+        let named =
+            |name: &str| curves.iter().position(|curve| curve.name.as_deref() == Some(name));
+        let (a, b) = (named("a").expect("a curve"), named("b").expect("a curve"));
+        let linear = Linear::new(&tool.model);
+        let contradictory = |of_a: Signs, of_b: Signs| {
+            let mut signs = vec![ANY; curves.len()];
+            (signs[a], signs[b]) = (of_a, of_b);
+            linear.contradictory(&signs)
+        };
+        assert!(!contradictory(NEGATIVE, POSITIVE));
+        assert!(!contradictory(NEGATIVE, NEGATIVE) && !contradictory(POSITIVE, POSITIVE));
+        assert!(contradictory(ZERO, ZERO) && contradictory(ZERO | POSITIVE, ZERO | NEGATIVE));
+    }
 }

@@ -1,16 +1,21 @@
 //! Conics that touch: beside the point where they do, no box can tell their signs apart, however
-//! small, but a combination of the two can.
+//! small, but a combination of the two can (the S-lemma). All of it is shown with the 256 bits of constants.
 
 use crate::expr::polynomial::Polynomial;
+use crate::number::Number;
 
 /// A conic's six factors: 1, d, z, d², dz, z².
-type Conic = [f64; 6];
+type Conic<N> = [N; 6];
 
-/// What of a conic's values is rounding.
-const ROUNDING: f64 = 1e-11;
+/// What is left of cancelled numbers of 256 bits, as a part of their sizes.
+const ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 85) as f64);
 
-fn conic(polynomial: &Polynomial) -> Option<Conic> {
-    let mut factors = [0.0; 6];
+/// Steps from a double to a point of 256 bits: each gains as many digits as a double has, but for what the point is
+/// badly determined.
+const STEPS: usize = 24;
+
+fn conic(polynomial: &Polynomial) -> Option<Conic<Number>> {
+    let mut factors = [(); 6].map(|()| Number::int(0));
     for (monomial, value) in polynomial.terms() {
         let at = match monomial {
             [0, 0, 0, 0] => 0,
@@ -21,69 +26,98 @@ fn conic(polynomial: &Polynomial) -> Option<Conic> {
             [0, 0, 0, 2] => 5,
             _ => return None,
         };
-        factors[at] = value.to_f64();
+        factors[at] = value.clone();
     }
     Some(factors)
 }
 
-fn value(c: &Conic, [d, z]: [f64; 2]) -> f64 {
-    c[0] + c[1] * d + c[2] * z + c[3] * d * d + c[4] * d * z + c[5] * z * z
+fn slope(c: &Conic<f64>, [d, z]: [f64; 2]) -> [f64; 2] {
+    [c[1] + 2.0 * c[3] * d + c[4] * z, c[2] + c[4] * d + 2.0 * c[5] * z]
 }
 
-fn slope(c: &Conic, [d, z]: [f64; 2]) -> [f64; 2] {
-    [c[1] + 2.0 * c[3] * d + c[4] * z, c[2] + c[4] * d + 2.0 * c[5] * z]
+/// The sum of some products, and the sum of their sizes.
+fn sum<const N: usize>(products: [Number; N]) -> (Number, f64) {
+    let size = products.iter().map(|product| product.to_f64().abs()).sum();
+    (products.iter().fold(Number::int(0), |sum, product| &sum + product), size)
+}
+
+fn exact_value(c: &Conic<Number>, [d, z]: &[Number; 2]) -> (Number, f64) {
+    let [x, y] = [&c[3], &c[5]];
+    let squares = [&(x * d) * d, &(&c[4] * d) * z, &(y * z) * z];
+    let [dd, dz, zz] = squares;
+    sum([c[0].clone(), &c[1] * d, &c[2] * z, dd, dz, zz])
+}
+
+fn exact_slope(c: &Conic<Number>, [d, z]: &[Number; 2]) -> [Number; 2] {
+    let two = Number::int(2);
+    let along = sum([c[1].clone(), &(&two * &c[3]) * d, &c[4] * z]).0;
+    [along, sum([c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
 }
 
 /// Where two conics touch, near a point, and how.
 #[derive(Clone)]
 pub(super) struct Touch {
-    at: [f64; 2],
-    conics: [Conic; 2],
-    size: f64,
+    slopes: [[Number; 2]; 2],
+    conics: [Conic<Number>; 2],
 }
 
 impl Touch {
     /// The point near another at which two conics touch, if they do.
     pub(super) fn near(a: &Polynomial, b: &Polynomial, near: [f64; 2], size: f64) -> Option<Touch> {
         let conics = [conic(a)?, conic(b)?];
-        let [a, b] = &conics;
-        let mut p = near;
-        for _ in 0..30 {
-            let ([ad, az], [bd, bz]) = (slope(a, p), slope(b, p));
-            // One conic's value and the cross product of the slopes are 0.
-            let (first, second) = (value(b, p), ad * bz - az * bd);
+        let [a, b] = conics.each_ref().map(|conic| conic.each_ref().map(Number::to_f64));
+        let mut at = near.map(Number::from_f64);
+        for step in 0..STEPS {
+            let [Some(d), Some(z)] = &at else { return None };
+            let exact = [d.clone(), z.clone()];
+            let p = [d.to_f64(), z.to_f64()];
+            let ([ad, az], [bd, bz]) = (slope(&a, p), slope(&b, p));
+            // One conic's value and the cross product of the slopes are 0. By doubles until that is near.
+            let (first, second) = if step < STEPS / 2 {
+                let value = b[0] + b[1] * p[0] + b[2] * p[1];
+                let bent = b[3] * p[0] * p[0] + b[4] * p[0] * p[1] + b[5] * p[1] * p[1];
+                (value + bent, ad * bz - az * bd)
+            } else {
+                let [[ad, az], [bd, bz]] = conics.each_ref().map(|c| exact_slope(c, &exact));
+                let cross = &(&ad * &bz) - &(&az * &bd);
+                (exact_value(&conics[1], &exact).0.to_f64(), cross.to_f64())
+            };
             let down = 2.0 * a[3] * bz + ad * b[4] - a[4] * bd - az * 2.0 * b[3];
             let up = a[4] * bz + ad * 2.0 * b[5] - 2.0 * a[5] * bd - az * b[4];
             let det = bd * up - bz * down;
-            let step = [(first * up - bz * second) / det, (bd * second - first * down) / det];
-            p = [p[0] - step[0], p[1] - step[1]];
-            if !(p[0].is_finite() && p[1].is_finite()) {
+            let way = [(first * up - bz * second) / det, (bd * second - first * down) / det];
+            if step == STEPS / 2 && (p[0] - near[0]).hypot(p[1] - near[1]) >= 1e-2 * size {
                 return None;
             }
+            at = [0, 1].map(|k| Some(&exact[k] - &Number::from_f64(way[k])?));
         }
-        let touch = Touch { at: p, conics, size };
-        let close = (p[0] - near[0]).hypot(p[1] - near[1]) < 1e-2 * size;
-        let zero = |c: &Conic| {
-            let [d, z] = slope(c, p);
-            value(c, p).abs() <= ROUNDING * size * d.hypot(z)
-        };
-        (close && touch.conics.iter().all(zero)).then_some(touch)
+        let [Some(d), Some(z)] = at else { return None };
+        let at = [d, z];
+        let is_zero = |(value, size): (Number, f64)| value.to_f64().abs() <= ROUNDING * size;
+        let slopes = conics.each_ref().map(|conic| exact_slope(conic, &at));
+        let [[ad, az], [bd, bz]] = &slopes;
+        let touch = conics.iter().all(|conic| is_zero(exact_value(conic, &at)))
+            && is_zero(sum([ad * bz, -&(az * bd)]));
+        touch.then_some(Touch { slopes, conics })
     }
 
     /// Whether `from · a ≥ 0` makes `to · b ≥ 0`, with `from` and `to` one of 1 and -1: then `to b`
     /// is a positive multiple of `from a` and a square sum that is 0 where they touch.
-    pub(super) fn implies(&self, from: f64, to: f64) -> bool {
+    pub(super) fn implies(&self, from: i64, to: i64) -> bool {
         let [a, b] = &self.conics;
-        let ([ad, az], [bd, bz]) = (slope(a, self.at), slope(b, self.at));
-        let length = ad * ad + az * az;
-        let share = to * from * (ad * bd + az * bz) / length;
-        if share.is_nan() || share <= 0.0 {
+        let [[ad, az], [bd, bz]] = &self.slopes;
+        let (along, _) = sum([ad * bd, az * bz]);
+        let (length, _) = sum([ad * ad, az * az]);
+        let Some(share) = (&Number::int(to * from) * &along).over(&length) else { return false };
+        if share.is_zero() || share.is_negative() {
             return false;
         }
-        let bent = |k: usize| to * b[k] - share * from * a[k];
-        let (dd, dz, zz) = (bent(3), bent(4), bent(5));
-        let scale = (3..6).map(|k| b[k].abs() + share * a[k].abs()).fold(0.0, f64::max);
-        let slack = ROUNDING * scale.max(bd.hypot(bz) / self.size);
-        dd >= -slack && zz >= -slack && 4.0 * dd * zz - dz * dz >= -slack * scale
+        let [from, to] = [from, to].map(Number::int);
+        let bent = |k: usize| sum([&to * &b[k], -&(&share * &(&from * &a[k]))]);
+        let [(dd, dd_size), (dz, dz_size), (zz, zz_size)] = [3, 4, 5].map(bent);
+        let size = dd_size.max(dz_size).max(zz_size);
+        let (bend, _) = sum([&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
+        let least = |value: &Number, size: f64| value.to_f64() >= -ROUNDING * size;
+        least(&dd, size) && least(&zz, size) && least(&bend, size * size)
     }
 }

@@ -44,8 +44,8 @@ impl Parting<'_> {
         let mut signs = ANY;
         for (other, known) in &claim.signs {
             let from = match known & !ZERO {
-                NEGATIVE => -1.0,
-                POSITIVE => 1.0,
+                NEGATIVE => -1,
+                POSITIVE => 1,
                 _ => continue,
             };
             let (Some(conic), Some(own)) = (self.signed(*other), self.signed(curve)) else {
@@ -63,7 +63,7 @@ impl Parting<'_> {
             let tried = tried + 1;
             self.touches.insert(place, (tried, touch.clone()));
             if let Some(touch) = &touch {
-                for (to, without) in [(1.0, NEGATIVE), (-1.0, POSITIVE)] {
+                for (to, without) in [(1, NEGATIVE), (-1, POSITIVE)] {
                     if touch.implies(from, to) {
                         signs &= !without;
                     }
