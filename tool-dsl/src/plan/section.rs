@@ -18,7 +18,9 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 /// Chords of a curved edge, at first and where so few misled.
-const CHORDS: [u32; 2] = [8, 40];
+const CHORDS: [u32; 3] = [8, 40, 200];
+/// How far depths that a tree gives may be from distances, of the size.
+const ROUNDING: f64 = 1e-10;
 
 /// Curves that are passed over because their points belong to both sides.
 const DOUBLES: usize = 6;
@@ -98,6 +100,18 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
     }
     let inside = model.regions.iter().map(|region| &region.inside).collect();
     let owners = plan(model, &shapes, size, all, inside)?;
+    // A sliver between a curve and its chord can have been given to another.
+    let at = |p: Point| *owners.at(&|curve| shapes[curve].value(p));
+    for (p, distance) in section.inner.probes() {
+        let part =
+            at(p).map(|region| section.over.as_ref().map_or(region, |over| over.regions[region].0));
+        let right = part.is_some_and(|part| {
+            (section.inner.depth_at(part, p) - distance).abs() <= ROUNDING * size
+        });
+        if !right {
+            return Err(inseparable(model, p));
+        }
+    }
 
     let mut outside = Ground::default();
     for cell in &outer {
@@ -112,6 +126,16 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
     }
     let beside = section.outside.iter().map(|part| &part.beside).collect();
     let outside = plan(model, &shapes, size, outside, beside)?;
+    for (p, distance) in section.outer.probes() {
+        let part = outside.at(&|curve| shapes[curve].value(p));
+        let right = part.is_some_and(|part| {
+            let off = (section.outer.depth_at(part, p) - distance).abs();
+            off <= ROUNDING * size.max(distance)
+        });
+        if !right || at(p).is_some() && distance > ROUNDING * size {
+            return Err(inseparable(model, p));
+        }
+    }
     let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
     let outside = outside.map(&clearance);
     Ok((owners, outside.unwrap_or(Tree::Leaf(section.outside[0].clearance))))
@@ -205,7 +229,7 @@ fn plan<'m>(
     let tree = planner.tree(&ground.pieces, (all, every), open)?;
     for (p, owner) in ground.witnesses {
         if *tree.at(&|curve| shapes[curve].value(p)) != owner {
-            return Err(planner.inseparable(p));
+            return Err(inseparable(model, p));
         }
     }
     Ok(tree)
@@ -356,18 +380,6 @@ impl Planner<'_> {
         }
     }
 
-    fn inseparable(&self, [d, z]: Point) -> Report {
-        let outline = self.model.section.iter().flat_map(|section| &section.outline);
-        let outline: Vec<_> = outline.cloned().collect();
-        let span = outline::nearest_span(&outline, [d, z]).unwrap_or(self.model.name_span);
-        let z = self.model.frame.to_file(z);
-        Report::error(
-            span,
-            format!("no curve tells the nearest features apart near ({d:.4}, {z:.4})"),
-        )
-        .help("features closer than 10^-10 of the tool's size cannot be told apart")
-    }
-
     fn halves(&mut self, curve: CurveIndex, pieces: &[Rc<Piece>]) -> Halves {
         let cutter = Cutter { shapes: self.shapes, curve, size: self.size };
         let (whole, shape) = (&self.whole, &self.shapes[curve]);
@@ -405,4 +417,13 @@ impl Planner<'_> {
         }
         halves
     }
+}
+
+fn inseparable(model: &Model, [d, z]: Point) -> Report {
+    let outline = model.section.iter().flat_map(|section| &section.outline);
+    let outline: Vec<_> = outline.cloned().collect();
+    let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);
+    let z = model.frame.to_file(z);
+    Report::error(span, format!("no curve tells the nearest features apart near ({d:.4}, {z:.4})"))
+        .help("features closer than 10^-10 of the tool's size cannot be told apart")
 }

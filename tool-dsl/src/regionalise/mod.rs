@@ -87,6 +87,23 @@ impl Partition {
         self.outline.len()
     }
 
+    /// Points of all cells with their distances from the outline: along normals, the more the nearer to a cell's end and
+    /// to its corners.
+    pub(crate) fn probes(&self) -> Vec<(Point, f64)> {
+        let section = Section::new(&self.outline, self.outer);
+        let points = self.slices.iter().flatten().flat_map(|slice| slice.probes(&section));
+        let distance = |p: Point| {
+            let pieces = self.outline.iter().map(|segment| segment.away(p));
+            (p, pieces.fold(f64::INFINITY, f64::min))
+        };
+        points.map(distance).collect()
+    }
+
+    /// The distance of a point from a part's line, circle or corner; below 0 on its other side.
+    pub(crate) fn depth_at(&self, part: usize, p: Point) -> f64 {
+        Section::new(&self.outline, self.outer).depth_at(part, p)
+    }
+
     /// Polygons that cover it as far as is looked, with so many chords to a curved edge.
     pub(crate) fn cells(&self, chords: u32) -> Vec<cells::Cell> {
         cells::cells(&Section::new(&self.outline, self.outer), &self.slices, chords)

@@ -191,6 +191,20 @@ impl Slice {
         (0..=steps).flat_map(ray).collect()
     }
 
+    /// Points along its normals, the more the nearer to its ends.
+    pub(super) fn probes(&self, section: &Section<'_>) -> Vec<Point> {
+        const EVEN: u32 = 12;
+        let near = (2..10).map(|k| 0.25f64.powi(k));
+        let parts = (1..EVEN).map(|k| f64::from(k) / f64::from(EVEN));
+        let parts = parts.chain(near.clone()).chain(near.map(|part| 1.0 - part));
+        let along = |part: f64| {
+            let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
+            let radius = self.radius(section, part);
+            [0.1, 0.5, 0.9, 0.99, 1.0].map(|share| seat.at(share * radius))
+        };
+        parts.flat_map(along).filter(|p| p[0] >= 0.0).collect()
+    }
+
     /// The point of its end at a part of its width.
     pub(super) fn rim_at(&self, section: &Section<'_>, part: f64) -> Point {
         let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
