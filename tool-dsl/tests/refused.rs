@@ -367,5 +367,14 @@ fn a_proof_that_ends_early_takes_nothing_back() {
     assert_eq!((certificate.lipschitz(), tool.bounds.lipschitz), (None, Some(1.0)));
     let reports = certificate.reports(tool);
     let help = reports.iter().filter_map(|report| report.help.as_deref()).next();
-    assert!(help.is_some_and(|help| help.contains("at most 1 times the distance")), "{help:?}");
+    assert!(help.is_some_and(|help| help.contains("by construction")), "{help:?}");
+}
+
+/// A ring below the tip that no column of samples meets.
+#[test]
+fn a_tip_above_the_tools_end_is_refused() {
+    let said = refused(
+        "curve ring = 0.1 - hypot(d - 1.93, z + 20.25); region ring where ring >= 0 { depth: ring; }",
+    );
+    assert!(said.contains("the tool ends at z = -20.35"), "{said}");
 }

@@ -23,6 +23,8 @@ const CROSSINGS: usize = 1_500;
 const COLUMNS: i32 = 100;
 /// How often they are then drawn ten times closer.
 const FINER: usize = 4;
+/// Where a tool's end is looked for once more above the box about it, as a part of its size.
+const STRIP: f64 = 0.01;
 /// Lengths below this part of the tool's size are rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -95,7 +97,8 @@ pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
     }
     // Where conditions have no value, nobody knows where the tool ends.
     if model.domain == Domain::HalfPlane && !look.undefined {
-        let end = look.end(extent);
+        let found = look.end(extent);
+        let end = if look.reaches(extent, found) { extent.low } else { found };
         look.tip(end, extent);
     }
     look.idle_regions();
@@ -221,6 +224,14 @@ impl<'m> Look<'m> {
             columns = -10..=10;
         }
         end.0
+    }
+
+    /// Whether something ends well below what was found to be the tool's end, where the box about it does: too small
+    /// for columns to meet it.
+    fn reaches(&mut self, extent: &Extent, found: f64) -> bool {
+        let lowest = Extent { high: extent.low + STRIP * self.size, ..extent.clone() };
+        extent.low < found - STRIP * self.size
+            && spread(self.model.domain, &lowest, POINTS, 0.0).any(|p| self.owner(p).is_some())
     }
 
     /// The tool's end is its tip, which is at 0.
