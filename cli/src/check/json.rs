@@ -18,6 +18,8 @@ pub(super) struct Proved<'t> {
     exact: bool,
     continuous: bool,
     tolerance: f64,
+    /// What all bounds may be off by
+    slack: f64,
     boxes: usize,
     regions: Vec<ProvedRegion<'t>>,
     borders: Vec<ProvedBorder<'t>>,
@@ -35,8 +37,8 @@ struct ProvedRegion<'t> {
     falls: bool,
     /// Of depth in f64 and in f32
     rounding: [f64; 2],
-    /// Between the direction and the steepest way down
-    aside_degrees: [f64; 2],
+    /// Between the direction and the steepest way down, if it is known
+    aside_degrees: Option<[f64; 2]>,
     /// Where the direction vanishes, in the tool's frame: boxes' middles
     singular: Vec<[f64; 3]>,
     /// Whether the direction turns on the axis
@@ -76,7 +78,7 @@ impl<'t> Proved<'t> {
             niceness: ends(niceness(facts)),
             falls: facts.falls,
             rounding: facts.rounding,
-            aside_degrees: turned(facts.aside),
+            aside_degrees: facts.aside.map(turned),
             singular: facts.singular.iter().map(Cell::middle).collect(),
             on_axis: facts.on_axis,
         };
@@ -100,6 +102,7 @@ impl<'t> Proved<'t> {
             exact: certificate.is_exact(),
             continuous: certificate.is_continuous(),
             tolerance: certificate.tolerance,
+            slack: certificate.slack,
             boxes: certificate.boxes,
             regions: model.regions.iter().zip(&certificate.regions).map(region).collect(),
             borders: certificate.borders.iter().map(border).collect(),

@@ -84,8 +84,9 @@ fn none_or(jump: Interval) -> String {
 /// Where a region's direction leads.
 fn direction(tool: &Checked, facts: &RegionFacts) -> String {
     let mut said = match facts.aside {
-        Interval { low: 0.0, high: 0.0 } => "straight down the depth".to_owned(),
-        aside => format!("{} from straight down", degrees(aside)),
+        None => "not known anywhere".to_owned(),
+        Some(Interval { low: 0.0, high: 0.0 }) => "straight down the depth".to_owned(),
+        Some(aside) => format!("{} from straight down", degrees(aside)),
     };
     if let [first, more @ ..] = facts.singular.as_slice() {
         said += &format!("; vanishes near {}", tool.model.shown(first.middle()));
@@ -100,18 +101,25 @@ fn direction(tool: &Checked, facts: &RegionFacts) -> String {
 fn verdict(tool: &Checked, certificate: &Certificate) -> String {
     let proved = |bound: Option<f64>| bound.map(figure);
     let boxes = certificate.boxes;
+    let slack = match certificate.slack {
+        0.0 => String::new(),
+        slack => format!(", to within {slack:.0e} {}", tool.model.unit.word()),
+    };
     match (proved(certificate.least()), proved(certificate.lipschitz())) {
         _ if certificate.is_exact() => {
-            format!("proved in {boxes} boxes: depth is the distance to the surface")
+            format!("proved in {boxes} boxes: depth is the distance to the surface{slack}")
         }
         (Some(least), Some(most)) => format!(
-            "proved in {boxes} boxes: depth is {least} to {most} times the distance to the surface"
+            "proved in {boxes} boxes: depth is {least} to {most} times the distance to the surface{slack}"
         ),
         (None, Some(most)) => format!(
             "proved in {boxes} boxes: depth is at most {most} times the distance to the surface and \
-             changes by at most {most} times the way; how much less it may be is not proved"
+             changes by at most {most} times the way{slack}; how much less it may be is not proved"
         ),
-        // A profile's depth is the distance by construction, and regions by hand may be decided in fewer boxes.
+        _ if tool.model.is_exact() => format!(
+            "by construction: depth is the distance to the surface; not proved in {boxes} boxes"
+        ),
+        // Regions by hand may be decided in fewer boxes.
         _ if tool.bounds.lipschitz.is_some() => format!(
             "proved while compiling: depth is at most {} times the distance to the surface; not proved \
              once more in {boxes} boxes",

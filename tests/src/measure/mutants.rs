@@ -189,7 +189,11 @@ pub fn caught(whole: &Certificate, broken: &Certificate) -> Caught {
         (a, b) => a == b,
     };
     let aside = |certificate: &Certificate| -> Vec<f64> {
-        certificate.regions.iter().map(|region| region.aside.high).collect()
+        certificate
+            .regions
+            .iter()
+            .map(|region| region.aside.map_or(0.0, |aside| aside.high))
+            .collect()
     };
     let off = aside(whole).into_iter().zip(aside(broken)).any(|(a, b)| b > a + 1e-6);
     if broken.borders.iter().any(|border| border.seen.is_some()) {

@@ -28,6 +28,9 @@ use crate::report::{Report, Severity, figure};
 /// size.
 const TOLERANCE: f64 = 1e-6;
 
+/// Where both bounds are 1 to this, depth is said to be the distance.
+const EXACT: f64 = 1e-8;
+
 /// Boxes that a proof may take, and one while a tool is compiled.
 const MANY: usize = 35_000;
 const FEW: usize = 4_000;
@@ -47,6 +50,9 @@ pub struct Certificate {
     pub boxes: usize,
     /// The least slope of the depth toward the surface.
     least: f64,
+    /// How much depth may jump at points where regions meet that no curve joins, in the file's unit: `c · distance -
+    /// slack ≤ depth ≤ L · distance + slack`, and depth changes by no more than L times the way and the slack.
+    pub slack: f64,
 }
 
 /// What is proved about a region.
@@ -66,8 +72,8 @@ pub struct RegionFacts {
     pub niceness: Interval,
     /// Whether niceness nowhere grows with depth.
     pub falls: bool,
-    /// The angle between the direction and the steepest way down, in radians, where there is one.
-    pub aside: Interval,
+    /// The angle between the direction and the steepest way down, in radians, if it is known anywhere.
+    pub aside: Option<Interval>,
     /// Boxes where the direction vanishes; there it is along z.
     pub singular: Vec<Cell>,
     /// Whether the direction is across an axis that the region touches, and so turns there by up to a
@@ -87,7 +93,7 @@ impl RegionFacts {
         magnitude: ZERO,
         niceness: ZERO,
         falls: true,
-        aside: ZERO,
+        aside: None,
         singular: Vec::new(),
         on_axis: false,
         rounding: [0.0; 2],
@@ -155,8 +161,8 @@ pub struct Bounds {
     pub least: Option<f64>,
     /// See [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
-    /// How far rounding can take a computed depth, of `f64` and of `f32`, from the true value, in the
-    /// file's unit.
+    /// How far a computed depth, of `f64` and of `f32`, can be from one for which these bounds hold, in the file's
+    /// unit: by rounding, and by [`Certificate::slack`].
     pub rounding: [f64; 2],
 }
 
@@ -179,6 +185,7 @@ impl Bounds {
         // What is undecided here may not be in more boxes.
         let mut reports = proved.reports(tool);
         reports.retain(|report| report.severity == Severity::Error);
+        let rounding = rounding.map(|rounding| rounding + proved.slack);
         (Bounds { least, lipschitz, rounding }, reports)
     }
 }
@@ -236,6 +243,9 @@ impl Certificate {
                     ),
                 )
                 .help(match tool.bounds.lipschitz {
+                    _ if model.is_exact() => "a profile's depth is the distance to its surface by construction, which \
+                                              is not proved for this tool"
+                        .to_owned(),
                     Some(most) => format!(
                         "that depth is at most {} times the distance to the surface was proved while \
                          the tool was compiled, and stands",
@@ -260,20 +270,21 @@ impl Certificate {
     }
 
     /// `L`, if it is proved: no depth is more than `L` times the distance to the surface, and depth
-    /// changes by no more than `L` times the way.
+    /// changes by no more than `L` times the way, each but for the [slack](Certificate::slack).
     pub fn lipschitz(&self) -> Option<f64> {
         let steepest = self.regions.iter().map(|region| region.steepness.high).fold(0.0, f64::max);
         (self.is_continuous() && steepest.is_finite()).then_some(steepest)
     }
 
-    /// `c`, if it is proved: no depth is less than `c` times the distance to the surface.
+    /// `c`, if it is proved: no depth is less than `c` times the distance to the surface, but for the
+    /// [slack](Certificate::slack).
     pub fn least(&self) -> Option<f64> {
         (self.is_continuous() && self.least > 0.0).then_some(self.least)
     }
 
-    /// Whether depth is proved to be the distance to the surface.
+    /// Whether depth is proved to be the distance to the surface, to a part in 10^8 and the [slack](Certificate::slack).
     pub fn is_exact(&self) -> bool {
-        let one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < 1e-12);
+        let one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < EXACT);
         one(self.lipschitz()) && one(self.least())
     }
 }

@@ -1,4 +1,4 @@
-//! What single points show: jumps, and ways along which depth falls.
+//! What single points show: jumps, shares, and where a solid ends.
 
 use super::parting::Pair;
 use super::{Seen, TOLERANCE};
@@ -15,8 +15,6 @@ const SPREAD: usize = 10_000;
 /// Points on each piece of a profile, and how far beside them it is looked, as a part of the tool's size.
 const STATIONS: usize = 8;
 const BESIDE: f64 = 1e-4;
-/// How far it is looked about points, as parts of the tool's size.
-const STEPS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 /// Asks of points what is felt there.
 pub(super) struct Witness<'t> {
@@ -43,31 +41,6 @@ impl<'t> Witness<'t> {
         }
         let all: f64 = counts.iter().sum();
         counts.iter().map(|count| count / all.max(1.0)).collect()
-    }
-
-    /// How much less deep it is some way from a point, by that way; of ways straight down the slopes that
-    /// are given, the steepest.
-    pub(super) fn fall_from(
-        &mut self,
-        from: [f64; 3],
-        slopes: impl IntoIterator<Item = [f64; 3]>,
-    ) -> f64 {
-        let deep = self.depth(from);
-        if deep <= TOLERANCE * self.size {
-            return f64::INFINITY;
-        }
-        let mut steepest = 0.0f64;
-        for up in slopes {
-            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
-            for part in STEPS {
-                let way = (part * self.size).min(deep);
-                let to = [0, 1, 2].map(|k| from[k] - way * up[k] / long);
-                if to.iter().all(|part| part.is_finite()) {
-                    steepest = steepest.max((deep - self.depth(to)) / way);
-                }
-            }
-        }
-        steepest
     }
 
     /// Where two owners have points side by side in a box and depth jumps between them, of a few.
@@ -148,11 +121,5 @@ impl<'t> Witness<'t> {
             }
         }
         off
-    }
-
-    /// The depth at a point, 0 outside.
-    fn depth(&mut self, point: [f64; 3]) -> f64 {
-        let owner = self.owner(point);
-        owner.map_or(0.0, |owner| self.values.get(self.tool.model.regions[owner].depth))
     }
 }

@@ -63,6 +63,9 @@ impl Survey<'_> {
             return false;
         }
         self.least = self.least.min(least);
+        let unjoined = all.iter().filter(|met| met.by.joint == Joint::None && met.seen.is_none());
+        let pairs: Vec<Pair> = unjoined.map(|met| met.pair).collect();
+        self.jumps += pairs.into_iter().map(|pair| self.jump(pair).high).fold(0.0, f64::max);
         all.iter().for_each(|met| self.note(met, cell));
         true
     }

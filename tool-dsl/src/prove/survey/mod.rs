@@ -22,8 +22,13 @@ const FINE: f64 = 1.0 / 56.0;
 const FINE_OF_SPACE: f64 = 1.0 / 7.0;
 /// Where depths differ, it is looked whether their owners are neighbours in boxes of this part.
 const SMALL: f64 = 1.0 / 1024.0;
-/// Boxes where nothing explains a border are divided to this part of the tool's size.
-const FINEST: f64 = TOLERANCE / 10.0;
+/// Boxes where nothing explains a border are divided to this part of the tool's size, or, where too many boxes are
+/// needed for that, to the second. Where curves touch it takes so many more boxes as the root of this is smaller.
+const FINEST: [f64; 2] = [1e-12, 1e-7];
+/// From boxes as good as points ways down of these parts of the tool's size are tried, and to the surface ways of so
+/// many times such a box's half diagonal.
+const STEPS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+const NEAR: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
 /// More claims to a box are not compared two by two.
 const CROWD: usize = 48;
 /// Boxes times regions that a proof may take: a box takes longer the more regions there are. Up to 217 regions, the
@@ -39,9 +44,14 @@ const VAGUE: f64 = 0.1;
 /// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if
 /// that is asked for.
 pub(super) fn survey(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
-    let mut survey = Survey::new(tool);
-    survey.alone = alone;
-    survey.run(boxes);
+    let boxes = boxes.min(WORK / tool.model.regions.len().max(1));
+    let [finest, coarsest] = FINEST;
+    let mut survey = Survey::new(tool, finest, alone);
+    if survey.run(boxes, false) && survey.undecided.is_empty() {
+        return survey.certificate();
+    }
+    let mut survey = Survey::new(tool, coarsest, alone);
+    survey.run(boxes, true);
     survey.certificate()
 }
 
@@ -73,6 +83,8 @@ struct Survey<'t> {
     size: f64,
     /// Boxes on a border are divided to this part of the tool's size.
     fine: f64,
+    /// Boxes that are as good as points.
+    finest: f64,
     regions: Vec<Option<RegionFacts>>,
     aims: Vec<Aim>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
@@ -82,6 +94,10 @@ struct Survey<'t> {
     least: f64,
     /// The same from boxes that are as good as points.
     least_from_points: f64,
+    /// How far points of such boxes are from the outside at most, where nothing else is known of how depth falls.
+    near: f64,
+    /// The sum, over boxes where several regions meet that no curve joins, of how far depths differ there.
+    jumps: f64,
     undecided: Vec<Undecided>,
     /// Whether it is looked whether regions overlap.
     alone: bool,
@@ -89,7 +105,7 @@ struct Survey<'t> {
 }
 
 impl<'t> Survey<'t> {
-    fn new(tool: &'t Checked) -> Survey<'t> {
+    fn new(tool: &'t Checked, finest: f64, alone: bool) -> Survey<'t> {
         let model = &tool.model;
         let felt = model.regions.iter().flat_map(|region| {
             let felt = [region.depth, region.magnitude, region.niceness];
@@ -112,6 +128,7 @@ impl<'t> Survey<'t> {
             witness: Witness::new(tool, reach(&whole)),
             parting,
             size: reach(&whole),
+            finest,
             fine: match model.domain {
                 Domain::HalfPlane => FINE,
                 Domain::Space => FINE_OF_SPACE,
@@ -122,22 +139,28 @@ impl<'t> Survey<'t> {
             jumping: BTreeMap::new(),
             least: f64::INFINITY,
             least_from_points: f64::INFINITY,
+            near: 0.0,
+            jumps: 0.0,
             undecided: Vec::new(),
-            alone: false,
+            alone,
             boxes: 0,
         }
     }
 
-    fn run(&mut self, budget: usize) {
+    /// Looks at all boxes; beyond the budget, at the large ones that are left, if it is to come to an end then. Returns
+    /// whether it did.
+    fn run(&mut self, budget: usize, to_the_end: bool) -> bool {
         let mut boxes = Boxes::new(self.tool.extent.cell());
-        let budget = budget.min(WORK / self.tool.model.regions.len().max(1));
         while let Some(cell) = boxes.next() {
+            if boxes.count > budget && !to_the_end {
+                return false;
+            }
             let claims = self.cover.claims(cell);
             let mut owners: Vec<Option<usize>> = claims.iter().map(|claim| claim.owner).collect();
             owners.sort_unstable();
             owners.dedup();
             let grain = match reach(&cell) / self.size {
-                reach if reach <= FINEST => Grain::Point,
+                reach if reach <= self.finest => Grain::Point,
                 _ if boxes.count > budget => Grain::Last,
                 reach if reach <= self.fine => Grain::Fine,
                 _ => Grain::Coarse,
@@ -158,6 +181,7 @@ impl<'t> Survey<'t> {
             }
         }
         self.boxes = boxes.count;
+        true
     }
 
     /// Whether the owners of a box are those that the list of regions says, as far as that is looked at.
@@ -184,7 +208,7 @@ impl<'t> Survey<'t> {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
         let positive = depth.value.low >= -TOLERANCE * self.size;
-        let falls = self.fall(owner) > 0.0;
+        let falls = self.fall(owner, &[Some(owner)]) > 0.0;
         // Where a direction vanishes is told well in the half plane, where that is a point.
         let plane = self.tool.model.domain == Domain::HalfPlane;
         let large = grain == Grain::Coarse || plane && reach(&cell) > SMALL * self.size;
@@ -212,7 +236,7 @@ impl<'t> Survey<'t> {
         grain: Grain,
     ) -> bool {
         self.slopes.set(cell);
-        let falls = owners.iter().flatten().all(|owner| self.fall(*owner) > 0.0);
+        let falls = owners.iter().flatten().all(|owner| self.fall(*owner, owners) > 0.0);
         if !grain.is_last() && !falls {
             return false;
         }
@@ -235,30 +259,71 @@ impl<'t> Survey<'t> {
         }
     }
 
-    /// How steeply a region's depth falls at least in the present box.
-    fn fall(&mut self, owner: usize) -> f64 {
+    /// How steeply a region's depth falls at least in the present box, which some owners have.
+    fn fall(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-        // The kink of a length is where it is 0: at the surface.
-        if self.parting.is_length(owner) { depth.length.low } else { depth.fall() }
+        // The kink of a length is where it is 0. Beside the outside that is the surface, where depth need not fall.
+        let unkinked = depth.value.low > 0.0 || owners.contains(&None);
+        if self.parting.is_length(owner) && unkinked { depth.length.low } else { depth.fall() }
     }
 
     /// Notes how steeply depth falls from any point of a box.
     fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
-        if grain == Grain::Point {
-            let middle = cell.middle();
-            self.slopes.set(Cell { sides: middle.map(|at| Interval::new(at, at)) });
-            let slope = |owner: &usize| {
-                let slope = self.slopes.get(self.tool.model.regions[*owner].depth);
-                slope.parts.map(Interval::middle)
-            };
-            let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
-            let least = self.witness.fall_from(middle, slopes);
-            self.least_from_points = self.least_from_points.min(least);
-        } else {
+        if grain != Grain::Point {
             for owner in owners.iter().flatten() {
-                self.least = self.least.min(self.fall(*owner));
+                self.least = self.least.min(self.fall(*owner, owners));
+            }
+        } else if owners.contains(&None) {
+            self.near = self.near.max(2.0 * reach(&cell));
+        } else {
+            let least = self.fall_from_point(owners, cell);
+            self.least_from_points = self.least_from_points.min(least);
+        }
+    }
+
+    /// How much less deep it is somewhere than anywhere in a box, by the way there from its farthest point; of ways
+    /// straight down the owners' slopes, the steepest. Infinite if one of them soon leads outside.
+    fn fall_from_point(&mut self, owners: &[Option<usize>], cell: Cell) -> f64 {
+        let (regions, middle) = (&self.tool.model.regions, cell.middle());
+        let depths = owners.iter().flatten().map(|owner| regions[*owner].depth);
+        let low = depths.map(|id| self.slopes.get(id).value.low).fold(f64::INFINITY, f64::min);
+        self.slopes.set(point(middle));
+        let slope = |owner: &usize| {
+            let slope = self.slopes.get(regions[*owner].depth);
+            slope.parts.map(Interval::middle)
+        };
+        let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
+        let half = reach(&cell);
+        let mut steepest = 0.0f64;
+        for up in slopes {
+            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let ways = NEAR.map(|part| part * half).into_iter();
+            for way in ways.chain(STEPS.map(|part| part * self.size)) {
+                let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
+                let Some(high) = self.deepest_at(to) else { continue };
+                // `to` is rounded, by far less than the box is wide.
+                let farthest = (way + 2.0 * half) * (1.0 + 1e-12);
+                if high == 0.0 && way <= NEAR[NEAR.len() - 1] * half {
+                    self.near = self.near.max(farthest);
+                    return f64::INFINITY;
+                }
+                steepest = steepest.max((low - high) / farthest);
             }
         }
+        steepest
+    }
+
+    /// How deep it is at a point at most, whichever of the regions that may have it has it; 0 if none may. Nothing
+    /// if it is no point of the domain.
+    fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
+        let off_axis = self.tool.model.domain == Domain::HalfPlane && at[0] < 0.0;
+        if off_axis || !at.iter().all(|part| part.is_finite()) {
+            return None;
+        }
+        let claims = self.cover.claims(point(at));
+        self.slopes.set(point(at));
+        let depth = |owner: usize| self.slopes.get(self.tool.model.regions[owner].depth).value.high;
+        Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
     }
 
     /// Notes what is felt in the present box, of a region that has all of it or a part.
@@ -313,7 +378,7 @@ impl<'t> Survey<'t> {
     fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
         self.undecided.extend(self.witness.off_profile().into_iter().map(|at| Undecided {
-            cell: Cell { sides: at.map(|at| Interval::new(at, at)) },
+            cell: point(at),
             what: "that the solid ends on the profile".to_owned(),
         }));
         let mut ranges = Ranges {
@@ -334,16 +399,17 @@ impl<'t> Survey<'t> {
             .map(|(index, ((facts, share), aim))| RegionFacts {
                 share,
                 distance: self.parting.is_distance(index),
-                aside: aim.off.unwrap_or(NOTHING),
+                aside: aim.off,
                 singular: aim.singular,
                 on_axis: aim.on_axis,
                 ..facts.unwrap_or(RegionFacts::NONE)
             })
             .collect();
-        // From points it is as steep as it was seen to be, but for rounding.
-        let from_points = self.least_from_points * (1.0 + ROUNDING);
+        // Slopes that are taken for equal may differ by rounding.
+        let least = self.least.min(self.least_from_points) - ROUNDING;
         Certificate {
-            least: if from_points < self.least { from_points } else { self.least },
+            least,
+            slack: self.jumps + least.max(0.0) * self.near,
             regions,
             borders: self.borders.into_values().collect(),
             undecided: self.undecided,
@@ -351,4 +417,9 @@ impl<'t> Survey<'t> {
             boxes: self.boxes,
         }
     }
+}
+
+/// A box of one point.
+fn point(at: [f64; 3]) -> Cell {
+    Cell { sides: at.map(|at| Interval::new(at, at)) }
 }
