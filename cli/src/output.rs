@@ -120,14 +120,15 @@ pub(crate) fn refuse_inputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
-    let inputs: Vec<&Path> = inputs.into_iter().collect();
-    for output in outputs {
-        // What is not there is no input.
-        for input in inputs.iter().filter(|_| output.is_file()) {
-            let mounted = mounted(input);
-            let mut all = std::iter::once(*input).chain(mounted.iter().map(PathBuf::as_path));
-            if let Some(input) = all.find(|input| is_same_file(output, input)) {
-                let [output, input] = [output, input].map(|file| file.display().to_string());
+    // What is not there is no input.
+    let outputs: Vec<&Path> = outputs.into_iter().filter(|output| output.is_file()).collect();
+    if outputs.is_empty() {
+        return Ok(());
+    }
+    for input in inputs {
+        for read in std::iter::once(input.to_owned()).chain(mounted(input)) {
+            if let Some(output) = outputs.iter().find(|output| is_same_file(output, &read)) {
+                let [output, input] = [*output, &read].map(|file| file.display().to_string());
                 return Err(Failure::IsInput { output, input });
             }
         }

@@ -13,9 +13,9 @@ const TURNED: f64 = 2.25;
 const TOGETHER: usize = 256;
 /// The most points that are held against the cells of a piece at first, and the least where there are many pieces.
 const MOST_CROWD: usize = 1 << 14;
-const LEAST_CROWD: usize = 1 << 11;
+const LEAST_CROWD: usize = 1 << 10;
 /// Those of all pieces, if that leaves enough for each.
-const MOST_CROWDS: usize = 1 << 27;
+const MOST_CROWDS: usize = 1 << 26;
 /// How far a corner can be from where it is computed, of the part's size.
 const ROUNDED: f64 = 1e-12;
 
@@ -78,7 +78,7 @@ impl Surface {
 
     /// Returns how many points may be held against cells beyond what is usual.
     fn work(&self, sites: &Sites<'_>) -> usize {
-        let any = if self.coarse() { 1 << 22 } else { 1 << 27 };
+        let any = if self.coarse() { 1 << 22 } else { 1 << 26 };
         256 * (sites.points.len() + self.pieces.len()) + any
     }
 
@@ -86,7 +86,7 @@ impl Surface {
     /// where pieces are long.
     fn crowd(&self) -> usize {
         if self.coarse() {
-            return LEAST_CROWD;
+            return 2 * LEAST_CROWD;
         }
         (MOST_CROWDS / self.pieces.len().max(1)).clamp(LEAST_CROWD, MOST_CROWD)
     }

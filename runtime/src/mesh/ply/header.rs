@@ -121,6 +121,7 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words
         let keyword = lines.words.next_on_line();
         match keyword {
             Some(b"comment" | b"obj_info") => lines.words.skip_line(),
+            Some(b"format") if encoding.is_some() => return Err(lines.twice(b"format")),
             Some(b"format") => encoding = Some(lines.format()?),
             Some(b"element") => {
                 let element = lines.element()?;

@@ -90,8 +90,8 @@ impl Points {
                     faces.push(whole(face).ok_or_else(odd)?);
                 }
                 if let Some(areas) = &mut points.areas {
-                    if !(area.is_finite() && area >= 0.0) {
-                        let rule = "a finite area, 0 or more";
+                    if !(coordinate_holds(area) && area >= 0.0) {
+                        let rule = "an area between 0 and 1e60";
                         return Err(value(&record, "vertex", "area", area, rule, name));
                     }
                     areas.push(area);

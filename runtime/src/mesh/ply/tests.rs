@@ -236,6 +236,7 @@ fn says_what_is_wrong_with_a_header_and_where() {
         ("1.0", "2.0", 2, "the version 1.0, found `2.0`"),
         (" 1.0", "", 2, "the version 1.0, found the end of the line"),
         ("format ascii 1.0\n", "", 8, "`format` before the end"),
+        ("1.0\n", "1.0\nformat binary_little_endian 1.0\n", 3, "a second `format`"),
         ("element vertex 3", "element vertex three", 3, "how many elements there are"),
         ("element vertex 3", "element vertex -3", 3, "how many elements there are"),
         ("element vertex 3", "element vertex 99999999999999999999", 3, "how many elements"),

@@ -407,6 +407,8 @@ impl<'t> Survey<'t> {
             .collect();
         // Slopes that are taken for equal may differ by rounding.
         let least = self.least.min(self.least_from_points) - ROUNDING;
+        // Of a set without an inside nothing was asked.
+        let least = if least.is_finite() { least } else { 0.0 };
         Certificate {
             least,
             slack: self.jumps + least.max(0.0) * self.near,
