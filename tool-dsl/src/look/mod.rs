@@ -229,7 +229,7 @@ impl<'m> Look<'m> {
     /// Whether something ends well below what was found to be the tool's end, where the box about it does: too small
     /// for columns to meet it.
     fn reaches(&mut self, extent: &Extent, found: f64) -> bool {
-        let lowest = Extent { high: extent.low + STRIP * self.size, ..extent.clone() };
+        let lowest = Extent { high: extent.low + STRIP * self.size, ..*extent };
         extent.low < found - STRIP * self.size
             && spread(self.model.domain, &lowest, POINTS, 0.0).any(|p| self.owner(p).is_some())
     }

@@ -90,9 +90,10 @@ impl Condition {
         let mut factor = Number::int(0);
         for (variable, value) in exact.factors.iter().enumerate() {
             let noise = EXACT_ROUNDING * sizes[variable];
+            let is_noise = noise.is_finite() && value.to_f64().abs() <= noise;
             if Some(variable) == wanted {
                 factor = value.clone();
-            } else if !value.is_zero() && !(value.to_f64().abs() <= noise) {
+            } else if !value.is_zero() && !is_noise {
                 return None;
             }
         }
