@@ -40,7 +40,7 @@ pub struct Points {
     pub normals: Vec<Vector3<f64>>,
     /// The id of the face that each point lies on, if the file says so.
     pub faces: Option<Vec<u32>>,
-    /// The area for which each point stands, finite and 0 or more, if the file says so.
+    /// The area for which each point stands, from 0 to 1e60, if the file says so.
     pub areas: Option<Vec<f64>>,
 }
 
@@ -91,7 +91,7 @@ impl Points {
                 }
                 if let Some(areas) = &mut points.areas {
                     if !(coordinate_holds(area) && area >= 0.0) {
-                        let rule = "an area between 0 and 1e60";
+                        let rule = "a finite area from 0 to 1e60";
                         return Err(value(&record, "vertex", "area", area, rule, name));
                     }
                     areas.push(area);

@@ -314,6 +314,7 @@ fn says_what_is_wrong_with_a_body_and_where() {
         ([0.0, 0.0, 1.0], -1, 0.0, "`face` of `vertex` 1 (from 0) is -1.0, but must be a whole"),
         ([0.0, 0.0, 1.0], 0, -1.0, "`area` of `vertex` 1 (from 0) is -1.0, but must be a finite"),
         ([0.0, 0.0, 1.0], 0, f64::NAN, "`area` of `vertex` 1 (from 0) is NaN"),
+        ([0.0, 0.0, 1.0], 0, 1e308, "but must be a finite area from 0 to 1e60"),
     ] {
         let [x, y, z] = normal;
         let odd = [(good, 0, 1.0), ([0.0, 0.0, 0.0, x, y, z], face, area)];
