@@ -15,7 +15,7 @@ const CANDIDATES: usize = 4;
 const PUT: usize = 25;
 /// Points that are held against cells for that at most, for each point and each piece: several times as many as
 /// usual.
-const MOST_HELD: usize = 1 << 10;
+const MOST_HELD: usize = 1 << 9;
 /// How far that is at first, in spacings.
 const FAR: f64 = 0.95;
 /// How much nearer the next ones may be.
