@@ -12,6 +12,9 @@ use std::sync::OnceLock;
 /// Bits carried by every constant.
 const PRECISION: usize = 256;
 
+/// The part of its terms' sizes that a sum of [`Number`]s may keep when it cancels.
+pub(crate) const ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 95) as f64);
+
 /// The sizes that numbers of a file have, in words.
 pub(crate) const RANGE: &str = "numbers are 0, or between 1e-90 and 1e90 in size";
 
@@ -97,6 +100,12 @@ impl Number {
         } else {
             Some(Number::rounded(self.exact.sqrt()))
         }
+    }
+
+    /// Returns the sum of some terms, and the sum of their sizes.
+    pub(crate) fn sum(terms: &[Number]) -> (Number, f64) {
+        let size = terms.iter().map(|term| term.to_f64().abs()).sum();
+        (terms.iter().fold(Number::int(0), |sum, term| &sum + term), size)
     }
 
     /// The quotient; `None` for division by zero.

@@ -61,7 +61,7 @@ pub trait Tool: Send + Sync {
     fn card(&self) -> &Card;
 
     /// The distance from a point of the tool's frame to the tool, in the file's unit: 0 inside, a
-    /// lower bound, but for the rounding of a distance, unless [`Card::exact`]. Farther away than some 64 of the tool's sizes it is that to a
+    /// lower bound unless [`Card::exact`]. Farther away than some 64 of the tool's sizes it is that to a
     /// cylinder about the tool, and so too small by less than the size.
     fn clearance(&self, point: [f64; 3]) -> f64;
 

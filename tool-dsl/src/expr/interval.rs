@@ -173,6 +173,11 @@ impl Cell {
         self
     }
 
+    /// Returns the box of one point.
+    pub(crate) fn point(at: [f64; 3]) -> Cell {
+        Cell { sides: at.map(|at| Interval::new(at, at)) }
+    }
+
     /// The point in the middle.
     pub fn middle(&self) -> [f64; 3] {
         self.sides.map(Interval::middle)

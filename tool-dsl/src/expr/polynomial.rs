@@ -3,7 +3,7 @@
 
 use super::{Coord, Graph, Id, Node};
 use crate::expr::interval::{Cell, Interval, ZERO};
-use crate::number::Number;
+use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, HashMap};
 
 /// Exponents of (d, x, y, z); d² is the same as x² + y² only outside this module.
@@ -120,13 +120,23 @@ impl Polynomial {
         Polynomial::zero().plus(&Polynomial(BTreeMap::from([([0; 4], value.clone())])))
     }
 
+    /// Returns a product of powers.
+    pub(crate) fn power(monomial: Monomial) -> Polynomial {
+        Polynomial(BTreeMap::from([(monomial, Number::int(1))]))
+    }
+
+    /// Returns a coordinate.
+    pub(crate) fn coordinate(coord: Coord) -> Polynomial {
+        Polynomial::power(monomial_of(coord))
+    }
+
     /// Whether it is zero wherever another is, as far as that shows: it is nothing, a multiple of the
     /// other or of its square, or, if the other is linear, vanishes when that is put in.
     pub(crate) fn vanishes_on(&self, other: &Polynomial) -> bool {
         if self.is_nothing() || self.ratio(other).is_some() || self.is_square_of(other) {
             return true;
         }
-        self.where_zero(other).is_some_and(|left| left.0.is_empty())
+        self.on_line(other).is_some_and(|left| left.0.is_empty())
     }
 
     /// Whether it is 0 all over.
@@ -139,8 +149,8 @@ impl Polynomial {
         other.times(other).is_some_and(|square| self.ratio(&square).is_some())
     }
 
-    /// What is left of it on a straight line, in one coordinate less.
-    fn where_zero(&self, line: &Polynomial) -> Option<Polynomial> {
+    /// Returns what is left of it on a straight line, in one coordinate less.
+    pub(crate) fn on_line(&self, line: &Polynomial) -> Option<Polynomial> {
         let degree = |monomial: &Monomial| monomial.iter().sum::<u8>();
         let linear = line.0.keys().all(|monomial| degree(monomial) <= 1);
         let steep =
@@ -164,7 +174,7 @@ impl Polynomial {
         }
         // What nearly cancels is rounding of constants with 256 bits.
         let most = self.0.values().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
-        left.0.retain(|_, value| value.to_f64().abs() > most * 2f64.powi(-190));
+        left.0.retain(|_, value| value.to_f64().abs() > most * ROUNDING);
         Some(left)
     }
 
@@ -188,14 +198,14 @@ impl Polynomial {
             return None;
         }
         let [dd, dz, zz] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(|m| self.factor(m));
-        let exact = |monomial: Monomial| self.0.get(&monomial).cloned().unwrap_or(Number::int(0));
-        let [of_d, of_both, of_z] = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]].map(exact);
+        let exact = [[2, 0, 0, 0], [1, 0, 0, 1], [0, 0, 0, 2]];
+        let [of_d, of_both, of_z] = exact.map(|monomial| self.exact_factor(monomial));
         let bent = &(&Number::int(4) * &(&of_d * &of_z)) - &(&of_both * &of_both);
         let sizes = dd * dd + dz * dz + zz * zz;
-        if dd + zz == 0.0 || bent.to_f64() < -2f64.powi(-190) * sizes || dd * zz < 0.0 {
+        if dd + zz == 0.0 || bent.to_f64() < -ROUNDING * sizes || dd * zz < 0.0 {
             return None;
         }
-        let left = self.where_zero(line)?;
+        let left = self.on_line(line)?;
         let mut factors = [Number::int(0), Number::int(0), Number::int(0)];
         for (monomial, value) in &left.0 {
             factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
@@ -226,8 +236,12 @@ impl Polynomial {
         (rise.abs() > 1e-6 * scale).then_some((positive, (rise > 0.0) != positive))
     }
 
-    fn factor(&self, monomial: Monomial) -> f64 {
+    pub(crate) fn factor(&self, monomial: Monomial) -> f64 {
         self.0.get(&monomial).map_or(0.0, Number::to_f64)
+    }
+
+    pub(crate) fn exact_factor(&self, monomial: Monomial) -> Number {
+        self.0.get(&monomial).cloned().unwrap_or(Number::int(0))
     }
 
     /// Whether it is linear.

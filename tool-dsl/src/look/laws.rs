@@ -98,12 +98,22 @@ impl Look<'_> {
     fn without_value(&mut self, owner: usize, point: [f64; 3]) {
         for (what, id, span) in self.laws(owner) {
             if !self.evaluator.get(id).is_finite() {
-                let (name, place) = (&self.model.regions[owner].name, self.place(point));
-                let report = Fault::of(&self.model.graph, &self.evaluator, id)
-                    .report(span, &format!("at {place}, in `{what}` of {name}"));
+                let report = self.no_number(owner, (what, id, span), &self.place(point));
                 self.report(report);
             }
         }
+    }
+
+    /// Returns the report of a law that is no number at the point where it is.
+    pub(super) fn no_number(
+        &self,
+        owner: usize,
+        (what, id, span): (&str, Id, Span),
+        place: &str,
+    ) -> Report {
+        let name = &self.model.regions[owner].name;
+        Fault::of(&self.model.graph, &self.evaluator, id)
+            .report(span, &format!("at {place}, in `{what}` of {name}"))
     }
 }
 

@@ -294,10 +294,8 @@ impl<'m> Look<'m> {
         ];
         for (what, id, span, slack) in sayings {
             let value = get(id);
-            let place = &place;
             let report = if !value.is_finite() {
-                Fault::of(&self.model.graph, &self.evaluator, id)
-                    .report(span, &format!("at {place}, in `{what}` of {name}"))
+                self.no_number(owner, (what, id, span), &place)
             } else if value < -slack {
                 Report::error(span, format!("`{what}` of {name} is {} at {place}", figure(value)))
                     .help("it is never negative inside: turn a sign, or bound the region")

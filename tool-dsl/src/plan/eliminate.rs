@@ -3,7 +3,7 @@
 //! Doubles choose what is combined, and take what is small for rounding. A result is believed once the combination
 //! that led to it was made again with 256 bits ([`Condition::exactly`]).
 
-use crate::number::Number;
+use crate::number::{self, Number};
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -12,9 +12,6 @@ use std::rc::Rc;
 pub(super) const ROUNDING: f64 = 1e-12;
 /// The most conditions that elimination may grow to.
 const CONDITIONS: usize = 600;
-
-/// What is left of cancelled numbers of 256 bits, as a part of their sizes.
-pub(super) const EXACT_ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 95) as f64);
 
 /// `Σ factor · variable + constant`, with 256 bits.
 #[derive(Clone, Debug)]
@@ -46,7 +43,7 @@ pub(super) struct Condition {
     origin: Origin,
 }
 
-/// What a condition was combined from.
+/// The form that a condition was given as, or the two conditions that it was combined from.
 #[derive(Clone, Debug)]
 enum Origin {
     Given(Rc<Exact>),
@@ -89,7 +86,7 @@ impl Condition {
         let Combined { exact, sizes, size } = &*combined(&self.origin, &mut HashMap::new());
         let mut factor = Number::int(0);
         for (variable, value) in exact.factors.iter().enumerate() {
-            let noise = EXACT_ROUNDING * sizes[variable];
+            let noise = number::ROUNDING * sizes[variable];
             let is_noise = noise.is_finite() && value.to_f64().abs() <= noise;
             if Some(variable) == wanted {
                 factor = value.clone();
@@ -97,10 +94,10 @@ impl Condition {
                 return None;
             }
         }
-        size.is_finite().then(|| (factor, exact.constant.clone(), EXACT_ROUNDING * size))
+        size.is_finite().then(|| (factor, exact.constant.clone(), number::ROUNDING * size))
     }
 
-    /// Whether it says of nothing what is not so, and with 256 bits too.
+    /// Returns whether it is false whatever its variables are, with 256 bits too.
     pub(super) fn is_absurd(&self) -> bool {
         let least = if self.strict { -ROUNDING } else { 0.0 };
         self.constant > least
@@ -126,16 +123,18 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
     }
     let [a, b] = [&sum.upper, &sum.lower].map(|origin| combined(origin, known));
     let (x, y) = (-&b.exact.factors[sum.variable], a.exact.factors[sum.variable].clone());
-    // With factors about 1, whatever they were combined from.
+    // Factors stay near 1 however often they are combined.
     let scale = Number::from_f64(x.to_f64().abs().max(y.to_f64().abs()).log2().floor().exp2());
     let down = |n: &Number| scale.as_ref().and_then(|scale| n.over(scale)).unwrap_or(n.clone());
     let (x, y) = (down(&x), down(&y));
     let mut exact = a.exact.combined(&x, &b.exact, &y);
     exact.factors[sum.variable] = Number::int(0);
-    let [of_x, of_y] = [x.to_f64().abs(), y.to_f64().abs()];
-    let both = |a: f64, b: f64| a * of_x + b * of_y;
+    let both = |a: f64, b: f64| a * x.to_f64().abs() + b * y.to_f64().abs();
     let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| both(*a, *b)).collect();
-    let result = Rc::new(Combined { exact: Rc::new(exact), sizes, size: both(a.size, b.size) });
+    // Only positive multiples keep the inequality; a size beyond all bounds is believed by nobody.
+    let is_kept = !x.is_negative() && !y.is_negative();
+    let size = if is_kept { both(a.size, b.size) } else { f64::INFINITY };
+    let result = Rc::new(Combined { exact: Rc::new(exact), sizes, size });
     known.insert(Rc::as_ptr(sum), Rc::clone(&result));
     result
 }
@@ -221,7 +220,7 @@ fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
         match kept.iter_mut().find(same) {
             Some(other) => {
                 let above = condition.constant - other.constant;
-                // What differs by rounding is the same, and the strict one of both says more.
+                // The strict one of two that differ by rounding says more.
                 let same = above.abs() <= ROUNDING * condition.constant.abs().max(1.0);
                 let stricter = condition.strict && !other.strict;
                 if if same && condition.strict != other.strict { stricter } else { above > 0.0 } {

@@ -1,13 +1,12 @@
 //! Expressions as linear forms in the coordinates, and in monomials and roots of them, each taken for a
 //! variable of its own; and what is known of such variables.
 
-use super::eliminate::EXACT_ROUNDING;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Encloser};
 use crate::expr::polynomial::{Monomial, Polynomial, Polynomials, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::model::Model;
-use crate::number::Number;
+use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The distance from the axis.
@@ -159,10 +158,9 @@ impl<'m> Variables<'m> {
                 let squares = form.factors.values().map(|factor| factor * factor);
                 let slope = squares.fold(Number::int(0), |sum, square| &sum + &square);
                 let terms = form.factors.iter().map(|(at, factor)| Some(factor * point.get(at)?));
-                let Some(terms) = terms.collect::<Option<Vec<Number>>>() else { continue };
-                let value = terms.iter().fold(form.constant.clone(), |sum, term| &sum + term);
-                let sizes = terms.iter().chain([&form.constant]).map(|term| term.to_f64().abs());
-                let zero = value.to_f64().abs() <= EXACT_ROUNDING * sizes.sum::<f64>();
+                let all = terms.chain([Some(form.constant.clone())]).collect::<Option<Vec<_>>>();
+                let Some((value, size)) = all.map(|terms| Number::sum(&terms)) else { continue };
+                let zero = value.to_f64().abs() <= ROUNDING * size;
                 if zero && slope.agrees(&Number::int(1)) {
                     facts.extend([false, true].map(|sign| minus.clone().signed(form, sign)));
                 }

@@ -31,9 +31,9 @@ pub(crate) struct Linear {
 /// A linear form.
 struct Known {
     exact: Rc<Exact>,
-    /// That it is not positive, and that it is not negative.
+    /// The conditions that it is not positive, and that it is not negative.
     sides: [Condition; 2],
-    /// Whether a factor is so small beside another that doubles would lose it as rounding: fewer conditions prove less.
+    /// True if a factor is so small beside another that doubles would lose it as rounding: fewer conditions prove less.
     is_lost: bool,
 }
 
@@ -116,6 +116,7 @@ impl Linear {
 
     fn range(&self, signs: &[Signs], wanted: usize) -> Interval {
         let (conditions, unit) = in_own_unit(self.conditions(signs));
+        let largest = unit * conditions.iter().fold(0f64, |most, c| most.max(c.constant.abs()));
         let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
         let Some(conditions) = without(conditions, others) else { return EVERYTHING };
         let mut range = EVERYTHING;
@@ -127,16 +128,15 @@ impl Linear {
                 _ if double < -ROUNDING => end > range.low,
                 _ => false,
             };
-            let exact = || condition.exactly(Some(wanted));
-            let Some((factor, constant, noise)) =
-                Some(()).filter(|()| tighter).and_then(|()| exact())
-            else {
+            if !tighter {
                 continue;
-            };
-            let Some(end) = (-&constant).over(&factor).map(|end| Interval::about(&end)) else {
-                continue;
-            };
-            let slack = noise / factor.to_f64().abs();
+            }
+            let Some((factor, constant, noise)) = condition.exactly(Some(wanted)) else { continue };
+            let Some(end) = (-&constant).over(&factor) else { continue };
+            let end = Interval::about(&end);
+            // Doubles that are computed from the range stay on its outside.
+            let size = largest + end.low.abs().max(end.high.abs());
+            let slack = noise / factor.to_f64().abs() + ROUNDING * size;
             if double > 0.0 && !factor.is_negative() {
                 range.high = range.high.min((end.high + slack).next_up());
             } else if double < 0.0 && factor.is_negative() {

@@ -11,16 +11,14 @@ use crate::model::{Model, Over, Section};
 use crate::regionalise::cells;
 use crate::regionalise::cut::{Cut, Cutter, Piece};
 use crate::regionalise::outline::{self, Point, minus, norm};
-use crate::regionalise::overlay;
 use crate::regionalise::shape::Shape;
+use crate::regionalise::{ROUNDING, overlay};
 use crate::report::Report;
 use std::cell::Cell;
 use std::rc::Rc;
 
 /// Chords of a curved edge, at first and where so few misled.
 const CHORDS: [u32; 3] = [8, 40, 200];
-/// How far depths that a tree gives may be from distances, of the size.
-const ROUNDING: f64 = 1e-10;
 
 /// Curves that are passed over because their points belong to both sides.
 const DOUBLES: usize = 6;
@@ -101,16 +99,13 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
     let inside = model.regions.iter().map(|region| &region.inside).collect();
     let owners = plan(model, &shapes, size, all, inside)?;
     // A sliver between a curve and its chord can have been given to another.
-    let at = |p: Point| *owners.at(&|curve| shapes[curve].value(p));
-    for (p, distance) in section.inner.probes() {
-        let part =
-            at(p).map(|region| section.over.as_ref().map_or(region, |over| over.regions[region].0));
-        let right = part.is_some_and(|part| {
-            (section.inner.depth_at(part, p) - distance).abs() <= ROUNDING * size
-        });
-        if !right {
-            return Err(inseparable(model, p));
-        }
+    let owner = |p: Point| *owners.at(&|curve| shapes[curve].value(p));
+    let part = |region: usize| match &section.over {
+        Some(over) => over.regions[region].0,
+        None => region,
+    };
+    if let Some(p) = section.inner.misplaced(|p, _| owner(p).map(part)) {
+        return Err(inseparable(model, p));
     }
 
     let mut outside = Ground::default();
@@ -126,15 +121,12 @@ fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, T
     }
     let beside = section.outside.iter().map(|part| &part.beside).collect();
     let outside = plan(model, &shapes, size, outside, beside)?;
-    for (p, distance) in section.outer.probes() {
-        let part = outside.at(&|curve| shapes[curve].value(p));
-        let right = part.is_some_and(|part| {
-            let off = (section.outer.depth_at(part, p) - distance).abs();
-            off <= ROUNDING * size.max(distance)
-        });
-        if !right || at(p).is_some() && distance > ROUNDING * size {
-            return Err(inseparable(model, p));
-        }
+    let part_at = |p: Point| *outside.at(&|curve| shapes[curve].value(p));
+    let is_free = |p, distance| distance <= ROUNDING * size || owner(p).is_none();
+    if let Some(p) =
+        section.outer.misplaced(|p, distance| part_at(p).filter(|_| is_free(p, distance)))
+    {
+        return Err(inseparable(model, p));
     }
     let clearance = |part: &Option<usize>| part.map(|part| section.outside[part].clearance);
     let outside = outside.map(&clearance);

@@ -32,6 +32,13 @@ impl<'m> Cover<'m> {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
 
+    /// Returns the signs that a curve can have at a claim's points of the present box, by the box and the way down the
+    /// tree.
+    pub(super) fn own_sign(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let own = claim.signs.iter().filter(|(other, _)| *other == curve);
+        own.fold(self.sign(curve), |all, (_, signs)| all & signs)
+    }
+
     /// The claims to a box.
     pub(super) fn claims(&mut self, cell: Cell) -> Vec<Claim> {
         self.encloser.set(cell);

@@ -3,11 +3,14 @@
 //!
 //! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
 //! `rounding` how far computed depths err, `root` whether depths agree on a curve, `touch` what
-//! conics that touch imply of each other, `parting` what parts two regions; `survey` goes from box
+//! conics that touch imply of each other, `excess` how far distances exceed one another, `tangent` how far they differ where a profile is all but
+//! smooth, `parting` what parts two regions; `survey` goes from box
 //! to box.
 
 mod aim;
 mod cover;
+mod excess;
+mod foot;
 mod kink;
 mod parting;
 mod range;
@@ -15,6 +18,7 @@ mod root;
 mod rounding;
 mod slope;
 mod survey;
+mod tangent;
 mod touch;
 mod witness;
 
@@ -27,6 +31,9 @@ use crate::report::{Report, Severity, figure};
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
 /// size.
 const TOLERANCE: f64 = 1e-6;
+
+/// Where depths differ, and where a third may explain how two meet, is looked at in boxes of this part of the tool's size.
+const SMALL: f64 = 1.0 / 1024.0;
 
 /// Where both bounds are 1 to this, depth is said to be the distance.
 const EXACT: f64 = 1e-8;

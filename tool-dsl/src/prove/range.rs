@@ -11,7 +11,7 @@
 use super::cover::Cover;
 use super::slope::{Slope, Slopes};
 use crate::bound::halves;
-use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::interval::{Cell, Interval};
 use crate::model::Region;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -78,7 +78,7 @@ impl Ranges<'_, '_> {
                     continue;
                 }
                 let Some((here, middle)) = self.enclose(region, sign, cell) else { continue };
-                let at = point(cell.middle());
+                let at = Cell::point(cell.middle());
                 let owns = self.cover.claims(at).iter().all(|claim| claim.owner == Some(index));
                 if owns {
                     seen = seen.max(middle);
@@ -92,7 +92,7 @@ impl Ranges<'_, '_> {
     /// Returns what `sign` times the niceness is at most in a box, and what it is in its middle; nothing if the box
     /// has no point that is inside.
     fn enclose(&mut self, region: &Region, sign: f64, cell: Cell) -> Option<(f64, f64)> {
-        self.slopes.set(point(cell.middle()));
+        self.slopes.set(Cell::point(cell.middle()));
         let [depth, nice] = [region.depth, region.niceness].map(|id| self.slopes.get(id).value);
         self.slopes.set(cell);
         let (over, of) = (self.slopes.get(region.depth), self.slopes.get(region.niceness));
@@ -123,11 +123,6 @@ fn rate(depth: &Slope, niceness: &Slope) -> f64 {
     };
     let rate = along(depth, niceness) / along(depth, depth);
     if rate.is_finite() { rate } else { 0.0 }
-}
-
-/// A box of one point.
-fn point(at: [f64; 3]) -> Cell {
-    Cell { sides: at.map(|at| ZERO.plus(Interval::new(at, at))) }
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! Depths as what they usually are, a polynomial and at most one root: `l + k √P`. So it can be
 //! decided exactly, up to the 256 bits of constants, whether they vanish or agree on a curve.
 
+use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Polynomial, Polynomials};
 use crate::expr::{Graph, Id, Node};
+use crate::formula::{NEGATIVE, POSITIVE, Signs};
 use crate::number::Number;
 use std::collections::HashMap;
 
@@ -20,6 +22,41 @@ pub(super) struct Agreement {
     pub(super) smooth: bool,
     /// What is not negative where it is so.
     pub(super) branch: Option<Polynomial>,
+    /// Which of the two is the lesser on the sides of the curve, if that is known.
+    pub(super) order: Option<Order>,
+}
+
+/// The side of a curve on which the first of two depths is the lesser.
+#[derive(Clone, Debug)]
+pub(super) struct Order {
+    /// True if it is where the curve is positive.
+    falls: bool,
+    /// Forms that are positive where this holds.
+    positive: Vec<Rooted>,
+}
+
+impl Order {
+    /// Returns whether the first of two depths is nowhere more than the other where a curve has these signs in a box.
+    pub(super) fn is_lesser(&self, signs: Signs, cell: &Cell) -> bool {
+        let other_side = if self.falls { NEGATIVE } else { POSITIVE };
+        signs & other_side == 0 && self.positive.iter().all(|form| form.over_box(cell).low > 0.0)
+    }
+
+    /// Returns the same of the two depths in the other order.
+    pub(super) fn turned(&self) -> Order {
+        Order { falls: !self.falls, positive: self.positive.clone() }
+    }
+}
+
+/// A difference of two forms, with roots squared away.
+struct Difference {
+    /// 0 wherever the difference is.
+    squared: Polynomial,
+    /// Not negative where the difference is 0.
+    branch: Option<Polynomial>,
+    /// How the difference's sign follows: true if it is the opposite of `squared`'s, where `branch` and the form are
+    /// positive.
+    order: Option<(bool, Option<Rooted>)>,
 }
 
 /// Finds the forms of nodes, each once.
@@ -72,6 +109,31 @@ impl<'g> Forms<'g> {
 }
 
 impl Rooted {
+    /// Returns the form of a node, if it has one.
+    pub(super) fn of(graph: &Graph, id: Id) -> Option<Rooted> {
+        Forms::new(graph).of(id)
+    }
+
+    /// Returns `plain + factor √under`.
+    pub(super) fn new(plain: Polynomial, factor: Number, under: Polynomial) -> Rooted {
+        Rooted { plain, root: Some((factor, under)) }
+    }
+
+    /// Returns whether two distances, with factors of ±1, differ by no more than this in a box.
+    pub(super) fn is_near(&self, other: &Rooted, cell: &Cell, most: f64) -> bool {
+        let minus = Number::int(-1);
+        let plain = self.plain.clone().plus(&other.plain.scaled(&minus)).over(cell).abs().high;
+        match (&self.root, &other.root) {
+            (None, None) => plain <= most,
+            (Some((k, p)), Some((m, q))) => {
+                // |√P - √Q| is no more than √|P - Q|.
+                let squares = p.clone().plus(&q.scaled(&minus)).over(cell).abs().high;
+                k.agrees(m) && plain + squares.sqrt() <= most
+            }
+            _ => false,
+        }
+    }
+
     /// 0
     pub(super) fn zero() -> Rooted {
         Rooted { plain: Polynomial::zero(), root: None }
@@ -141,30 +203,59 @@ impl Rooted {
     /// Roots are squared away, which also finds where a form agrees with another's opposite branch: so
     /// a polynomial comes along that is at least 0 where it is this one.
     pub(super) fn agrees_on(&self, other: &Rooted, curve: &Polynomial) -> Option<Agreement> {
+        let Difference { squared, branch, order } = self.minus(other)?;
+        let smooth = squared.is_nothing() || squared.is_square_of(curve);
+        let order = order.and_then(|(flipped, positive)| {
+            let falls = squared.ratio(curve)?.is_negative() != flipped;
+            Some(Order {
+                falls,
+                positive: branch.iter().map(Rooted::plainly).chain(positive).collect(),
+            })
+        });
+        (smooth || squared.vanishes_on(curve)).then_some(Agreement { smooth, branch, order })
+    }
+
+    /// Squares the roots of a difference of two forms away.
+    fn minus(&self, other: &Rooted) -> Option<Difference> {
         let minus = Number::int(-1);
-        let (difference, branch) = match self.plus(&other.scaled(&minus)) {
+        if let Some(difference) = self.plus(&other.scaled(&minus)) {
             // l + k √P = 0 where l² = k² P, and l has not the sign of k.
-            Some(difference) => difference.curve()?,
-            None => {
-                let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
-                let beside = self.plain.clone().plus(&other.plain.scaled(&minus)).constant()?;
-                let (a, b) = (p.scaled(&(k * k)), q.scaled(&(m * m)));
-                let apart = a.clone().plus(&b.scaled(&minus));
-                if beside.is_zero() {
-                    (k.is_negative() == m.is_negative()).then_some((apart, None))?
-                } else {
-                    // c + k √P = m √Q where L = c² + k² P - m² Q is -2 c k √P.
-                    let square = &beside * &beside;
-                    let lead = apart.plus(&Polynomial::constantly(&square));
-                    let four = &Number::int(4) * &square;
-                    let left = lead.times(&lead)?.plus(&a.scaled(&-&four));
-                    let opposite = beside.is_negative() == k.is_negative();
-                    (left, Some(lead.scaled(&Number::int(if opposite { -1 } else { 1 }))))
-                }
-            }
-        };
-        let smooth = difference.is_nothing() || difference.is_square_of(curve);
-        (smooth || difference.vanishes_on(curve)).then_some(Agreement { smooth, branch })
+            let (squared, branch) = difference.curve()?;
+            return Some(Difference { squared, branch, order: Some((false, None)) });
+        }
+        let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
+        let beside = self.plain.clone().plus(&other.plain.scaled(&minus)).constant()?;
+        let (a, b) = (p.scaled(&(k * k)), q.scaled(&(m * m)));
+        let apart = a.clone().plus(&b.scaled(&minus));
+        if beside.is_zero() {
+            let order = Some((k.is_negative(), None));
+            let same = k.is_negative() == m.is_negative();
+            return same.then_some(Difference { squared: apart, branch: None, order });
+        }
+        // With u = c + k √P, u² - m² Q = L + 2 c k √P where L = c² + k² P - m² Q. It is 0 where L is -2 c k √P, and
+        // there L² - 4 c² k² P has its sign if c k is negative, else the opposite one. Where u has the sign of m,
+        // u - m √Q has the sign of m (u² - m² Q).
+        let square = &beside * &beside;
+        let lead = apart.plus(&Polynomial::constantly(&square));
+        let squared = lead.times(&lead)?.plus(&a.scaled(&-&(&Number::int(4) * &square)));
+        let same = beside.is_negative() == k.is_negative();
+        let branch = Some(lead.scaled(&Number::int(if same { -1 } else { 1 })));
+        let first =
+            Rooted { plain: Polynomial::constantly(&beside), root: Some((k.clone(), p.clone())) };
+        let first = first.scaled(&Number::int(if m.is_negative() { -1 } else { 1 }));
+        Some(Difference { squared, branch, order: Some((same != m.is_negative(), Some(first))) })
+    }
+
+    /// Returns a polynomial as a form.
+    pub(super) fn plainly(polynomial: &Polynomial) -> Rooted {
+        Rooted { plain: polynomial.clone(), root: None }
+    }
+
+    /// Encloses the form over a box.
+    fn over_box(&self, cell: &Cell) -> Interval {
+        let plain = self.plain.over(cell);
+        let Some((k, p)) = &self.root else { return plain };
+        plain.plus(Interval::about(k).times(p.over(cell).sqrt()))
     }
 
     /// Polynomials in the direction in which the form grows or in the opposite, by each of a monomial's
@@ -175,6 +266,16 @@ impl Rooted {
             Some((_, p)) => self.plain.constant().map(|_| p)?,
         };
         Some([0, 1, 2, 3].map(|by| under.derivative(by)))
+    }
+
+    /// Returns the polynomial, without the root.
+    pub(super) fn part(&self) -> &Polynomial {
+        &self.plain
+    }
+
+    /// Returns the root's factor and what is under it.
+    pub(super) fn root(&self) -> Option<(&Number, &Polynomial)> {
+        self.root.as_ref().map(|(factor, under)| (factor, under))
     }
 
     /// The polynomial, if it is no more than that.

@@ -2,13 +2,10 @@
 //! small, but a combination of the two can (the S-lemma). All of it is shown with the 256 bits of constants.
 
 use crate::expr::polynomial::Polynomial;
-use crate::number::Number;
+use crate::number::{Number, ROUNDING};
 
 /// A conic's six factors: 1, d, z, d², dz, z².
 type Conic<N> = [N; 6];
-
-/// What is left of cancelled numbers of 256 bits, as a part of their sizes.
-const ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 85) as f64);
 
 /// Steps from a double to a point of 256 bits: each gains as many digits as a double has, but for what the point is
 /// badly determined.
@@ -35,23 +32,15 @@ fn slope(c: &Conic<f64>, [d, z]: [f64; 2]) -> [f64; 2] {
     [c[1] + 2.0 * c[3] * d + c[4] * z, c[2] + c[4] * d + 2.0 * c[5] * z]
 }
 
-/// The sum of some products, and the sum of their sizes.
-fn sum(products: &[Number]) -> (Number, f64) {
-    let size = products.iter().map(|product| product.to_f64().abs()).sum();
-    (products.iter().fold(Number::int(0), |sum, product| &sum + product), size)
-}
-
 fn exact_value(c: &Conic<Number>, [d, z]: &[Number; 2]) -> (Number, f64) {
-    let [x, y] = [&c[3], &c[5]];
-    let squares = [&(x * d) * d, &(&c[4] * d) * z, &(y * z) * z];
-    let [dd, dz, zz] = squares;
-    sum(&[c[0].clone(), &c[1] * d, &c[2] * z, dd, dz, zz])
+    let [dd, dz, zz] = [&(&c[3] * d) * d, &(&c[4] * d) * z, &(&c[5] * z) * z];
+    Number::sum(&[c[0].clone(), &c[1] * d, &c[2] * z, dd, dz, zz])
 }
 
 fn exact_slope(c: &Conic<Number>, [d, z]: &[Number; 2]) -> [Number; 2] {
     let two = Number::int(2);
-    let along = sum(&[c[1].clone(), &(&two * &c[3]) * d, &c[4] * z]).0;
-    [along, sum(&[c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
+    let along = Number::sum(&[c[1].clone(), &(&two * &c[3]) * d, &c[4] * z]).0;
+    [along, Number::sum(&[c[2].clone(), &c[4] * d, &(&two * &c[5]) * z]).0]
 }
 
 /// Where two conics touch, near a point, and how.
@@ -97,7 +86,7 @@ impl Touch {
         let slopes = conics.each_ref().map(|conic| exact_slope(conic, &at));
         let [[ad, az], [bd, bz]] = &slopes;
         let touch = conics.iter().all(|conic| is_zero(exact_value(conic, &at)))
-            && is_zero(sum(&[ad * bz, -&(az * bd)]));
+            && is_zero(Number::sum(&[ad * bz, -&(az * bd)]));
         touch.then_some(Touch { slopes, conics })
     }
 
@@ -106,17 +95,17 @@ impl Touch {
     pub(super) fn implies(&self, from: i64, to: i64) -> bool {
         let [a, b] = &self.conics;
         let [[ad, az], [bd, bz]] = &self.slopes;
-        let (along, _) = sum(&[ad * bd, az * bz]);
-        let (length, _) = sum(&[ad * ad, az * az]);
+        let (along, _) = Number::sum(&[ad * bd, az * bz]);
+        let (length, _) = Number::sum(&[ad * ad, az * az]);
         let Some(share) = (&Number::int(to * from) * &along).over(&length) else { return false };
         if share.is_zero() || share.is_negative() {
             return false;
         }
         let [from, to] = [from, to].map(Number::int);
-        let bent = |k: usize| sum(&[&to * &b[k], -&(&share * &(&from * &a[k]))]);
+        let bent = |k: usize| Number::sum(&[&to * &b[k], -&(&share * &(&from * &a[k]))]);
         let [(dd, dd_size), (dz, dz_size), (zz, zz_size)] = [3, 4, 5].map(bent);
         let size = dd_size.max(dz_size).max(zz_size);
-        let (bend, _) = sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
+        let (bend, _) = Number::sum(&[&(&Number::int(4) * &dd) * &zz, -&(&dz * &dz)]);
         let least = |value: &Number, size: f64| value.to_f64() >= -ROUNDING * size;
         least(&dd, size) && least(&zz, size) && least(&bend, size * size)
     }

@@ -27,6 +27,9 @@ pub(crate) use section::Feature;
 use section::{Section, Stop};
 use slices::Slice;
 
+/// The error of depths that are computed from a partition, as a part of its size.
+pub(crate) const ROUNDING: f64 = 1e-10;
+
 /// The cell of a feature: where its distance is the least.
 #[derive(Clone, Debug)]
 pub(crate) struct Derived {
@@ -65,6 +68,11 @@ impl Partition {
         Border::Inside { piece }.test(&Section::new(&self.outline, self.outer), graph)
     }
 
+    /// Returns what a part's points are nearest to.
+    pub(crate) fn feature(&self, part: usize) -> Option<Feature> {
+        Section::new(&self.outline, self.outer).features.get(part).copied()
+    }
+
     /// The part of a piece, by its place in the outline.
     pub(crate) fn part_of(&self, piece: usize) -> Option<usize> {
         let section = Section::new(&self.outline, self.outer);
@@ -87,21 +95,18 @@ impl Partition {
         self.outline.len()
     }
 
-    /// Points of all cells with their distances from the outline: along normals, the more the nearer to a cell's end and
-    /// to its corners.
-    pub(crate) fn probes(&self) -> Vec<(Point, f64)> {
+    /// Returns a point whose distance from the outline, by brute force, is not that from the line, circle or corner of
+    /// the part that it is said to be in (`part_at` is given both). Looks along the normals of all cells, most closely near their ends.
+    pub(crate) fn misplaced(&self, part_at: impl Fn(Point, f64) -> Option<usize>) -> Option<Point> {
         let section = Section::new(&self.outline, self.outer);
-        let points = self.slices.iter().flatten().flat_map(|slice| slice.probes(&section));
-        let distance = |p: Point| {
-            let pieces = self.outline.iter().map(|segment| segment.away(p));
-            (p, pieces.fold(f64::INFINITY, f64::min))
-        };
-        points.map(distance).collect()
-    }
-
-    /// The distance of a point from a part's line, circle or corner; below 0 on its other side.
-    pub(crate) fn depth_at(&self, part: usize, p: Point) -> f64 {
-        Section::new(&self.outline, self.outer).depth_at(part, p)
+        let mut probes = self.slices.iter().flatten().flat_map(|slice| slice.probes(&section));
+        probes.find(|p| {
+            let pieces = self.outline.iter().map(|segment| segment.away(*p));
+            let distance = pieces.fold(f64::INFINITY, f64::min);
+            let slack = ROUNDING * section.size.max(distance);
+            let off = |part| (section.depth_at(part, *p) - distance).abs();
+            part_at(*p, distance).is_none_or(|part| off(part) > slack)
+        })
     }
 
     /// Polygons that cover it as far as is looked, with so many chords to a curved edge.

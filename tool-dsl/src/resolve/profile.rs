@@ -142,7 +142,7 @@ fn circle(
                 )
                 .help("both ends lie on one circle; by `radius` its centre is found for you"));
             }
-            (centre, a)
+            if a.agrees(&b) { (centre, a) } else { midway(ends, &centre) }
         }
         Round::Radius(expr) => {
             let radius = lowering.length(expr, "`radius`")?;
@@ -178,6 +178,19 @@ fn circle(
 fn distance(a: &Place, b: &Place) -> Number {
     let [d, z] = [0, 1].map(|k| &a[k] - &b[k]);
     (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0))
+}
+
+/// Returns the centre and radius of the circle through both ends whose centre is nearest to a given one: borders of
+/// regions meet in the ends exactly.
+fn midway([from, to]: [&Place; 2], centre: &Place) -> (Place, Number) {
+    let chord = [0, 1].map(|k| &to[k] - &from[k]);
+    let dot = |a: &[Number; 2], b: &[Number; 2]| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
+    let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
+    let off = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
+    let along = &off / &dot(&chord, &chord);
+    let centre = [0, 1].map(|k| &centre[k] + &(&along * &chord[k]));
+    let radius = distance(from, &centre);
+    (centre, radius)
 }
 
 /// The centre of the arc of less than 180° that bulges out of the material, or into it.

@@ -1,21 +1,31 @@
 //! What parts two owners of a box: a curve on whose two sides they are, and whether depth goes on
 //! across it without a jump.
 
+mod order;
 mod signs;
 
-use super::cover::{Claim, Cover};
+use super::cover::{Claim, Cover, reach};
 use super::root::{Agreement, Forms, Rooted};
+use super::tangent::{Off, Tangency};
 use super::touch::Touch;
 use crate::expr::Node;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
+use crate::expr::value::Evaluator;
 use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::linear::Linear;
+use order::LowerByLinear;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Boxes from which it is looked where two conics touch.
 const TRIES: u32 = 12;
+
+/// Where a profile is all but smooth, depths differ by no more than this part of the tool's size on the border, and their
+/// slopes across it are no more than this: a way down that stays on either side falls as steeply but for the half of its
+/// square.
+const TANGENT_JUMP: f64 = 4e-9;
+const TANGENT_SLOPE: f64 = 1e-5;
 
 /// A region and another, `None` for the outside, where depth is 0.
 pub(super) type Pair = (usize, Option<usize>);
@@ -39,6 +49,8 @@ pub(super) struct Parted {
     pub(super) joint: Joint,
     /// Whether the first is where the curve is negative.
     pub(super) below: bool,
+    /// By how much two depths that are joined may differ in the box: rounding, where a profile is all but smooth.
+    pub(super) off: f64,
 }
 
 /// The signs that a way down the tree demands.
@@ -51,6 +63,10 @@ pub(super) struct Parting<'m> {
     model: &'m Model,
     size: f64,
     depths: Vec<Option<Rooted>>,
+    /// Depths of regions that meet may differ by rounding, however their slopes do.
+    steps: bool,
+    /// By how much they may at most.
+    step: f64,
     /// Whether it is looked whether owners are those that the list of regions says.
     listed: bool,
     /// Each curve as a polynomial, and what must be positive for that to have its sign.
@@ -64,21 +80,33 @@ pub(super) struct Parting<'m> {
     /// The signs of a curve that linear curves leave.
     by_linear: HashMap<(Option<usize>, Ways, CurveIndex), Signs>,
     linear: Linear,
-    /// Whether of two depths each is the lesser where its own claim is, or both are 0.
-    lower: HashMap<(Pair, [Ways; 2]), bool>,
+    /// What is linear says of two depths, each at its own claim.
+    lower: HashMap<(Pair, [Ways; 2]), LowerByLinear>,
+    /// The first or the second of them is lesser than a third that goes on as the other.
+    lower_by_third: HashMap<((Pair, [Ways; 2]), usize), bool>,
     /// Whether a claim has no point of a region.
     excluded: HashMap<(usize, Ways), bool>,
+    /// A depth is no more than another where curves have these signs.
+    no_deeper: HashMap<(Vec<Signs>, usize, usize), bool>,
+    /// By how much a depth exceeds another at most.
+    excesses: HashMap<(usize, usize), Option<f64>>,
     touches: HashMap<(CurveIndex, CurveIndex), Tried>,
+    tangencies: HashMap<(Pair, CurveIndex), Option<Tangency>>,
+    values: Evaluator<'m>,
     /// The present box.
     cell: Cell,
 }
 
 impl<'m> Parting<'m> {
-    pub(super) fn new(model: &'m Model, size: f64, cell: Cell) -> Parting<'m> {
+    /// Of a tool all over a box; `steps` are allowed where depths differ by rounding and ways down are not asked for.
+    pub(super) fn new(model: &'m Model, cell: Cell, (steps, finest): (bool, f64)) -> Parting<'m> {
         let mut forms = Forms::new(&model.graph);
+        let size = reach(&cell);
         Parting {
             model,
             size,
+            steps,
+            step: finest.min(TANGENT_JUMP) * size,
             listed: !model.is_exact(),
             depths: model.regions.iter().map(|region| forms.of(region.depth)).collect(),
             curves: model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect(),
@@ -89,8 +117,13 @@ impl<'m> Parting<'m> {
             by_linear: HashMap::new(),
             linear: Linear::with_depths(model, cell),
             lower: HashMap::new(),
+            lower_by_third: HashMap::new(),
             excluded: HashMap::new(),
+            no_deeper: HashMap::new(),
+            excesses: HashMap::new(),
             touches: HashMap::new(),
+            tangencies: HashMap::new(),
+            values: Evaluator::new(&model.graph, model.regions.iter().map(|region| region.depth)),
             cell,
         }
     }
@@ -184,21 +217,24 @@ impl<'m> Parting<'m> {
         });
         let Some(curve) = joint else {
             let curve = *parting.first()?;
-            let lower = self.lower(pair, [a, b], &parting);
-            let parted = |joint| Parted { curve, joint, below: false };
+            if let Some(parted) = self.tangent(pair, &parting) {
+                return Some(parted);
+            }
+            let lower = self.lower(pair, [a, b], &parting, cover);
+            let parted = |joint| Parted { curve, joint, below: false, off: 0.0 };
             return match (lower, apart) {
-                (true, true) => None,
-                (true, false) => Some(parted(Joint::Lower)),
-                (false, _) => Some(parted(Joint::None)),
+                (Some(0.0), true) => None,
+                (Some(off), _) => Some(Parted { off, ..parted(Joint::Lower) }),
+                (None, _) => Some(parted(Joint::None)),
             };
         };
         let [of_a, of_b] = [a, b].map(|claim| self.sign_on(claim, curve, cover));
         let below = of_a & POSITIVE == 0 || of_b & NEGATIVE == 0;
-        let parted = |joint| Parted { curve, joint, below };
+        let parted = |joint| Parted { curve, joint, below, off: 0.0 };
         let (smooth, branch) = match self.agree(pair, curve) {
             // A curve that is where the two do not differ.
             None => (false, None),
-            Some(Agreement { smooth, branch }) => (smooth, branch),
+            Some(Agreement { smooth, branch, .. }) => (smooth, branch),
         };
         // Where it may be the other branch that agrees, nothing is known of this one.
         let branch = branch.map(|branch| branch.over(&cell));
@@ -210,6 +246,32 @@ impl<'m> Parting<'m> {
             _ if smooth => Some(parted(Joint::Smooth)),
             _ => Some(parted(Joint::Kinked)),
         }
+    }
+
+    /// Returns a straight curve that parts two claims if depth goes on across it but for rounding, and its slope too where
+    /// that matters.
+    fn tangent(&mut self, pair: Pair, parting: &[CurveIndex]) -> Option<Parted> {
+        parting.iter().find_map(|curve| {
+            let Off { jump, across } = self.tangency(pair, *curve)?;
+            let is_smooth = self.steps || across <= TANGENT_SLOPE;
+            (jump <= self.step && is_smooth).then_some(Parted {
+                curve: *curve,
+                joint: Joint::Smooth,
+                below: false,
+                off: jump,
+            })
+        })
+    }
+
+    /// Returns how two regions' depths differ on a straight curve in the present box.
+    fn tangency(&mut self, pair: Pair, curve: CurveIndex) -> Option<Off> {
+        let (own, Some(other)) = pair else { return None };
+        let tangency = self.tangencies.entry((pair, curve)).or_insert_with(|| {
+            let [own, other] = [&self.depths[own], &self.depths[other]];
+            let (line, _) = self.curves[curve].as_ref()?;
+            Tangency::of(own.as_ref()?, other.as_ref()?, line)
+        });
+        tangency.as_ref()?.over(&self.cell)
     }
 
     /// The curves on which the depths of two owners agree.
@@ -252,69 +314,6 @@ impl<'m> Parting<'m> {
             _ => false,
         };
         (0..model.curves.len()).filter(is).collect()
-    }
-
-    /// Whether, by all that is linear on the ways to two claims, each's depth is the lesser where it is,
-    /// or both are 0 where they meet.
-    fn lower(&mut self, pair: Pair, [a, b]: [&Claim; 2], parting: &[CurveIndex]) -> bool {
-        let key = (pair, [ways(a), ways(b)]);
-        if let Some(known) = self.lower.get(&key) {
-            return *known;
-        }
-        let [mut at_a, mut at_b] = [&key.1[0], &key.1[1]].map(|ways| self.signs(ways));
-        // Where owners are those that the list says, its conditions hold too.
-        if self.listed {
-            self.model.regions[pair.0].inside.demand(&mut at_a);
-            if let Some(other) = pair.1 {
-                self.model.regions[other].inside.demand(&mut at_b);
-            }
-        }
-        let lower = self.zero_where_they_meet(pair, [&at_a, &at_b])
-            || pair.1.is_some_and(|other| {
-                let sides = [(pair.0, at_a.as_slice()), (other, at_b.as_slice())];
-                self.each_lesser(sides, parting)
-            });
-        self.lower.insert(key, lower);
-        lower
-    }
-
-    fn zero_where_they_meet(&self, (own, other): Pair, [at_a, at_b]: [&[Signs]; 2]) -> bool {
-        let both = |(a, b): (&Signs, &Signs)| closed(*a) & closed(*b);
-        let meeting: Vec<Signs> = at_a.iter().zip(at_b).map(both).collect();
-        self.linear.no_deeper(&meeting, Some(own), None)
-            && self.linear.no_deeper(&meeting, other, None)
-    }
-
-    /// Whether each of two depths is the lesser where its own signs are, or one of them no more than a
-    /// third that goes on smoothly as the other on one of the curves that part them.
-    fn each_lesser(&mut self, sides: [(usize, &[Signs]); 2], parting: &[CurveIndex]) -> bool {
-        let [(a, at_a), (b, at_b)] = sides;
-        let lesser = |linear: &Linear, at: &[Signs], own: usize, other: usize| {
-            linear.no_deeper(at, Some(own), Some(other))
-        };
-        let known = [lesser(&self.linear, at_a, a, b), lesser(&self.linear, at_b, b, a)];
-        let ((own, at), other) = match known {
-            [true, true] => return true,
-            [true, false] => ((b, at_b), a),
-            [false, true] => ((a, at_a), b),
-            [false, false] => return false,
-        };
-        (0..self.depths.len()).any(|third| {
-            let smooth = |curve: &CurveIndex| match self.agree((other, Some(third)), *curve) {
-                Some(Agreement { smooth, branch }) => {
-                    // A depth is not negative in its own region.
-                    let depth = self.depths[other].as_ref().and_then(Rooted::plain);
-                    let ratio = |branch: &Polynomial| branch.ratio(depth?);
-                    let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
-                    smooth && branch.as_ref().is_none_or(own)
-                }
-                None => false,
-            };
-            third != own
-                && third != other
-                && parting.iter().any(smooth)
-                && lesser(&self.linear, at, own, third)
-        })
     }
 }
 

@@ -15,8 +15,7 @@ impl Parting<'_> {
         curve: CurveIndex,
         cover: &mut Cover<'_>,
     ) -> Signs {
-        let own = claim.signs.iter().filter(|(other, _)| *other == curve);
-        let mut signs = own.fold(cover.sign(curve), |all, (_, signs)| all & signs);
+        let mut signs = cover.own_sign(claim, curve);
         for (other, side) in &claim.signs {
             if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
                 signs &= self.implied((*other, *side & NEGATIVE != 0), curve);
@@ -32,7 +31,7 @@ impl Parting<'_> {
     }
 
     /// A curve as a polynomial that has its sign all over the present box.
-    fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
+    pub(super) fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
         let (polynomial, positive) = self.curves[curve].as_ref()?;
         let same = positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
         same.then_some(polynomial)

@@ -3,8 +3,8 @@
 use super::super::cover::{Claim, reach};
 use super::super::kink::{across, angle};
 use super::super::parting::{Joint, Pair, Parted};
-use super::super::{Border, Seen, TOLERANCE, Undecided};
-use super::{Grain, SLOPING, SMALL, Survey, VAGUE};
+use super::super::{Border, SMALL, Seen, TOLERANCE, Undecided};
+use super::{Grain, SLOPING, Survey, VAGUE};
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 
@@ -52,7 +52,7 @@ impl Survey<'_> {
                 return false;
             }
             // At points others come between.
-            if grain != Grain::Point {
+            if grain != Grain::Point && self.feet.is_none() {
                 let (fall, slack) = self.across(met);
                 vague |= fall < SLOPING && slack > VAGUE;
                 least = least.min(fall);
@@ -66,7 +66,11 @@ impl Survey<'_> {
         let unjoined = all.iter().filter(|met| met.by.joint == Joint::None && met.seen.is_none());
         let pairs: Vec<Pair> = unjoined.map(|met| met.pair).collect();
         self.jumps += pairs.into_iter().map(|pair| self.jump(pair).high).fold(0.0, f64::max);
-        all.iter().for_each(|met| self.note(met, cell));
+        for met in &all {
+            let off = self.steps.entry((met.pair, met.by.curve)).or_insert(0.0);
+            *off = met.by.off.max(*off);
+            self.note(met, cell);
+        }
         true
     }
 
@@ -92,7 +96,10 @@ impl Survey<'_> {
     fn note(&mut self, met: &Met, cell: Cell) {
         let regions = &self.tool.model.regions;
         let (own, other) = met.pair;
-        let jump = if met.by.joint != Joint::None { NOTHING } else { self.jump(met.pair) };
+        let jump = match met.by.joint {
+            Joint::None => self.jump(met.pair),
+            _ => Interval { low: 0.0, high: met.by.off },
+        };
         let depth = self.slopes.get(regions[own].depth);
         let turn = match other {
             None => NOTHING,

@@ -1,16 +1,18 @@
 //! Box after box: what is felt in each region, and what changes from one to the next.
 
+mod descent;
 mod meet;
 
 use super::aim::{self, Aim};
 use super::cover::{Boxes, Claim, Cover, reach};
+use super::foot::Feet;
 use super::kink::ROUNDING;
 use super::parting::{Pair, Parting};
 use super::range::Ranges;
 use super::rounding::Errors;
-use super::slope::{Slope, Slopes};
+use super::slope::Slopes;
 use super::witness::Witness;
-use super::{Border, Certificate, FEW, RegionFacts, Seen, TOLERANCE, Undecided};
+use super::{Border, Certificate, FEW, RegionFacts, SMALL, Seen, TOLERANCE, Undecided};
 use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
@@ -20,20 +22,18 @@ use std::collections::BTreeMap;
 /// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
 const FINE: f64 = 1.0 / 56.0;
 const FINE_OF_SPACE: f64 = 1.0 / 7.0;
-/// Where depths differ, it is looked whether their owners are neighbours in boxes of this part.
-const SMALL: f64 = 1.0 / 1024.0;
 /// Boxes where nothing explains a border are divided to this part of the tool's size, or, where too many boxes are
 /// needed for that, to the second. Where curves touch it takes so many more boxes as the root of this is smaller.
 const FINEST: [f64; 2] = [1e-12, 1e-7];
-/// From boxes as good as points ways down of these parts of the tool's size are tried, and to the surface ways of so
-/// many times such a box's half diagonal.
-const STEPS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
-const NEAR: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
+/// Feet may be beyond the ends of pieces by this part of the tool's size, and by so many times the half diagonal of a box
+/// that is as good as a point.
+const BEYOND: f64 = 1e-11;
+const FAR: f64 = 4096.0;
 /// More claims to a box are not compared two by two.
 const CROWD: usize = 48;
-/// Boxes times regions that a proof may take: a box takes longer the more regions there are. Up to 217 regions, the
+/// Boxes times regions that a proof may take: a box takes longer the more regions there are. Up to 200 regions, the
 /// budget of boxes alone counts.
-const WORK: usize = 7_600_000;
+const WORK: usize = 7_000_000;
 /// Inside a region a box is divided until its slope is known so well.
 const SLACK: f64 = 0.02;
 /// A border where depth may fall less steeply is looked at in smaller boxes.
@@ -48,7 +48,7 @@ pub(super) fn survey(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
     let [finest, coarsest] = FINEST;
     let mut survey = Survey::new(tool, finest, alone);
     // Tools of which no borders touch need far fewer.
-    let some = (boxes / 4).max(FEW.min(boxes));
+    let some = (boxes / 3).max(FEW.min(boxes));
     if survey.run(some, false) && survey.undecided.is_empty() {
         return survey.certificate();
     }
@@ -92,14 +92,21 @@ struct Survey<'t> {
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// A point where two owners are side by side, with a jump between.
     jumping: BTreeMap<(Pair, CurveIndex), Seen>,
+    /// The pieces of a profile. With them it is shown that depth is no less than the distance to the surface; without,
+    /// by ways along which depth falls.
+    feet: Option<Feet<'t>>,
+    /// By how much feet are beyond a piece's end at most.
+    beyond: f64,
     /// The least slope toward the surface.
     least: f64,
-    /// The same from boxes that are as good as points.
-    least_from_points: f64,
+    /// Ways down from boxes that are as good as points.
+    descents: Vec<descent::Descent>,
     /// How far points of such boxes are from the outside at most, where nothing else is known of how depth falls.
     near: f64,
     /// The sum, over boxes where several regions meet that no curve joins, of how far depths differ there.
     jumps: f64,
+    /// How far depths differ on borders where the profile is all but smooth.
+    steps: BTreeMap<(Pair, CurveIndex), f64>,
     undecided: Vec<Undecided>,
     /// Whether it is looked whether regions overlap.
     alone: bool,
@@ -115,7 +122,8 @@ impl<'t> Survey<'t> {
         });
         let roots = felt.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
-        let parting = Parting::new(model, reach(&whole), whole);
+        let feet = Feet::of(tool, reach(&whole));
+        let parting = Parting::new(model, whole, (feet.is_some(), finest));
         let aim = |(index, region)| Aim::new(aim::straight(model, region, parting.depth(index)));
         let aims = model.regions.iter().enumerate().map(aim).collect();
         Survey {
@@ -129,6 +137,8 @@ impl<'t> Survey<'t> {
             ),
             witness: Witness::new(tool, reach(&whole)),
             parting,
+            feet,
+            beyond: 0.0,
             size: reach(&whole),
             finest,
             fine: match model.domain {
@@ -140,9 +150,10 @@ impl<'t> Survey<'t> {
             borders: BTreeMap::new(),
             jumping: BTreeMap::new(),
             least: f64::INFINITY,
-            least_from_points: f64::INFINITY,
+            descents: Vec::new(),
             near: 0.0,
             jumps: 0.0,
+            steps: BTreeMap::new(),
             undecided: Vec::new(),
             alone,
             boxes: 0,
@@ -188,8 +199,10 @@ impl<'t> Survey<'t> {
 
     /// Whether the owners of a box are those that the list of regions says, as far as that is looked at.
     fn owned(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
-        // Of a profile's regions it follows from what is proved of depth: where that is the distance, its
-        // owner is the nearest.
+        if self.feet.is_some() {
+            return self.footed(cell, claims, grain);
+        }
+        // Where depth is the distance, the owner is the nearest.
         if self.tool.model.is_exact() || grain == Grain::Point {
             return true;
         }
@@ -204,13 +217,36 @@ impl<'t> Survey<'t> {
         wrong.is_none()
     }
 
+    /// Returns whether the points of a profile that are nearest to those of a box's claims are on their owners' pieces.
+    fn footed(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
+        let Some(feet) = &mut self.feet else { return true };
+        let allowed = match grain {
+            Grain::Point => (FAR * reach(&cell)).min(TOLERANCE * self.size),
+            _ => BEYOND * self.size,
+        };
+        for claim in claims {
+            let beyond = feet.beyond(claim, &mut self.cover, cell);
+            if beyond <= allowed {
+                self.beyond = self.beyond.max(beyond);
+            } else if grain.is_last() {
+                let what =
+                    format!("that {} has what is nearest to its points", self.named(claim.owner));
+                self.undecided.push(Undecided { cell, what });
+                return true;
+            } else {
+                return false;
+            }
+        }
+        true
+    }
+
     /// Whether enough is known of a box that one region has.
     fn within(&mut self, owner: usize, cell: Cell, grain: Grain) -> bool {
         self.slopes.set(cell);
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
         let positive = depth.value.low >= -TOLERANCE * self.size;
-        let falls = self.fall(owner, &[Some(owner)]) > 0.0;
+        let falls = self.feet.is_some() || self.fall(owner, &[Some(owner)]) > 0.0;
         // Where a direction vanishes is told well in the half plane, where that is a point.
         let plane = self.tool.model.domain == Domain::HalfPlane;
         let large = grain == Grain::Coarse || plane && reach(&cell) > SMALL * self.size;
@@ -238,7 +274,8 @@ impl<'t> Survey<'t> {
         grain: Grain,
     ) -> bool {
         self.slopes.set(cell);
-        let falls = owners.iter().flatten().all(|owner| self.fall(*owner, owners) > 0.0);
+        let falls = self.feet.is_some()
+            || owners.iter().flatten().all(|owner| self.fall(*owner, owners) > 0.0);
         if !grain.is_last() && !falls {
             return false;
         }
@@ -261,73 +298,6 @@ impl<'t> Survey<'t> {
         }
     }
 
-    /// How steeply a region's depth falls at least in the present box, which some owners have.
-    fn fall(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
-        let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-        // The kink of a length is where it is 0. Beside the outside that is the surface, where depth need not fall.
-        let unkinked = depth.value.low > 0.0 || owners.contains(&None);
-        if self.parting.is_length(owner) && unkinked { depth.length.low } else { depth.fall() }
-    }
-
-    /// Notes how steeply depth falls from any point of a box.
-    fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
-        if grain != Grain::Point {
-            for owner in owners.iter().flatten() {
-                self.least = self.least.min(self.fall(*owner, owners));
-            }
-        } else if owners.contains(&None) {
-            self.near = self.near.max(2.0 * reach(&cell));
-        } else {
-            let least = self.fall_from_point(owners, cell);
-            self.least_from_points = self.least_from_points.min(least);
-        }
-    }
-
-    /// How much less deep it is somewhere than anywhere in a box, by the way there from its farthest point; of ways
-    /// straight down the owners' slopes, the steepest. Infinite if one of them soon leads outside.
-    fn fall_from_point(&mut self, owners: &[Option<usize>], cell: Cell) -> f64 {
-        let (regions, middle) = (&self.tool.model.regions, cell.middle());
-        let depths = owners.iter().flatten().map(|owner| regions[*owner].depth);
-        let low = depths.map(|id| self.slopes.get(id).value.low).fold(f64::INFINITY, f64::min);
-        self.slopes.set(point(middle));
-        let slope = |owner: &usize| {
-            let slope = self.slopes.get(regions[*owner].depth);
-            slope.parts.map(Interval::middle)
-        };
-        let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
-        let half = reach(&cell);
-        let mut steepest = 0.0f64;
-        for up in slopes {
-            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
-            let ways = NEAR.map(|part| part * half).into_iter();
-            for way in ways.chain(STEPS.map(|part| part * self.size)) {
-                let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
-                let Some(high) = self.deepest_at(to) else { continue };
-                // `to` is rounded, by far less than the box is wide.
-                let farthest = (way + 2.0 * half) * (1.0 + 1e-12);
-                if high == 0.0 && way <= NEAR[NEAR.len() - 1] * half {
-                    self.near = self.near.max(farthest);
-                    return f64::INFINITY;
-                }
-                steepest = steepest.max((low - high) / farthest);
-            }
-        }
-        steepest
-    }
-
-    /// How deep it is at a point at most, whichever of the regions that may have it has it; 0 if none may. Nothing
-    /// if it is no point of the domain.
-    fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
-        let off_axis = self.tool.model.domain == Domain::HalfPlane && at[0] < 0.0;
-        if off_axis || !at.iter().all(|part| part.is_finite()) {
-            return None;
-        }
-        let claims = self.cover.claims(point(at));
-        self.slopes.set(point(at));
-        let depth = |owner: usize| self.slopes.get(self.tool.model.regions[owner].depth).value.high;
-        Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
-    }
-
     /// Notes what is felt in the present box, of a region that has all of it or a part.
     fn felt(&mut self, owner: usize, cell: Cell) {
         let region = &self.tool.model.regions[owner];
@@ -346,7 +316,6 @@ impl<'t> Survey<'t> {
             rounding: self.errors.over(region.depth, &cell),
             ..RegionFacts::NONE
         };
-        self.at_axis(depth, cell);
         let course = self.course(owner);
         self.aims[owner].note(course, depth, cell, self.tool.model.domain);
         let facts = &mut self.regions[owner];
@@ -368,19 +337,13 @@ impl<'t> Survey<'t> {
         self.tool.model.regions[owner].course.0.map(|part| self.slopes.get(part).value)
     }
 
-    /// A depth that grows away from the axis has a kink there, at which only its slope along the
-    /// axis leads down.
-    fn at_axis(&mut self, depth: Slope, cell: Cell) {
-        let tool = self.tool.model.domain == Domain::HalfPlane;
-        if tool && cell.sides[0].low <= 0.0 && depth.parts[0].high > ROUNDING {
-            self.least = self.least.min(depth.parts[2].abs().low);
-        }
-    }
-
     fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
+        let (least, short) = self.least();
+        // A straight way crosses a conic twice at most.
+        let crossed = 2.0 * self.steps.values().sum::<f64>();
         self.undecided.extend(self.witness.off_profile().into_iter().map(|at| Undecided {
-            cell: point(at),
+            cell: Cell::point(at),
             what: "that the solid ends on the profile".to_owned(),
         }));
         let mut ranges = Ranges {
@@ -398,22 +361,23 @@ impl<'t> Survey<'t> {
         }
         let facts = self.regions.into_iter().zip(shares).zip(self.aims).enumerate();
         let regions: Vec<RegionFacts> = facts
-            .map(|(index, ((facts, share), aim))| RegionFacts {
-                share,
-                distance: self.parting.is_distance(index),
-                aside: aim.off,
-                singular: aim.singular,
-                on_axis: aim.on_axis,
-                ..facts.unwrap_or(RegionFacts::NONE)
+            .map(|(index, ((facts, share), aim))| {
+                let facts = facts.unwrap_or(RegionFacts::NONE);
+                let distance = self.parting.is_distance(index);
+                RegionFacts {
+                    share,
+                    distance,
+                    steepness: if distance { Interval::new(1.0, 1.0) } else { facts.steepness },
+                    aside: aim.off,
+                    singular: aim.singular,
+                    on_axis: aim.on_axis,
+                    ..facts
+                }
             })
             .collect();
-        // Slopes that are taken for equal may differ by rounding.
-        let least = self.least.min(self.least_from_points) - ROUNDING;
-        // Of a set without an inside nothing was asked.
-        let least = if least.is_finite() { least } else { 0.0 };
         Certificate {
             least,
-            slack: self.jumps + least.max(0.0) * self.near,
+            slack: self.jumps + crossed + 2.0 * self.beyond + least.max(0.0) * short,
             regions,
             borders: self.borders.into_values().collect(),
             undecided: self.undecided,
@@ -421,9 +385,4 @@ impl<'t> Survey<'t> {
             boxes: self.boxes,
         }
     }
-}
-
-/// A box of one point.
-fn point(at: [f64; 3]) -> Cell {
-    Cell { sides: at.map(|at| Interval::new(at, at)) }
 }

@@ -1,0 +1,151 @@
+//! By how much one distance exceeds another at most, all over the plane or space.
+//!
+//! With `|p - a| + |p - b| ≥ |a - b| ≥ |p - a| - |p - b|`, and a linear function of slope 1 that grows from a point by no more than
+//! the distance from it.
+
+use super::root::Rooted;
+use crate::expr::Coord;
+use crate::expr::polynomial::monomial_of;
+use crate::number::{Number, ROUNDING};
+
+/// `sign · |p - centre| + rest`
+struct FromPoint {
+    sign: i64,
+    centre: [Number; 3],
+    rest: Number,
+}
+
+impl FromPoint {
+    fn of(depth: &Rooted) -> Option<FromPoint> {
+        let (factor, under) = depth.root().filter(|_| depth.is_distance())?;
+        let half = |coord| &under.exact_factor(monomial_of(coord)) / &Number::int(-2);
+        // The half plane has D and Z, space has the other three; what is missing is 0.
+        let across = half(Coord::D);
+        let [x, y, z] = [Coord::X, Coord::Y, Coord::Z].map(half);
+        let first = if across.is_zero() { x } else { across };
+        Some(FromPoint {
+            sign: if factor.is_negative() { -1 } else { 1 },
+            centre: [first, y, z],
+            rest: depth.part().exact_factor([0; 4]),
+        })
+    }
+
+    fn distance(&self, other: &FromPoint) -> Option<Number> {
+        let squares = self.centre.iter().zip(&other.centre).map(|(a, b)| &(a - b) * &(a - b));
+        squares.fold(Number::int(0), |sum, square| &sum + &square).sqrt()
+    }
+}
+
+/// The value of a linear function at a point.
+fn linear_at(depth: &Rooted, [first, y, z]: &[Number; 3]) -> [Number; 5] {
+    let at = |coord, value: &Number| &depth.part().exact_factor(monomial_of(coord)) * value;
+    let rest = depth.part().exact_factor([0; 4]);
+    [rest, at(Coord::D, first), at(Coord::X, first), at(Coord::Y, y), at(Coord::Z, z)]
+}
+
+/// Returns the most that `a - b` is anywhere, if that is bounded and shows: 0 if it is not positive.
+pub(super) fn excess(a: &Rooted, b: &Rooted) -> Option<f64> {
+    if !a.is_distance() || !b.is_distance() {
+        return None;
+    }
+    // A linear function is most above a distance from a point, and least above its opposite, in that point.
+    let terms: Vec<Number> = match (FromPoint::of(a), FromPoint::of(b)) {
+        (None, Some(b)) if b.sign > 0 => {
+            linear_at(a, &b.centre).into_iter().chain([-&b.rest]).collect()
+        }
+        (Some(a), None) if a.sign < 0 => {
+            linear_at(b, &a.centre).map(|term| -&term).into_iter().chain([a.rest]).collect()
+        }
+        (Some(a), Some(b)) => {
+            let apart = a.distance(&b)?;
+            let signed = match (a.sign, b.sign) {
+                (-1, 1) => -&apart,
+                (1, 1) | (-1, -1) => apart,
+                _ => return None,
+            };
+            vec![a.rest, -&b.rest, signed]
+        }
+        _ => return None,
+    };
+    let (most, size) = Number::sum(&terms);
+    let most = most.to_f64();
+    Some(if most <= ROUNDING * size { 0.0 } else { most.next_up() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::polynomial::Polynomial;
+
+    /// A distance in the half plane: from a point with a sign and a constant, or along a unit vector.
+    #[derive(Clone, Copy)]
+    enum Distance {
+        Point(i64, [f64; 2], f64),
+        Line([f64; 2], f64),
+    }
+
+    impl Distance {
+        fn form(self) -> Rooted {
+            let number = |value: f64| Number::from_f64(value).expect("finite");
+            let [d, z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
+            match self {
+                Distance::Line([x, y], rest) => Rooted::plainly(
+                    &d.scaled(&number(x))
+                        .plus(&z.scaled(&number(y)))
+                        .plus(&Polynomial::constantly(&number(rest))),
+                ),
+                Distance::Point(sign, at, rest) => {
+                    let [d, z] = [(d, at[0]), (z, at[1])].map(|(coord, value)| {
+                        let from = coord.plus(&Polynomial::constantly(&number(-value)));
+                        from.times(&from).expect("degree 2")
+                    });
+                    let rest = Polynomial::constantly(&number(rest));
+                    Rooted::new(rest, Number::int(sign), d.plus(&z))
+                }
+            }
+        }
+
+        fn at(self, [d, z]: [f64; 2]) -> f64 {
+            match self {
+                Distance::Line([x, y], rest) => x * d + y * z + rest,
+                Distance::Point(sign, at, rest) => {
+                    sign as f64 * (d - at[0]).hypot(z - at[1]) + rest
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_point_of_a_grid_exceeds_and_one_far_along_comes_near() {
+        let [a, b] = [[1.0, 2.0], [4.0, -2.0]];
+        let kinds = [
+            Distance::Point(1, a, -0.5),
+            Distance::Point(-1, a, 3.0),
+            Distance::Point(1, b, 1.0),
+            Distance::Point(-1, b, 2.0),
+            Distance::Line([0.0, 1.0], -1.0),
+            Distance::Line([-1.0, 0.0], 2.5),
+        ];
+        let mut bounded = 0;
+        for less in kinds {
+            for more in kinds {
+                let Some(most) = excess(&less.form(), &more.form()) else { continue };
+                bounded += 1;
+                let mut seen = 0.0f64;
+                for k in 0..400 * 400 {
+                    let at = [k % 400, k / 400].map(|k| f64::from(k) * 0.05 - 10.0);
+                    seen = seen.max(less.at(at) - more.at(at));
+                }
+                // Along the line through both points, far out, where differences of distances are largest.
+                for t in [-1e6, -2.0, 0.0, 0.5, 1.0, 2.0, 1e6] {
+                    let at = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
+                    seen = seen.max(less.at(at) - more.at(at));
+                }
+                assert!(seen <= most + 1e-9, "{seen} of {most}");
+                assert!(seen >= most - 0.1, "{seen} of {most}");
+            }
+        }
+        // Twelve pairs of points, and lines beside points either way.
+        assert_eq!(bounded, 12 + 4 + 4);
+    }
+}

@@ -1,0 +1,269 @@
+//! Which of two depths is the lesser at a claim's points, and by how much depths may differ where claims meet that no
+//! curve joins.
+
+use super::super::SMALL;
+use super::super::cover::{Claim, Cover, reach};
+use super::super::excess::excess;
+use super::super::root::{Agreement, Rooted};
+use super::Pair;
+use super::{Parting, Ways, closed, ways};
+use crate::expr::polynomial::Polynomial;
+use crate::expr::value::At;
+use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
+use crate::number::Number;
+
+/// A depth that is compared with those of two regions that meet in a box differs from them by no more than so many times
+/// the box's half diagonal.
+const NEAR: f64 = 8.0;
+
+/// How two depths compare, by what is linear on the ways to their claims.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum LowerByLinear {
+    /// Both are 0 where the claims meet.
+    Zero,
+    /// Each is known or not to be the lesser at its own claim's points.
+    Each([bool; 2]),
+}
+
+/// A region, or the outside, where depth is 0.
+type Owner = Option<usize>;
+
+impl Parting<'_> {
+    /// Returns by how much depths of two claims differ at most where they meet in the present box, if of two regions'
+    /// depths each is the lesser at its own claim's points, or a region's depth is 0 where it meets the outside.
+    pub(super) fn lower(
+        &mut self,
+        pair: Pair,
+        claims: [&Claim; 2],
+        parting: &[CurveIndex],
+        cover: &mut Cover<'_>,
+    ) -> Option<f64> {
+        let key = (pair, claims.map(ways));
+        let linear = match self.lower.get(&key) {
+            Some(known) => *known,
+            None => {
+                let known = self.lower_by_linear(pair, &self.listed_signs(pair, &key.1));
+                self.lower.insert(key.clone(), known);
+                known
+            }
+        };
+        let LowerByLinear::Each(lesser) = linear else { return Some(0.0) };
+        let at = self.listed_signs(pair, &key.1);
+        let (own, Some(other)) = pair else {
+            let own = Some(pair.0);
+            let below = self.excess_on(claims[1], (&at[1], parting), [own, None], cover)?;
+            let above = self.excess_on(claims[0], (&at[0], parting), [None, own], cover)?;
+            return Some(below.max(above)).filter(|off| *off <= self.step);
+        };
+        let owners = [[own, other], [other, own]];
+        // Where ways down are asked for, it has to be so beside the border too.
+        let (most, on) = if self.steps { (self.step, parting) } else { (0.0, &[][..]) };
+        let excess = [0, 1].map(|k| {
+            let owners = owners[k].map(Some);
+            let zero = lesser[k].then_some(0.0);
+            let excess = zero.or_else(|| self.excess_on(claims[k], (&at[k], on), owners, cover));
+            excess.filter(|excess| *excess <= most)
+        });
+        let (side, excess) = match excess {
+            [Some(a), Some(b)] => return Some(a.max(b)),
+            [None, None] => return None,
+            [Some(excess), None] => (1, excess),
+            [None, Some(excess)] => (0, excess),
+        };
+        let lower = match self.lower_by_third.get(&(key.clone(), side)) {
+            Some(known) => *known,
+            None => {
+                let lower = self.lesser_than_third(owners[side], &at[side], parting);
+                self.lower_by_third.insert((key, side), lower);
+                lower
+            }
+        };
+        lower.then_some(excess)
+    }
+
+    /// Returns by how much the first of two depths exceeds the other at most at a claim's points of the present box, or at
+    /// those of them that are on given borders, if that shows: by the sign of a curve on the claim's way, or because a
+    /// third depth is between them, on one side by such a sign, on the other everywhere or on such a border.
+    fn excess_on(
+        &mut self,
+        claim: &Claim,
+        (at, on): (&[Signs], &[CurveIndex]),
+        [less, more]: [Owner; 2],
+        cover: &mut Cover<'_>,
+    ) -> Option<f64> {
+        if self.ordered([less, more], claim, cover) {
+            return Some(0.0);
+        }
+        let mut least = self.excess_beside_line(claim, [less, more]);
+        for third in self.thirds([less, more]) {
+            for (by_curve, everywhere) in
+                [([less, third], [third, more]), ([third, more], [less, third])]
+            {
+                if self.ordered(by_curve, claim, cover) {
+                    let everywhere_by = self.excess(at, everywhere);
+                    let found = [everywhere_by, self.step_on(on, everywhere)];
+                    least = found.into_iter().flatten().chain(least).reduce(f64::min);
+                }
+            }
+        }
+        least
+    }
+
+    /// Returns by how much a region's depth is above or below 0 at most on the side of a straight curve on the claim's way,
+    /// as a circle is that touches the curve.
+    fn excess_beside_line(&mut self, claim: &Claim, sides: [Owner; 2]) -> Option<f64> {
+        let (own, is_more) = match sides {
+            [Some(own), None] => (own, false),
+            [None, Some(own)] => (own, true),
+            _ => return None,
+        };
+        let depth = self.depths[own].as_ref()?;
+        let lines = claim.signs.iter().filter_map(|(curve, signs)| {
+            let (line, _) = self.curves[*curve].as_ref().filter(|(line, _)| line.is_linear())?;
+            let is_below = match (signs & NEGATIVE == 0, signs & POSITIVE == 0) {
+                (false, true) => true,
+                (true, false) => false,
+                _ => return None,
+            };
+            let slope = line.slope_squared()?.sqrt()?;
+            let scale = Number::int(if is_below == is_more { -1 } else { 1 }).over(&slope)?;
+            let line = Rooted::plainly(&line.scaled(&scale));
+            let [less, more] = if is_more { [&line, depth] } else { [depth, &line] };
+            match (less.plain(), more.plain()) {
+                (Some(less), Some(more)) => {
+                    let minus = more.scaled(&Number::int(-1));
+                    Some(less.clone().plus(&minus).over(&self.cell).high.max(0.0))
+                }
+                _ => excess(less, more),
+            }
+        });
+        lines.reduce(f64::min)
+    }
+
+    /// Returns whether the first of two depths is the lesser at a claim's points of the present box, by the sign that a
+    /// curve on which they agree has there.
+    fn ordered(&mut self, [less, more]: [Owner; 2], claim: &Claim, cover: &mut Cover<'_>) -> bool {
+        // The outside comes last, of two regions the one listed earlier first.
+        let turned = less.is_none() || more.is_some_and(|more| Some(more) < less);
+        let ordered = if turned { [more, less] } else { [less, more] };
+        let [Some(own), other] = ordered else { return false };
+        let one_sided = |signs: Signs| signs & NEGATIVE == 0 || signs & POSITIVE == 0;
+        claim.signs.iter().filter(|(_, signs)| one_sided(*signs)).any(|(curve, _)| {
+            let Some(order) = self.agree((own, other), *curve).and_then(|found| found.order) else {
+                return false;
+            };
+            let order = if turned { order.turned() } else { order };
+            self.signed(*curve).is_some()
+                && order.is_lesser(cover.own_sign(claim, *curve), &self.cell)
+        })
+    }
+
+    /// Returns by how much a region's depth exceeds another's at most: anywhere, or by what is linear wherever curves have
+    /// these signs.
+    fn excess(&mut self, at: &[Signs], [less, more]: [Owner; 2]) -> Option<f64> {
+        let [less, more] = [less?, more?];
+        let (a, b) = (self.depths[less].as_ref()?, self.depths[more].as_ref()?);
+        let excess = *self.excesses.entry((less, more)).or_insert_with(|| excess(a, b));
+        if excess == Some(0.0) {
+            return excess;
+        }
+        let key = (at.to_vec(), less, more);
+        let no_deeper = match self.no_deeper.get(&key) {
+            Some(known) => *known,
+            None => {
+                let no_deeper = self.linear.no_deeper(at, Some(less), Some(more));
+                self.no_deeper.insert(key, no_deeper);
+                no_deeper
+            }
+        };
+        if no_deeper { Some(0.0) } else { excess }
+    }
+
+    /// Returns by how much two depths differ at most on one of several borders in the present box.
+    fn step_on(&mut self, on: &[CurveIndex], [a, b]: [Owner; 2]) -> Option<f64> {
+        let [a, b] = [a?, b?];
+        let pair = (a.min(b), Some(a.max(b)));
+        let steps = on.iter().filter_map(|curve| match self.agree(pair, *curve) {
+            Some(Agreement { branch, .. }) => {
+                let is_sure = |branch: &Polynomial| branch.over(&self.cell).low > 0.0;
+                branch.as_ref().is_none_or(is_sure).then_some(0.0)
+            }
+            None => Some(self.tangency(pair, *curve)?.jump),
+        });
+        steps.reduce(f64::min)
+    }
+
+    /// Returns the regions whose depths may be between two depths all over the present box, if that is small. Nothing
+    /// but time depends on which are returned.
+    fn thirds(&mut self, pair: [Owner; 2]) -> Vec<Owner> {
+        let reach = reach(&self.cell);
+        if reach > SMALL * self.size {
+            return Vec::new();
+        }
+        let [x, y, z] = self.cell.middle();
+        self.values.set(At::point(x, y, z));
+        let regions = &self.model.regions;
+        let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth));
+        let is_near = |third: &Owner| {
+            let off = |owner: Owner| (depth(*third) - depth(owner)).abs();
+            !pair.contains(third) && pair.into_iter().all(|owner| off(owner) <= NEAR * reach)
+        };
+        (0..regions.len()).map(Some).filter(is_near).collect()
+    }
+
+    /// Returns the signs at two claims' points.
+    fn listed_signs(&self, pair: Pair, [a, b]: &[Ways; 2]) -> [Vec<Signs>; 2] {
+        let [mut at_a, mut at_b] = [a, b].map(|ways| self.signs(ways));
+        // Where owners are those that the list says, its conditions hold too.
+        if self.listed {
+            self.model.regions[pair.0].inside.demand(&mut at_a);
+            if let Some(other) = pair.1 {
+                self.model.regions[other].inside.demand(&mut at_b);
+            }
+        }
+        [at_a, at_b]
+    }
+
+    /// Returns the same by all that is linear on the ways to the claims.
+    fn lower_by_linear(&self, (own, other): Pair, at: &[Vec<Signs>; 2]) -> LowerByLinear {
+        if self.zero_where_they_meet((own, other), [&at[0], &at[1]]) {
+            return LowerByLinear::Zero;
+        }
+        let Some(other) = other else { return LowerByLinear::Each([false; 2]) };
+        let lesser = |k: usize, own, other| self.linear.no_deeper(&at[k], Some(own), Some(other));
+        LowerByLinear::Each([lesser(0, own, other), lesser(1, other, own)])
+    }
+
+    fn zero_where_they_meet(&self, (own, other): Pair, [at_a, at_b]: [&[Signs]; 2]) -> bool {
+        let both = |(a, b): (&Signs, &Signs)| closed(*a) & closed(*b);
+        let meeting: Vec<Signs> = at_a.iter().zip(at_b).map(both).collect();
+        self.linear.no_deeper(&meeting, Some(own), None)
+            && self.linear.no_deeper(&meeting, other, None)
+    }
+
+    /// Returns whether a depth is, where its claim's signs are, no more than a third that goes on smoothly as the other
+    /// on one of the curves that part them.
+    fn lesser_than_third(
+        &mut self,
+        [own, other]: [usize; 2],
+        at: &[Signs],
+        parting: &[CurveIndex],
+    ) -> bool {
+        (0..self.depths.len()).any(|third| {
+            let smooth = |curve: &CurveIndex| match self.agree((other, Some(third)), *curve) {
+                Some(Agreement { smooth, branch, .. }) => {
+                    // A depth is not negative in its own region.
+                    let depth = self.depths[other].as_ref().and_then(Rooted::plain);
+                    let ratio = |branch: &Polynomial| branch.ratio(depth?);
+                    let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
+                    smooth && branch.as_ref().is_none_or(own)
+                }
+                None => false,
+            };
+            third != own
+                && third != other
+                && parting.iter().any(smooth)
+                && self.linear.no_deeper(at, Some(own), Some(third))
+        })
+    }
+}

@@ -1,0 +1,141 @@
+//! How steeply depth falls toward the surface, where it is not shown by the feet of a profile's points.
+
+use super::super::cover::reach;
+use super::super::kink::ROUNDING;
+use super::{Grain, Survey};
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+use std::f64::consts::TAU;
+
+/// From boxes as good as points ways down of these parts of the tool's size are tried, and to the surface ways of so
+/// many times such a box's half diagonal.
+const STEPS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+const NEAR: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
+/// Directions that are tried beside those.
+const OTHERS: u32 = 16;
+/// Ways down from a box that is as good as a point.
+pub(super) struct Descent {
+    /// The least depth in the box less the depth where a way ends, by the way from the box's farthest point: the most that
+    /// was found. Infinite if the box is beside the outside.
+    steepest: f64,
+    /// The shortest of the ways that soon lead to where it is less deep than anywhere in the box.
+    step: Option<f64>,
+}
+
+impl Survey<'_> {
+    /// How steeply a region's depth falls at least in the present box, which some owners have.
+    pub(super) fn fall(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
+        let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+        // The kink of a length is where it is 0. Beside the outside that is the surface, where depth need not fall.
+        let unkinked = depth.value.low > 0.0 || owners.contains(&None);
+        if self.parting.is_length(owner) && unkinked { depth.length.low } else { depth.fall() }
+    }
+
+    /// Notes how steeply depth falls from any point of a box.
+    pub(super) fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
+        if self.feet.is_some() {
+            return;
+        }
+        if grain != Grain::Point {
+            for owner in owners.iter().flatten() {
+                self.least = self.least.min(self.fall(*owner, owners));
+            }
+            self.descend_on_axis(cell);
+        } else if owners.contains(&None) {
+            self.near = self.near.max(2.0 * reach(&cell));
+        } else {
+            let descent = self.descent_from_point(owners, cell);
+            self.descents.push(descent);
+        }
+    }
+
+    /// Notes how steeply depth falls from points of a box on the axis. Where it grows away from the axis it has a kink
+    /// there, at which only its slope along the axis leads down.
+    fn descend_on_axis(&mut self, cell: Cell) {
+        if self.tool.model.domain != Domain::HalfPlane || cell.sides[0].low > 0.0 {
+            return;
+        }
+        let axis = cell.with(0, NOTHING);
+        self.slopes.set(axis);
+        for owner in self.cover.claims(axis).iter().filter_map(|claim| claim.owner) {
+            let depth = self.slopes.get(self.tool.model.regions[owner].depth);
+            if depth.parts[0].high > ROUNDING {
+                self.least = self.least.min(depth.parts[2].abs().low);
+            }
+        }
+    }
+
+    /// Tries ways out of a box that is as good as a point: straight down the owners' slopes, and if these do not help,
+    /// in other directions.
+    fn descent_from_point(&mut self, owners: &[Option<usize>], cell: Cell) -> Descent {
+        let (regions, middle) = (&self.tool.model.regions, cell.middle());
+        let depths = owners.iter().flatten().map(|owner| regions[*owner].depth);
+        let low = depths.map(|id| self.slopes.get(id).value.low).fold(f64::INFINITY, f64::min);
+        self.slopes.set(Cell::point(middle));
+        let slope = |owner: &usize| {
+            let slope = self.slopes.get(regions[*owner].depth);
+            slope.parts.map(Interval::middle)
+        };
+        let slopes: Vec<[f64; 3]> = owners.iter().flatten().map(slope).collect();
+        let half = reach(&cell);
+        let mut best = Descent { steepest: 0.0, step: None };
+        let others = (0..OTHERS).map(|k| {
+            let angle = TAU * f64::from(k) / f64::from(OTHERS);
+            [angle.cos(), 0.0, angle.sin()]
+        });
+        for (k, up) in slopes.iter().copied().chain(others).enumerate() {
+            if k >= slopes.len() && (best.step.is_some() || best.steepest >= self.least) {
+                break;
+            }
+            let long = up.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let steps = NEAR.map(|part| part * half).into_iter();
+            for way in steps.clone().chain(STEPS.map(|part| part * self.size)) {
+                let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
+                let Some(high) = self.deepest_at(to) else { continue };
+                // `to` is rounded, by far less than the box is wide.
+                let farthest = (way + 2.0 * half) * (1.0 + 1e-12);
+                let is_near = way <= NEAR[NEAR.len() - 1] * half;
+                if high == 0.0 && is_near {
+                    self.near = self.near.max(farthest);
+                    return Descent { steepest: f64::INFINITY, step: None };
+                }
+                best.steepest = best.steepest.max((low - high) / farthest);
+                if high < low && is_near && best.step.is_none_or(|step| farthest < step) {
+                    best.step = Some(farthest);
+                }
+            }
+        }
+        best
+    }
+
+    /// How deep it is at a point at most, whichever of the regions that may have it has it; 0 if none may. Nothing
+    /// if it is no point of the domain.
+    pub(super) fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
+        let off_axis = self.tool.model.domain == Domain::HalfPlane && at[0] < 0.0;
+        if off_axis || !at.iter().all(|part| part.is_finite()) {
+            return None;
+        }
+        let claims = self.cover.claims(Cell::point(at));
+        self.slopes.set(Cell::point(at));
+        let depth = |owner: usize| self.slopes.get(self.tool.model.regions[owner].depth).value.high;
+        Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
+    }
+
+    /// Returns how steeply depth falls toward the surface at least, and how far that may miss the surface.
+    pub(super) fn least(&self) -> (f64, f64) {
+        if self.feet.is_some() {
+            return (1.0, 0.0);
+        }
+        // Depth falls on a way down, so it meets each such box once: a step out of it is added to what is missed.
+        let (mut least, mut steps) = (self.least, 0.0);
+        for descent in self.descents.iter().filter(|descent| descent.steepest < self.least) {
+            match descent.step {
+                Some(step) => steps += step,
+                None => least = least.min(descent.steepest),
+            }
+        }
+        // Slopes that are taken for equal may differ by rounding; of a set without an inside nothing was asked.
+        let least = if least.is_finite() { least - ROUNDING } else { 0.0 };
+        (least, self.near + steps)
+    }
+}

@@ -1,0 +1,220 @@
+//! Depths that agree but for rounding on a straight border, where a profile goes on smoothly: lines and arcs whose ends
+//! were written with the digits of a double are not exactly tangent.
+//!
+//! Along a line, the distance from a point is `√(t² + e²)`, with `t` measured from the point's foot and `e` its distance
+//! from the line: within `e` of `|t|`. So the difference of two depths is affine in `t` there, but for that.
+
+use super::root::Rooted;
+use crate::expr::Coord;
+use crate::expr::interval::{Cell, Interval};
+use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
+use crate::number::Number;
+
+/// The difference of two depths on a straight line, whose points are told by a coordinate.
+#[derive(Clone, Debug)]
+pub(super) struct Tangency {
+    /// The coordinate: its place in a point, and among those of a monomial.
+    axis: usize,
+    /// `slope · t + rest`, without roots.
+    slope: Number,
+    rest: Number,
+    roots: Vec<Root>,
+    /// The largest slope of a depth across the line, roots left out.
+    across: f64,
+    /// What is under two roots of the same factor that are all that there is.
+    under: Option<[Polynomial; 2]>,
+}
+
+/// `factor · √((t - foot)² + (off/scale)²)`, and so within `factor · off/scale` of `factor · |t - foot|`.
+#[derive(Clone, Debug)]
+struct Root {
+    factor: Number,
+    foot: Number,
+    /// The distance of the root's point from the line.
+    off: f64,
+    /// Lengths along the line per unit of its coordinate.
+    scale: f64,
+}
+
+/// How two depths differ on a line in a box.
+#[derive(Clone, Copy)]
+pub(super) struct Off {
+    /// By how much at most.
+    pub(super) jump: f64,
+    /// The largest slope of one of them across the line.
+    pub(super) across: f64,
+}
+
+impl Tangency {
+    /// Returns the difference of two depths on a line; none if they are not linear and distances from points of the half
+    /// plane.
+    pub(super) fn of(a: &Rooted, b: &Rooted, line: &Polynomial) -> Option<Tangency> {
+        if !line.is_linear() {
+            return None;
+        }
+        let along = [(0, Coord::D), (2, Coord::Z)].into_iter().find_map(|(axis, coord)| {
+            let only = monomial_of(coord);
+            let left = Polynomial::constantly(&Number::int(1)).plus(&Polynomial::coordinate(coord));
+            let is_free = left.on_line(line)?.terms().any(|(monomial, _)| monomial == only);
+            is_free.then_some((axis, only))
+        });
+        let (axis, only) = along?;
+        let mut tangency = Tangency {
+            axis,
+            slope: Number::int(0),
+            rest: Number::int(0),
+            roots: Vec::new(),
+            across: 0.0,
+            under: None,
+        };
+        tangency.add(a, false, line, only)?;
+        tangency.add(b, true, line, only)?;
+        if let (Some((k, p)), Some((m, q))) = (a.root(), b.root())
+            && k.agrees(m)
+            && tangency.rest.is_zero()
+        {
+            tangency.under = Some([p.on_line(line)?, q.on_line(line)?]);
+        }
+        Some(tangency)
+    }
+
+    fn add(&mut self, depth: &Rooted, less: bool, line: &Polynomial, only: Monomial) -> Option<()> {
+        if !depth.is_distance() {
+            return None;
+        }
+        let signed = |n: Number| if less { -&n } else { n };
+        let [rest, slope, square] = factors(&depth.part().on_line(line)?, only)?;
+        if !square.is_zero() {
+            return None;
+        }
+        self.slope = &self.slope + &signed(slope);
+        self.rest = &self.rest + &signed(rest);
+        let Some((factor, under)) = depth.root() else {
+            let size = line.slope_squared()?.to_f64().sqrt();
+            let slopes = [Coord::D, Coord::Z].map(|coord| {
+                let by = monomial_of(coord);
+                depth.part().factor(by) * line.factor(by)
+            });
+            let across = (slopes[0] + slopes[1]).abs() / size + 4.0 * f64::EPSILON;
+            self.across = self.across.max(across);
+            return Some(());
+        };
+        let [rest, slope, square] = factors(&under.on_line(line)?, only)?;
+        let foot = -&slope.over(&(&Number::int(2) * &square))?;
+        let off = &rest - &(&(&foot * &foot) * &square);
+        let scale = square.sqrt()?;
+        self.roots.push(Root {
+            factor: signed(factor * &scale),
+            foot,
+            // What is negative is rounding of 256 bits.
+            off: off.to_f64().max(0.0).sqrt().next_up(),
+            scale: scale.to_f64(),
+        });
+        Some(())
+    }
+
+    /// Returns how the two depths differ on the line in a box; none if a root's foot may be there.
+    pub(super) fn over(&self, cell: &Cell) -> Option<Off> {
+        let [by_feet, by_roots] = [self.by_feet(cell), self.by_roots(cell)];
+        match (by_feet, by_roots) {
+            (Some(a), Some(b)) => Some(if a.jump <= b.jump { a } else { b }),
+            (one, other) => one.or(other),
+        }
+    }
+
+    /// `|√P - √Q| = |P - Q| / (√P + √Q)`
+    fn by_roots(&self, cell: &Cell) -> Option<Off> {
+        let [p, q] = self.under.as_ref()?;
+        let differ = p.clone().plus(&q.scaled(&Number::int(-1))).over(cell).abs();
+        let lengths = p.over(cell).sqrt().plus(q.over(cell).sqrt());
+        (lengths.low > 0.0)
+            .then(|| Off { jump: differ.times(lengths.reciprocal()).high, across: 1.0 })
+    }
+
+    fn by_feet(&self, cell: &Cell) -> Option<Off> {
+        let t = cell.sides[self.axis];
+        let (mut slope, mut rest) = (self.slope.clone(), self.rest.clone());
+        let (mut noise, mut across) = (0.0f64, self.across);
+        for root in &self.roots {
+            let from_foot = t.plus(Interval::about(&root.foot).negated());
+            if from_foot.low <= 0.0 && from_foot.high >= 0.0 {
+                return None;
+            }
+            let factor = if from_foot.high < 0.0 { -&root.factor } else { root.factor.clone() };
+            rest = &rest - &(&factor * &root.foot);
+            slope = &slope + &factor;
+            // No slack is spared by rounding these to the last place.
+            noise += 2.0 * root.off;
+            across = across.max(2.0 * root.off / (root.scale * from_foot.abs().low));
+        }
+        let affine = Interval::about(&slope).times(t).plus(Interval::about(&rest));
+        Some(Off { jump: affine.abs().high + noise, across })
+    }
+}
+
+/// The factors of a polynomial of degree 2 in one coordinate, the constant first.
+fn factors(polynomial: &Polynomial, only: Monomial) -> Option<[Number; 3]> {
+    let mut factors = [(); 3].map(|()| Number::int(0));
+    for (monomial, value) in polynomial.terms() {
+        let degree = usize::from(monomial.iter().sum::<u8>());
+        let powers = only.map(|exponent| exponent * u8::try_from(degree).unwrap_or(u8::MAX));
+        if degree > 2 || monomial != powers {
+            return None;
+        }
+        factors[degree] = value.clone();
+    }
+    Some(factors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::root::Forms;
+    use super::*;
+    use crate::expr::Graph;
+
+    /// Returns the largest difference of an arc's depth and a line's on the arc's normal at the line's end, in a box on
+    /// it, and what it is said to be; the arc's centre is `off` beside the normal.
+    fn seen(off: f64) -> (f64, Off) {
+        let mut graph = Graph::default();
+        let number = |value: f64| Number::from_f64(value).expect("finite");
+        let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let [centre_d, centre_z, radius] =
+            [3.0 + off, 5.0, 2.0].map(|value| graph.number(number(value)));
+        let [from_d, from_z] = [graph.sub(d, centre_d), graph.sub(z, centre_z)];
+        let [square_d, square_z] = [graph.mul(from_d, from_d), graph.mul(from_z, from_z)];
+        let under = graph.add(square_d, square_z);
+        let length = graph.sqrt(under).expect("a root");
+        // Below the centre the arc's lowest point is at z = 3, and so is the line.
+        let arc = graph.sub(radius, length);
+        let three = graph.number(number(3.0));
+        let line = graph.sub(z, three);
+        let normal = graph.sub(d, three);
+        let mut forms = Forms::new(&graph);
+        let [arc, line, normal] = [arc, line, normal].map(|id| forms.of(id).expect("a form"));
+        let normal = normal.plain().expect("linear").clone();
+        let tangency = Tangency::of(&arc, &line, &normal).expect("lines and distances");
+        let [low, high] = [3.25, 3.75];
+        let cell = Cell::half_plane(Interval::new(2.9, 3.1), Interval::new(low, high));
+        let differences = (0..=100).map(|k| {
+            let z = low + (high - low) * f64::from(k) / 100.0;
+            // The distance less the way along the normal, without cancellation.
+            let (t, length) = (5.0 - z, (5.0 - z).hypot(off));
+            off * off / (t + length)
+        });
+        (differences.fold(0.0, f64::max), tangency.over(&cell).expect("the foot is elsewhere"))
+    }
+
+    #[test]
+    fn arcs_that_are_nearly_tangent_to_lines_differ_as_said() {
+        for off in [0.0, 1e-16, 1e-12, 1e-9, 1e-3] {
+            let off = 3.0 + off - 3.0;
+            let (most, said) = seen(off);
+            assert!(
+                said.jump >= most && said.jump <= 2.0 * off * (1.0 + 1e-12) + 1e-60,
+                "{off}: {most} {}",
+                said.jump
+            );
+            assert!(said.across >= off / 1.75_f64.hypot(off) && said.across <= 2.0 * off + 1e-15);
+        }
+    }
+}
