@@ -51,6 +51,9 @@ pub(crate) enum Failure {
     /// A part of what was to be kept of a session was not; the reason was said when it happened.
     #[error("not all of the session was kept: make room, and record it again")]
     NotKept,
+    /// A number that the haptic loop cannot run with.
+    #[error(transparent)]
+    Setting(#[from] touchoff::haptic::SettingError),
     /// A path does not say which way it goes.
     #[error(transparent)]
     Motion(touchoff::MotionError),

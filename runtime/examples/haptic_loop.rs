@@ -22,8 +22,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let upright = |z| Pose::from_axis(Point3::new(0.0, 0.0, z), Vector3::z());
     let (over, into) = (upright(1.0)?, upright(-2.0)?);
     let wish = move |time: f64| if time.fract() < 0.5 { over } else { into };
-    let mut hand = Hand::new(Limits::default(), rate, wish).trembling(&tremor);
-    let mut session = Session::new(probe, &Settings::new(rate), hand.limits());
+    let mut hand = Hand::new(Limits::default(), rate, wish)?.trembling(&tremor)?;
+    let mut session = Session::new(probe, &Settings::new(rate), hand.limits())?;
 
     let (mut watch, mut latest, samples) = watched(10_000);
     let stop = AtomicBool::new(false);

@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let tip = Point3::from(out * (20.0 + 3.0 - 0.05) - axis * 3.0);
         Ok(Pose::from_axis(tip, axis)?)
     });
-    let mut session = Session::new(Probe::new(&part, &BallMill), &Settings::new(rate), limits);
+    let mut session = Session::new(Probe::new(&part, &BallMill), &Settings::new(rate), limits)?;
 
     let (mut watch, _, mut samples) = watched(cycles as usize);
     let (report, recorded) = std::thread::scope(|scope| {

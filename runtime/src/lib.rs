@@ -69,7 +69,7 @@ pub use fearless_simd::Level;
 pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
-pub use pose::{AXIS_TOLERANCE, Pose, PoseError};
+pub use pose::{AXIS_TOLERANCE, FARTHEST_TIP, Pose, PoseError};
 pub use probe::{
     BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Stiffness,
     Summary, Weights, Wrench, summary,

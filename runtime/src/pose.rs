@@ -7,6 +7,10 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 /// digits, and anything further off is a mistake in the data.
 pub const AXIS_TOLERANCE: f64 = 1e-3;
 
+/// How far from the origin a coordinate of a composed pose may be: a thousand times what one may be given at,
+/// which two poses that were given never reach.
+pub const FARTHEST_TIP: f64 = 1e3 * LARGEST_COORDINATE;
+
 /// A tool's pose in the world: the map from the tool's frame (tip at the origin, +z from the tip
 /// to the spindle) to the part's, both in the part's unit of length. Of a solid without an axis
 /// what is called its tip is the origin of its file.
@@ -114,6 +118,9 @@ impl Pose {
     /// by at most 4 ε in every entry. What is left of rounding turns it like a random walk; but a motion
     /// that comes back to where it began is rounded the same time and again, some 3e-17 rad each.
     ///
+    /// # Panics
+    /// If the tip gets out of [`FARTHEST_TIP`]: a certifier's answer about such a pose would mean nothing.
+    ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
     /// # use touchoff::Pose;
@@ -129,7 +136,7 @@ impl Pose {
     pub fn then(&self, motion: &Pose) -> Pose {
         let tip = motion.tip + motion.rotation * self.tip.coords;
         let rotation = orthonormal(motion.rotation * self.rotation);
-        Pose { rotation, tip, full: self.full && motion.full }
+        Pose { rotation, tip: near(tip), full: self.full && motion.full }
     }
 
     /// The same pose shifted in the world.
@@ -141,20 +148,30 @@ impl Pose {
     }
 
     /// Turned by a rotation, its tip carried to there.
+    ///
+    /// # Errors
+    /// If the tip is not within the bounds of a pose, or the turn is no rotation.
     #[cfg(feature = "haptic")]
-    pub(crate) fn carried(&self, turn: Matrix3<f64>, tip: Point3<f64>) -> Pose {
-        Pose { rotation: orthonormal(turn * self.rotation), tip, full: self.full }
+    pub(crate) fn carried(&self, turn: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
+        let rotation = orthonormal(turn * self.rotation);
+        match off(&rotation) {
+            off if off <= ORTHONORMAL => Pose::finite(rotation, tip, self.full),
+            _ => Err(PoseError::NotFinite),
+        }
     }
 
     /// The same pose seen from where something else stands: `place⁻¹ ∘ self`, the difference of the
     /// tips first. Its rotation stays one as that of [`Pose::then`] does.
+    ///
+    /// # Panics
+    /// If the tip gets out of [`FARTHEST_TIP`].
     pub fn seen_from(&self, place: &Pose) -> Pose {
         if *place == Pose::default() {
             return *self;
         }
         let back = place.rotation.transpose();
         let tip = Point3::from(back * (self.tip - place.tip));
-        Pose { rotation: orthonormal(back * self.rotation), tip, full: self.full }
+        Pose { rotation: orthonormal(back * self.rotation), tip: near(tip), full: self.full }
     }
 
     /// The same pose as nalgebra's isometry.
@@ -162,6 +179,27 @@ impl Pose {
         let rotation = nalgebra::Rotation3::from_matrix_unchecked(self.rotation);
         Isometry3::from_parts(self.tip.into(), nalgebra::UnitQuaternion::from(rotation))
     }
+}
+
+/// A tip that is not farther than [`FARTHEST_TIP`].
+fn near(tip: Point3<f64>) -> Point3<f64> {
+    assert!(
+        tip.iter().all(|part| part.abs() <= FARTHEST_TIP),
+        "the composed pose has its tip at {tip}, out of {FARTHEST_TIP:e}: compose fewer or smaller motions"
+    );
+    tip
+}
+
+/// How far `RᵀR` may be from the identity in any entry. A certifier's bounds hold for rotations that are off
+/// by rounding; a matrix that is farther off was not made by this module.
+#[cfg(any(test, feature = "haptic"))]
+pub(crate) const ORTHONORMAL: f64 = 1e-9;
+
+/// Returns the largest entry of `RᵀR - I`, NaN if any is NaN.
+#[cfg(any(test, feature = "haptic"))]
+pub(crate) fn off(rotation: &Matrix3<f64>) -> f64 {
+    let off = rotation.transpose() * rotation - Matrix3::identity();
+    off.iter().fold(0.0, |most, part| if part.abs() <= most { most } else { part.abs() })
 }
 
 /// One step of Newton's method toward the nearest rotation, `R (3I − RᵀR)/2`, written so that only what is
@@ -197,4 +235,83 @@ fn unit(what: &'static str, v: [f64; 4]) -> Result<[f64; 4], PoseError> {
         return Err(PoseError::NotUnit { what, norm });
     }
     Ok(v.map(|c| c / norm))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Quaternion, Translation3, UnitQuaternion};
+
+    const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+    /// Each entrance to a pose refuses what is no rotation or no place, and all it accepts are rotations to
+    /// within rounding, however large the error within its tolerance.
+    #[test]
+    fn every_entrance_refuses_what_is_no_pose() {
+        let origin = Point3::origin();
+        for bad in BAD {
+            for at in 0..4 {
+                let mut quaternion = [0.0, 0.6, 0.0, 0.8];
+                quaternion[at] = bad;
+                assert_eq!(Pose::from_quaternion(origin, quaternion), Err(PoseError::NotFinite));
+                let unchecked = UnitQuaternion::new_unchecked(Quaternion::from(quaternion));
+                let isometry = Isometry3::from_parts(Translation3::identity(), unchecked);
+                assert_eq!(Pose::try_from(isometry), Err(PoseError::NotFinite));
+                let [x, y, z] = [0, 1, 2].map(|k| if k == at % 3 { bad } else { 0.0 });
+                let (tip, axis) = (Point3::new(x, y, z), Vector3::new(x, y, z));
+                assert_eq!(Pose::from_axis(origin, axis), Err(PoseError::NotFinite));
+                assert_eq!(Pose::from_axis(tip, Vector3::z()), Err(PoseError::NotFinite));
+                assert_eq!(Pose::default().shifted(axis), Err(PoseError::NotFinite));
+            }
+        }
+        for size in [0.0, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 1e200] {
+            let axis = Pose::from_axis(origin, Vector3::new(0.0, 0.6, 0.8) * size);
+            assert!(matches!(axis, Err(PoseError::NotUnit { what: "axis", .. })), "{axis:?}");
+            let quaternion = Pose::from_quaternion(origin, [0.0, 0.6, 0.0, 0.8].map(|c| c * size));
+            assert!(matches!(quaternion, Err(PoseError::NotUnit { .. })), "{quaternion:?}");
+        }
+        for size in [1.0 - 0.9e-3, 1.0, 1.0 + 0.9e-3] {
+            for sign in [1.0, -1.0] {
+                let axis = Pose::from_axis(origin, Vector3::new(0.36, 0.48, sign * 0.8) * size);
+                let turned = [0.1, 0.7, -0.1, sign * 0.7].map(|c| c * size);
+                let quaternion = Pose::from_quaternion(origin, turned);
+                for pose in [axis, quaternion] {
+                    assert!(off(pose.expect("within tolerance").rotation()) < 1e-15);
+                }
+            }
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "compose fewer or smaller motions")]
+    fn a_composed_pose_does_not_run_away_to_infinity() {
+        let far = Point3::new(LARGEST_COORDINATE, 0.0, 0.0);
+        let mut pose = Pose::from_axis(far, Vector3::z()).expect("a pose");
+        for _ in 0..2000 {
+            pose = pose.then(&pose);
+        }
+    }
+
+    #[test]
+    fn poses_as_far_apart_as_they_may_be_given_compose() {
+        let [a, b] = [-LARGEST_COORDINATE, LARGEST_COORDINATE]
+            .map(|c| Pose::from_axis(Point3::new(c, c, c), Vector3::x()).expect("a pose"));
+        assert!(a.seen_from(&b).then(&b).tip().iter().all(|part| part.is_finite()));
+    }
+
+    /// A turn that is NaN, or drifted away from a rotation, makes no pose.
+    #[cfg(feature = "haptic")]
+    #[test]
+    fn what_is_carried_by_no_rotation_is_refused() {
+        let (pose, origin) = (Pose::default(), Point3::origin());
+        let scaled = |by: f64| Matrix3::identity() * by;
+        assert!(pose.carried(scaled(1.0), origin).is_ok());
+        // Newton's step mends what is off by less than the root of the tolerance.
+        assert!(pose.carried(scaled(1.0 + 1e-6), origin).is_ok());
+        for turn in [scaled(f64::NAN), scaled(1.01), scaled(0.0), scaled(f64::INFINITY)] {
+            assert_eq!(pose.carried(turn, origin), Err(PoseError::NotFinite));
+        }
+        let nowhere = Point3::new(0.0, f64::NAN, 0.0);
+        assert_eq!(pose.carried(scaled(1.0), nowhere), Err(PoseError::NotFinite));
+    }
 }

@@ -91,13 +91,13 @@ fn a_haptic_loop() {
         for rendering in [None, Some(Rendering::Direct { scaled: true, damping: 1e-3 })] {
             let settings = Settings { rendering, ..Settings::new(rate) };
             let probe = Probe::new(&part, tool).law(Law::Gradient);
-            let mut session = Session::new(probe, &settings, limits);
+            let mut session = Session::new(probe, &settings, limits).expect("settings");
             let wish = |time: f64| {
                 let pose = Path::Hold.pose((3e3 * (time % 1.0)) as usize, 10_000);
                 let [x, y, z, w] = [0, 1, 2, 3].map(|k| pose.isometry().rotation.coords[k]);
                 Pose::from_quaternion(pose.tip(), [x, y, z, w]).expect("a pose")
             };
-            let mut hand = Hand::new(limits, rate, wish);
+            let mut hand = Hand::new(limits, rate, wish).expect("a hand");
             let (mut watch, mut latest, samples) = watched(2 * cycles as usize);
             let stop = AtomicBool::new(false);
             let clock = &mut Unhurried::default();

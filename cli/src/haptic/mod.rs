@@ -74,9 +74,9 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
         Wielded::Hand => {
             let wish = pressing(start, unit);
             let tremor = Tremor { size: 0.02, frequency: 10.0, seed: wanted.part.seed };
-            let hand = Hand::new(limits, wanted.rate, wish)
-                .held_at(Point3::origin(), unit)
-                .trembling(&tremor);
+            let hand = Hand::new(limits, wanted.rate, wish)?
+                .held_at(Point3::origin(), unit)?
+                .trembling(&tremor)?;
             wield(hand, (wanted, json, cycles), (&part, tool), record)
         }
         Wielded::Path(path) => {
@@ -147,9 +147,11 @@ fn wield(
         ..Settings::new(wanted.rate)
     };
     let probe = Probe::new(part, tool).law(wanted.law);
+    // Made before memory is locked, so that a lock which has no room for it is refused and said.
+    let mut session = Session::new(probe, &settings, limits)?;
     let (mut watch, mut latest, mut samples) = watched(ROOM);
     let stop = stopped_by_signals();
-    let looped = |watch: &mut Watch| {
+    let mut looped = |watch: &mut Watch| {
         let realtime = Realtime {
             priority: wanted.realtime.then_some(80),
             core: wanted.core,
@@ -158,7 +160,6 @@ fn wield(
         for refused in realtime.ask() {
             say!("{refused}");
         }
-        let mut session = Session::new(probe, &settings, limits);
         let clock = &mut Monotonic::new(Duration::from_micros(wanted.awake));
         run((&mut session, &mut device), (clock, cycles), watch, &stop)
     };

@@ -1,7 +1,7 @@
 //! Poses compared about a tool's compliance centre, in millimetres and radians.
 
 use super::device::Axes;
-use crate::Pose;
+use crate::{Pose, PoseError};
 use nalgebra::{Point3, Rotation3, Vector3, Vector6};
 
 /// What poses are compared about.
@@ -38,7 +38,10 @@ impl Frame {
     }
 
     /// A pose after such a way and turn.
-    pub(super) fn moved(&self, pose: &Pose, step: &Vector6<f64>) -> Pose {
+    ///
+    /// # Errors
+    /// If the result is no pose: the step is NaN or leads out of all bounds.
+    pub(super) fn moved(&self, pose: &Pose, step: &Vector6<f64>) -> Result<Pose, PoseError> {
         let [way, turn] = halves(step);
         let turned = Rotation3::from_scaled_axis(turn);
         let centre = self.centre_of(pose) + way / self.unit;
@@ -68,11 +71,11 @@ mod tests {
         let b =
             Pose::from_quaternion(Point3::new(1.5, 2., 2.), [0.6, 0.0, 0.0, 0.8]).expect("a pose");
         let frame = Frame { centre, unit: 25.4, axes: Axes::Six };
-        let moved = frame.moved(&a, &frame.between(&a, &b));
+        let moved = frame.moved(&a, &frame.between(&a, &b)).expect("a pose");
         assert!((moved.tip() - b.tip()).norm() < 1e-13);
         assert!((moved.rotation() - b.rotation()).norm() < 1e-13);
         let frame = Frame { centre: Point3::origin(), axes: Axes::Five, ..frame };
-        let moved = frame.moved(&a, &frame.between(&a, &b));
+        let moved = frame.moved(&a, &frame.between(&a, &b)).expect("a pose");
         assert!((moved.tip() - b.tip()).norm() < 1e-13);
         assert!((moved.axis() - b.axis()).norm() < 1e-13);
     }

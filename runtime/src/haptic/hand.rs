@@ -2,8 +2,9 @@
 //! computed and not only felt.
 
 use super::frame::{Frame, halves, join};
+use super::setting::{self, SettingError};
 use super::{Device, DeviceError, Limits, Push};
-use crate::{Pose, Unit};
+use crate::{Pose, PoseError, Unit};
 use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3, Vector6};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -79,12 +80,16 @@ struct At {
 impl<F: FnMut(f64) -> Pose> Hand<F> {
     /// A hand that wants the tool where a function of the time in seconds says, with a device of that many
     /// cycles a second. It begins there, at rest.
-    pub fn new(limits: Limits, rate: f64, wish: F) -> Hand<F> {
+    ///
+    /// # Errors
+    /// If the rate or a limit is out of its range.
+    pub fn new(limits: Limits, rate: f64, wish: F) -> Result<Hand<F>, SettingError> {
+        limits.check()?;
         let frame = Frame { centre: Point3::origin(), unit: 1.0, axes: limits.axes };
-        let period = 1.0 / rate;
-        let [way, turn] = Swing::both(&Grip::default(), period);
+        let period = setting::period(rate)?;
+        let [way, turn] = Swing::both(&Grip::default(), period)?;
         let (push, steps) = (Push::default(), [0.0; 2]);
-        Hand {
+        Ok(Hand {
             wish,
             frame,
             limits,
@@ -96,36 +101,49 @@ impl<F: FnMut(f64) -> Pose> Hand<F> {
             push,
             tremor: None,
             steps,
-        }
+        })
     }
 
     /// With another grip.
-    #[must_use]
-    pub fn grip(mut self, grip: &Grip) -> Hand<F> {
-        [self.way, self.turn] = Swing::both(grip, self.period);
-        self
+    ///
+    /// # Errors
+    /// If a number of the grip is out of its range.
+    pub fn grip(mut self, grip: &Grip) -> Result<Hand<F>, SettingError> {
+        grip.check()?;
+        [self.way, self.turn] = Swing::both(grip, self.period)?;
+        Ok(self)
     }
 
     /// Held at another point of the tool than its tip, in the tool's frame and the part's unit.
-    #[must_use]
-    pub fn held_at(mut self, centre: Point3<f64>, unit: Unit) -> Hand<F> {
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn held_at(mut self, centre: Point3<f64>, unit: Unit) -> Result<Hand<F>, SettingError> {
+        setting::centre(&centre)?;
         self.frame.centre = centre;
         self.frame.unit = unit.to(Unit::Millimetre);
-        self
+        Ok(self)
     }
 
     /// Trembling.
-    #[must_use]
-    pub fn trembling(mut self, tremor: &Tremor) -> Hand<F> {
+    ///
+    /// # Errors
+    /// If its size or its frequency is out of its range.
+    pub fn trembling(mut self, tremor: &Tremor) -> Result<Hand<F>, SettingError> {
+        tremor.check(self.period)?;
         self.tremor = Some(Trembling::new(tremor, self.period));
-        self
+        Ok(self)
     }
 
-    /// With encoders that tell so many mm and radians apart.
-    #[must_use]
-    pub fn encoders(mut self, way: f64, turn: f64) -> Hand<F> {
+    /// With encoders that tell so many mm and radians apart; 0 for all.
+    ///
+    /// # Errors
+    /// If either is negative or not finite.
+    pub fn encoders(mut self, way: f64, turn: f64) -> Result<Hand<F>, SettingError> {
+        setting::not_negative("step of the encoders in mm", way)?;
+        setting::not_negative("step of the encoders in rad", turn)?;
         self.steps = [way, turn];
-        self
+        Ok(self)
     }
 
     /// Where the handle truly is.
@@ -134,9 +152,9 @@ impl<F: FnMut(f64) -> Pose> Hand<F> {
     }
 
     /// What an encoder says.
-    fn encoded(&self, at: &At) -> Pose {
+    fn encoded(&self, at: &At) -> Result<Pose, PoseError> {
         if self.steps == [0.0; 2] {
-            return at.pose;
+            return Ok(at.pose);
         }
         let off = self.frame.between(&at.start, &at.pose);
         let step = |row: usize| self.steps[row / 3];
@@ -152,7 +170,7 @@ impl<F: FnMut(f64) -> Pose> Device for Hand<F> {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
         let mut wish = (self.wish)(self.cycle as f64 * self.period);
         if let Some(tremor) = &mut self.tremor {
-            wish = self.frame.moved(&wish, &join(&tremor.next(), &Vector3::zeros()));
+            wish = self.frame.moved(&wish, &join(&tremor.next(), &Vector3::zeros()))?;
         }
         self.cycle += 1;
         let at = match self.at {
@@ -162,12 +180,12 @@ impl<F: FnMut(f64) -> Pose> Device for Hand<F> {
                 let [speed, spin] = halves(&at.speed);
                 let (off, speed) = self.way.after(off, speed, &self.push.force);
                 let (turned, spin) = self.turn.after(turned, spin, &self.push.torque);
-                let pose = self.frame.moved(&wish, &join(&off, &turned));
+                let pose = self.frame.moved(&wish, &join(&off, &turned))?;
                 At { pose, speed: join(&speed, &spin), ..at }
             }
         };
         self.at = Some(at);
-        Ok(self.encoded(&at))
+        Ok(self.encoded(&at)?)
     }
 
     fn push(&mut self, push: &Push) -> Result<(), DeviceError> {
@@ -192,14 +210,19 @@ struct Swing {
 const NEWTON: f64 = 1000.0;
 
 impl Swing {
-    fn both(grip: &Grip, period: f64) -> [Swing; 2] {
-        [
-            Swing::new([grip.mass, grip.damping, grip.stiffness], period),
-            Swing::new([grip.inertia, grip.turning_damping, grip.turning], period),
-        ]
+    fn both(grip: &Grip, period: f64) -> Result<[Swing; 2], SettingError> {
+        let way = ("mass of the grip in kg", [grip.mass, grip.damping, grip.stiffness]);
+        let turn =
+            ("inertia of the grip in kg·mm²", [grip.inertia, grip.turning_damping, grip.turning]);
+        Ok([Swing::new(way, period)?, Swing::new(turn, period)?])
     }
 
-    fn new([mass, damping, stiffness]: [f64; 3], period: f64) -> Swing {
+    /// # Errors
+    /// If the mass is so small beside damper and spring that its motion in a period overflows.
+    fn new(
+        (what, [mass, damping, stiffness]): (&'static str, [f64; 3]),
+        period: f64,
+    ) -> Result<Swing, SettingError> {
         let by = NEWTON / mass;
         let rates = Matrix3::new(
             0.0,
@@ -213,10 +236,14 @@ impl Swing {
             0.0,
         );
         let after = (rates * period).exp();
-        Swing {
+        if !after.iter().all(|part| part.is_finite()) {
+            let range = "one that is not so small beside damping and stiffness";
+            return Err(SettingError { what, value: mass, range });
+        }
+        Ok(Swing {
             own: after.fixed_view::<2, 2>(0, 0).into_owned(),
             by_force: after.fixed_view::<2, 1>(0, 2).into_owned(),
-        }
+        })
     }
 
     /// Where it is from where it is wanted, and its speed, a cycle later.

@@ -23,8 +23,8 @@
 //! let over = Pose::from_axis(Point3::new(0.0, 0.0, 0.5), Vector3::z())?;
 //! let into = Pose::from_axis(Point3::new(0.0, 0.0, -1.0), Vector3::z())?;
 //!
-//! let mut hand = Hand::new(Limits::default(), 1000.0, |time| if time < 0.5 { over } else { into });
-//! let mut session = Session::new(probe, &Settings::new(1000.0), hand.limits());
+//! let mut hand = Hand::new(Limits::default(), 1000.0, |time| if time < 0.5 { over } else { into })?;
+//! let mut session = Session::new(probe, &Settings::new(1000.0), hand.limits())?;
 //! let mut state = None;
 //! for _ in 0..2000 {
 //!     state = session.cycle(&mut hand);
@@ -43,6 +43,7 @@ mod passivity;
 mod realtime;
 mod run;
 mod session;
+mod setting;
 #[cfg(all(unix, feature = "spacenav"))]
 pub mod spacenav;
 
@@ -54,3 +55,4 @@ pub use passivity::Energy;
 pub use realtime::{Realtime, Refused, check_core};
 pub use run::{Clock, Latest, Monotonic, Report, Samples, Times, Unhurried, Watch, run, watched};
 pub use session::{Rendering, Session, Settings, State};
+pub use setting::SettingError;

@@ -4,6 +4,7 @@ use super::coupling::{Coupling, as_push, as_vector, rendered, saturated, spring,
 use super::frame::{Frame, halves};
 use super::guard::{Fastest, Faults, Guard, Taken};
 use super::passivity::{Energy, Passivity};
+use super::setting::{self, SettingError};
 use super::{Axes, Device, Limits, Push};
 use crate::precision::{Filtered, Precision};
 use crate::tool::Senses;
@@ -27,10 +28,10 @@ pub enum Rendering {
     Coupled(Coupling),
 }
 
-/// How a session goes.
+/// How a session goes. [`Session::new`] checks all numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Cycles a second.
+    /// Cycles per second, 0.001 to 1,000,000.
     pub rate: f64,
     /// N for each unit of a [`Wrench`]'s force: N/mm³, if the part is in mm and the magnitude is the depth.
     pub stiffness: f64,
@@ -124,11 +125,22 @@ const BALANCED: f64 = 1e-7;
 
 impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Session<'a, T, P> {
     /// A session of a probe, whose law and compliance centre it goes by.
-    pub fn new(probe: Probe<'a, T, P>, settings: &Settings, limits: Limits) -> Session<'a, T, P> {
-        let period = 1.0 / settings.rate;
+    ///
+    /// # Errors
+    /// If a setting, a limit of the device or the compliance centre is out of its range: a rate of 0, a
+    /// stiffness that is NaN.
+    pub fn new(
+        probe: Probe<'a, T, P>,
+        settings: &Settings,
+        limits: Limits,
+    ) -> Result<Session<'a, T, P>, SettingError> {
+        settings.check()?;
+        limits.check()?;
+        let period = setting::period(settings.rate)?;
         let (centre, unit) = probe.place();
+        setting::centre(&centre)?;
         let coupled = || Rendering::Coupled(Coupling::of(&limits));
-        Session {
+        Ok(Session {
             newtons: settings.stiffness,
             rendering: settings.rendering.unwrap_or_else(coupled),
             passive: settings.passive,
@@ -143,7 +155,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Session<'a, T, P> {
             engaged: 0.0,
             cycle: 0,
             probe,
-        }
+        })
     }
 
     /// How long a cycle is.
@@ -285,9 +297,14 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Session<'a, T, P> {
                 self.last = Some(felt);
                 return (felt, as_push(&-pull), held);
             };
-            tool = self.frame.moved(&tool, &solved.solve(&left));
-            felt = self.feel(&tool);
+            let step = solved.solve(&left);
             asked += 1;
+            match self.frame.moved(&tool, &step) {
+                Ok(moved) => tool = moved,
+                // A step out of all bounds is not taken, nor tried again.
+                Err(_) => asked = ASKED,
+            }
+            felt = self.feel(&tool);
         }
     }
 

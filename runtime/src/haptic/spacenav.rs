@@ -6,6 +6,7 @@
 //! It pushes nobody: it is flown with, the cap's displacement being the tool's speed.
 
 use super::frame::{Frame, join};
+use super::setting;
 use super::{Axes, Device, DeviceError, Limits, Push};
 use crate::{Pose, Unit};
 use nalgebra::{Point3, Vector3};
@@ -59,12 +60,17 @@ impl Spacenav {
     /// A device of so many cycles a second, with the tool at a pose to begin with, in the part's unit.
     ///
     /// # Errors
-    /// If nobody listens at the socket.
+    /// If nobody listens at the socket; of kind [`InvalidInput`](io::ErrorKind::InvalidInput) and with a
+    /// [`SettingError`](super::SettingError) inside if the rate or a speed is out of its range.
     pub fn open(
         socket: &Path,
         (start, unit): (Pose, Unit),
         (rate, flight): (f64, Flight),
     ) -> io::Result<Spacenav> {
+        let wrong = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
+        let period = setting::period(rate).map_err(wrong)?;
+        setting::above_zero("speed of flight in mm/s", flight.way).map_err(wrong)?;
+        setting::above_zero("turning speed of flight in rad/s", flight.turn).map_err(wrong)?;
         let stream = connected(socket)?;
         let (news, cap) = triple_buffer::triple_buffer(&Cap::Pushed([0; 6]));
         let stop = Arc::new(AtomicBool::new(false));
@@ -75,15 +81,7 @@ impl Spacenav {
         let axes = if start.is_full() { Axes::Six } else { Axes::Five };
         let unit = unit.to(Unit::Millimetre);
         let frame = Frame { centre: Point3::origin(), unit, axes };
-        Ok(Spacenav {
-            cap,
-            pose: start,
-            frame,
-            period: 1.0 / rate,
-            flight,
-            reader: Some(reader),
-            stop,
-        })
+        Ok(Spacenav { cap, pose: start, frame, period, flight, reader: Some(reader), stop })
     }
 }
 
@@ -155,7 +153,7 @@ impl Device for Spacenav {
         // as everywhere that goes by this daemon: right, up and away are a left-handed frame.
         let way = Vector3::new(x, z, y) * (self.flight.way * self.period);
         let turn = Vector3::new(about_x, about_z, about_y) * (self.flight.turn * self.period);
-        self.pose = self.frame.moved(&self.pose, &join(&way, &turn));
+        self.pose = self.frame.moved(&self.pose, &join(&way, &turn))?;
         Ok(self.pose)
     }
 

@@ -48,7 +48,7 @@ fn looped(
     let limits = Limits::default();
     let mut device = Scripted::new(limits, move |cycle| pose(cycles.start + cycle));
     let probe = Probe::new(part, &Mill).law(Law::Gradient);
-    let mut session = Session::new(probe, &Settings::new(1000.0), limits);
+    let mut session = Session::new(probe, &Settings::new(1000.0), limits).expect("settings");
     let (mut watch, _, mut samples) = watched(room);
     let mut states = Vec::new();
     let count = cycles.end - cycles.start;
@@ -142,7 +142,7 @@ fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
     let limits = Limits::default();
     let mut device = Scripted::new(limits, pose);
     let probe = Probe::new(&part, &Mill).law(Law::Gradient);
-    let mut session = Session::new(probe, &Settings::new(1000.0), limits);
+    let mut session = Session::new(probe, &Settings::new(1000.0), limits).expect("settings");
     let mut recorder = Recorder::new(&map, beside, &Mill).expect("a recorder");
     for (cycle, before) in alone.iter().enumerate() {
         let state = session.cycle(&mut device).expect("a state");

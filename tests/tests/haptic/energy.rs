@@ -13,7 +13,7 @@ const STRONG: Limits = Limits { force: 40.0, torque: 2000.0, ..LIMITS };
 fn there_and_back(part: &Part, law: Law, settings: &Settings, path: Path) -> (Energy, f64) {
     let tool = tool("Fig73Exact");
     let probe = Probe::new(part, tool).law(law);
-    let mut session = Session::new(probe, settings, STRONG);
+    let mut session = Session::new(probe, settings, STRONG).expect("settings");
     const WAY: u64 = 20_000;
     let mut device = Scripted::new(STRONG, |cycle| {
         let at = if cycle <= WAY { cycle } else { 2 * WAY - cycle };

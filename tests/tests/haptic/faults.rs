@@ -6,7 +6,8 @@ use touchoff_tests::measure::haptics::wall::LIMITS;
 use touchoff_tests::measure::haptics::{block, tool, upright};
 
 fn session(part: &touchoff::Part) -> Session<'_> {
-    Session::new(Probe::new(part, tool("Flat")).law(Law::Gradient), &Settings::new(1000.0), LIMITS)
+    let probe = Probe::new(part, tool("Flat")).law(Law::Gradient);
+    Session::new(probe, &Settings::new(1000.0), LIMITS).expect("settings")
 }
 
 /// Half a millimetre deep, but for what a function puts in its place.
@@ -116,7 +117,7 @@ fn never_more_than_the_device_can_push() {
     for stiffness in [1.0, 1e3, 1e9] {
         let settings = Settings { stiffness, ..Settings::new(1000.0) };
         let probe = Probe::new(&part, tool("Flat")).law(Law::Gradient);
-        let mut session = Session::new(probe, &settings, LIMITS);
+        let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
         let mut device = Scripted::new(LIMITS, |cycle| Ok(upright(0.1 - 0.005 * cycle as f64)));
         for _ in 0..4000 {
             let push = session.cycle(&mut device).expect("it was somewhere").push;

@@ -2,6 +2,7 @@
 
 mod energy;
 mod faults;
+mod settings;
 mod sheet;
 mod solid;
 #[cfg(unix)]

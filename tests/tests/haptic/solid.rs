@@ -18,8 +18,8 @@ fn a_block_on_an_edge_is_turned_flat() {
         Pose::from_quaternion(Point3::new(0.0, 0.0, low), [0.0, sine, 0.0, cosine]).expect("a pose")
     };
     let probe = Probe::new(&part, tool("Block")).law(Law::Gradient);
-    let mut hand = Hand::new(limits, 1000.0, wish);
-    let mut session = Session::new(probe, &Settings::new(1000.0), limits);
+    let mut hand = Hand::new(limits, 1000.0, wish).expect("a hand");
+    let mut session = Session::new(probe, &Settings::new(1000.0), limits).expect("settings");
     let states = (0..3_000).filter_map(|_| session.cycle(&mut hand));
     let state = states.last().expect("the hand is somewhere");
     assert!(state.push.force.z > 0.1, "{state:?}");

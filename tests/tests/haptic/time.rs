@@ -11,7 +11,8 @@ use touchoff_tests::measure::haptics::wall::LIMITS;
 use touchoff_tests::measure::haptics::{block, tool, upright};
 
 fn session(part: &Part) -> Session<'_> {
-    Session::new(Probe::new(part, tool("Flat")).law(Law::Gradient), &Settings::new(1000.0), LIMITS)
+    let probe = Probe::new(part, tool("Flat")).law(Law::Gradient);
+    Session::new(probe, &Settings::new(1000.0), LIMITS).expect("settings")
 }
 
 /// Cycles.

@@ -15,7 +15,7 @@ pub fn plane() -> Part {
 pub fn tapping(part: &Part, rendering: Option<Rendering>, passive: bool) -> Vec<Energy> {
     let settings = Settings { stiffness: 2.0, rendering, passive, ..Settings::new(1000.0) };
     let probe = Probe::new(part, tool("D2Ball")).law(Law::Gradient);
-    let mut session = Session::new(probe, &settings, LIMITS);
+    let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
     let tapping = |cycle| Ok(upright(-0.2 + 0.2 * (cycle as f64 * 0.05).cos()));
     let mut device = Scripted::new(LIMITS, tapping);
     (0..5_000).filter_map(|_| Some(session.cycle(&mut device)?.energy)).collect()

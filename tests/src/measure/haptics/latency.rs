@@ -29,14 +29,15 @@ fn looped(part: &Part, (rate, cycles): (f64, u64), pressed: bool) -> Report {
         eprintln!("{refused}");
     }
     let probe = Probe::new(part, tool("Ball")).law(Law::Gradient);
-    let mut session = Session::new(probe, &Settings::new(rate), LIMITS);
+    let mut session = Session::new(probe, &Settings::new(rate), LIMITS).expect("settings");
     let clock = &mut Monotonic::new(AWAKE);
     let (mut watch, _latest, _samples) = watched(1);
     let never = AtomicBool::new(false);
     if pressed {
         let wish = |time: f64| upright(-2.0 + 2.2 * (0.5 * time).sin());
         let tremor = Tremor { size: 0.02, frequency: 10.0, seed: 1 };
-        let mut hand = Hand::new(LIMITS, rate, wish).trembling(&tremor);
+        let hand = Hand::new(LIMITS, rate, wish).and_then(|hand| hand.trembling(&tremor));
+        let mut hand = hand.expect("a hand");
         run((&mut session, &mut hand), (clock, cycles), &mut watch, &never)
     } else {
         let mut far = Scripted::new(LIMITS, |_| Ok(upright(1e6)));

@@ -102,8 +102,8 @@ pub fn shaking(part: &Part, case: &Case<'_>) -> Shaking {
         ..Settings::new(RATE)
     };
     let probe = Probe::new(part, case.tool.1).law(case.law);
-    let mut session = Session::new(probe, &settings, limits);
-    let mut hand = Hand::new(limits, RATE, |time| case.way.pose(time));
+    let mut session = Session::new(probe, &settings, limits).expect("settings");
+    let mut hand = Hand::new(limits, RATE, |time| case.way.pose(time)).expect("a hand");
     let (mut sums, mut low, mut before) = (Shaking::default(), [Vector3::zeros(); 2], None);
     let mut count = 0.0;
     // A filter of first order, twice.

@@ -19,9 +19,9 @@ pub fn sheet() -> Part {
 pub fn pressed(part: &Part, law: Law, rendering: Option<Rendering>) -> Vec<[f64; 3]> {
     let settings = Settings { stiffness: 100.0, rendering, ..Settings::new(1000.0) };
     let probe = Probe::new(part, tool("D2Ball")).law(law);
-    let mut session = Session::new(probe, &settings, LIMITS);
+    let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
     let wanted = |time: f64| -10.0 * time;
-    let mut hand = Hand::new(LIMITS, 1000.0, |time| upright(0.2 + wanted(time)));
+    let mut hand = Hand::new(LIMITS, 1000.0, |time| upright(0.2 + wanted(time))).expect("a hand");
     (0..2_000)
         .filter_map(|cycle| {
             let state = session.cycle(&mut hand)?;

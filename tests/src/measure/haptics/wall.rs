@@ -86,8 +86,10 @@ impl Wall<'_> {
         // Presses with a fifth of a newton, and a little more to begin with.
         let wish = |time: f64| upright(if time < 0.2 { -1.05 } else { -1.0 });
         let limits = Limits { force: 1e6, torque: 1e9, ..LIMITS };
-        let mut hand = Hand::new(limits, self.rate, wish).encoders(self.step, 0.0);
-        let mut session = Session::new(probe, &settings, limits);
+        let hand =
+            Hand::new(limits, self.rate, wish).and_then(|hand| hand.encoders(self.step, 0.0));
+        let mut hand = hand.expect("a hand");
+        let mut session = Session::new(probe, &settings, limits).expect("settings");
         // Longer than it takes to come to rest, and not longer than one cares to wait.
         let seconds = (2e4 / self.rate).clamp(1.0, 4.0);
         let cycles = (seconds * self.rate) as usize;
