@@ -26,7 +26,7 @@ use crate::Unit;
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::precision::{Filtered, Precision};
-use crate::tool::{Ask, Felt, Senses, Tool, Wanted};
+use crate::tool::{Ask, Felt, Senses, Tool, Wanted, reserve};
 use crate::tree::{Search, Sight, Tree, View, WIDTH};
 use fearless_simd::Level;
 use nalgebra::Point3;
@@ -34,8 +34,9 @@ use nalgebra::Point3;
 /// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
 /// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
 ///
-/// Memory is kept between questions, so that after the first few none is allocated. The answers
-/// have the same bits on every machine and at every [`Level`].
+/// Memory is kept between questions: one allocates only where more points are near the tool than in
+/// any before, and never after [`Probe::reserved`]. The answers have the same bits on every machine
+/// and at every [`Level`].
 ///
 /// What a question does not need is not computed. Of a tool whose type is known, as in
 /// `Probe::new(&part, &Ball)`, a program has code only for the questions that it asks; of a
@@ -168,6 +169,26 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     {
         let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
         Probe::exactly(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
+    }
+
+    /// With memory for a contact of all points of the part, so that no question to this probe allocates,
+    /// however much larger its contact is than those before: 280 bytes per point, 28 MB for 100,000.
+    /// What no contact needs is never touched. Probes that are made from this one reserve nothing.
+    #[must_use]
+    pub fn reserved(mut self) -> Probe<'a, T, P> {
+        self.reserve();
+        let points = self.beside.tree.places();
+        reserve(&mut self.beside.contacts, points);
+        self
+    }
+
+    /// Reserves memory for all questions but [`Probe::contacts`]: 127 bytes per point.
+    pub(crate) fn reserve(&mut self) {
+        let Beside { tree, search, felt, room, .. } = &mut self.beside;
+        search.reserve(tree, true);
+        felt.reserve_for(tree.leaves.len() * WIDTH, Everything::ASK);
+        self.tool.reserve_room(felt);
+        self.tool.reserve(room);
     }
 
     /// Another probe like this one, for another thread.

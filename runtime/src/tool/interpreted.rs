@@ -154,6 +154,15 @@ impl Tool for Interpreted {
         let three = |from: usize| std::array::from_fn(|k| results[from + k]);
         Slopes::of(three(4), three(7), length)
     }
+
+    fn reserve(&self, felt: &mut Felt) {
+        self.walk.reserve(&mut felt.scratch);
+        self.walk.reserve(&mut felt.duals);
+        self.walk.reserve_block(&mut felt.lanes);
+        for tape in &self.felt {
+            tape.reserve(&mut felt.registers);
+        }
+    }
 }
 
 impl Value for Dual {
@@ -174,6 +183,10 @@ impl Value for Dual {
 impl Senses for Interpreted {
     fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
         self.evaluate(level, W::ASK, points, length, felt);
+    }
+
+    fn reserve_room(&self, felt: &mut Felt) {
+        self.reserve(felt);
     }
 }
 
@@ -249,12 +262,27 @@ impl Interpreted {
         if ask == Ask::INSIDE {
             return;
         }
-        let mut left: Vec<usize> = (0..count).filter(|at| owners[*at] >= 0.0).collect();
+        // Lists without memory of their own, since a haptic loop may not ask for any.
+        let (mut left, mut own) = ([0; BLOCK], [0; BLOCK]);
+        let mut many = 0;
+        for at in (0..count).filter(|at| owners[*at] >= 0.0) {
+            left[many] = at;
+            many += 1;
+        }
         let mut results = [[0.0; BLOCK]; OUTPUTS];
-        while let Some(first) = left.first() {
-            let region = owners[*first];
-            let (own, rest): (Vec<usize>, Vec<usize>) =
-                left.iter().partition(|at| owners[**at] == region);
+        while many > 0 {
+            let region = owners[left[0]];
+            let (mut ours, mut rest) = (0, 0);
+            for k in 0..many {
+                let at = left[k];
+                let (list, place) = match owners[at] == region {
+                    true => (&mut own, &mut ours),
+                    false => (&mut left, &mut rest),
+                };
+                list[*place] = at;
+                *place += 1;
+            }
+            let own = &own[..ours];
             let mut gathered: [Lanes; 3] = [[0.0; BLOCK]; 3];
             for (lane, at) in own.iter().enumerate() {
                 for (part, list) in gathered.iter_mut().zip(&block) {
@@ -282,7 +310,7 @@ impl Interpreted {
                     list[start + at] = results[result][lane];
                 }
             });
-            left = rest;
+            many = rest;
         }
     }
 }

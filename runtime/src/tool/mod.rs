@@ -74,6 +74,11 @@ pub trait Tool: Send + Sync {
     /// How what is felt at a point inside changes with where it is: as the region says that it belongs to, on
     /// borders too. `room` is kept between calls.
     fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes;
+
+    /// Reserves in `felt` the memory that the tool itself keeps there between calls of
+    /// [`Tool::evaluate`] and [`Tool::slopes`], so that they allocate none. A tool that keeps nothing
+    /// has nothing to do.
+    fn reserve(&self, _felt: &mut Felt) {}
 }
 
 /// Derivatives by the position in the part's unit, in the tool's frame: row by row of what changes, along x,
@@ -107,9 +112,16 @@ pub trait Wanted {
 pub trait Senses<N: Number = f64>: Tool {
     /// [`Tool::evaluate`] for what a type says.
     fn feel<W: Wanted>(&self, level: Level, points: &Points<N>, length: f64, felt: &mut Felt<N>);
+
+    /// [`Tool::reserve`] in that format.
+    fn reserve_room(&self, _felt: &mut Felt<N>) {}
 }
 
 impl Senses for dyn Tool + '_ {
+    fn reserve_room(&self, felt: &mut Felt) {
+        self.reserve(felt);
+    }
+
     fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
         self.evaluate(level, W::ASK, points, length, felt);
     }
@@ -172,6 +184,12 @@ impl<N: Number> Points<N> {
             list[0] = part;
         }
         self.took(1);
+    }
+
+    /// Reserves memory for so many points, without touching it.
+    pub(crate) fn reserve(&mut self, count: usize) {
+        let wanted = count.next_multiple_of(LANES);
+        self.lists.iter_mut().for_each(|list| reserve(list, wanted));
     }
 
     /// Makes room for some points more.
@@ -267,6 +285,23 @@ impl<N: Number> Felt<N> {
         })
     }
 
+    /// Reserves memory for what is asked of so many points, without touching it.
+    pub(crate) fn reserve_for(&mut self, count: usize, ask: Ask) {
+        let blocks = count.div_ceil(LANES);
+        reserve(&mut self.inside, blocks);
+        let list = |list: &mut Vec<N>, wanted: bool| {
+            if wanted {
+                reserve(list, blocks * LANES);
+            }
+        };
+        list(&mut self.depth, ask.depth);
+        list(&mut self.magnitude, ask.magnitude);
+        list(&mut self.niceness, ask.niceness);
+        self.direction.iter_mut().for_each(|part| list(part, ask.direction));
+        self.gradient.iter_mut().for_each(|part| list(part, ask.gradient));
+        list(&mut self.region, ask.region);
+    }
+
     /// Makes room for what is asked of so many points.
     pub(crate) fn reserve(&mut self, points: &Points<N>, ask: Ask) {
         let blocks = points.count.div_ceil(LANES);
@@ -284,6 +319,12 @@ impl<N: Number> Felt<N> {
         self.gradient.iter_mut().for_each(|list| size(list, ask.gradient));
         size(&mut self.region, ask.region);
     }
+}
+
+/// Reserves memory for a list of so many in all. Nothing is written, so that memory which is never used
+/// costs address space alone where the system hands out pages at the first touch.
+pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
+    list.reserve_exact(count.saturating_sub(list.len()));
 }
 
 /// The bits of a block that are points and not padding.

@@ -2,7 +2,7 @@
 
 use super::walk::{LANE, Triple, seen};
 use super::{Rough, Skin, View, WIDTH};
-use crate::tool::{LANES, Number, Points};
+use crate::tool::{LANES, Number, Points, reserve};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
 };
@@ -109,6 +109,16 @@ impl<N: Carried> Candidates<N> {
     /// Where the candidates are in the tree.
     pub(crate) fn indices(&self) -> &[u32] {
         &self.indices[..self.points.len()]
+    }
+
+    /// Reserves memory for so many candidates, without touching it.
+    pub(super) fn reserve(&mut self, count: usize, skin: bool) {
+        self.points.reserve(count);
+        reserve(&mut self.indices, count);
+        if skin {
+            reserve(&mut self.weights, count);
+            self.normals.iter_mut().for_each(|list| reserve(list, count));
+        }
     }
 
     /// Makes room for the points of so many leaves.

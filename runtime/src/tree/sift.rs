@@ -3,7 +3,8 @@
 use super::candidates::Carried;
 use super::rough::Sixteen;
 use super::walk::{Nodes, Seen, Triple, Walker, load, seen, within};
-use super::{Candidates, Leaf, Rough, Skin};
+use super::{Candidates, Leaf, Rough, Skin, Tree, WIDTH};
+use crate::tool::reserve;
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 
 /// The search for the points of a part that may be inside a tool, with its memory kept between queries.
@@ -16,6 +17,14 @@ pub(crate) struct Search<R = f32, N = f64> {
 }
 
 impl<R: Rough, N: Carried> Search<R, N> {
+    /// Reserves memory for all points of a part as candidates. `skin` as in [`Search::all`].
+    pub(crate) fn reserve(&mut self, tree: &Tree, skin: bool) {
+        let leaves = tree.leaves.len();
+        self.walker.reserve(tree);
+        reserve(&mut self.some, leaves + 1);
+        self.candidates.reserve((leaves + 1) * WIDTH, skin);
+    }
+
     /// Finds the candidates of a part. `skin` says whether what it has there, normals and weights, is
     /// wanted.
     pub(crate) fn all(&mut self, level: Level, seen: Seen<'_, R>, skin: bool) {

@@ -3,6 +3,7 @@
 use super::rough::Sixteen;
 use super::view::{Reach, SLABS};
 use super::{Boxes, Rough, Sight, Tree, View, WIDTH};
+use crate::tool::reserve;
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdMask, dispatch, mask32x16, u32x16};
 use std::ops::Range;
 
@@ -63,9 +64,26 @@ impl<R: Rough> Nodes<R> {
             self.middle.iter_mut().for_each(|list| list.resize(wanted, R::default()));
         }
     }
+
+    /// Reserves memory for so many and a block more, without touching it.
+    fn reserve(&mut self, count: usize) {
+        let wanted = count + WIDTH;
+        reserve(&mut self.index, wanted);
+        reserve(&mut self.slabs, wanted);
+        self.middle.iter_mut().for_each(|list| reserve(list, wanted));
+    }
 }
 
 impl<R: Rough> Walker<R> {
+    /// Reserves memory for all nodes and leaves of a tree: the children of level `k` go to list `k + 1`
+    /// modulo 2, as [`descend`] writes them.
+    pub(super) fn reserve(&mut self, tree: &Tree) {
+        self.nodes[0].reserve(1);
+        for (level, boxes) in tree.levels.iter().enumerate() {
+            self.nodes[(level + 1) % 2].reserve(boxes.len() * WIDTH);
+        }
+    }
+
     /// Finds the leaves that the tool may reach, looking at so many nodes and leaves at most; how many it
     /// were.
     pub(super) fn leaves(&mut self, level: Level, seen: Seen<'_, R>, most: usize) -> Option<usize> {

@@ -41,6 +41,13 @@ impl Tape {
         Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
     }
 
+    /// Allocates the registers that [`Tape::run`] needs.
+    pub fn reserve(&self, registers: &mut Vec<Lanes>) {
+        if registers.len() < self.operations.len() {
+            registers.resize(self.operations.len(), [0.0; BLOCK]);
+        }
+    }
+
     /// Evaluates as many of the first outputs as there are results at the first points of a block,
     /// given in the tool's frame and the file's unit; `length` is the file's unit of length measured
     /// in the part's. `registers` are kept between calls. It is inlined so that its loops are
@@ -55,9 +62,7 @@ impl Tape {
     ) {
         let wanted = results.len().min(self.outputs.len());
         let Some((_, end)) = self.outputs[..wanted].last() else { return };
-        if registers.len() < self.operations.len() {
-            registers.resize(self.operations.len(), [0.0; BLOCK]);
-        }
+        self.reserve(registers);
         let count = whole(count);
         for (at, operation) in self.operations[..*end].iter().enumerate() {
             let (done, rest) = registers.split_at_mut(at);

@@ -111,6 +111,18 @@ impl Walk {
         }
     }
 
+    /// Allocates what the walk of a point keeps, so that [`Walk::run`] and [`Walk::felt`] allocate nothing.
+    pub fn reserve<V: Value>(&self, scratch: &mut Scratch<V>) {
+        scratch.start(self.operations.len());
+    }
+
+    /// Allocates what the walk of a block keeps, so that [`Walk::owners`] allocates nothing.
+    pub fn reserve_block(&self, registers: &mut Registers) {
+        registers.start(self.operations.len());
+        // A place of the plan is gone to once a block at most.
+        registers.open.reserve(self.forks.len());
+    }
+
     /// Writes as many of a point's first outputs as there are results; all but the owner mean
     /// nothing outside. The point is of the tool's frame, in the file's unit; `length` is the
     /// file's unit of length measured in the part's.
@@ -236,7 +248,8 @@ impl<V: Value> Scratch<V> {
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
             self.values.resize(slots, V::default());
-            self.done = vec![0; self.values.len()];
+            self.done.clear();
+            self.done.resize(self.values.len(), 0);
             self.now = 0;
         }
         self.now += 1;
@@ -248,7 +261,8 @@ impl Registers {
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
             self.values.resize(slots, [0.0; BLOCK]);
-            self.done = vec![0; self.values.len()];
+            self.done.clear();
+            self.done.resize(self.values.len(), 0);
             self.now = 0;
         }
         self.now += 1;

@@ -1,4 +1,7 @@
-//! A haptic loop must not wait for memory: after the first round a probe asks for none, nor a certifier.
+//! A haptic loop must not wait for memory: its cycles ask for none, however their contacts grow. After the first
+//! round neither does a probe, nor a certifier.
+
+mod growing;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -31,7 +34,7 @@ fn everything(probe: &mut Probe<'_>, poses: &[Pose]) -> usize {
 
 // One test, since the counts are those of the process.
 #[test]
-fn a_second_round_allocates_nothing() {
+fn neither_a_second_round_nor_a_growing_contact_allocates() {
     let part = part(20_000);
     for law in [Law::Thesis, Law::Gradient] {
         for path in Path::ALL {
@@ -48,6 +51,8 @@ fn a_second_round_allocates_nothing() {
     }
     a_certifier();
     a_haptic_loop();
+    growing::no_cycle_allocates();
+    growing::no_question_allocates();
 }
 
 /// Whether a tool that touches nothing is inside is asked of a ray, which does ask for memory.
