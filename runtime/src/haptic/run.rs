@@ -74,9 +74,10 @@ pub struct Report {
     /// How often time went on by more than a second at once, or back: a clock that was set, a thread that was
     /// starved. Cycles begin anew there.
     pub stalls: u64,
-    /// How long cycles took.
+    /// How long cycles took: one entry per cycle. The last bin, a minute, also counts all above.
     pub took: Times,
-    /// How late they began.
+    /// How late they began: one entry per cycle, those that count as a stall too. The last bin, a minute, also
+    /// counts all above; a cycle before which the clock went back counts as on time.
     pub late: Times,
     /// What was wrong with the device.
     pub faults: Faults,
@@ -177,8 +178,6 @@ pub fn run<T: Senses<P::Number> + ?Sized, P: Precision>(
         if late > STALL || due.saturating_sub(began) > period {
             report.stalls += 1;
             due = began;
-        } else {
-            report.late.saturating_record(nanoseconds(late));
         }
         let state = session.cycle(device);
         if session.faults().ended {
@@ -190,12 +189,13 @@ pub fn run<T: Senses<P::Number> + ?Sized, P: Precision>(
             watch.latest.write(Some(state));
             report.lost += u64::from(watch.record.push(state).is_err());
         }
+        report.late.saturating_record(nanoseconds(late));
         let ended = clock.now();
         report.took.saturating_record(nanoseconds(ended.saturating_sub(began)));
         due += period;
         // As many periods as have gone by whole.
         let behind = ended.saturating_sub(due).as_nanos() / period.as_nanos().max(1);
-        let behind = behind.min(u128::from(cycles)) as u32;
+        let behind = u32::try_from(behind.min(u128::from(cycles))).unwrap_or(u32::MAX);
         report.missed += u64::from(ended > due);
         report.left_out += u64::from(behind);
         due += period * behind;

@@ -70,6 +70,25 @@ fn a_clock_that_jumps_is_survived() {
     assert_eq!((back.cycles, back.left_out, back.stalls), (1000, 0, 1));
 }
 
+/// Each cycle is one entry, stalls too: a tail that leaves the latest cycles out would look shorter than it is.
+#[test]
+fn cycles_that_begin_more_than_a_second_late_are_in_the_histogram() {
+    for (seconds, counted) in [(1.5, 1.5), (30.0, 30.0), (3600.0, 60.0)] {
+        let report = match seconds {
+            1.5 => wrong(|time| time + Duration::from_millis(1500)),
+            30.0 => wrong(|time| time + Duration::from_secs(30)),
+            _ => wrong(|time| time + Duration::from_secs(3600)),
+        };
+        assert_eq!((report.stalls, report.late.len()), (1, report.cycles), "{seconds} s");
+        let latest = report.late.max() as f64 / 1e9;
+        // To three digits; the last bin counts all above a minute.
+        assert!((latest / counted - 1.0).abs() < 2e-3, "{latest} s of {seconds} s");
+        assert_eq!(report.late.count_between(1_000_000_000, u64::MAX), 1, "{seconds} s");
+    }
+    let back = wrong(|time| time - Duration::from_secs(50));
+    assert_eq!((back.stalls, back.late.len(), back.late.max()), (1, back.cycles, 0));
+}
+
 #[test]
 fn a_starved_thread_leaves_cycles_out() {
     let late = wrong(|time| time + Duration::from_micros(7_500));
