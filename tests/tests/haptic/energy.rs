@@ -1,16 +1,35 @@
 //! The hand never gets back more than it put in.
 
+use nalgebra::Vector3;
 use touchoff::haptic::{Coupling, Energy, Limits, Rendering, Scripted, Session, Settings};
 use touchoff::scenes::{Path, tube};
 use touchoff::{Law, Part, Probe};
-use touchoff_tests::measure::haptics::energy::{plane, tapping};
+use touchoff_tests::measure::haptics::energy::{height, plane, tapping, tapping_at};
 use touchoff_tests::measure::haptics::tool;
 use touchoff_tests::measure::haptics::wall::LIMITS;
 
 const STRONG: Limits = Limits { force: 40.0, torque: 2000.0, ..LIMITS };
 
-/// What a law makes of a path that is gone there and back, and the most that was held.
-fn there_and_back(part: &Part, law: Law, settings: &Settings, path: Path) -> (Energy, f64) {
+/// The account of a path that is gone there and back.
+struct Account {
+    /// After the last cycle.
+    last: Energy,
+    /// The most that was held.
+    most: f64,
+    /// The work that pushes gave because each was held for a cycle: the sum of `-½ (p' - p)·d` where it is
+    /// positive, the difference between the trapezoid of the pushes `p` and `p'` at both ends of a step `d`
+    /// and the rectangle of `p`. It is negative where the tool springs to another grain.
+    lag: f64,
+}
+
+/// The shortest turn from one axis to another.
+fn turn(from: Vector3<f64>, to: Vector3<f64>) -> Vector3<f64> {
+    let sine = from.cross(&to);
+    let size = sine.norm();
+    if size > 0.0 { sine * (size.atan2(from.dot(&to)) / size) } else { sine }
+}
+
+fn there_and_back(part: &Part, law: Law, settings: &Settings, path: Path) -> Account {
     let tool = tool("Fig73Exact");
     let probe = Probe::new(part, tool).law(law);
     let mut session = Session::new(probe, settings, STRONG).expect("settings");
@@ -20,48 +39,79 @@ fn there_and_back(part: &Part, law: Law, settings: &Settings, path: Path) -> (En
         // A tenth of the path, which is gone along in seconds instead of minutes.
         Ok(path.pose(at as usize, 10 * WAY as usize))
     });
-    let mut most = 0.0f64;
-    let mut last = None;
-    for _ in 0..=2 * WAY {
+    let (mut most, mut lag) = (0.0f64, 0.0);
+    let mut last = session.cycle(&mut device).expect("it was somewhere");
+    for _ in 0..2 * WAY {
         let state = session.cycle(&mut device).expect("it was somewhere");
         most = most.max(state.energy.held);
-        last = Some(state.energy);
+        let (from, to) = (last.device, state.device);
+        let by_force = (state.push.force - last.push.force).dot(&(to.tip() - from.tip()));
+        let by_torque = (state.push.torque - last.push.torque).dot(&turn(from.axis(), to.axis()));
+        lag += (-0.5 * (by_force + by_torque)).max(0.0);
+        last = state;
     }
-    (last.expect("a path"), most)
+    Account { last: last.energy, most, lag }
 }
 
 /// Coupled, the push is the gradient of what contact and spring hold, so a way there and back gives nothing away
-/// but what a push that is held from one cycle to the next lags behind; that the controller takes out. Where the
-/// tool springs from one grain of the cloud to the next, some is lost.
+/// but the lag of pushes that are held for a cycle. That is less than a thousandth of the most energy that was
+/// held; on the path inside, where only 2.6e-4 N·mm are, less than 9 %. The controller leaves less than 0.02 %
+/// everywhere. Where the tool springs from one grain of the cloud to the next, some is lost.
 #[test]
-fn coupled_by_the_gradient_nothing_is_generated() {
+fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
     let part = Part::from_mesh(&tube(), 20_000, 1).expect("points of a tube");
     let coupling = Coupling { damping: 0.0, ..Coupling::of(&STRONG) };
     let rendering = Some(Rendering::Coupled(coupling));
     for path in Path::ALL {
-        for (passive, share) in [(false, 0.1), (true, 1e-3)] {
+        for passive in [false, true] {
             let settings =
                 Settings { stiffness: 300.0, rendering, passive, ..Settings::new(1000.0) };
-            let (energy, most) = there_and_back(&part, Law::Gradient, &settings, path);
-            println!("{path:?}: {energy:?}, most {most}");
+            let Account { last: energy, most, lag } =
+                there_and_back(&part, Law::Gradient, &settings, path);
+            println!("{path:?}: {energy:?}, most {most}, lag {lag}");
             assert!(most > 0.0, "{path:?}");
+            let share = match (passive, path) {
+                (true, _) => 2e-4,
+                (false, Path::Inside) => 0.09,
+                (false, _) => 1e-3,
+            };
             let net = energy.put_in - energy.held;
             assert!(net > -share * most, "{path:?}: {net} of {most}");
             assert!(energy.generated < share * most, "{path:?}: {energy:?} of {most}");
+            assert!(energy.generated < lag, "{path:?}: {energy:?}, lag {lag}");
         }
     }
 }
 
-/// A wall that is sampled pushes longer than it is pressed, so that each tap gives a little more than it took;
-/// the controller takes that out.
+/// A wall that is sampled pushes longer than it is pressed, so that each tap gives a little more than it took.
+/// The controller takes that out as far as its damper may brake: a half of the device's stiffness times the
+/// squares of the ways, `½ k Σ d²`, 0.125 N·mm in these taps.
 #[test]
-fn what_comes_from_nowhere_is_taken_out() {
+fn what_comes_from_nowhere_is_taken_out_up_to_the_dampers_limit() {
     let part = plane();
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
-    let [free, passive] = [false, true].map(|passive| tapping(&part, direct, passive));
-    let [free, passive] = [free, passive].map(|all| *all.last().expect("states"));
-    assert!(free.put_in < 0.0, "{free:?}");
-    assert!(passive.taken_out > 0.0 && passive.put_in > 0.5 * free.put_in, "{passive:?} {free:?}");
+    let ways = (1..5_000).map(|cycle| height(cycle) - height(cycle - 1));
+    let limit = 0.5 * LIMITS.stiffness * ways.map(|way| way * way).sum::<f64>();
+    let mut reached = [false; 2];
+    for stiffness in [0.25, 0.5, 1.0, 2.0, 4.0] {
+        let [free, passive] = [false, true]
+            .map(|passive| *tapping_at(&part, stiffness, direct, passive).last().expect("states"));
+        assert!(free.put_in < 0.0 && free.taken_out == 0.0, "{free:?}");
+        let beyond = free.generated > limit;
+        reached[usize::from(beyond)] = true;
+        if beyond {
+            // All that it may; the rest stays.
+            assert!(passive.taken_out > 0.99 * limit, "{stiffness}: {passive:?} of {limit}");
+            let left = free.generated - passive.taken_out;
+            assert!(passive.generated < 1.01 * left, "{stiffness}: {passive:?} {free:?}");
+        } else {
+            // All but what came in the last cycles.
+            assert!(passive.generated < 0.002 * free.generated, "{passive:?} {free:?}");
+            assert!(passive.taken_out > 0.998 * free.generated, "{passive:?} {free:?}");
+            assert!(passive.put_in > 0.0, "{passive:?}");
+        }
+    }
+    assert_eq!(reached, [true; 2]);
     let coupled = *tapping(&part, None, true).last().expect("states");
-    assert!(coupled.put_in > 0.0, "{coupled:?}");
+    assert!(coupled.put_in > coupled.held && coupled.generated < 2e-6, "{coupled:?}");
 }
