@@ -96,7 +96,13 @@ fn killed(path: &Path, first: u32, (said, after): (u32, Duration)) -> Option<u32
 
 #[test]
 fn what_was_acknowledged_outlives_the_process() {
-    let kills = env::var("TOUCHOFF_KILLS").map_or(20, |count| count.parse().expect("a count"));
+    let kills = match env::var_os("TOUCHOFF_KILLS") {
+        None => 20,
+        Some(text) => match text.to_str().and_then(|text| text.parse().ok()) {
+            Some(kills) if kills > 0 => kills,
+            _ => panic!("TOUCHOFF_KILLS is {text:?}: give a whole number above 0"),
+        },
+    };
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("killed.postures");
     let triangles = identity().part.triangles;

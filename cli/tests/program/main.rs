@@ -311,26 +311,44 @@ fn paths_that_are_none_are_refused() {
     }
 }
 
-/// The impeller's program gouges: the ball by up to about 0.03, the flank by about 0.15.
+/// The rows of a program that a 2 mm ball cutter follows.
+fn felt(part: &str, path: &str, points: &str) -> Vec<Value> {
+    rows(&touchoff(&[
+        "run", "--part", part, "--unit", "mm", "--tool", "D2Ball", "--path", path, "--points",
+        points, "--json",
+    ]))
+}
+
+/// The stand-in gouges by 0.03 and, about its 280th position, by up to 0.15. The impeller's program does too: the
+/// ball by up to about 0.03, the flank by about 0.15.
 #[test]
-fn the_impeller_program_is_found_to_gouge() {
-    let Some(data) = shared() else { return };
-    let part = data.join("parts/impeller.stl").display().to_string();
-    let path = data.join("paths/impeller_flank.apt").display().to_string();
-    let output = touchoff(&[
-        "run", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &path, "--points",
-        "1000000", "--json",
-    ]);
-    let rows = rows(&output);
-    assert_eq!(rows.len(), 1302);
+fn a_flank_pass_is_felt_to_gouge() {
     let deepest = |surface: &str, rows: &[Value]| {
         rows.iter().filter_map(|row| row["surfaces"][surface].as_f64()).fold(0.0, f64::max)
     };
-    let ball = deepest("ball", &rows);
-    assert!((0.025..0.045).contains(&ball), "{ball}");
-    let near_280 = deepest("flute", &rows[270..292]).max(deepest("shank", &rows[270..292]));
-    assert!((0.14..0.17).contains(&near_280), "{near_280}");
-    assert!(rows.iter().filter(|row| row["depth"].as_f64() > Some(0.01)).count() > 300);
+    let gouging =
+        |rows: &[Value]| rows.iter().filter(|row| row["depth"].as_f64() > Some(0.01)).count();
+    let bench = Bench::new();
+    let made = bench.gouging();
+    let rows = felt(&made.part, &made.program, "200000");
+    assert_eq!((rows.len(), gouging(&rows)), (363, 361));
+    for surface in ["ball", "flute", "shank"] {
+        // Two positions of rapid traverse are before and after; points lie some 0.06 apart.
+        let [before, near] = [&rows[1..240], &rows[270..293]].map(|rows| deepest(surface, rows));
+        assert!((0.02..0.031).contains(&before), "{surface}: {before}");
+        assert!((0.14..0.151).contains(&near), "{surface}: {near}");
+    }
+    if let Some(data) = shared() {
+        let place = |name: &str| data.join(name).display().to_string();
+        let rows =
+            felt(&place("parts/impeller.stl"), &place("paths/impeller_flank.apt"), "1000000");
+        assert_eq!(rows.len(), 1302);
+        let ball = deepest("ball", &rows);
+        assert!((0.025..0.045).contains(&ball), "{ball}");
+        let near_280 = deepest("flute", &rows[270..292]).max(deepest("shank", &rows[270..292]));
+        assert!((0.14..0.17).contains(&near_280), "{near_280}");
+        assert!(gouging(&rows) > 300);
+    }
 }
 
 #[test]

@@ -262,19 +262,29 @@ fn a_buried_tool_is_said_to_be_inside() {
     assert!(stdout(&output).contains("wholly inside the material"), "{}", stdout(&output));
 }
 
-#[test]
-fn the_impeller_program_gouges() {
-    let Some(data) = shared() else { return };
-    let place = |name: &str| data.join(name).display().to_string();
-    let (part, program) = (place("parts/impeller.stl"), place("paths/impeller_flank.apt"));
-    let all =
-        ["verify", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--program", &program];
+/// The depths of all findings of a program at a tolerance of 0.01 mm.
+fn found(part: &str, program: &str) -> Vec<f64> {
+    let all = ["verify", "--part", part, "--unit", "mm", "--tool", "D2Ball", "--program", program];
     let output = touchoff(&[&all[..], &["--tolerance", "0.01", "--json"]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let found: Vec<Value> =
         stdout(&output).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
-    let deep: Vec<f64> = found.iter().filter_map(|row| row["depth"][0].as_f64()).collect();
-    assert!(deep.len() > 500, "{}", deep.len());
-    let deepest = deep.iter().copied().fold(0.0, f64::max);
-    assert!((0.15..0.16).contains(&deepest), "{deepest}");
+    found.iter().filter_map(|row| row["depth"][0].as_f64()).collect()
+}
+
+#[test]
+fn a_flank_pass_that_gouges_is_found_to() {
+    let deepest = |depths: &[f64]| depths.iter().copied().fold(0.0, f64::max);
+    let bench = Bench::new();
+    let made = bench.gouging();
+    let deep = found(&made.part, &made.program);
+    assert!(deep.len() >= 360, "{}", deep.len());
+    // The wall is flatter than a cylinder by 2.4e-5 at most, and a chord of a degree by 1.9e-4.
+    assert!((deepest(&deep) - 0.15).abs() < 5e-4, "{}", deepest(&deep));
+    if let Some(data) = shared() {
+        let place = |name: &str| data.join(name).display().to_string();
+        let deep = found(&place("parts/impeller.stl"), &place("paths/impeller_flank.apt"));
+        assert!(deep.len() > 500, "{}", deep.len());
+        assert!((0.15..0.16).contains(&deepest(&deep)), "{}", deepest(&deep));
+    }
 }

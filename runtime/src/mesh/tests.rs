@@ -2,6 +2,7 @@
 
 use super::*;
 use rand_core::{Rng, SeedableRng};
+use std::path::PathBuf;
 
 const UNIT: Unit = Unit::Millimetre;
 const FACET: &str = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.5e-3 0 0\n\
@@ -178,47 +179,118 @@ fn survives_any_bytes() {
     }
 }
 
-#[test]
-fn reads_the_real_parts() {
+/// The shared parts, if they are there: a checkout alone has none.
+fn shared() -> Option<PathBuf> {
     let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
-    if !parts.is_dir() {
-        eprintln!("skipped: {} is absent", parts.display());
-        return;
+    if parts.is_dir() {
+        return Some(parts);
     }
-    // The areas are from an independent reading of the files.
-    for (file, unit, triangles, area) in [
-        ("thesis_tube.stl", Unit::Millimetre, 9_216, 759.6236125024762),
-        ("impeller.stl", Unit::Millimetre, 52_872, 12_995.440601326354),
-        ("featuretype_inch.stl", Unit::Inch, 3_476, 53.82738611818216),
-        ("octagonal_pocket_metre.stl", Unit::Metre, 3_262, 0.07482245333956647),
-        ("kiri_pocket_test.stl", Unit::Millimetre, 28, 28_480.0),
-    ] {
-        let mesh = Mesh::read_stl(parts.join(file), unit).expect(file);
+    eprintln!("{} is absent: only the parts made here are read", parts.display());
+    None
+}
+
+/// The area of a tube with flat sides, by its edges and its height.
+fn area_of_tube([inner, outer]: [f64; 2], height: f64, sides: u32) -> f64 {
+    let (angle, sides) = (std::f64::consts::PI / f64::from(sides), f64::from(sides));
+    let walls = 2.0 * angle.sin() * (inner + outer) * height;
+    let rings = (2.0 * angle).sin() * (outer * outer - inner * inner);
+    sides * (walls + rings)
+}
+
+/// Parts of each kind and unit, made here and read from files, then the shared ones.
+#[test]
+fn reads_parts_from_stl_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, mesh: &Mesh, ascii: bool| {
+        let mut bytes = Vec::new();
+        let written = match ascii {
+            true => mesh.write_stl_ascii(&mut bytes),
+            false => mesh.write_stl(&mut bytes),
+        };
+        written.and_then(|()| std::fs::write(folder.path().join(name), bytes)).expect("a file");
+    };
+    let tube = shapes::tube(3.0, 5.0, 13.116, 96, 23, UNIT).expect("a tube");
+    let cuboid = |[x, y, z]: [f64; 3], unit| {
+        shapes::cuboid(Point3::new(-x, 0.0, 0.0), Point3::new(x, y, z), unit).expect("a cuboid")
+    };
+    write("tube.stl", &tube, false);
+    write("tube_ascii.stl", &tube, true);
+    write("inch.stl", &cuboid([1.5, 2.0, 0.25], Unit::Inch), false);
+    write("metre.stl", &cuboid([0.1, 0.07, 0.3], Unit::Metre), true);
+    let tube_area = area_of_tube([3.0, 5.0], 13.116, 96);
+    // Areas by formula; a binary file rounds coordinates to `f32`.
+    let mut parts: Vec<(PathBuf, Unit, usize, f64, f64)> = [
+        ("tube.stl", Unit::Millimetre, 9_216, tube_area, 1e-6),
+        ("tube_ascii.stl", Unit::Millimetre, 9_216, tube_area, 1e-12),
+        ("inch.stl", Unit::Inch, 12, 14.5, 1e-12),
+        ("metre.stl", Unit::Metre, 12, 2.0 * (0.2 * 0.07 + 0.2 * 0.3 + 0.07 * 0.3), 1e-12),
+    ]
+    .map(|(file, unit, triangles, area, off)| {
+        (folder.path().join(file), unit, triangles, area, off)
+    })
+    .to_vec();
+    if let Some(shared) = shared() {
+        // The areas are from an independent reading of the files.
+        let real = [
+            ("thesis_tube.stl", Unit::Millimetre, 9_216, 759.6236125024762),
+            ("impeller.stl", Unit::Millimetre, 52_872, 12_995.440601326354),
+            ("featuretype_inch.stl", Unit::Inch, 3_476, 53.82738611818216),
+            ("octagonal_pocket_metre.stl", Unit::Metre, 3_262, 0.07482245333956647),
+            ("kiri_pocket_test.stl", Unit::Millimetre, 28, 28_480.0),
+        ];
+        parts.extend(
+            real.map(|(file, unit, count, area)| (shared.join(file), unit, count, area, 1e-12)),
+        );
+    }
+    for (path, unit, triangles, area, off) in parts {
+        let file = path.display();
+        let mesh = Mesh::read_stl(&path, unit).unwrap_or_else(|error| panic!("{file}: {error}"));
         let survey = mesh.survey();
-        eprintln!("{file}: {survey}");
-        assert_eq!(survey.triangles, triangles, "{file}");
+        assert_eq!((survey.triangles, mesh.unit()), (triangles, unit), "{file}");
         assert!(survey.solid(), "{file}: {survey}");
-        assert!((survey.area / area - 1.0).abs() < 1e-12, "{file}: {}", survey.area);
+        assert!((survey.area / area - 1.0).abs() < off, "{file}: {} of {area}", survey.area);
     }
 }
 
+/// A mesh in ASCII PLY, with its first triangles.
+fn ply(mesh: &Mesh, triangles: usize) -> String {
+    let corners = mesh.vertices().iter().map(|p| format!("{} {} {}\n", p.x, p.y, p.z));
+    let faces = mesh.triangles()[..triangles].iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n"));
+    let (corners, faces): (String, String) = (corners.collect(), faces.collect());
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {triangles}\nproperty list uchar int vertex_indices\nend_header\n{corners}{faces}",
+        mesh.vertices().len()
+    )
+}
+
+/// Whole parts and parts with holes, made here and read from files, then the shared ones.
 #[test]
-fn reads_the_real_parts_in_ply() {
-    let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
-    if !parts.is_dir() {
-        eprintln!("skipped: {} is absent", parts.display());
-        return;
+fn reads_parts_from_ply_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tube = shapes::tube(3.0, 5.0, 13.116, 96, 23, UNIT).expect("a tube");
+    let all = tube.triangles().len();
+    let mut parts = Vec::new();
+    for (name, triangles) in [("whole.ply", all), ("one_hole.ply", all - 1), ("half.ply", all / 2)]
+    {
+        let path = folder.path().join(name);
+        std::fs::write(&path, ply(&tube, triangles)).expect("a file");
+        parts.push((path, triangles, triangles == all));
     }
-    for (file, triangles, closed) in [
-        ("nist_mbe_pmi_1_18k.ply", 18_166, true),
-        ("nist_mbe_pmi_2_46k_leaky.ply", 46_192, false),
-        ("nist_mbe_pmi_3_7k.ply", 7_140, true),
-        ("noether_wavy_mesh_with_hole.ply", 1_347, false),
-    ] {
-        let shape = Shape::read(parts.join(file), UNIT).expect(file);
+    if let Some(shared) = shared() {
+        let real = [
+            ("nist_mbe_pmi_1_18k.ply", 18_166, true),
+            ("nist_mbe_pmi_2_46k_leaky.ply", 46_192, false),
+            ("nist_mbe_pmi_3_7k.ply", 7_140, true),
+            ("noether_wavy_mesh_with_hole.ply", 1_347, false),
+        ];
+        parts.extend(real.map(|(file, count, closed)| (shared.join(file), count, closed)));
+    }
+    for (path, triangles, closed) in parts {
+        let file = path.display();
+        let shape = Shape::read(&path, UNIT).unwrap_or_else(|error| panic!("{file}: {error}"));
         let Shape::Mesh(mesh) = shape else { panic!("{file} has faces") };
         let survey = mesh.survey();
-        eprintln!("{file}: {survey}");
         assert_eq!((survey.triangles, survey.closed()), (triangles, closed), "{file}: {survey}");
     }
 }

@@ -233,20 +233,41 @@ fn bare(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{refusal, shared};
+    use super::super::tests::{flank, refusal, shared};
     use crate::Unit;
     use crate::program::Program;
     use nalgebra::{Point3, Vector3};
+    use std::path::Path;
 
     fn program(text: &str) -> Program {
         Program::parse(text, "part.cl").expect("it is a program")
     }
 
     #[test]
-    fn reads_the_impeller() {
-        let Some(path) = shared("impeller_flank.apt") else {
-            return;
-        };
+    fn reads_a_flank_pass_from_a_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (text, stops) = flank();
+        let path = folder.path().join("flank.apt");
+        std::fs::write(&path, &text).expect("a file");
+        let program = Program::read(path).expect("it is a program");
+        assert_eq!(program.unit, Some(Unit::Millimetre));
+        let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
+        assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
+        assert!(program.check_unit(Unit::Millimetre).is_ok());
+        assert!(program.check_unit(Unit::Inch).is_err());
+        assert_eq!(program.stops.len(), stops.len());
+        let lines: Vec<&str> = text.lines().collect();
+        for (stop, ([x, y, z, i, j, k], rapid)) in program.stops.iter().zip(stops) {
+            assert_eq!((stop.rapid, stop.pose.tip()), (rapid, Point3::new(x, y, z)));
+            assert!((stop.pose.axis() - Vector3::new(i, j, k)).norm() < 2e-5);
+            assert!(lines[stop.line - 1].starts_with(&format!("GOTO/{x:.5},")));
+        }
+        if let Some(path) = shared("impeller_flank.apt") {
+            the_impeller(&path);
+        }
+    }
+
+    fn the_impeller(path: &Path) {
         let program = Program::read(path).expect("it is a program");
         assert_eq!(program.unit, Some(Unit::Millimetre));
         let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();

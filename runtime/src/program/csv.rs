@@ -136,11 +136,12 @@ fn with_separators(fault: Fault, row: &str) -> Fault {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{refusal, shared};
+    use super::super::tests::{fan, refusal, shared};
     use super::END;
     use crate::Pose;
     use crate::program::{Program, Stop};
     use nalgebra::{Point3, Vector3};
+    use std::path::Path;
 
     fn stops(text: &str) -> Vec<Stop> {
         Program::parse(text, "part.csv").expect("it is a table").stops
@@ -175,10 +176,27 @@ mod tests {
     }
 
     #[test]
-    fn reads_the_published_fan() {
-        let Some(path) = shared("ijms2021_fan_xyzijk.csv") else {
-            return;
-        };
+    fn reads_a_fan_from_a_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (text, rows) = fan();
+        let path = folder.path().join("fan.csv");
+        std::fs::write(&path, text).expect("a file");
+        let program = Program::read(path).expect("it is a table");
+        assert_eq!((program.stops.len(), program.unit), (25, None));
+        assert!(program.ignored.is_empty());
+        for ((stop, [x, y, z, i, j, k]), line) in program.stops.iter().zip(rows).zip(2..) {
+            assert_eq!((stop.line, stop.rapid), (line, false));
+            assert_eq!(stop.pose.tip(), Point3::new(x, y, z));
+            // Rounded to four digits, and normalised again.
+            assert!((stop.pose.axis() - Vector3::new(i, j, k)).norm() < 1e-4);
+            assert!((stop.pose.axis().norm() - 1.0).abs() < 1e-15);
+        }
+        if let Some(path) = shared("ijms2021_fan_xyzijk.csv") {
+            the_published_fan(&path);
+        }
+    }
+
+    fn the_published_fan(path: &Path) {
         let program = Program::read(path).expect("it is a table");
         assert_eq!(program.stops.len(), 25);
         assert_eq!(program.unit, None);

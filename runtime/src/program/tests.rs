@@ -8,14 +8,63 @@ pub(super) fn refusal(content: impl AsRef<[u8]>) -> String {
     Program::parse(content, "part.cl").expect_err("it is refused").to_string()
 }
 
-/// A file of the shared data, or nothing, said plainly, where it is absent.
+/// A table as published programs are: a fan of tilted tool vectors over an arc, rounded to four digits, under
+/// a comment with the columns' names.
+pub(super) fn fan() -> (String, Vec<[f64; 6]>) {
+    let rows: Vec<[f64; 6]> = (0..25)
+        .map(|k| {
+            let turn = 0.15 * f64::from(k) - 0.5;
+            let (lean, round) = (0.7 + 0.01 * f64::from(k), 1.0 + turn);
+            let row = [
+                115.0 * turn.cos(),
+                -115.0 * turn.sin(),
+                0.2 * f64::from(k) - 2.0,
+                lean.sin() * round.cos(),
+                lean.sin() * round.sin(),
+                lean.cos(),
+            ];
+            row.map(|number| (number * 1e4).round() / 1e4)
+        })
+        .collect();
+    let mut text = String::from("# x,y,z,i,j,k  (mm, unit tool vector tip->spindle)\n");
+    for row in &rows {
+        text += &row.map(|number| format!("{number:.4}")).join(",");
+        text.push('\n');
+    }
+    (text, rows)
+}
+
+/// A program as CAM systems post it: a flank pass about a cone, with a link in rapid traverse after each
+/// tenth position, and words that move nothing. The second part is whether each position is in rapid traverse.
+pub(super) fn flank() -> (String, Vec<([f64; 6], bool)>) {
+    let mut text = String::from(
+        "PARTNO/CONE FLANK PASS\nUNITS/MM\nMULTAX/ON\nCUTTER/2.,1.,0.,1.,0.,0.,5.\nLOADTL/1\n\
+         SPINDL/12000,CLW\nFEDRAT/600,MMPM\n",
+    );
+    let stops: Vec<_> = (0..500)
+        .map(|k| {
+            let (sine, cosine) = (0.05 * f64::from(k)).sin_cos();
+            let out = if k % 10 == 0 { 30.0 } else { 10.0 };
+            let row = [out * cosine, out * sine, 20.0, 0.6 * cosine, 0.6 * sine, 0.8];
+            (row.map(|number| (number * 1e5).round() / 1e5), k % 10 == 0)
+        })
+        .collect();
+    for (row, rapid) in &stops {
+        text += if *rapid { "RAPID\n" } else { "" };
+        text += &format!("GOTO/{}\n", row.map(|number| format!("{number:.5}")).join(","));
+    }
+    (text + "FINI\n", stops)
+}
+
+/// A file of the shared data, or nothing, said plainly, where it is absent: a checkout alone has none. What is
+/// asked of it is asked of a stand-in made here too.
 pub(super) fn shared(name: &str) -> Option<PathBuf> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/paths");
     let path = root.join(name);
     if path.is_file() {
         return Some(path);
     }
-    eprintln!("skipped: {} is absent", path.display());
+    eprintln!("{} is absent: only the stand-in is read", path.display());
     None
 }
 
@@ -66,6 +115,7 @@ fn survives_mutations() {
         b"\xef\xbb\xbfx,y,z,qx,qy,qz,qw\r\n1,2,3,0,0,0,1 # a\r\n4,5,6,1,0,0,0\n".to_vec(),
         b"UNITS/MM\nMULTAX/ON\nRAPID;GOTO/1,2,3,$\n0,0,1\nCYCLE/OFF\nGOTO/4,5,6\nFINI\n".to_vec(),
     ];
+    seeds.extend([fan().0.into_bytes(), flank().0.into_bytes()]);
     for name in ["impeller_flank.apt", "ijms2021_fan_xyzijk.csv"] {
         seeds.extend(shared(name).and_then(|path| std::fs::read(path).ok()));
     }

@@ -342,8 +342,7 @@ fn nearly(draw: &mut Draw) -> Outline {
 /// nearly without length. Nothing panics, and what is taken is right.
 #[test]
 fn nearly_bad_profiles_never_panic() {
-    let count: usize =
-        std::env::var("PROFILES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let count = super::profiles();
     let mut draw = Draw::new(43);
     let (mut taken, mut vague, mut flawed) = (0, 0, Vec::new());
     for _ in 0..10 * count {

@@ -113,8 +113,7 @@ fn kinds(outline: &Outline) -> Vec<&'static str> {
 
 #[test]
 fn random_profiles_of_every_kind() {
-    let count: usize =
-        std::env::var("PROFILES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let count = super::profiles();
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
     let strategy = recipe();

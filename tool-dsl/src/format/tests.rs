@@ -70,10 +70,12 @@ fn tool_files() -> Vec<PathBuf> {
         "runtime/examples",
         "tests/tests/compile_fail",
         "tool-dsl/src/format",
-        "../shared/examples",
     ];
+    let own = folders.map(|folder| home.join(folder).read_dir().expect("a folder of the project"));
+    // The shared examples are more where they are; a checkout alone has none.
+    let shared = home.join("../shared/examples").read_dir().ok();
     let mut files = Vec::new();
-    for entry in folders.iter().filter_map(|folder| home.join(folder).read_dir().ok()).flatten() {
+    for entry in own.into_iter().chain(shared).flatten() {
         let path = entry.expect("a folder's entry").path();
         if path.extension().is_some_and(|extension| extension == "tool") {
             files.push(path);
