@@ -192,8 +192,8 @@ fn near(tip: Point3<f64>) -> Point3<f64> {
 
 /// How far `RᵀR` may be from the identity in any entry. A certifier's bounds hold for rotations that are off
 /// by rounding; a matrix that is farther off was not made by this module.
-#[cfg(any(test, feature = "haptic"))]
-pub(crate) const ORTHONORMAL: f64 = 1e-9;
+#[cfg(feature = "haptic")]
+const ORTHONORMAL: f64 = 1e-9;
 
 /// Returns the largest entry of `RᵀR - I`, NaN if any is NaN.
 #[cfg(any(test, feature = "haptic"))]

@@ -48,18 +48,18 @@ pub(crate) fn no_cycle_allocates() {
     let part = block(POINTS);
     let interpreted = Interpreted::parse(&source(CONE)).expect("a cone");
     for law in [Law::Thesis, Law::Facing, Law::Gradient] {
-        session(&part, Probe::new(&part, &Cone).law(law), "compiled");
-        session(&part, Probe::new(&part, &Cone).law(law).precision::<Double>(), "in f64");
-        session(&part, Probe::new(&part, &Cone).law(law).precision::<Single>(), "in f32");
-        session(&part, Probe::new(&part, &Cone as &dyn Tool).law(law), "by its table");
-        session(&part, Probe::new(&part, &interpreted).law(law), "interpreted");
-        session(&part, Probe::new(&part, &interpreted as &dyn Tool).law(law), "interpreted, dyn");
+        session(&part, &Probe::new(&part, &Cone).law(law), "compiled");
+        session(&part, &Probe::new(&part, &Cone).law(law).precision::<Double>(), "in f64");
+        session(&part, &Probe::new(&part, &Cone).law(law).precision::<Single>(), "in f32");
+        session(&part, &Probe::new(&part, &Cone as &dyn Tool).law(law), "by its table");
+        session(&part, &Probe::new(&part, &interpreted).law(law), "interpreted");
+        session(&part, &Probe::new(&part, &interpreted as &dyn Tool).law(law), "interpreted, dyn");
     }
 }
 
 fn session<T: Senses<P::Number> + ?Sized, P: Precision>(
     part: &Part,
-    probe: Probe<'_, T, P>,
+    probe: &Probe<'_, T, P>,
     name: &str,
 ) {
     let limits = Limits { force: 1e6, torque: 1e9, ..LIMITS };
