@@ -9,6 +9,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
 use touchoff_tests::oracle::draw::Draw;
@@ -29,6 +30,11 @@ fn tried(outline: &Outline) -> Result<Tally, Flaw> {
         compare(outline, (&tool, &planned), POINTS, &mut Draw::new(1))
     };
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err(("panic", String::new())))
+}
+
+/// Returns whether depth is proved to be the distance to a profile's surface.
+fn is_proved(outline: &Outline) -> bool {
+    tool(&outline.text()).is_ok_and(|tool| Certificate::of(&tool).is_exact())
 }
 
 /// Refusals are told apart by their first words.
@@ -117,7 +123,7 @@ fn random_profiles_of_every_kind() {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
     let strategy = recipe();
-    let (mut valid, mut drawn, mut tally) = (0, 0, Tally::default());
+    let (mut valid, mut drawn, mut proved, mut tally) = (0, 0, 0, Tally::default());
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     let mut flaws: BTreeMap<&str, usize> = BTreeMap::new();
     while valid < count {
@@ -128,6 +134,7 @@ fn random_profiles_of_every_kind() {
             continue;
         }
         valid += 1;
+        proved += usize::from(is_proved(&outline));
         kinds(&outline).into_iter().for_each(|kind| *seen.entry(kind).or_default() += 1);
         match tried(&outline) {
             Ok(one) => tally = tally.and(one),
@@ -141,7 +148,7 @@ fn random_profiles_of_every_kind() {
             }
         }
     }
-    println!("{valid} valid profiles of {drawn} drawn: {seen:?}");
+    println!("{valid} valid profiles of {drawn} drawn, {proved} proved: {seen:?}");
     println!(
         "{} points inside and {} outside, {} directions; worst depth {:e} sizes off; flaws: {flaws:?}",
         tally.inside, tally.outside, tally.directions, tally.worst
@@ -151,6 +158,7 @@ fn random_profiles_of_every_kind() {
     flaws.retain(|kind, _| !is_refused(kind));
     assert!(refused * 200 <= count, "{refused} of {count} valid profiles are refused");
     assert!(flaws.is_empty(), "{flaws:?}");
+    assert!(proved * 10 >= valid * 9, "{proved} of {valid} profiles are proved");
     if count >= 60 {
         assert!(seen.len() >= 16, "{seen:?}");
     }

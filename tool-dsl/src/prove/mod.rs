@@ -235,6 +235,13 @@ impl Certificate {
                 reports.push(report);
             }
         }
+        if model.is_exact() && self.is_continuous() && !self.is_exact() {
+            let message =
+                "the depth of this profile is not shown to be the distance to its surface";
+            reports.push(Report::warning(model.name_span, message).help(
+                "a profile's depth is that distance: this is a mistake of the compiler, and worth a report of it",
+            ));
+        }
         if let Some(first) = self.undecided.first() {
             let more = match self.undecided.len() - 1 {
                 0 => String::new(),

@@ -106,7 +106,6 @@ impl Tangency {
         self.roots.push(Root {
             factor: signed(factor * &scale),
             foot,
-            // What is negative is rounding of 256 bits.
             off: off.to_f64().max(0.0).sqrt().next_up(),
             scale: scale.to_f64(),
         });

@@ -14,6 +14,7 @@ use crate::expr::polynomial::Polynomial;
 use crate::expr::value::Evaluator;
 use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
+use crate::number::ROUNDING;
 use crate::plan::linear::Linear;
 use order::LowerByLinear;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -271,7 +272,10 @@ impl<'m> Parting<'m> {
             let (line, _) = self.curves[curve].as_ref()?;
             Tangency::of(own.as_ref()?, other.as_ref()?, line)
         });
-        tangency.as_ref()?.over(&self.cell)
+        let Off { jump, across } = tangency.as_ref()?.over(&self.cell)?;
+        // Less is rounding of constants with 256 bits.
+        let is_none = jump <= self.size * ROUNDING.sqrt();
+        Some(Off { jump: if is_none { 0.0 } else { jump }, across })
     }
 
     /// The curves on which the depths of two owners agree.

@@ -5,8 +5,13 @@ use super::super::kink::{across, angle};
 use super::super::parting::{Joint, Pair, Parted};
 use super::super::{Border, SMALL, Seen, TOLERANCE, Undecided};
 use super::{Grain, SLOPING, Survey, VAGUE};
+use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
+
+/// On the surface directions are told to this, in radians, by boxes down to this part of the tool's size.
+const VAGUE_TURN: f64 = 1e-5;
+const TURNING: f64 = 1e-7;
 
 /// Two claims to a box that a curve parts.
 struct Met {
@@ -58,6 +63,18 @@ impl Survey<'_> {
                 least = least.min(fall);
             }
         }
+        // How far directions turn on the surface is told by small boxes.
+        let on_surface = self.tool.model.domain == Domain::HalfPlane
+            && claims.iter().any(|claim| claim.owner.is_none());
+        if on_surface && !grain.is_last() && reach(&cell) > TURNING * self.size {
+            let vague = |met: &Met| {
+                let turn = self.turn(met.pair);
+                turn.high - turn.low > VAGUE_TURN
+            };
+            if all.iter().any(vague) {
+                return false;
+            }
+        }
         // So flat may be only what a large box tells.
         if (vague || least < SLOPING && !small) && !grain.is_last() {
             return false;
@@ -93,6 +110,15 @@ impl Survey<'_> {
         own.plus(other.negated()).abs()
     }
 
+    /// Encloses the angle between the directions of two regions in the present box.
+    fn turn(&mut self, (own, other): Pair) -> Interval {
+        let Some(other) = other else { return NOTHING };
+        let regions = &self.tool.model.regions;
+        let [a, b] =
+            [own, other].map(|owner| regions[owner].direction.map(|id| self.slopes.get(id).value));
+        angle(a, b)
+    }
+
     fn note(&mut self, met: &Met, cell: Cell) {
         let regions = &self.tool.model.regions;
         let (own, other) = met.pair;
@@ -101,14 +127,7 @@ impl Survey<'_> {
             _ => Interval { low: 0.0, high: met.by.off },
         };
         let depth = self.slopes.get(regions[own].depth);
-        let turn = match other {
-            None => NOTHING,
-            Some(other) => {
-                let [a, b] = [own, other]
-                    .map(|owner| regions[owner].direction.map(|id| self.slopes.get(id).value));
-                angle(a, b)
-            }
-        };
+        let turn = self.turn(met.pair);
         // Where no more is divided, a jump that may be none is one of a corner.
         if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
             let [from, to] = [Some(own), other].map(|owner| self.named(owner));
