@@ -67,7 +67,7 @@ pub(super) struct Parting<'m> {
     /// Depths of regions that meet may differ by rounding, however their slopes do.
     steps: bool,
     /// By how much they may at most.
-    step: f64,
+    most: f64,
     /// Whether it is looked whether owners are those that the list of regions says.
     listed: bool,
     /// Each curve as a polynomial, and what must be positive for that to have its sign.
@@ -107,7 +107,7 @@ impl<'m> Parting<'m> {
             model,
             size,
             steps,
-            step: finest.min(TANGENT_JUMP) * size,
+            most: finest.min(TANGENT_JUMP) * size,
             listed: !model.is_exact(),
             depths: model.regions.iter().map(|region| forms.of(region.depth)).collect(),
             curves: model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect(),
@@ -221,7 +221,7 @@ impl<'m> Parting<'m> {
             if let Some(parted) = self.tangent(pair, &parting) {
                 return Some(parted);
             }
-            let lower = self.lower(pair, [a, b], &parting, cover);
+            let lower = self.lower(pair, [a, b], &parting, cover).map(|off| self.step(off));
             let parted = |joint| Parted { curve, joint, below: false, off: 0.0 };
             return match (lower, apart) {
                 (Some(0.0), true) => None,
@@ -255,13 +255,18 @@ impl<'m> Parting<'m> {
         parting.iter().find_map(|curve| {
             let Off { jump, across } = self.tangency(pair, *curve)?;
             let is_smooth = self.steps || across <= TANGENT_SLOPE;
-            (jump <= self.step && is_smooth).then_some(Parted {
+            (jump <= self.most && is_smooth).then_some(Parted {
                 curve: *curve,
                 joint: Joint::Smooth,
                 below: false,
                 off: jump,
             })
         })
+    }
+
+    /// Returns by how much depths differ, without what is rounding of constants with 256 bits.
+    fn step(&self, off: f64) -> f64 {
+        if off <= self.size * ROUNDING.sqrt() { 0.0 } else { off }
     }
 
     /// Returns how two regions' depths differ on a straight curve in the present box.
@@ -273,9 +278,7 @@ impl<'m> Parting<'m> {
             Tangency::of(own.as_ref()?, other.as_ref()?, line)
         });
         let Off { jump, across } = tangency.as_ref()?.over(&self.cell)?;
-        // Less is rounding of constants with 256 bits.
-        let is_none = jump <= self.size * ROUNDING.sqrt();
-        Some(Off { jump: if is_none { 0.0 } else { jump }, across })
+        Some(Off { jump: self.step(jump), across })
     }
 
     /// The curves on which the depths of two owners agree.

@@ -53,11 +53,11 @@ impl Parting<'_> {
             let own = Some(pair.0);
             let below = self.excess_on(claims[1], (&at[1], parting), [own, None], cover)?;
             let above = self.excess_on(claims[0], (&at[0], parting), [None, own], cover)?;
-            return Some(below.max(above)).filter(|off| *off <= self.step);
+            return Some(below.max(above)).filter(|off| *off <= self.most);
         };
         let owners = [[own, other], [other, own]];
         // Where ways down are asked for, it has to be so beside the border too.
-        let (most, on) = if self.steps { (self.step, parting) } else { (0.0, &[][..]) };
+        let (most, on) = if self.steps { (self.most, parting) } else { (0.0, &[][..]) };
         let excess = [0, 1].map(|k| {
             let owners = owners[k].map(Some);
             let zero = lesser[k].then_some(0.0);

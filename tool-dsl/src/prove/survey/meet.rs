@@ -9,9 +9,8 @@ use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 
-/// On the surface directions are told to this, in radians, by boxes down to this part of the tool's size.
+/// On the surface directions are told to this, in radians, or by boxes that are as good as points.
 const VAGUE_TURN: f64 = 1e-5;
-const TURNING: f64 = 1e-7;
 
 /// Two claims to a box that a curve parts.
 struct Met {
@@ -64,14 +63,13 @@ impl Survey<'_> {
             }
         }
         // How far directions turn on the surface is told by small boxes.
-        let on_surface = self.tool.model.domain == Domain::HalfPlane
-            && claims.iter().any(|claim| claim.owner.is_none());
-        if on_surface && !grain.is_last() && reach(&cell) > TURNING * self.size {
-            let vague = |met: &Met| {
+        let is_plane = self.tool.model.domain == Domain::HalfPlane;
+        if is_plane && !grain.is_last() {
+            let is_vague = |met: &Met| {
                 let turn = self.turn(met.pair);
-                turn.high - turn.low > VAGUE_TURN
+                turn.high - turn.low > VAGUE_TURN && self.is_on_surface(met.pair)
             };
-            if all.iter().any(vague) {
+            if all.iter().any(is_vague) {
                 return false;
             }
         }
@@ -108,6 +106,11 @@ impl Survey<'_> {
         let own = self.slopes.get(regions[own].depth).value;
         let other = other.map_or(NOTHING, |other| self.slopes.get(regions[other].depth).value);
         own.plus(other.negated()).abs()
+    }
+
+    /// Returns whether a region may reach the surface in the present box.
+    fn is_on_surface(&mut self, (own, _): Pair) -> bool {
+        self.slopes.get(self.tool.model.regions[own].depth).value.low <= 0.0
     }
 
     /// Encloses the angle between the directions of two regions in the present box.
@@ -151,7 +154,7 @@ impl Survey<'_> {
             jump,
             step,
             turn,
-            turn_on_surface: (depth.value.low <= 0.0).then_some(turn),
+            turn_on_surface: self.is_on_surface(met.pair).then_some(turn),
             seen: met.seen,
             depth: Interval { low: depth.value.low.max(0.0), ..depth.value },
         };

@@ -17,6 +17,7 @@ use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
+use crate::number;
 use std::collections::BTreeMap;
 
 /// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
@@ -227,7 +228,9 @@ impl<'t> Survey<'t> {
         for claim in claims {
             let beyond = feet.beyond(claim, &mut self.cover, cell);
             if beyond <= allowed {
-                self.beyond = self.beyond.max(beyond);
+                // Less is rounding of constants with 256 bits.
+                let is_some = beyond > self.size * number::ROUNDING.sqrt();
+                self.beyond = if is_some { self.beyond.max(beyond) } else { self.beyond };
             } else if grain.is_last() {
                 let what =
                     format!("that {} has what is nearest to its points", self.named(claim.owner));
