@@ -180,15 +180,18 @@ fn distance(a: &Place, b: &Place) -> Number {
     (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0))
 }
 
-/// Returns the centre and radius of the circle through both ends whose centre is nearest to a given one: borders of
-/// regions meet in the ends exactly.
+/// Returns the centre and radius of a circle through both ends, so that borders of regions meet in them exactly: of those
+/// the one whose centre is nearest to a given centre, or, of one on the axis, nearest to it there.
 fn midway([from, to]: [&Place; 2], centre: &Place) -> (Place, Number) {
     let chord = [0, 1].map(|k| &to[k] - &from[k]);
-    let dot = |a: &[Number; 2], b: &[Number; 2]| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
+    let dot = |a: &Place, b: &Place| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
     let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
     let off = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
-    let along = &off / &dot(&chord, &chord);
-    let centre = [0, 1].map(|k| &centre[k] + &(&along * &chord[k]));
+    let rises = chord[1].to_f64().abs() > 1e-6 * norm(doubles(&chord));
+    let way =
+        if centre[0].is_zero() && rises { [Number::int(0), Number::int(1)] } else { chord.clone() };
+    let share = &off / &dot(&chord, &way);
+    let centre = [0, 1].map(|k| &centre[k] + &(&share * &way[k]));
     let radius = distance(from, &centre);
     (centre, radius)
 }
