@@ -16,11 +16,12 @@ cargo run --release -p touchoff-tests --bin proofs > docs/measured/proofs.md
 ```
 
 `c · distance ≤ depth ≤ L · distance`, and depth is L-Lipschitz; how, is in `docs/proofs.md`. **Joins** are borders of two
-regions on which depths agree exactly, by an identity; **corners** are pairs of regions that meet in a point only, where they
-agree to the tolerance. **Open** are boxes where the proof did not come to an end. Times are those of the proof alone.
+regions on which depths agree exactly, by an identity; **corners** are pairs of regions that meet in a point only or on a border that is
+smooth but for rounding, where they agree to the tolerance. **Slack** is how far depth may be off its bounds, in the file's unit. **Open** are
+boxes where the proof did not come to an end. Times are those of the proof alone.
 
-| tool | regions | c | L | a distance | joins | corners | jumps | open | boxes | ms |
-|---|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|"
+| tool | regions | c | L | slack | a distance | joins | corners | jumps | open | boxes | ms |
+|---|--:|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|"
     );
     for source in sources() {
         let tool = compile(&source).into_tool().ok_or("a tool of the library has an error")?;
@@ -31,11 +32,12 @@ agree to the tolerance. **Open** are boxes where the proof did not come to an en
         let count = |is: &dyn Fn(f64) -> bool| inner().filter(|b| is(b.jump.high)).count();
         let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), figure);
         println!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {took:.1} |",
+            "| {} | {} | {} | {} | {:.0e} | {} | {} | {} | {} | {} | {} | {took:.1} |",
             tool.model.name,
             tool.model.regions.len(),
             bound(proved.least()),
             bound(proved.lipschitz()),
+            proved.slack,
             if proved.is_exact() { "yes" } else { "no" },
             count(&|jump| jump == 0.0),
             count(&|jump| jump > 0.0 && jump <= proved.tolerance),
