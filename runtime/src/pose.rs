@@ -7,8 +7,8 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 /// digits, and anything further off is a mistake in the data.
 pub const AXIS_TOLERANCE: f64 = 1e-3;
 
-/// How far from the origin a coordinate of a composed pose may be: a thousand times what one may be given at,
-/// which two poses that were given never reach.
+/// The largest coordinate of a composed pose's tip: a thousand times the largest that may be given, which two poses that
+/// were given never reach.
 pub const FARTHEST_TIP: f64 = 1e3 * LARGEST_COORDINATE;
 
 /// A tool's pose in the world: the map from the tool's frame (tip at the origin, +z from the tip
@@ -190,7 +190,7 @@ fn near(tip: Point3<f64>) -> Point3<f64> {
     tip
 }
 
-/// How far `RᵀR` may be from the identity in any entry. A certifier's bounds hold for rotations that are off
+/// The largest entry of `RᵀR - I` in a rotation. A certifier's bounds hold for rotations that are off
 /// by rounding; a matrix that is farther off was not made by this module.
 #[cfg(feature = "haptic")]
 const ORTHONORMAL: f64 = 1e-9;

@@ -35,6 +35,15 @@ pub const POSITIVE: Signs = 4;
 /// Nothing is known.
 pub const ANY: Signs = 7;
 
+/// Returns the only side of a curve that signs leave: true for below, and where only 0 is left.
+pub(crate) fn one_side(signs: Signs) -> Option<bool> {
+    match (signs & NEGATIVE == 0, signs & POSITIVE == 0) {
+        (_, true) => Some(true),
+        (true, false) => Some(false),
+        (false, false) => None,
+    }
+}
+
 impl Formula {
     /// Whether it holds where the curves have these values. A NaN is on no side.
     pub fn holds(&self, value: &impl Fn(CurveIndex) -> f64) -> bool {

@@ -74,9 +74,9 @@ pub struct Report {
     /// How often time went on by more than a second at once, or back: a clock that was set, a thread that was
     /// starved. Cycles begin anew there.
     pub stalls: u64,
-    /// How long cycles took: one entry per cycle. The last bin, a minute, also counts all above.
+    /// Durations of cycles: one entry per cycle. The last bin, a minute, also counts all above.
     pub took: Times,
-    /// How late they began: one entry per cycle, those that count as a stall too. The last bin, a minute, also
+    /// Delays of their beginnings: one entry per cycle, those that count as a stall too. The last bin, a minute, also
     /// counts all above; a cycle before which the clock went back counts as on time.
     pub late: Times,
     /// What was wrong with the device.

@@ -28,7 +28,7 @@ pub enum Rendering {
     Coupled(Coupling),
 }
 
-/// How a session goes. [`Session::new`] checks all numbers.
+/// The settings of a session. [`Session::new`] checks all numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Cycles per second, 0.001 to 1,000,000.

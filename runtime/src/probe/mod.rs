@@ -173,7 +173,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
 
     /// With memory for a contact of all points of the part, so that no question to this probe allocates,
     /// however much larger its contact is than those before: 280 bytes per point, 28 MB for 100,000.
-    /// What no contact needs is never touched. Probes that are made from this one reserve nothing.
+    /// Memory that no contact needs is never touched. Probes that are made from this one reserve nothing.
     #[must_use]
     pub fn reserved(mut self) -> Probe<'a, T, P> {
         self.reserve();

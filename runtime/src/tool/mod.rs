@@ -289,9 +289,27 @@ impl<N: Number> Felt<N> {
     pub(crate) fn reserve_for(&mut self, count: usize, ask: Ask) {
         let blocks = count.div_ceil(LANES);
         reserve(&mut self.inside, blocks);
-        let list = |list: &mut Vec<N>, wanted: bool| {
+        self.asked(ask, |list| reserve(list, blocks * LANES));
+    }
+
+    /// Makes room for what is asked of so many points.
+    pub(crate) fn reserve(&mut self, points: &Points<N>, ask: Ask) {
+        let blocks = points.count.div_ceil(LANES);
+        self.inside.clear();
+        self.inside.resize(blocks, 0);
+        self.asked(ask, |list| {
+            if list.len() < blocks * LANES {
+                list.resize(blocks * LANES, N::default());
+            }
+        });
+    }
+
+    /// Goes to all lists that are asked for.
+    #[inline]
+    fn asked(&mut self, ask: Ask, mut each: impl FnMut(&mut Vec<N>)) {
+        let mut list = |list: &mut Vec<N>, wanted: bool| {
             if wanted {
-                reserve(list, blocks * LANES);
+                each(list);
             }
         };
         list(&mut self.depth, ask.depth);
@@ -300,24 +318,6 @@ impl<N: Number> Felt<N> {
         self.direction.iter_mut().for_each(|part| list(part, ask.direction));
         self.gradient.iter_mut().for_each(|part| list(part, ask.gradient));
         list(&mut self.region, ask.region);
-    }
-
-    /// Makes room for what is asked of so many points.
-    pub(crate) fn reserve(&mut self, points: &Points<N>, ask: Ask) {
-        let blocks = points.count.div_ceil(LANES);
-        self.inside.clear();
-        self.inside.resize(blocks, 0);
-        let size = |list: &mut Vec<N>, wanted: bool| {
-            if wanted && list.len() < blocks * LANES {
-                list.resize(blocks * LANES, N::default());
-            }
-        };
-        size(&mut self.depth, ask.depth);
-        size(&mut self.magnitude, ask.magnitude);
-        size(&mut self.niceness, ask.niceness);
-        self.direction.iter_mut().for_each(|list| size(list, ask.direction));
-        self.gradient.iter_mut().for_each(|list| size(list, ask.gradient));
-        size(&mut self.region, ask.region);
     }
 }
 

@@ -11,27 +11,8 @@ use touchoff_tests::measure::haptics::wall::LIMITS;
 use touchoff_tests::measure::haptics::{block, upright};
 
 // A cone that takes in all of a block as it goes down, a ring of its points in each cycle.
-touchoff::tool! {
-    tool Cone {
-        units mm;
-        profile {
-            start (0, 0);
-            line to (60, 60) as flank cutting;
-            line to (0, 60) as back;
-        }
-        niceness cutting: 1;
-    }
-}
-
-const CONE: &str = "tool Cone {
-    units mm;
-    profile {
-        start (0, 0);
-        line to (60, 60) as flank cutting;
-        line to (0, 60) as back;
-    }
-    niceness cutting: 1;
-}";
+touchoff::include_tool!("tests/allocations/cone.tool");
+const CONE: &str = include_str!("cone.tool");
 
 const POINTS: usize = 5_000;
 const CYCLES: u64 = 200;

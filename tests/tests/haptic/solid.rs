@@ -9,7 +9,7 @@ use touchoff_tests::measure::haptics::wall::LIMITS;
 
 const LIMITED: Limits = Limits { axes: Axes::Six, ..LIMITS };
 
-/// Where the hand wants the block: pressed onto the plane z = 0, turned by 0.05 about y. Lengths are in mm.
+/// The pose at which the hand wants the block: pressed onto the plane z = 0, turned by 0.05 about y. Lengths are in mm.
 fn wish(time: f64, unit: Unit) -> Pose {
     let low = (2.0 - 4.0 * time.min(1.0)) * Unit::Millimetre.to(unit);
     let (sine, cosine) = 0.025f64.sin_cos();

@@ -120,14 +120,23 @@ impl Polynomial {
         Polynomial::zero().plus(&Polynomial(BTreeMap::from([([0; 4], value.clone())])))
     }
 
-    /// Returns a product of powers.
-    pub(crate) fn power(monomial: Monomial) -> Polynomial {
-        Polynomial(BTreeMap::from([(monomial, Number::int(1))]))
-    }
-
     /// Returns a coordinate.
     pub(crate) fn coordinate(coord: Coord) -> Polynomial {
-        Polynomial::power(monomial_of(coord))
+        Polynomial(BTreeMap::from([(monomial_of(coord), Number::int(1))]))
+    }
+
+    /// Returns the square of the distance from a point of the half plane.
+    pub(crate) fn squared_distance(point: &[Number; 2]) -> Polynomial {
+        let square = |(coord, value): (Coord, &Number)| {
+            let one = monomial_of(coord);
+            Polynomial(BTreeMap::from([
+                (one.map(|exponent| 2 * exponent), Number::int(1)),
+                (one, &Number::int(-2) * value),
+                ([0; 4], value * value),
+            ]))
+        };
+        let [d, z] = point;
+        Polynomial::zero().plus(&square((Coord::D, d))).plus(&square((Coord::Z, z)))
     }
 
     /// Whether it is zero wherever another is, as far as that shows: it is nothing, a multiple of the
@@ -236,10 +245,12 @@ impl Polynomial {
         (rise.abs() > 1e-6 * scale).then_some((positive, (rise > 0.0) != positive))
     }
 
+    /// Returns the factor of a product of powers, rounded.
     pub(crate) fn factor(&self, monomial: Monomial) -> f64 {
         self.0.get(&monomial).map_or(0.0, Number::to_f64)
     }
 
+    /// Returns the same with 256 bits.
     pub(crate) fn exact_factor(&self, monomial: Monomial) -> Number {
         self.0.get(&monomial).cloned().unwrap_or(Number::int(0))
     }
@@ -247,6 +258,11 @@ impl Polynomial {
     /// Whether it is linear.
     pub(crate) fn is_linear(&self) -> bool {
         self.0.keys().all(|monomial| monomial.iter().sum::<u8>() <= 1)
+    }
+
+    /// Returns the same line with a slope of 1, if it is linear and not constant.
+    pub(crate) fn with_unit_slope(&self) -> Option<Polynomial> {
+        Some(self.scaled(&Number::int(1).over(&self.slope_squared()?.sqrt()?)?))
     }
 
     /// The square of its gradient's length, if it is linear.

@@ -95,12 +95,9 @@ mod tests {
                         .plus(&Polynomial::constantly(&number(rest))),
                 ),
                 Distance::Point(sign, at, rest) => {
-                    let [d, z] = [(d, at[0]), (z, at[1])].map(|(coord, value)| {
-                        let from = coord.plus(&Polynomial::constantly(&number(-value)));
-                        from.times(&from).expect("degree 2")
-                    });
                     let rest = Polynomial::constantly(&number(rest));
-                    Rooted::new(rest, Number::int(sign), d.plus(&z))
+                    let under = Polynomial::squared_distance(&at.map(number));
+                    Rooted::new(rest, Number::int(sign), under)
                 }
             }
         }

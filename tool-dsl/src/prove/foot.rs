@@ -1,4 +1,5 @@
-//! Whether the point of a profile's line, circle or corner that is nearest to a point of its region is on the profile.
+//! The points of a profile's lines, circles and corners that are nearest to points of their regions: a proof that they are
+//! on the profile.
 //!
 //! Then depth, being the distance from it, is no less than the distance to the surface, whatever the borders of regions
 //! are. Points whose foot is beyond a piece's end by `o` are as near to that end as to the line or circle, but for `2 o`.
@@ -8,15 +9,15 @@ use super::root::Rooted;
 use crate::Checked;
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
-use crate::expr::polynomial::{Polynomial, monomial_of};
-use crate::formula::{CurveIndex, NEGATIVE, POSITIVE};
+use crate::expr::polynomial::Polynomial;
+use crate::formula::{CurveIndex, one_side};
 use crate::model::Model;
 use crate::number::Number;
 use crate::regionalise::Feature;
-use crate::regionalise::outline::{Place, Segment};
+use crate::regionalise::outline::{Place, Segment, unit_between};
 use std::collections::HashMap;
 
-/// How far a depth's expression may be from the distance to its piece, as a part of the tool's size.
+/// The error that a depth's expression may have as the distance to its piece, as a part of the tool's size.
 const ROUNDING: f64 = 1e-13;
 
 /// Linear functions that are not negative where feet are on a region's piece, each with a slope of 1: the distances from
@@ -28,20 +29,20 @@ pub(super) struct Feet<'m> {
     model: &'m Model,
     /// The ends of each region's piece; a corner has none.
     ends: Vec<Ends>,
-    /// What each end's function is no less than on a side of a curve.
+    /// A lower bound of each end's function on a side of a curve.
     beside: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
 }
 
 impl<'m> Feet<'m> {
-    /// Returns the pieces of a profile each of whose regions' depths is the distance from its own piece's line, circle or
-    /// corner.
-    pub(super) fn of(tool: &'m Checked, size: f64) -> Option<Feet<'m>> {
+    /// Returns the pieces of a profile each of whose regions' depths, given as forms, is the distance from its own piece's
+    /// line, circle or corner.
+    pub(super) fn of(tool: &'m Checked, depths: &[Option<Rooted>], size: f64) -> Option<Feet<'m>> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
-        let whole = tool.extent.cell();
-        let ends = model.regions.iter().enumerate().map(|(index, region)| {
+        let (features, whole) = (section.inner.features(), tool.extent.cell());
+        let ends = depths.iter().enumerate().map(|(index, depth)| {
             let part = section.over.as_ref().map_or(index, |over| over.regions[index].0);
-            let (distance, ends) = match section.inner.feature(part)? {
+            let (distance, ends) = match *features.get(part)? {
                 Feature::Piece(piece) => {
                     let segment = section.outline.get(piece)?;
                     (distance(segment)?, ends(segment)?)
@@ -51,8 +52,7 @@ impl<'m> Feet<'m> {
                     (from_point(&section.outline.get(piece)?.to), Ends::new())
                 }
             };
-            let depth = Rooted::of(&model.graph, region.depth)?;
-            depth.is_near(&distance, &whole, ROUNDING * size).then_some(ends)
+            depth.as_ref()?.is_near(&distance, &whole, ROUNDING * size).then_some(ends)
         });
         Some(Feet { model, ends: ends.collect::<Option<_>>()?, beside: HashMap::new() })
     }
@@ -67,11 +67,7 @@ impl<'m> Feet<'m> {
                 if beyond <= 0.0 {
                     break;
                 }
-                let below = match cover.own_sign(claim, *curve) {
-                    signs if signs & POSITIVE == 0 => true,
-                    signs if signs & NEGATIVE == 0 => false,
-                    _ => continue,
-                };
+                let Some(below) = one_side(cover.own_sign(claim, *curve)) else { continue };
                 if let Some(least) = self.least((owner, end), (*curve, below), cell) {
                     beyond = beyond.min(-least);
                 }
@@ -98,8 +94,8 @@ impl<'m> Feet<'m> {
                 let clear = curve.clear_of(end)? == (below, true);
                 return clear.then(Polynomial::zero);
             }
-            let scale = Number::int(if below { 1 } else { -1 });
-            Some(curve.scaled(&scale.over(&curve.slope_squared()?.sqrt()?)?).plus(end))
+            let sign = Number::int(if below { 1 } else { -1 });
+            Some(curve.with_unit_slope()?.scaled(&sign).plus(end))
         };
         let beside = self.beside.entry((owner, end, curve, below)).or_insert_with(beside);
         beside.as_ref().map(|least| least.over(&cell).low)
@@ -113,51 +109,33 @@ fn along([d, z]: &[Number; 2], from: &Place) -> Polynomial {
     of_d.scaled(d).plus(&of_z.scaled(z)).plus(&rest)
 }
 
-fn squared_distance(point: &Place) -> Polynomial {
-    let [d, z] = point;
-    let of = |coord, value: &Number| {
-        let linear = Polynomial::coordinate(coord).scaled(&(&Number::int(-2) * value));
-        let square = Polynomial::constantly(&(value * value));
-        Polynomial::power(monomial_of(coord).map(|exponent| 2 * exponent))
-            .plus(&linear)
-            .plus(&square)
-    };
-    of(Coord::D, d).plus(&of(Coord::Z, z))
-}
-
 fn from_point(point: &Place) -> Rooted {
-    Rooted::new(Polynomial::zero(), Number::int(1), squared_distance(point))
+    Rooted::new(Polynomial::zero(), Number::int(1), Polynomial::squared_distance(point))
 }
 
 /// The distance from a piece's line or circle, positive inside.
 fn distance(segment: &Segment) -> Option<Rooted> {
     let Some(circle) = &segment.circle else {
-        let [d, z] = unit(&segment.from, &segment.to)?;
+        let [d, z] = segment.direction()?;
         return Some(Rooted::plainly(&along(&[-&z, d], &segment.from)));
     };
     let sign = if circle.convex { 1 } else { -1 };
     let rest = Polynomial::constantly(&(&Number::int(sign) * &circle.radius));
-    Some(Rooted::new(rest, Number::int(-sign), squared_distance(&circle.centre)))
+    Some(Rooted::new(rest, Number::int(-sign), Polynomial::squared_distance(&circle.centre)))
 }
 
 /// The functions that are not negative between the normals at a piece's ends.
 fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
-        let ahead = unit(&segment.from, &segment.to)?;
+        let ahead = segment.direction()?;
         let back = ahead.each_ref().map(|part| -part);
         return Some(vec![along(&ahead, &segment.from), along(&back, &segment.to)]);
     };
     // Left of the ray to one end and right of that to the other, or the other way round. Arcs are of no more than 180°.
     let sign = Number::int(if circle.convex { 1 } else { -1 });
     let beside = |end: &Place, sign: &Number| {
-        let [d, z] = unit(&circle.centre, end)?;
+        let [d, z] = unit_between(&circle.centre, end)?;
         Some(along(&[&-&z * sign, &d * sign], &circle.centre))
     };
     Some(vec![beside(&segment.from, &sign)?, beside(&segment.to, &-&sign)?])
-}
-
-fn unit(from: &Place, to: &Place) -> Option<[Number; 2]> {
-    let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
-    let length = (&(&d * &d) + &(&z * &z)).sqrt()?;
-    Some([d.over(&length)?, z.over(&length)?])
 }

@@ -32,7 +32,8 @@ use crate::report::{Report, Severity, figure};
 /// size.
 const TOLERANCE: f64 = 1e-6;
 
-/// Where depths differ, and where a third may explain how two meet, is looked at in boxes of this part of the tool's size.
+/// The boxes, as a part of the tool's size, in which it is looked where depths differ, and whether a third explains how two
+/// meet.
 const SMALL: f64 = 1.0 / 1024.0;
 
 /// Where both bounds are 1 to this, depth is said to be the distance.

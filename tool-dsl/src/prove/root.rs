@@ -22,7 +22,7 @@ pub(super) struct Agreement {
     pub(super) smooth: bool,
     /// What is not negative where it is so.
     pub(super) branch: Option<Polynomial>,
-    /// Which of the two is the lesser on the sides of the curve, if that is known.
+    /// The lesser of the two on each side of the curve, if that is known.
     pub(super) order: Option<Order>,
 }
 
@@ -36,15 +36,11 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Returns whether the first of two depths is nowhere more than the other where a curve has these signs in a box.
-    pub(super) fn is_lesser(&self, signs: Signs, cell: &Cell) -> bool {
-        let other_side = if self.falls { NEGATIVE } else { POSITIVE };
+    /// Returns whether the first of two depths is nowhere more than the other, or less if they are `turned`, where a curve
+    /// has these signs in a box.
+    pub(super) fn is_lesser(&self, turned: bool, signs: Signs, cell: &Cell) -> bool {
+        let other_side = if self.falls != turned { NEGATIVE } else { POSITIVE };
         signs & other_side == 0 && self.positive.iter().all(|form| form.over_box(cell).low > 0.0)
-    }
-
-    /// Returns the same of the two depths in the other order.
-    pub(super) fn turned(&self) -> Order {
-        Order { falls: !self.falls, positive: self.positive.clone() }
     }
 }
 
@@ -54,9 +50,9 @@ struct Difference {
     squared: Polynomial,
     /// Not negative where the difference is 0.
     branch: Option<Polynomial>,
-    /// How the difference's sign follows: true if it is the opposite of `squared`'s, where `branch` and the form are
-    /// positive.
-    order: Option<(bool, Option<Rooted>)>,
+    /// True if the difference's sign is the opposite of `squared`'s where `branch` and `positive` are positive.
+    flipped: bool,
+    positive: Option<Rooted>,
 }
 
 /// Finds the forms of nodes, each once.
@@ -84,7 +80,7 @@ impl<'g> Forms<'g> {
 
     fn node(&mut self, id: Id) -> Option<Rooted> {
         if let Some(plain) = self.polynomials.of(self.graph, id) {
-            return Some(Rooted { plain: plain.clone(), root: None });
+            return Some(Rooted::plainly(plain));
         }
         let of = |id: &Id| self.known.get(id)?.as_ref();
         match self.graph.node(id) {
@@ -109,11 +105,6 @@ impl<'g> Forms<'g> {
 }
 
 impl Rooted {
-    /// Returns the form of a node, if it has one.
-    pub(super) fn of(graph: &Graph, id: Id) -> Option<Rooted> {
-        Forms::new(graph).of(id)
-    }
-
     /// Returns `plain + factor √under`.
     pub(super) fn new(plain: Polynomial, factor: Number, under: Polynomial) -> Rooted {
         Rooted { plain, root: Some((factor, under)) }
@@ -203,14 +194,11 @@ impl Rooted {
     /// Roots are squared away, which also finds where a form agrees with another's opposite branch: so
     /// a polynomial comes along that is at least 0 where it is this one.
     pub(super) fn agrees_on(&self, other: &Rooted, curve: &Polynomial) -> Option<Agreement> {
-        let Difference { squared, branch, order } = self.minus(other)?;
+        let Difference { squared, branch, flipped, positive } = self.minus(other)?;
         let smooth = squared.is_nothing() || squared.is_square_of(curve);
-        let order = order.and_then(|(flipped, positive)| {
-            let falls = squared.ratio(curve)?.is_negative() != flipped;
-            Some(Order {
-                falls,
-                positive: branch.iter().map(Rooted::plainly).chain(positive).collect(),
-            })
+        let order = squared.ratio(curve).map(|ratio| Order {
+            falls: ratio.is_negative() != flipped,
+            positive: branch.iter().map(Rooted::plainly).chain(positive).collect(),
         });
         (smooth || squared.vanishes_on(curve)).then_some(Agreement { smooth, branch, order })
     }
@@ -221,16 +209,16 @@ impl Rooted {
         if let Some(difference) = self.plus(&other.scaled(&minus)) {
             // l + k √P = 0 where l² = k² P, and l has not the sign of k.
             let (squared, branch) = difference.curve()?;
-            return Some(Difference { squared, branch, order: Some((false, None)) });
+            return Some(Difference { squared, branch, flipped: false, positive: None });
         }
         let ((k, p), (m, q)) = (self.root.as_ref()?, other.root.as_ref()?);
         let beside = self.plain.clone().plus(&other.plain.scaled(&minus)).constant()?;
         let (a, b) = (p.scaled(&(k * k)), q.scaled(&(m * m)));
         let apart = a.clone().plus(&b.scaled(&minus));
         if beside.is_zero() {
-            let order = Some((k.is_negative(), None));
-            let same = k.is_negative() == m.is_negative();
-            return same.then_some(Difference { squared: apart, branch: None, order });
+            let (flipped, squared) = (k.is_negative(), apart);
+            let same = flipped == m.is_negative();
+            return same.then_some(Difference { squared, branch: None, flipped, positive: None });
         }
         // With u = c + k √P, u² - m² Q = L + 2 c k √P where L = c² + k² P - m² Q. It is 0 where L is -2 c k √P, and
         // there L² - 4 c² k² P has its sign if c k is negative, else the opposite one. Where u has the sign of m,
@@ -240,10 +228,9 @@ impl Rooted {
         let squared = lead.times(&lead)?.plus(&a.scaled(&-&(&Number::int(4) * &square)));
         let same = beside.is_negative() == k.is_negative();
         let branch = Some(lead.scaled(&Number::int(if same { -1 } else { 1 })));
-        let first =
-            Rooted { plain: Polynomial::constantly(&beside), root: Some((k.clone(), p.clone())) };
-        let first = first.scaled(&Number::int(if m.is_negative() { -1 } else { 1 }));
-        Some(Difference { squared, branch, order: Some((same != m.is_negative(), Some(first))) })
+        let first = Rooted::new(Polynomial::constantly(&beside), k.clone(), p.clone());
+        let positive = Some(first.scaled(&Number::int(if m.is_negative() { -1 } else { 1 })));
+        Some(Difference { squared, branch, flipped: same != m.is_negative(), positive })
     }
 
     /// Returns a polynomial as a form.

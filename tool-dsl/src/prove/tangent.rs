@@ -13,7 +13,7 @@ use crate::number::Number;
 /// The difference of two depths on a straight line, whose points are told by a coordinate.
 #[derive(Clone, Debug)]
 pub(super) struct Tangency {
-    /// The coordinate: its place in a point, and among those of a monomial.
+    /// The coordinate's place in a point.
     axis: usize,
     /// `slope · t + rest`, without roots.
     slope: Number,
@@ -21,7 +21,7 @@ pub(super) struct Tangency {
     roots: Vec<Root>,
     /// The largest slope of a depth across the line, roots left out.
     across: f64,
-    /// What is under two roots of the same factor that are all that there is.
+    /// The polynomials under two roots of the same factor, if the difference is that of these alone.
     under: Option<[Polynomial; 2]>,
 }
 
@@ -36,7 +36,7 @@ struct Root {
     scale: f64,
 }
 
-/// How two depths differ on a line in a box.
+/// The difference of two depths on a line in a box.
 #[derive(Clone, Copy)]
 pub(super) struct Off {
     /// By how much at most.

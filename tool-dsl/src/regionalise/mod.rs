@@ -68,9 +68,9 @@ impl Partition {
         Border::Inside { piece }.test(&Section::new(&self.outline, self.outer), graph)
     }
 
-    /// Returns what a part's points are nearest to.
-    pub(crate) fn feature(&self, part: usize) -> Option<Feature> {
-        Section::new(&self.outline, self.outer).features.get(part).copied()
+    /// Returns what the points of each part are nearest to.
+    pub(crate) fn features(&self) -> Vec<Feature> {
+        Section::new(&self.outline, self.outer).features
     }
 
     /// The part of a piece, by its place in the outline.

@@ -213,10 +213,15 @@ impl Segment {
 
     /// The unit direction of a line, to 256 bits.
     pub(crate) fn direction(&self) -> Option<[Number; 2]> {
-        let [d, z] = [0, 1].map(|k| &self.to[k] - &self.from[k]);
-        let length = (&(&d * &d) + &(&z * &z)).sqrt()?;
-        Some([d.over(&length)?, z.over(&length)?])
+        unit_between(&self.from, &self.to)
     }
+}
+
+/// Returns the unit vector from one place to another, to 256 bits; none if they are the same.
+pub(crate) fn unit_between(from: &Place, to: &Place) -> Option<[Number; 2]> {
+    let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
+    let length = (&(&d * &d) + &(&z * &z)).sqrt()?;
+    Some([d.over(&length)?, z.over(&length)?])
 }
 
 /// `way · (p - from)`, the difference first: it rounds as much as `p` is far from there.

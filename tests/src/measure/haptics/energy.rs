@@ -10,7 +10,7 @@ pub fn plane() -> Part {
     block(20_000)
 }
 
-/// How stiff the contact is, N/mm³.
+/// Stiffness of the contact, N/mm³.
 const STIFFNESS: f64 = 2.0;
 
 /// A ball that is moved up and down on a plane eight times a second, whatever it pushes, for five seconds: the

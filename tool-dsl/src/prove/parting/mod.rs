@@ -5,7 +5,7 @@ mod order;
 mod signs;
 
 use super::cover::{Claim, Cover, reach};
-use super::root::{Agreement, Forms, Rooted};
+use super::root::{Agreement, Rooted};
 use super::tangent::{Off, Tangency};
 use super::touch::Touch;
 use crate::expr::Node;
@@ -18,12 +18,13 @@ use crate::number::ROUNDING;
 use crate::plan::linear::Linear;
 use order::LowerByLinear;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
 
 /// Boxes from which it is looked where two conics touch.
 const TRIES: u32 = 12;
 
-/// Where a profile is all but smooth, depths differ by no more than this part of the tool's size on the border, and their
-/// slopes across it are no more than this: a way down that stays on either side falls as steeply but for the half of its
+/// Bounds on the border of a profile that is all but smooth: depths differ by no more than the first, as a part of the tool's
+/// size, and their slopes across it are no more than the second, so that a way down that stays on either side falls as steeply but for the half of its
 /// square.
 const TANGENT_JUMP: f64 = 4e-9;
 const TANGENT_SLOPE: f64 = 1e-5;
@@ -60,28 +61,32 @@ type Ways = Vec<(CurveIndex, Signs)>;
 /// Where two curves touch, and how often that was looked for.
 type Tried = (u32, Option<Touch>);
 
+/// A curve as a polynomial, and what must be positive for that to have its sign.
+pub(super) type Curve = (Polynomial, Option<Polynomial>);
+
 pub(super) struct Parting<'m> {
     model: &'m Model,
     size: f64,
     depths: Vec<Option<Rooted>>,
-    /// Depths of regions that meet may differ by rounding, however their slopes do.
-    steps: bool,
-    /// By how much they may at most.
-    most: f64,
+    /// True if depths of regions that meet may differ by rounding, however their slopes do.
+    may_step: bool,
+    /// The most that they may differ by.
+    largest_step: f64,
     /// Whether it is looked whether owners are those that the list of regions says.
     listed: bool,
-    /// Each curve as a polynomial, and what must be positive for that to have its sign.
-    curves: Vec<Option<(Polynomial, Option<Polynomial>)>>,
+    curves: Vec<Option<Curve>>,
+    /// Straight curves with a slope of 1.
+    lines: HashMap<CurveIndex, Option<Polynomial>>,
     nothing: Rooted,
     /// The curves on which the depths of two owners agree.
     joints: BTreeMap<Pair, Vec<CurveIndex>>,
-    agree: BTreeMap<(Pair, CurveIndex), Option<Agreement>>,
+    agree: BTreeMap<(Pair, CurveIndex), Option<Rc<Agreement>>>,
     /// The sign that a conic has on a whole side of a line, and whether that is below it.
     apart: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
     /// The signs of a curve that linear curves leave.
     by_linear: HashMap<(Option<usize>, Ways, CurveIndex), Signs>,
     linear: Linear,
-    /// What is linear says of two depths, each at its own claim.
+    /// The order of two depths, each at its own claim, by what is linear.
     lower: HashMap<(Pair, [Ways; 2]), LowerByLinear>,
     /// The first or the second of them is lesser than a third that goes on as the other.
     lower_by_third: HashMap<((Pair, [Ways; 2]), usize), bool>,
@@ -99,18 +104,23 @@ pub(super) struct Parting<'m> {
 }
 
 impl<'m> Parting<'m> {
-    /// Of a tool all over a box; `steps` are allowed where depths differ by rounding and ways down are not asked for.
-    pub(super) fn new(model: &'m Model, cell: Cell, (steps, finest): (bool, f64)) -> Parting<'m> {
-        let mut forms = Forms::new(&model.graph);
+    /// Prepares the forms of a tool's depths and curves for its box. Depths may differ by `steps` of rounding if ways down are
+    /// not asked for.
+    pub(super) fn new(
+        model: &'m Model,
+        cell: Cell,
+        (depths, curves): (Vec<Option<Rooted>>, Vec<Option<Curve>>),
+        (steps, finest): (bool, f64),
+    ) -> Parting<'m> {
         let size = reach(&cell);
         Parting {
             model,
             size,
-            steps,
-            most: finest.min(TANGENT_JUMP) * size,
+            may_step: steps,
+            largest_step: finest.min(TANGENT_JUMP) * size,
             listed: !model.is_exact(),
-            depths: model.regions.iter().map(|region| forms.of(region.depth)).collect(),
-            curves: model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect(),
+            depths,
+            curves,
             nothing: Rooted::zero(),
             joints: BTreeMap::new(),
             agree: BTreeMap::new(),
@@ -122,6 +132,7 @@ impl<'m> Parting<'m> {
             excluded: HashMap::new(),
             no_deeper: HashMap::new(),
             excesses: HashMap::new(),
+            lines: HashMap::new(),
             touches: HashMap::new(),
             tangencies: HashMap::new(),
             values: Evaluator::new(&model.graph, model.regions.iter().map(|region| region.depth)),
@@ -232,13 +243,11 @@ impl<'m> Parting<'m> {
         let [of_a, of_b] = [a, b].map(|claim| self.sign_on(claim, curve, cover));
         let below = of_a & POSITIVE == 0 || of_b & NEGATIVE == 0;
         let parted = |joint| Parted { curve, joint, below, off: 0.0 };
-        let (smooth, branch) = match self.agree(pair, curve) {
-            // A curve that is where the two do not differ.
-            None => (false, None),
-            Some(Agreement { smooth, branch, .. }) => (smooth, branch),
-        };
+        // A curve without an agreement is where the two do not differ.
+        let agreement = self.agree(pair, curve);
+        let smooth = agreement.as_ref().is_some_and(|agreement| agreement.smooth);
         // Where it may be the other branch that agrees, nothing is known of this one.
-        let branch = branch.map(|branch| branch.over(&cell));
+        let branch = agreement.and_then(|found| Some(found.branch.as_ref()?.over(&cell)));
         let other = branch.is_some_and(|branch| branch.high < 0.0);
         let sure = branch.is_none_or(|branch| branch.low > 0.0);
         match (other || apart, sure) {
@@ -254,8 +263,8 @@ impl<'m> Parting<'m> {
     fn tangent(&mut self, pair: Pair, parting: &[CurveIndex]) -> Option<Parted> {
         parting.iter().find_map(|curve| {
             let Off { jump, across } = self.tangency(pair, *curve)?;
-            let is_smooth = self.steps || across <= TANGENT_SLOPE;
-            (jump <= self.most && is_smooth).then_some(Parted {
+            let is_smooth = self.may_step || across <= TANGENT_SLOPE;
+            (jump <= self.largest_step && is_smooth).then_some(Parted {
                 curve: *curve,
                 joint: Joint::Smooth,
                 below: false,
@@ -299,7 +308,7 @@ impl<'m> Parting<'m> {
     }
 
     /// How two owners' depths agree on a curve, if they do.
-    fn agree(&mut self, pair: Pair, curve: CurveIndex) -> Option<Agreement> {
+    fn agree(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
         if let Some(known) = self.agree.get(&(pair, curve)) {
             return known.clone();
         }
@@ -308,6 +317,7 @@ impl<'m> Parting<'m> {
             (Some(own), Some(other), Some((curve, _))) => own.agrees_on(other, curve),
             _ => None,
         };
+        let agree = agree.map(Rc::new);
         self.agree.insert((pair, curve), agree.clone());
         agree
     }

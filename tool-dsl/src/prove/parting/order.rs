@@ -1,22 +1,21 @@
-//! Which of two depths is the lesser at a claim's points, and by how much depths may differ where claims meet that no
-//! curve joins.
+//! The lesser of two depths at a claim's points, and by how much depths may differ where claims meet that no curve joins.
 
 use super::super::SMALL;
 use super::super::cover::{Claim, Cover, reach};
 use super::super::excess::excess;
-use super::super::root::{Agreement, Rooted};
+use super::super::root::Rooted;
 use super::Pair;
 use super::{Parting, Ways, closed, ways};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::At;
-use crate::formula::{CurveIndex, NEGATIVE, POSITIVE, Signs};
+use crate::formula::{CurveIndex, Signs, one_side};
 use crate::number::Number;
 
 /// A depth that is compared with those of two regions that meet in a box differs from them by no more than so many times
 /// the box's half diagonal.
 const NEAR: f64 = 8.0;
 
-/// How two depths compare, by what is linear on the ways to their claims.
+/// The order of two depths, by what is linear on the ways to their claims.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum LowerByLinear {
     /// Both are 0 where the claims meet.
@@ -53,11 +52,11 @@ impl Parting<'_> {
             let own = Some(pair.0);
             let below = self.excess_on(claims[1], (&at[1], parting), [own, None], cover)?;
             let above = self.excess_on(claims[0], (&at[0], parting), [None, own], cover)?;
-            return Some(below.max(above)).filter(|off| *off <= self.most);
+            return Some(below.max(above)).filter(|off| *off <= self.largest_step);
         };
         let owners = [[own, other], [other, own]];
-        // Where ways down are asked for, it has to be so beside the border too.
-        let (most, on) = if self.steps { (self.most, parting) } else { (0.0, &[][..]) };
+        // Ways down ask that it is so beside the border too.
+        let (most, on) = if self.may_step { (self.largest_step, parting) } else { (0.0, &[][..]) };
         let excess = [0, 1].map(|k| {
             let owners = owners[k].map(Some);
             let zero = lesser[k].then_some(0.0);
@@ -117,17 +116,15 @@ impl Parting<'_> {
             [None, Some(own)] => (own, true),
             _ => return None,
         };
-        let depth = self.depths[own].as_ref()?;
+        let (curves, depth) = (&self.curves, self.depths[own].as_ref()?);
         let lines = claim.signs.iter().filter_map(|(curve, signs)| {
-            let (line, _) = self.curves[*curve].as_ref().filter(|(line, _)| line.is_linear())?;
-            let is_below = match (signs & NEGATIVE == 0, signs & POSITIVE == 0) {
-                (false, true) => true,
-                (true, false) => false,
-                _ => return None,
-            };
-            let slope = line.slope_squared()?.sqrt()?;
-            let scale = Number::int(if is_below == is_more { -1 } else { 1 }).over(&slope)?;
-            let line = Rooted::plainly(&line.scaled(&scale));
+            let is_below = one_side(*signs)?;
+            let line = self.lines.entry(*curve).or_insert_with(|| {
+                let (line, _) = curves[*curve].as_ref()?;
+                line.is_linear().then(|| line.with_unit_slope())?
+            });
+            let sign = Number::int(if is_below == is_more { -1 } else { 1 });
+            let line = Rooted::plainly(&line.as_ref()?.scaled(&sign));
             let [less, more] = if is_more { [&line, depth] } else { [depth, &line] };
             match (less.plain(), more.plain()) {
                 (Some(less), Some(more)) => {
@@ -147,14 +144,14 @@ impl Parting<'_> {
         let turned = less.is_none() || more.is_some_and(|more| Some(more) < less);
         let ordered = if turned { [more, less] } else { [less, more] };
         let [Some(own), other] = ordered else { return false };
-        let one_sided = |signs: Signs| signs & NEGATIVE == 0 || signs & POSITIVE == 0;
-        claim.signs.iter().filter(|(_, signs)| one_sided(*signs)).any(|(curve, _)| {
-            let Some(order) = self.agree((own, other), *curve).and_then(|found| found.order) else {
+        let one_sided = claim.signs.iter().filter(|(_, signs)| one_side(*signs).is_some());
+        one_sided.into_iter().any(|(curve, _)| {
+            let agreement = self.agree((own, other), *curve);
+            let Some(order) = agreement.as_ref().and_then(|found| found.order.as_ref()) else {
                 return false;
             };
-            let order = if turned { order.turned() } else { order };
             self.signed(*curve).is_some()
-                && order.is_lesser(cover.own_sign(claim, *curve), &self.cell)
+                && order.is_lesser(turned, cover.own_sign(claim, *curve), &self.cell)
         })
     }
 
@@ -184,9 +181,9 @@ impl Parting<'_> {
         let [a, b] = [a?, b?];
         let pair = (a.min(b), Some(a.max(b)));
         let steps = on.iter().filter_map(|curve| match self.agree(pair, *curve) {
-            Some(Agreement { branch, .. }) => {
+            Some(agreement) => {
                 let is_sure = |branch: &Polynomial| branch.over(&self.cell).low > 0.0;
-                branch.as_ref().is_none_or(is_sure).then_some(0.0)
+                agreement.branch.as_ref().is_none_or(is_sure).then_some(0.0)
             }
             None => Some(self.tangency(pair, *curve)?.jump),
         });
@@ -214,7 +211,7 @@ impl Parting<'_> {
     /// Returns the signs at two claims' points.
     fn listed_signs(&self, pair: Pair, [a, b]: &[Ways; 2]) -> [Vec<Signs>; 2] {
         let [mut at_a, mut at_b] = [a, b].map(|ways| self.signs(ways));
-        // Where owners are those that the list says, its conditions hold too.
+        // The list's conditions hold too if owners are those that it says.
         if self.listed {
             self.model.regions[pair.0].inside.demand(&mut at_a);
             if let Some(other) = pair.1 {
@@ -250,15 +247,15 @@ impl Parting<'_> {
         parting: &[CurveIndex],
     ) -> bool {
         (0..self.depths.len()).any(|third| {
-            let smooth = |curve: &CurveIndex| match self.agree((other, Some(third)), *curve) {
-                Some(Agreement { smooth, branch, .. }) => {
-                    // A depth is not negative in its own region.
-                    let depth = self.depths[other].as_ref().and_then(Rooted::plain);
-                    let ratio = |branch: &Polynomial| branch.ratio(depth?);
-                    let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
-                    smooth && branch.as_ref().is_none_or(own)
-                }
-                None => false,
+            let smooth = |curve: &CurveIndex| {
+                let Some(agreement) = self.agree((other, Some(third)), *curve) else {
+                    return false;
+                };
+                // A depth is not negative in its own region.
+                let depth = self.depths[other].as_ref().and_then(Rooted::plain);
+                let ratio = |branch: &Polynomial| branch.ratio(depth?);
+                let own = |branch| ratio(branch).is_some_and(|ratio| !ratio.is_negative());
+                agreement.smooth && agreement.branch.as_ref().is_none_or(own)
             };
             third != own
                 && third != other

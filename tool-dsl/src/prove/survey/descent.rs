@@ -1,4 +1,4 @@
-//! How steeply depth falls toward the surface, where it is not shown by the feet of a profile's points.
+//! Bounds of how steeply depth falls toward the surface, for tools whose depth the feet of a profile do not bound.
 
 use super::super::cover::reach;
 use super::super::kink::ROUNDING;
@@ -13,6 +13,7 @@ const STEPS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 const NEAR: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
 /// Directions that are tried beside those.
 const OTHERS: u32 = 16;
+
 /// Ways down from a box that is as good as a point.
 pub(super) struct Descent {
     /// The least depth in the box less the depth where a way ends, by the way from the box's farthest point: the most that
@@ -23,7 +24,7 @@ pub(super) struct Descent {
 }
 
 impl Survey<'_> {
-    /// How steeply a region's depth falls at least in the present box, which some owners have.
+    /// Returns how steeply a region's depth falls at least in the present box, which some owners have.
     pub(super) fn fall(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         // The kink of a length is where it is 0. Beside the outside that is the surface, where depth need not fall.
@@ -108,9 +109,9 @@ impl Survey<'_> {
         best
     }
 
-    /// How deep it is at a point at most, whichever of the regions that may have it has it; 0 if none may. Nothing
+    /// Returns how deep it is at a point at most, whichever of the regions that may have it has it; 0 if none may. Nothing
     /// if it is no point of the domain.
-    pub(super) fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
+    fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
         let off_axis = self.tool.model.domain == Domain::HalfPlane && at[0] < 0.0;
         if off_axis || !at.iter().all(|part| part.is_finite()) {
             return None;

@@ -62,7 +62,7 @@ impl Survey<'_> {
                 least = least.min(fall);
             }
         }
-        // How far directions turn on the surface is told by small boxes.
+        // Small boxes tell how far directions turn on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         if is_plane && !grain.is_last() {
             let is_vague = |met: &Met| {

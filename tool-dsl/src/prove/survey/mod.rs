@@ -9,6 +9,7 @@ use super::foot::Feet;
 use super::kink::ROUNDING;
 use super::parting::{Pair, Parting};
 use super::range::Ranges;
+use super::root::Forms;
 use super::rounding::Errors;
 use super::slope::Slopes;
 use super::witness::Witness;
@@ -106,7 +107,7 @@ struct Survey<'t> {
     near: f64,
     /// The sum, over boxes where several regions meet that no curve joins, of how far depths differ there.
     jumps: f64,
-    /// How far depths differ on borders where the profile is all but smooth.
+    /// The largest difference of depths on each border where the profile is all but smooth.
     steps: BTreeMap<(Pair, CurveIndex), f64>,
     undecided: Vec<Undecided>,
     /// Whether it is looked whether regions overlap.
@@ -123,8 +124,11 @@ impl<'t> Survey<'t> {
         });
         let roots = felt.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
-        let feet = Feet::of(tool, reach(&whole));
-        let parting = Parting::new(model, whole, (feet.is_some(), finest));
+        let mut forms = Forms::new(&model.graph);
+        let depths = model.regions.iter().map(|region| forms.of(region.depth)).collect::<Vec<_>>();
+        let feet = Feet::of(tool, &depths, reach(&whole));
+        let curves = model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect();
+        let parting = Parting::new(model, whole, (depths, curves), (feet.is_some(), finest));
         let aim = |(index, region)| Aim::new(aim::straight(model, region, parting.depth(index)));
         let aims = model.regions.iter().enumerate().map(aim).collect();
         Survey {
@@ -203,7 +207,7 @@ impl<'t> Survey<'t> {
         if self.feet.is_some() {
             return self.footed(cell, claims, grain);
         }
-        // Where depth is the distance, the owner is the nearest.
+        // The owner is the nearest if depth is the distance.
         if self.tool.model.is_exact() || grain == Grain::Point {
             return true;
         }
