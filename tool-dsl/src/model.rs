@@ -188,6 +188,17 @@ pub struct Said {
     pub niceness: Span,
 }
 
+/// Where a region's direction comes from, and with it who answers for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DirectionSource {
+    /// It is the depth's own: its slope, or the shortest way to the profile.
+    Derived,
+    /// The file writes it, or a magnitude whose slope it is.
+    Written,
+    /// It may leave the steepest way out: `allow oblique`, or `regions smooth`.
+    Oblique,
+}
+
 /// A splitting curve, the zeros of an expression.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -229,8 +240,12 @@ pub struct Region {
     pub direction: [Id; 3],
     /// The direction before it was made a unit vector, and where it is said.
     pub course: ([Id; 3], Span),
+    /// Where the direction comes from.
+    pub source: DirectionSource,
     /// How good a contact is, as the file says it.
     pub niceness: Id,
+    /// Whether niceness may rise with depth: `allow rising`.
+    pub rising: bool,
     /// What the evaluators compute.
     pub outputs: Outputs,
 }

@@ -5,7 +5,7 @@ use super::{STEP, WIDTH};
 use std::iter::repeat_n;
 
 /// Words of the language that a line may be broken before.
-const PARTS: [&str; 6] = ["as", "at", "center", "radius", "where", "with"];
+const PARTS: [&str; 7] = ["allow", "as", "at", "center", "radius", "where", "with"];
 /// Ranks of breaks within one bracket; those of an inner bracket are all higher.
 const RANKS: usize = 5;
 

@@ -25,8 +25,8 @@ tool Whole "every word" {
     region side where side >= 0, side <= min(low, high) { magnitude: side; }
     region IV as housing where d <= 3, 9 <= z <= 11 {
         magnitude: 14 - d - z;
-        direction: toward (3, 11);
-        niceness: 2*d^2;
+        direction: toward (3, 11) allow oblique;
+        niceness: 2*d^2 allow rising;
     }
     region V as housing cutting
         where 0 <= first_long_name - second_long_name <= third_long_name, back >= 0, cone <= 0,
@@ -44,6 +44,7 @@ tool Whole "every word" {
     magnitude: k*depth^1.5;
     magnitude shank, nut.2: 3*k*depth;
     niceness cutting: 1 - depth/r;
+    niceness nut: depth/r allow rising;
 }
 
 solid Block {

@@ -29,9 +29,16 @@ impl Aim {
         Aim { straight, off: None, singular: Vec::new(), on_axis: false }
     }
 
-    /// Notes what is known over a box.
-    pub(super) fn note(&mut self, course: [Interval; 3], depth: Slope, cell: Cell, domain: Domain) {
-        match off(course, depth, self.straight) {
+    /// Notes what is known over a box. Returns the largest angle there, if it is known.
+    pub(super) fn note(
+        &mut self,
+        course: [Interval; 3],
+        depth: Slope,
+        cell: Cell,
+        domain: Domain,
+    ) -> Option<f64> {
+        let here = off(course, depth, self.straight);
+        match here {
             Some(off) => self.off = Some(self.off.map_or(off, |known| known.hull(off))),
             None if vanishes(course) => {
                 let near = self.singular.iter().position(|known| known.meets(&cell));
@@ -42,6 +49,7 @@ impl Aim {
         }
         let axis = domain == Domain::HalfPlane && cell.sides[0].low <= 0.0;
         self.on_axis |= axis && course[0] != ZERO;
+        here.map(|off| off.high)
     }
 }
 
@@ -96,7 +104,7 @@ fn undivided(graph: &Graph, part: Id) -> (Id, i64, Option<Id>) {
 
 /// The angle between a course and the steepest way down over a box, if the course does not vanish
 /// there; of one that is `straight` exactly.
-fn off(course: [Interval; 3], depth: Slope, straight: bool) -> Option<Interval> {
+pub(super) fn off(course: [Interval; 3], depth: Slope, straight: bool) -> Option<Interval> {
     let down = depth.parts.map(Interval::negated);
     let along = (0..3).fold(ZERO, |sum, k| sum.plus(course[k].times(down[k])));
     match along {

@@ -14,6 +14,7 @@ mod foot;
 mod kink;
 mod parting;
 mod range;
+mod reports;
 mod root;
 mod rounding;
 mod slope;
@@ -25,8 +26,7 @@ mod witness;
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
-use crate::look::deep_on_the_surface;
-use crate::report::{Report, Severity, figure};
+use crate::report::Report;
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
 /// size.
@@ -82,6 +82,12 @@ pub struct RegionFacts {
     pub falls: bool,
     /// The angle between the direction and the steepest way down, in radians, if it is known anywhere.
     pub aside: Option<Interval>,
+    /// The largest angle that is certain at a point, in radians, and the point in the tool's frame: only where the
+    /// direction is not the steepest way out.
+    pub oblique: Option<(f64, [f64; 3])>,
+    /// By how much niceness rises for each length of depth where it rises most of the points looked at, and that point
+    /// in the tool's frame.
+    pub rises: Option<(f64, [f64; 3])>,
     /// Boxes where the direction vanishes; there it is along z.
     pub singular: Vec<Cell>,
     /// Whether the direction is across an axis that the region touches, and so turns there by up to a
@@ -102,6 +108,8 @@ impl RegionFacts {
         niceness: ZERO,
         falls: true,
         aside: None,
+        oblique: None,
+        rises: None,
         singular: Vec::new(),
         on_axis: false,
         rounding: [0.0; 2],
@@ -191,88 +199,13 @@ impl Bounds {
         let proved = survey::survey(tool, FEW, false);
         let [least, lipschitz] = [proved.least(), proved.lipschitz()];
         // What is undecided here may not be in more boxes.
-        let mut reports = proved.reports(tool);
-        reports.retain(|report| report.severity == Severity::Error);
+        let reports = proved.certain(tool);
         let rounding = rounding.map(|rounding| rounding + proved.slack);
         (Bounds { least, lipschitz, rounding }, reports)
     }
 }
 
 impl Certificate {
-    /// What is wrong with a tool or undecided: errors with a counterexample, warnings with a box.
-    pub fn reports(&self, tool: &Checked) -> Vec<Report> {
-        let model = &tool.model;
-        let mut reports: Vec<Report> = Vec::new();
-        for border in &self.borders {
-            let (Some((point, [own, other])), (region, beside)) = (border.seen, border.between)
-            else {
-                continue;
-            };
-            let region = &model.regions[region];
-            let place = model.shown(point);
-            let report = match beside.map(|beside| &model.regions[beside]) {
-                None => deep_on_the_surface(region, own, &place),
-                Some(beside) => Report::error(
-                    region.said.depth,
-                    format!(
-                        "depth jumps from {} to {} at {place}, between {} and {}",
-                        figure(own),
-                        figure(other),
-                        region.name,
-                        beside.name
-                    ),
-                )
-                .and(beside.said.depth, "here")
-                .help(
-                    "two regions have the same depth where they meet; what is felt may jump: write it \
-                     as `magnitude:` beside a `depth:` that does not",
-                ),
-            };
-            // Of one pair once, and of one region once beside the outside.
-            if !reports
-                .iter()
-                .any(|other| other.span == report.span && other.second == report.second)
-            {
-                reports.push(report);
-            }
-        }
-        if model.is_exact() && self.is_continuous() && !self.is_exact() {
-            let message =
-                "the depth of this profile is not shown to be the distance to its surface";
-            reports.push(Report::warning(model.name_span, message).help(
-                "a profile's depth is that distance: this is a mistake of the compiler, and worth a report of it",
-            ));
-        }
-        if let Some(first) = self.undecided.first() {
-            let more = match self.undecided.len() - 1 {
-                0 => String::new(),
-                more => format!(", and {more} more like it"),
-            };
-            reports.push(
-                Report::warning(
-                    model.name_span,
-                    format!(
-                        "not decided: {} near {}{more}",
-                        first.what,
-                        model.shown(first.cell.middle())
-                    ),
-                )
-                .help(match tool.bounds.lipschitz {
-                    _ if model.is_exact() => "a profile's depth is the distance to its surface by construction, which \
-                                              is not proved for this tool"
-                        .to_owned(),
-                    Some(most) => format!(
-                        "that depth is at most {} times the distance to the surface was proved while \
-                         the tool was compiled, and stands",
-                        figure(most)
-                    ),
-                    None => "bounds of depth by the distance are then not available".to_owned(),
-                }),
-            );
-        }
-        reports
-    }
-
     /// Proves what can be proved about a tool.
     pub fn of(tool: &Checked) -> Certificate {
         survey::survey(tool, MANY, true)

@@ -4,11 +4,11 @@ use super::condition::Curves;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::Divider;
-use super::region::{Bare, Felt, noted};
+use super::region::{Bare, Course, Felt, noted};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
-use crate::model::{Outside, Over, Region, Section, Surface};
+use crate::model::{DirectionSource, Outside, Over, Region, Section, Surface};
 use crate::regionalise::outline::{Segment, nearest_span};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::report::Report;
@@ -32,6 +32,13 @@ pub(super) struct Part {
     /// The surface it belongs to.
     pub(super) owner: usize,
     pub(super) span: Span,
+}
+
+impl Part {
+    /// The shortest way to the feature.
+    pub(super) fn own_course(&self) -> Course {
+        Course { parts: self.course, span: self.span, source: DirectionSource::Derived }
+    }
 }
 
 /// The regions of an outline, derived, and its surfaces.
@@ -79,7 +86,8 @@ pub(super) fn derived(
             for part in &parts {
                 let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
                 let said = (part.name.clone(), part.span, part.owner, part.inside.clone());
-                regions.extend(noted(felt.of_part(part, said, (part.course, part.span)), reports));
+                let course = part.own_course();
+                regions.extend(noted(felt.of_part(part, said, course), reports));
             }
         }
         Some(conditions) if reports.len() == before => {
@@ -183,7 +191,7 @@ impl Felt<'_> {
         mut self,
         part: &Part,
         (name, span, owner, inside): (String, Span, usize, Formula),
-        course: ([Id; 3], Span),
+        course: Course,
     ) -> Result<Region, Report> {
         let magnitude = self.magnitude(None, part.depth)?;
         let niceness = self.niceness(None, part.depth)?;

@@ -4,7 +4,7 @@ use super::given::{self, Given};
 use super::join::{OFF_TIP, Unjoined, join, moved};
 use super::law::Laws;
 use super::lower::{Lowering, May};
-use super::region::quantity;
+use super::region::{Niceness, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
@@ -26,8 +26,8 @@ const MOST: usize = 64;
 pub(super) struct Part {
     pub(super) outline: Vec<Segment>,
     pub(super) surfaces: Vec<Surface>,
-    /// The law of each surface, and in which of the scopes it is written.
-    niceness: Vec<Option<(usize, Expr)>>,
+    /// The law of each surface, whether it may rise with depth, and in which of the scopes it is written.
+    niceness: Vec<Option<(usize, Expr, bool)>>,
     scopes: Vec<Scope>,
 }
 
@@ -41,14 +41,16 @@ struct Scope {
 pub(super) struct Along {
     lowering: Lowering,
     value: Expr,
+    rising: bool,
 }
 
 impl Along {
     /// The law at a point of the whole tool, of which this is the depth.
-    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<(Id, Span), Report> {
+    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Report> {
         self.lowering.clone().on(graph, |lowering| {
             let depth = lowering.length_here(depth);
-            Ok((quantity(lowering, &self.value, May::Depth(depth))?, self.value.span))
+            let value = quantity(lowering, &self.value, May::Depth(depth))?;
+            Ok(Niceness { value, span: self.value.span, rising: self.rising })
         })
     }
 }
@@ -72,8 +74,8 @@ pub(super) fn assembled(
         scopes.push(scope.lowering);
     }
     let along = part.surfaces.iter().zip(part.niceness).filter_map(|(surface, law)| {
-        let (scope, value) = law?;
-        Some((surface.name.clone(), Along { lowering: scopes[scope].clone(), value }))
+        let (scope, value, rising) = law?;
+        Some((surface.name.clone(), Along { lowering: scopes[scope].clone(), value, rising }))
     });
     let along = along.collect();
     Ok(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
@@ -308,7 +310,7 @@ impl Mounting<'_> {
         let own = part.scopes.len();
         for (surface, niceness) in part.surfaces.iter().zip(&mut part.niceness) {
             if let Some(law) = laws.find(Quantity::Niceness, surface).filter(|_| surface.cutting) {
-                *niceness = Some((own, law.value.clone()));
+                *niceness = Some((own, law.value.clone(), law.rising));
             }
         }
         Ok(part)
@@ -398,7 +400,9 @@ impl Part {
         let scopes = self.scopes.len();
         self.surfaces.extend(part.surfaces);
         self.niceness.extend(
-            part.niceness.into_iter().map(|law| law.map(|(scope, value)| (scope + scopes, value))),
+            part.niceness
+                .into_iter()
+                .map(|law| law.map(|(scope, value, rising)| (scope + scopes, value, rising))),
         );
         self.scopes.extend(part.scopes);
         Ok(())

@@ -5,12 +5,12 @@ use super::derived::{Part, formula};
 use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{Bare, Felt, inside, mention, noted};
+use super::region::{Bare, Course, Felt, inside, mention, noted};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::look;
-use crate::model::{Region, Surface};
+use crate::model::{DirectionSource, Region, Surface};
 use crate::regionalise::outline::Segment;
 use crate::regionalise::overlay::{self, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
@@ -284,7 +284,9 @@ impl Conditions<'_> {
                 };
                 let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
                 let said = (name, part.span, part.owner, inside);
-                noted(felt.of_part(part, said, (*course, part.span)), reports)
+                let source = DirectionSource::Oblique;
+                let course = Course { parts: *course, span: part.span, source };
+                noted(felt.of_part(part, said, course), reports)
             }
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
@@ -293,15 +295,17 @@ impl Conditions<'_> {
                 let written = noted(felt.course(region), reports)?;
                 let (magnitude, niceness) = (magnitude?, niceness?);
                 let own = noted(felt.said(region, Quantity::Magnitude), reports)?;
-                let free = own.filter(|value| mention(value, Quantity::Depth.word()).is_none());
+                let free = own.filter(|own| mention(&own.value, Quantity::Depth.word()).is_none());
                 let course = match (written, free, magnitude) {
                     (Some(course), ..) => course,
-                    (None, Some(value), Some((magnitude, _))) => {
+                    (None, Some(own), Some((magnitude, _))) => {
                         let graph = &mut felt.lowering.graph;
                         let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
-                        (slope.map(|slope| graph.neg(slope)), value.span)
+                        let parts = slope.map(|slope| graph.neg(slope));
+                        let (span, source) = (own.value.span, DirectionSource::Written);
+                        Course { parts, span, source }
                     }
-                    (None, ..) => (part.course, part.span),
+                    (None, ..) => part.own_course(),
                 };
                 let (name, span) = (region.name.word.clone(), region.name.span);
                 let bare = Bare { name, span, owner, inside };

@@ -7,10 +7,10 @@ use super::lower::{Lowering, May};
 use super::outputs;
 use crate::expr::Id;
 use crate::formula::Formula;
-use crate::model::{Region, Said, Surface};
+use crate::model::{DirectionSource, Region, Said, Surface};
 use crate::report::{Report, enough};
 use crate::source::Span;
-use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Tool};
+use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
 
 /// The most regions that a tool may have: more take the planner minutes.
 const MOST: usize = 256;
@@ -115,6 +115,21 @@ pub(super) struct Bare {
 /// A value, and where it is said.
 pub(super) type Placed = (Id, Span);
 
+/// A niceness, where it is said, and whether it may rise with depth.
+#[derive(Clone, Copy)]
+pub(super) struct Niceness {
+    pub(super) value: Id,
+    pub(super) span: Span,
+    pub(super) rising: bool,
+}
+
+/// A direction that is no unit vector yet, where it is said and where it comes from.
+pub(super) struct Course {
+    pub(super) parts: [Id; 3],
+    pub(super) span: Span,
+    pub(super) source: DirectionSource,
+}
+
 /// What a result is worth; what is wrong is noted.
 pub(super) fn noted<T>(result: Result<T, Report>, reports: &mut Vec<Report>) -> Option<T> {
     result.map_err(|report| reports.push(report)).ok()
@@ -158,20 +173,19 @@ impl Felt<'_> {
         self,
         bare: Bare,
         (depth, depth_span): (Id, Span),
-        (magnitude, niceness): (Option<(Id, Span)>, (Id, Span)),
-        (course, course_span): ([Id; 3], Span),
+        (magnitude, niceness): (Option<Placed>, Niceness),
+        course: Course,
     ) -> Result<Region, Report> {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
-        let direction = outputs::unit(graph, course, 2).ok_or_else(|| {
-            Report::error(course_span, format!("the direction of {} vanishes", bare.name))
+        let direction = outputs::unit(graph, course.parts, 2).ok_or_else(|| {
+            Report::error(course.span, format!("the direction of {} vanishes", bare.name))
                 .help("give a vector that is not 0, or `toward` a point")
         })?;
         let is_depth = magnitude.is_none();
         let (magnitude, magnitude_span) = magnitude.unwrap_or((depth, depth_span));
-        let (niceness, niceness_span) = niceness;
         let magnitudes = (magnitude, is_depth);
-        let outputs = outputs::outputs(graph, domain, depth, magnitudes, direction, niceness);
-        let said = Said { depth: depth_span, magnitude: magnitude_span, niceness: niceness_span };
+        let outputs = outputs::outputs(graph, domain, depth, magnitudes, direction, niceness.value);
+        let said = Said { depth: depth_span, magnitude: magnitude_span, niceness: niceness.span };
         Ok(Region {
             name: bare.name,
             span: bare.span,
@@ -181,8 +195,10 @@ impl Felt<'_> {
             said,
             magnitude,
             direction,
-            course: (course, course_span),
-            niceness,
+            course: (course.parts, course.span),
+            source: course.source,
+            niceness: niceness.value,
+            rising: niceness.rising,
             outputs,
         })
     }
@@ -204,7 +220,11 @@ impl Felt<'_> {
         let course = noted(self.course(written), reports);
         let (name, span) = (written.name.word.clone(), written.name.span);
         let bare = Bare { name, span, owner, inside: inside? };
-        let course = course?.unwrap_or_else(|| (self.downhill(depth.0), depth.1));
+        let course = course?.unwrap_or_else(|| Course {
+            parts: self.downhill(depth.0),
+            span: depth.1,
+            source: DirectionSource::Derived,
+        });
         known?;
         noted(self.finish(bare, depth, (magnitude?, niceness?), course), reports)
     }
@@ -215,27 +235,29 @@ impl Felt<'_> {
         written: &tree::Region,
         depth: Id,
         reports: &mut Vec<Report>,
-    ) -> (Option<Option<Placed>>, Option<Placed>) {
+    ) -> (Option<Option<Placed>>, Option<Niceness>) {
         let magnitude = self.said(written, Quantity::Magnitude);
-        let magnitude = magnitude.and_then(|own| self.magnitude(own, depth));
+        let magnitude = magnitude.and_then(|own| self.magnitude(own.map(|own| &own.value), depth));
         let niceness = self.said(written, Quantity::Niceness);
         let niceness = niceness.and_then(|own| self.niceness(own, depth));
         (noted(magnitude, reports), noted(niceness, reports))
     }
 
     /// The direction that a region writes.
-    pub(super) fn course(
-        &mut self,
-        written: &tree::Region,
-    ) -> Result<Option<([Id; 3], Span)>, Report> {
+    pub(super) fn course(&mut self, written: &tree::Region) -> Result<Option<Course>, Report> {
         match written.direction.as_slice() {
             [] => Ok(None),
-            [(direction, span)] => Ok(Some((self.direction(direction)?, *span))),
-            [(_, first), (_, second), ..] => {
-                Err(Report::error(*second, "the direction is said twice")
-                    .and(*first, "first here")
-                    .help("drop one"))
-            }
+            [course] => Ok(Some(Course {
+                parts: self.direction(&course.direction)?,
+                span: course.span,
+                source: match course.oblique {
+                    true => DirectionSource::Oblique,
+                    false => DirectionSource::Written,
+                },
+            })),
+            [first, second, ..] => Err(Report::error(second.span, "the direction is said twice")
+                .and(first.span, "first here")
+                .help("drop one")),
         }
     }
 
@@ -244,7 +266,7 @@ impl Felt<'_> {
         &self,
         written: &'w tree::Region,
         quantity: Quantity,
-    ) -> Result<Option<&'w Expr>, Report> {
+    ) -> Result<Option<&'w Scalar>, Report> {
         let mut all = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
         let first = all.next();
         if let (Some(first), Some(second)) = (first, all.next()) {
@@ -252,15 +274,15 @@ impl Felt<'_> {
                 .and(first.span, "first here")
                 .help("drop one"));
         }
-        Ok(first.map(|scalar| &scalar.value))
+        Ok(first)
     }
 
     /// The depth: what the region says, else its magnitude.
     fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Report> {
         let (value, by) = match self.said(written, Quantity::Depth)? {
-            Some(value) => (value, Quantity::Depth),
+            Some(own) => (&own.value, Quantity::Depth),
             None => match self.said(written, Quantity::Magnitude)? {
-                Some(value) => (value, Quantity::Magnitude),
+                Some(own) => (&own.value, Quantity::Magnitude),
                 None => {
                     let name = &written.name;
                     return Err(Report::error(
@@ -305,21 +327,25 @@ impl Felt<'_> {
 
     /// The niceness that a region or else the law for its surface writes, or else its mounted file;
     /// else 1, or 0 where nothing cuts.
-    pub(super) fn niceness(&mut self, own: Option<&Expr>, depth: Id) -> Result<(Id, Span), Report> {
-        let nowhere = self.surface.span;
+    pub(super) fn niceness(&mut self, own: Option<&Scalar>, depth: Id) -> Result<Niceness, Report> {
+        let nowhere = |value: Id| Niceness { value, span: self.surface.span, rising: false };
         if !self.surface.cutting {
             return match own {
-                Some(value) => Err(idle_niceness(value.span, self.surface)),
-                None => Ok((self.lowering.graph.int(0), nowhere)),
+                Some(own) => Err(idle_niceness(own.value.span, self.surface)),
+                None => Ok(nowhere(self.lowering.graph.int(0))),
             };
         }
-        let law = self.laws.find(Quantity::Niceness, self.surface).map(|law| &law.value);
+        let own = own.map(|own| (&own.value, own.rising));
+        let law = self.laws.find(Quantity::Niceness, self.surface);
+        let law = law.map(|law| (&law.value, law.rising));
         match (own.or(law), self.laws.along.get(&self.surface.name)) {
-            (Some(value), _) => {
-                Ok((quantity(self.lowering, value, May::Depth(depth))?, value.span))
+            (Some((value, rising)), _) => {
+                let span = value.span;
+                let value = quantity(self.lowering, value, May::Depth(depth))?;
+                Ok(Niceness { value, span, rising })
             }
             (None, Some(along)) => along.lower(&mut self.lowering.graph, depth),
-            (None, None) => Ok((self.lowering.graph.int(1), nowhere)),
+            (None, None) => Ok(nowhere(self.lowering.graph.int(1))),
         }
     }
 

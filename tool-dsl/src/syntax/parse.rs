@@ -1,7 +1,7 @@
 //! Pairs of pest to the syntax tree.
 
 use super::limits::{too_much, within_limits};
-use super::refuse::{self, in_name};
+use super::refuse::{self, OBLIQUE, RISING, in_name};
 use super::tree::*;
 use super::{Grammar, Rule};
 use crate::domain::Domain;
@@ -156,7 +156,9 @@ impl Reader<'_> {
                     surfaces = next.into_inner().map(|pair| self.path(pair)).collect();
                     next = inner.next()?;
                 }
-                Item::Law(Law { quantity, surfaces, value: self.expr(next), span })
+                let value = self.expr(next);
+                let rising = self.allows(inner.next(), RISING, quantity == Quantity::Niceness);
+                Item::Law(Law { quantity, surfaces, value, rising, span })
             }
             _ => return None,
         })
@@ -196,21 +198,37 @@ impl Reader<'_> {
                     let mut parts = pair.into_inner();
                     let quantity = quantity(&parts.next()?);
                     let value = self.expr(parts.next()?);
-                    region.scalars.push(Scalar { quantity, value, span });
+                    let rising = self.allows(parts.next(), RISING, quantity == Quantity::Niceness);
+                    region.scalars.push(Scalar { quantity, value, rising, span });
                 }
                 Rule::direction => {
-                    let part = pair.into_inner().find(|p| !is_word(p.as_rule()))?;
+                    let mut parts = pair.into_inner().filter(|p| !is_word(p.as_rule()));
+                    let part = parts.next()?;
                     let direction = match part.as_rule() {
                         Rule::away => Direction::AwayFrom(self.inner_tuple(part)?),
                         Rule::toward => Direction::Toward(self.inner_tuple(part)?),
                         _ => Direction::Along(self.tuple(part)),
                     };
-                    region.direction.push((direction, span));
+                    let oblique = self.allows(parts.next(), OBLIQUE, true);
+                    region.direction.push(Course { direction, oblique, span });
                 }
                 _ => {}
             }
         }
         Some(region)
+    }
+
+    /// Returns whether a property says that it allows `word`; it may say so only where that `fits`, and nothing else.
+    fn allows(&mut self, pair: Option<Pair<'_, Rule>>, word: &str, fits: bool) -> bool {
+        let Some(pair) = pair else { return false };
+        let span = self.span(&pair);
+        let written = pair.into_inner().find(|part| part.as_rule() == Rule::name);
+        let meant = fits && written.as_ref().is_some_and(|written| written.as_str() == word);
+        if !meant {
+            let written = written.map_or("", |written| written.as_str());
+            self.reports.push(refuse::allowance(span, written));
+        }
+        meant
     }
 
     /// `as NAME cutting`
@@ -344,5 +362,6 @@ pub(super) fn is_word(rule: Rule) -> bool {
             | Rule::k_mount
             | Rule::k_with
             | Rule::k_at
+            | Rule::k_allow
     )
 }

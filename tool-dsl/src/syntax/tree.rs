@@ -152,7 +152,7 @@ pub struct Region {
     /// `depth:`, `magnitude:`, `niceness:`.
     pub scalars: Vec<Scalar>,
     /// `direction:`.
-    pub direction: Vec<(Direction, Span)>,
+    pub direction: Vec<Course>,
 }
 
 /// `a <= b <= c`
@@ -197,18 +197,31 @@ impl Quantity {
     }
 }
 
-/// `depth: 1 - d;`
+/// `depth: 1 - d;`, `niceness: depth allow rising;`
 #[derive(Clone, Debug)]
 pub struct Scalar {
     /// Which.
     pub quantity: Quantity,
     /// Its value.
     pub value: Expr,
+    /// Whether it is a niceness that may rise with depth.
+    pub rising: bool,
     /// The whole property.
     pub span: Span,
 }
 
-/// `direction: …`
+/// `direction: (1, 0) allow oblique;`
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// Where it leads.
+    pub direction: Direction,
+    /// Whether it may leave the steepest way out.
+    pub oblique: bool,
+    /// The whole property.
+    pub span: Span,
+}
+
+/// Where a direction leads.
 #[derive(Clone, Debug)]
 pub enum Direction {
     /// `(1, 0)`, made a unit vector.
@@ -237,6 +250,8 @@ pub struct Law {
     pub surfaces: Vec<Name>,
     /// Its value.
     pub value: Expr,
+    /// Whether it is a niceness that may rise with depth.
+    pub rising: bool,
     /// The whole law.
     pub span: Span,
 }

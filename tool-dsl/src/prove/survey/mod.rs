@@ -1,5 +1,6 @@
 //! Box after box: what is felt in each region, and what changes from one to the next.
 
+mod certain;
 mod descent;
 mod meet;
 
@@ -19,6 +20,7 @@ use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
 use crate::number;
+use certain::Certain;
 use std::collections::BTreeMap;
 
 /// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
@@ -91,6 +93,7 @@ struct Survey<'t> {
     finest: f64,
     regions: Vec<Option<RegionFacts>>,
     aims: Vec<Aim>,
+    certain: Vec<Certain>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// A point where two owners are side by side, with a jump between.
     jumping: BTreeMap<(Pair, CurveIndex), Seen>,
@@ -152,6 +155,7 @@ impl<'t> Survey<'t> {
             },
             regions: vec![None; model.regions.len()],
             aims,
+            certain: vec![Certain::default(); model.regions.len()],
             borders: BTreeMap::new(),
             jumping: BTreeMap::new(),
             least: f64::INFINITY,
@@ -324,7 +328,8 @@ impl<'t> Survey<'t> {
             ..RegionFacts::NONE
         };
         let course = self.course(owner);
-        self.aims[owner].note(course, depth, cell, self.tool.model.domain);
+        let angle = self.aims[owner].note(course, depth, cell, self.tool.model.domain);
+        self.look_at_middle(owner, cell, angle.unwrap_or(0.0), !here.falls);
         let facts = &mut self.regions[owner];
         *facts = Some(match facts.take() {
             None => here,
@@ -366,9 +371,10 @@ impl<'t> Survey<'t> {
                 }
             }
         }
-        let facts = self.regions.into_iter().zip(shares).zip(self.aims).enumerate();
+        let known = self.aims.into_iter().zip(self.certain);
+        let facts = self.regions.into_iter().zip(shares).zip(known).enumerate();
         let regions: Vec<RegionFacts> = facts
-            .map(|(index, ((facts, share), aim))| {
+            .map(|(index, ((facts, share), (aim, certain)))| {
                 let facts = facts.unwrap_or(RegionFacts::NONE);
                 let distance = self.parting.is_distance(index);
                 RegionFacts {
@@ -376,6 +382,8 @@ impl<'t> Survey<'t> {
                     distance,
                     steepness: if distance { Interval::new(1.0, 1.0) } else { facts.steepness },
                     aside: aim.off,
+                    oblique: certain.oblique,
+                    rises: certain.rises,
                     singular: aim.singular,
                     on_axis: aim.on_axis,
                     ..facts

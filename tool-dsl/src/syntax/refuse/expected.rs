@@ -62,6 +62,7 @@ fn rule(rule: Rule) -> Option<&'static str> {
         Rule::at | Rule::k_at => "`at`",
         Rule::setting => "`PARAM = VALUE`",
         Rule::cutting | Rule::k_cutting => "`cutting`",
+        Rule::allow | Rule::k_allow => "`allow`",
         Rule::scalar | Rule::direction => "`depth:`, `magnitude:`, `direction:`, `niceness:`",
         Rule::sign => "`+` or `-`",
         Rule::k_z => "`z`",

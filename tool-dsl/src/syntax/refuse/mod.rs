@@ -27,6 +27,9 @@ const ITEMS: [&str; 13] = [
     "magnitude",
     "niceness",
 ];
+/// What a direction and a niceness may be allowed.
+pub(super) const OBLIQUE: &str = "oblique";
+pub(super) const RISING: &str = "rising";
 const PROPERTIES: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
 
 /// A comparison that a closed region cannot have.
@@ -39,6 +42,12 @@ pub(super) fn comparison(span: Span, written: &str) -> Report {
     };
     Report::error(span, format!("`{written}` is no comparison here: a region is closed"))
         .help(format!("{remedy}; a border belongs to the region listed first"))
+}
+
+/// An `allow` of something that is not allowed there, or nowhere.
+pub(super) fn allowance(span: Span, written: &str) -> Report {
+    Report::error(span, format!("`allow {written}` does not fit here"))
+        .help(format!("write `direction: … allow {OBLIQUE};` or `niceness: … allow {RISING};`"))
 }
 
 /// A text that stopped to fit somewhere.

@@ -1,0 +1,225 @@
+//! Directions that are not the steepest way out and niceness that rises with depth: warned of where that is certain and
+//! nobody says that it is meant.
+
+use std::path::PathBuf;
+use tool_dsl::prove::Certificate;
+use tool_dsl::report::Severity;
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, Compiled, compile};
+
+/// A pin of 3 mm radius: its side is nearest everywhere, but for its ends.
+fn pin(side: &str) -> String {
+    format!(
+        "tool Pin {{ units mm; curve side = 3 - d; curve low = z; curve high = 40 - z;
+           region low where 0 <= low <= min(side, high) {{ depth: low; }}
+           region high where 0 <= high <= min(side, low) {{ depth: high; }}
+           region side as side cutting where 0 <= side <= min(low, high) {{ depth: side; {side} }} }}"
+    )
+}
+
+fn profile(items: &str) -> String {
+    format!(
+        "tool Pin {{ units mm; profile {{ start (0, 0); line to (3, 0) as face cutting;
+           line to (3, 20) as side cutting; line to (0, 20) as top; }} {items} }}"
+    )
+}
+
+fn compiled(text: &str) -> Compiled {
+    compile(&Source::new("pin.tool", text))
+}
+
+#[track_caller]
+fn tool(text: &str) -> Box<Checked> {
+    let compiled = compiled(text);
+    let reports = format!("{:#?}", compiled.reports());
+    compiled.into_tool().unwrap_or_else(|| panic!("{text}\n{reports}"))
+}
+
+/// What the proof warns of, beside the place in the text that it warns at.
+#[track_caller]
+fn warned(text: &str) -> Vec<(String, String)> {
+    let tool = tool(text);
+    let reports = Certificate::of(&tool).reports(&tool);
+    let said = reports.into_iter().map(|report| {
+        assert_eq!(report.severity, Severity::Warning);
+        assert!(report.help.is_some_and(|help| help.contains("`allow") || help.contains("allow ")));
+        (report.message, text[report.span.start..report.span.end].to_owned())
+    });
+    said.collect()
+}
+
+#[test]
+fn a_direction_that_is_not_the_steepest_way_out_is_warned_of() {
+    for (direction, angle) in [("(0, 1)", "90°"), ("(1, 1)", "45°"), ("(1, 0.001)", "0.0572958°")]
+    {
+        let written = format!("direction: {direction};");
+        let said = warned(&pin(&written));
+        let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
+        let start =
+            format!("the direction of side is {angle} from the steepest way out of its depth at (");
+        assert!(message.starts_with(&start), "{message}");
+        assert_eq!(*place, written);
+    }
+}
+
+#[test]
+fn the_largest_angle_is_given_with_its_place() {
+    // Straight where z is small, and ever more oblique above.
+    let said = warned(&pin("direction: (40, z);"));
+    let message = &said[0].0;
+    let angle: f64 = message
+        .split("is ")
+        .nth(1)
+        .and_then(|rest| rest.split('°').next())
+        .unwrap()
+        .parse()
+        .unwrap();
+    let z: f64 = message
+        .rsplit(", ")
+        .next()
+        .and_then(|rest| rest.strip_suffix(')'))
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((angle.to_radians().tan() - z / 40.0).abs() < 1e-5, "{message}");
+    assert!(z > 38.0, "{message}");
+}
+
+#[test]
+fn a_direction_that_leads_inward_is_warned_of() {
+    let said = warned(&pin("direction: (-1, 0);"));
+    assert!(said[0].0.starts_with("the direction of side leads straight inward at ("), "{said:?}");
+}
+
+#[test]
+fn the_steepest_way_out_is_not_warned_of() {
+    for side in ["", "direction: (1, 0);", "direction: (3 - d, 0);", "direction: (1, 0.00005);"] {
+        assert_eq!(warned(&pin(side)), [], "{side}");
+    }
+    for regions in ["", "regions nearest;", "regions smooth 0.5;"] {
+        assert_eq!(warned(&profile(regions)), [], "{regions}");
+    }
+}
+
+#[test]
+fn an_oblique_direction_that_is_meant_is_not_warned_of_and_certified_all_the_same() {
+    let text = pin("direction: (1, 1) allow oblique;");
+    assert_eq!(warned(&text), []);
+    let facts = Certificate::of(&tool(&text)).regions.remove(2);
+    let aside = facts.aside.expect("the direction is known").high.to_degrees();
+    assert!((aside - 45.0).abs() < 1e-9, "{aside}");
+}
+
+#[test]
+fn regions_of_a_profile_are_held_to_its_depth() {
+    let split = |low: &str| {
+        profile(&format!("region low where z <= 10 {{ {low} }} region high where z >= 10 {{}}"))
+    };
+    let said = warned(&split("direction: (0, -1);"));
+    let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
+    assert!(message.starts_with("the direction of low is 90° from"), "{message}");
+    assert_eq!(place, "direction: (0, -1);");
+    assert_eq!(warned(&split("direction: (0, -1) allow oblique;")), []);
+    // A magnitude's slope is a direction too.
+    let said = warned(&split("magnitude: 3 - d;"));
+    assert_eq!(said[0].1, "3 - d");
+    assert_eq!(warned(&split("magnitude: depth^2;")), []);
+}
+
+#[test]
+fn niceness_that_rises_with_depth_is_warned_of() {
+    let said = warned(&pin("niceness: 1 - (3 - 2*depth)/10;"));
+    let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
+    assert!(message.starts_with("`niceness` of side rises with depth at ("), "{message}");
+    assert!(message.ends_with("), by 0.2 per mm"), "{message}");
+    assert_eq!(place, "1 - (3 - 2*depth)/10");
+    // A law is warned of once, though two surfaces have it.
+    assert_eq!(warned(&profile("niceness cutting: depth;")).len(), 1);
+    // Up to half a millimetre only.
+    assert_eq!(warned(&profile("niceness side: depth*(1 - depth);")).len(), 1);
+}
+
+#[test]
+fn niceness_that_is_meant_or_falls_or_does_not_count_is_not_warned_of() {
+    for side in [
+        "",
+        "niceness: 0.5;",
+        "niceness: 1 - depth/3;",
+        "niceness: z/40;",
+        "niceness: depth allow rising;",
+        "niceness: depth - 4;",
+    ] {
+        assert_eq!(warned(&pin(side)), [], "{side}");
+    }
+    assert_eq!(warned(&profile("niceness cutting: depth allow rising;")), []);
+    assert_eq!(warned(&profile("niceness side, face: depth/3 allow rising;")), []);
+}
+
+#[test]
+fn niceness_that_may_rise_comes_along_with_a_mounted_file() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("warned");
+    std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
+    for (name, law, warnings) in [("meant", "depth allow rising", 0), ("not_meant", "depth", 1)] {
+        let part = profile(&format!("niceness side: {law};"));
+        std::fs::write(folder.join(format!("{name}.tool")), part).expect("a writable folder");
+        let text = format!("tool Whole {{ units mm; mount \"{name}.tool\" as pin; }}");
+        let compiled = compile(&Source::new("whole.tool", text).held_by(folder.join("whole.tool")));
+        let tool = compiled.into_tool().expect("a tool");
+        assert_eq!(Certificate::of(&tool).reports(&tool).len(), warnings, "{name}");
+    }
+}
+
+#[test]
+fn regions_by_hand_are_warned_of_while_they_are_compiled() {
+    let said = |side: &str| -> Vec<String> {
+        let compiled = compiled(&pin(side));
+        assert!(compiled.tool().is_some());
+        compiled.reports().iter().map(|report| report.message.clone()).collect()
+    };
+    let both = said("direction: (0, 1); niceness: depth;");
+    assert_eq!(both.len(), 2, "{both:?}");
+    assert!(both[0].contains("90°") && both[1].contains("rises with depth"), "{both:?}");
+    assert_eq!(said("direction: (0, 1) allow oblique; niceness: depth allow rising;"), [""; 0]);
+}
+
+#[test]
+fn what_cannot_be_allowed_is_refused_with_the_words_that_can() {
+    for (side, written) in [
+        ("direction: (1, 0) allow slanted;", "slanted"),
+        ("direction: (1, 0) allow rising;", "rising"),
+        ("niceness: 1 allow oblique;", "oblique"),
+        ("magnitude: depth allow rising;", "rising"),
+        ("direction: (1, 0); niceness: 1 allow falling;", "falling"),
+    ] {
+        let text = pin(side);
+        let compiled = compiled(&text);
+        let Err(refusal) = &compiled.outcome else { panic!("{side}") };
+        let errors: Vec<_> = refusal.errors().collect();
+        assert_eq!(errors.len(), 1, "{side}: {errors:?}");
+        assert_eq!(errors[0].message, format!("`allow {written}` does not fit here"));
+        let span = errors[0].span;
+        assert_eq!(text[span.start..span.end], format!("allow {written}"));
+        let help = errors[0].help.as_deref().unwrap_or_default();
+        assert!(help.contains("allow oblique") && help.contains("allow rising"), "{help}");
+    }
+    let law = compiled(&profile("magnitude: depth allow rising;"));
+    assert_eq!(law.reports()[0].message, "`allow rising` does not fit here");
+}
+
+#[test]
+fn a_misspelt_allow_is_told_what_would_fit() {
+    for side in ["direction: (1, 0) alow oblique;", "niceness: 1 alow rising;"] {
+        let compiled = compiled(&pin(side));
+        let Err(refusal) = &compiled.outcome else { panic!("{side}") };
+        let first = &refusal.reports()[0];
+        assert_eq!(first.message, "`alow` does not fit here");
+        assert!(first.help.as_ref().is_some_and(|help| help.contains("`allow`")), "{first:?}");
+    }
+}
+
+#[test]
+fn allow_is_a_name_where_one_stands() {
+    let text =
+        pin("niceness: allow allow rising;").replace("curve side", "let allow = 1; curve side");
+    assert_eq!(warned(&text), []);
+}
