@@ -65,6 +65,12 @@ fn mistakes_in_tools() {
     trybuild::TestCases::new().compile_fail("tests/compile_fail/*.rs");
 }
 
+/// A tool with warnings is a tool; only who denies warnings has errors, as `denied_warning*.rs` above.
+#[test]
+fn warnings_stop_no_build() {
+    trybuild::TestCases::new().pass("tests/compile_pass/*.rs");
+}
+
 #[test]
 fn one_mistake_gives_one_error() {
     let cases = cases();
@@ -83,8 +89,11 @@ fn the_terminal_says_the_same() {
         let Some(source) = tool(&program) else { continue };
         let compiled = compile(&source);
         let lines: Vec<&str> = said.lines().map(str::trim).collect();
-        let errors = compiled.reports().iter().filter(|r| r.severity == Severity::Error);
-        for report in errors {
+        let denied =
+            program.file_name().is_some_and(|name| name.display().to_string().contains("denied"));
+        let wanted = if denied { Severity::Warning } else { Severity::Error };
+        let wanted = compiled.reports().iter().filter(|report| report.severity == wanted);
+        for report in wanted {
             let place = program.display();
             let help = report.help.as_ref().unwrap_or_else(|| panic!("no remedy in {place}"));
             let label = report.second.as_ref().map(|(_, label)| label.as_str());

@@ -172,7 +172,7 @@ fn documents() -> bool {
     std::env::current_exe().is_ok_and(|program| program.file_stem().is_some_and(|n| n == "rustdoc"))
 }
 
-/// A tool's code, or a stand-in for one that has errors, and these.
+/// A tool's code and its warnings, or a stand-in for one that has errors, and these.
 fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
     let mut tokens = match (&compiled.outcome, &compiled.name) {
         (Ok(accepted), _) if documents() => emit::documented(&accepted.tool),
@@ -180,9 +180,10 @@ fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenS
         (Err(_), Some(name)) if syn::parse_str::<Ident>(name).is_ok() => emit::skeleton(name),
         _ => quote! {},
     };
-    if let Err(refusal) = &compiled.outcome {
-        tokens.extend(said::errors(refusal, &compiled.sources, place));
-    }
+    tokens.extend(match &compiled.outcome {
+        Ok(accepted) => said::warnings(&accepted.warnings, &compiled.sources, place),
+        Err(refusal) => said::errors(refusal, &compiled.sources, place),
+    });
     // Cargo rebuilds when a file that is included changes.
     for file in compiled.sources.files() {
         let file = file.display().to_string();

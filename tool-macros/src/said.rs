@@ -5,38 +5,64 @@ use quote::quote_spanned;
 use tool_dsl::report::{Refusal, Report};
 use tool_dsl::source::Sources;
 
-/// A tool's errors: one that stands in the program's own text at its token, one that stands in a
-/// mounted file at the mount, with its file's line; all others together at the macro's call.
+/// A tool's errors, each at its place.
 pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> TokenStream {
-    let mut tokens = TokenStream::new();
-    let mut rest = Vec::new();
-    for report in refusal.errors() {
+    placed(refusal.errors(), sources, place)
+        .map(|(message, [first, last])| {
+            let mut tokens = quote_spanned! { first => ::core::compile_error! };
+            let mut said = Group::new(Delimiter::Brace, quote_spanned! { last => #message });
+            said.set_span(last);
+            tokens.extend([TokenTree::Group(said)]);
+            tokens
+        })
+        .collect()
+}
+
+/// A tool's warnings, each at its place.
+///
+/// A macro has none of its own on stable Rust. But rustc warns where something deprecated is used, with the text that
+/// it was deprecated with.
+pub(crate) fn warnings(reports: &[Report], sources: &Sources, place: Span) -> TokenStream {
+    placed(reports.iter(), sources, place)
+        .map(|(message, [first, _])| {
+            quote_spanned! { first =>
+                const _: () = {
+                    #[deprecated(note = #message)]
+                    const TOOL_WARNING: () = ();
+                    TOOL_WARNING
+                };
+            }
+        })
+        .collect()
+}
+
+/// Texts, and the first and the last token that rustc shows each at: a report of the program's own text at its tokens,
+/// one of a mounted file at the mount, with its file's line; all others together at the macro's call.
+fn placed<'r>(
+    reports: impl Iterator<Item = &'r Report>,
+    sources: &Sources,
+    place: Span,
+) -> impl Iterator<Item = (String, [Span; 2])> {
+    let (mut texts, mut rest) = (Vec::new(), Vec::new());
+    for report in reports {
         let (source, inside) = sources.locate(report.span);
         match (source.tokens_at(inside), sources.tokens_at(report.span)) {
-            (Some(place), _) => tokens.extend(error(&in_words(report, sources), place)),
-            (None, Some(mount)) => tokens.extend(error(&excerpt(report, sources), mount)),
+            (Some(place), _) => texts.push((in_words(report, sources), place)),
+            (None, Some(mount)) => texts.push((excerpt(report, sources), mount)),
             (None, None) => rest.push(excerpt(report, sources)),
         }
     }
     if !rest.is_empty() {
-        tokens.extend(error(&rest.join("\n\n"), [place, place]));
+        texts.push((rest.join("\n\n"), [place, place]));
     }
-    tokens
-}
-
-/// An error that rustc shows from the first token to the last.
-fn error(message: &str, [first, last]: [Span; 2]) -> TokenStream {
-    let mut tokens = quote_spanned! { first => ::core::compile_error! };
-    let mut said = Group::new(Delimiter::Brace, quote_spanned! { last => #message });
-    said.set_span(last);
-    tokens.extend([TokenTree::Group(said)]);
-    tokens
+    texts.into_iter()
 }
 
 /// A report with the line of its file.
 fn excerpt(report: &Report, sources: &Sources) -> String {
-    // rustc says "error: " itself.
-    report.render(sources, false).trim_start_matches("error: ").to_owned()
+    let text = report.render(sources, false);
+    // rustc says "error: " and "warning: " itself.
+    text.trim_start_matches("error: ").trim_start_matches("warning: ").to_owned()
 }
 
 /// A report where rustc shows the place itself.
