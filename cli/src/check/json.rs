@@ -39,6 +39,11 @@ struct ProvedRegion<'t> {
     rounding: [f64; 2],
     /// Between the direction and the steepest way down, if it is known
     aside_degrees: Option<[f64; 2]>,
+    /// The largest such angle that is certain at a point, and the point in the tool's frame
+    oblique_degrees: Option<f64>,
+    oblique_at: Option<[f64; 3]>,
+    /// A point in the tool's frame where niceness rises with depth
+    rises_at: Option<[f64; 3]>,
     /// Where the direction vanishes, in the tool's frame: boxes' middles
     singular: Vec<[f64; 3]>,
     /// Whether the direction turns on the axis
@@ -79,6 +84,9 @@ impl<'t> Proved<'t> {
             falls: facts.falls,
             rounding: facts.rounding,
             aside_degrees: facts.aside.map(turned),
+            oblique_degrees: facts.oblique.map(|(angle, _)| angle.to_degrees()),
+            oblique_at: facts.oblique.map(|(_, point)| point),
+            rises_at: facts.rises.map(|(_, point)| point),
             singular: facts.singular.iter().map(Cell::middle).collect(),
             on_axis: facts.on_axis,
         };
