@@ -136,29 +136,32 @@ fn what_passes_keeps_its_bounds() {
     assert!(refused > 50 && bounded > 10, "{refused} {jumps} {bounded} {open}");
 }
 
-/// A sample of `docs/measured/mutants.md`.
+/// A sample of `docs/measured/mutants.md`, of every tool.
 #[test]
-fn broken_tools_of_the_library_are_found_out() {
-    let (mut found, mut missed) = (0, Vec::new());
+fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
+    let (mut seen, mut compared, mut missed) = (0, Vec::new(), Vec::new());
     for (seed, source) in library().iter().enumerate() {
         let whole = *compile(source).into_tool().expect("the library compiles");
         let proved = Certificate::of(&whole);
-        // Of a tool whose own proof is open little can be said of a broken one.
-        if !proved.undecided.is_empty() {
-            continue;
-        }
+        let reports = proved.reports(&whole);
+        assert!(reports.is_empty(), "{}: {reports:#?}", whole.model.name);
         // Others than those of the table.
         for mutant in mutants(&whole, 4, 1000 + seed as u64) {
             if changes(&whole, &mutant.tool, 1) {
-                match caught(&proved, &Certificate::of(&mutant.tool)) {
-                    Caught::Not => {
-                        let kind = KINDS[mutant.kind];
-                        missed.push(format!("{}: {kind} at {}", whole.model.name, mutant.place));
-                    }
-                    _ => found += 1,
+                let place =
+                    format!("{}: {} at {}", whole.model.name, KINDS[mutant.kind], mutant.place);
+                match caught(&proved, &mutant.tool) {
+                    Caught::Error | Caught::Open | Caught::Warning => seen += 1,
+                    Caught::Compared => compared.push(place),
+                    Caught::Not => missed.push(place),
                 }
             }
         }
     }
-    assert!(found > 100 && missed.is_empty(), "{found} found, not {missed:?}");
+    println!("{seen} seen, {} by comparing, {} not", compared.len(), missed.len());
+    assert!(
+        seen > 100 && 9 * compared.len() <= seen,
+        "{seen} seen, by comparing only {compared:#?}"
+    );
+    assert!(missed.is_empty(), "{missed:#?}");
 }

@@ -7,6 +7,7 @@ use tool_dsl::expr::value::{At, Evaluator};
 use tool_dsl::number::Number;
 use tool_dsl::plan::Tree;
 use tool_dsl::prove::Certificate;
+use tool_dsl::report::any_error;
 
 /// Points at which a broken tool is compared with the whole one.
 const POINTS: usize = 20_000;
@@ -37,18 +38,18 @@ pub struct Mutant {
     pub tool: Checked,
 }
 
-/// How a mutant was found out.
+/// What shows that a mutant is broken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Caught {
-    /// A point where depth jumps.
-    Jump,
-    /// Bounds that are not those of the whole tool, or none.
-    Bounds,
-    /// A direction that leads elsewhere.
-    Direction,
-    /// A proof that does not come to its end.
+    /// An error.
+    Error,
+    /// A warning that a proof does not come to its end.
     Open,
-    /// It was not.
+    /// A warning of something that is proved.
+    Warning,
+    /// Only a comparison with the certificate of the whole tool, which no user has.
+    Compared,
+    /// Nothing.
     Not,
 }
 
@@ -182,8 +183,11 @@ pub fn changes(whole: &Checked, broken: &Checked, seed: u64) -> bool {
     })
 }
 
-/// How a broken tool differs from the whole one by what is proved of both.
-pub fn caught(whole: &Certificate, broken: &Certificate) -> Caught {
+/// What shows that a tool is broken: what is reported of it, or else how its certificate differs from that of the whole
+/// tool, of which nothing may be reported.
+pub fn caught(whole: &Certificate, mutant: &Checked) -> Caught {
+    let broken = Certificate::of(mutant);
+    let reports = broken.reports(mutant);
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
         (a, b) => a == b,
@@ -195,16 +199,15 @@ pub fn caught(whole: &Certificate, broken: &Certificate) -> Caught {
             .map(|region| region.aside.map_or(0.0, |aside| aside.high))
             .collect()
     };
-    let off = aside(whole).into_iter().zip(aside(broken)).any(|(a, b)| b > a + 1e-6);
-    if broken.borders.iter().any(|border| border.seen.is_some()) {
-        Caught::Jump
-    } else if !broken.undecided.is_empty() && whole.undecided.is_empty() {
-        Caught::Open
-    } else if !same(whole.least(), broken.least()) || !same(whole.lipschitz(), broken.lipschitz()) {
-        Caught::Bounds
-    } else if off {
-        Caught::Direction
+    let off = aside(whole).into_iter().zip(aside(&broken)).any(|(a, b)| b > a + 1e-6);
+    let bounds = same(whole.least(), broken.least()) && same(whole.lipschitz(), broken.lipschitz());
+    if any_error(&reports) {
+        Caught::Error
+    } else if reports.is_empty() {
+        if off || !bounds { Caught::Compared } else { Caught::Not }
+    } else if broken.undecided.is_empty() {
+        Caught::Warning
     } else {
-        Caught::Not
+        Caught::Open
     }
 }
