@@ -16,6 +16,9 @@ use tool_dsl::{Compiled, compile, compile_with, emit, syntax};
 /// `include_tool!("tools/ball.tool" as QuarterInchBall, D = 0.25inch, flute = 18)` gives the type
 /// another name, and values to the file's `param`s: constant expressions of the language, in
 /// the file's unit where they say none.
+///
+/// rustc shows a tool's warnings as uses of a deprecated constant: `#![deny(warnings)]` makes them errors, and
+/// `#[allow(deprecated)]` on a module around the macro silences them.
 #[proc_macro]
 pub fn include_tool(input: TokenStream) -> TokenStream {
     let call = syn::parse_macro_input!(input as Call);

@@ -1,10 +1,11 @@
 //! The regions of a profile: derived, named, and given their laws.
 
 use super::condition::Curves;
+use super::direction::Course;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::Divider;
-use super::region::{Bare, Course, Felt, noted};
+use super::region::{Bare, Felt, noted};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;

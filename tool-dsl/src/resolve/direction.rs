@@ -5,12 +5,39 @@ use super::lower::May;
 use super::region::Felt;
 use crate::domain::Domain;
 use crate::expr::{Coord, Id};
+use crate::model::DirectionSource;
 use crate::report::Report;
-use crate::syntax::tree::{Direction, Expr, Tuple};
+use crate::source::Span;
+use crate::syntax::tree::{Direction, Expr, Region, Tuple};
+
+/// A direction that is no unit vector yet, where it is said and where it comes from.
+pub(super) struct Course {
+    pub(super) parts: [Id; 3],
+    pub(super) span: Span,
+    pub(super) source: DirectionSource,
+}
 
 impl Felt<'_> {
+    /// The direction that a region writes, if it does.
+    pub(super) fn course(&mut self, written: &Region) -> Result<Option<Course>, Report> {
+        match written.direction.as_slice() {
+            [] => Ok(None),
+            [course] => Ok(Some(Course {
+                parts: self.direction(&course.direction)?,
+                span: course.span,
+                source: match course.oblique {
+                    true => DirectionSource::Oblique,
+                    false => DirectionSource::Written,
+                },
+            })),
+            [first, second, ..] => Err(Report::error(second.span, "the direction is said twice")
+                .and(first.span, "first here")
+                .help("drop one")),
+        }
+    }
+
     /// The vector that a region writes, not yet a unit vector.
-    pub(super) fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Report> {
+    fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Report> {
         match direction {
             Direction::Along(tuple) => self.along(tuple),
             Direction::AwayFrom(tuple) => self.away_from(tuple),

@@ -2,10 +2,11 @@
 
 use super::condition::Curves;
 use super::derived::{Part, formula};
+use super::direction::Course;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{Bare, Course, Felt, inside, mention, noted};
+use super::region::{Bare, Felt, inside, mention, noted};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;

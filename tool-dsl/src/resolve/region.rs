@@ -2,6 +2,7 @@
 
 use super::condition::Curves;
 use super::dimension::Dimension;
+use super::direction::Course;
 use super::law::{Laws, idle_niceness};
 use super::lower::{Lowering, May};
 use super::outputs;
@@ -123,13 +124,6 @@ pub(super) struct Niceness {
     pub(super) rising: bool,
 }
 
-/// A direction that is no unit vector yet, where it is said and where it comes from.
-pub(super) struct Course {
-    pub(super) parts: [Id; 3],
-    pub(super) span: Span,
-    pub(super) source: DirectionSource,
-}
-
 /// What a result is worth; what is wrong is noted.
 pub(super) fn noted<T>(result: Result<T, Report>, reports: &mut Vec<Report>) -> Option<T> {
     result.map_err(|report| reports.push(report)).ok()
@@ -241,24 +235,6 @@ impl Felt<'_> {
         let niceness = self.said(written, Quantity::Niceness);
         let niceness = niceness.and_then(|own| self.niceness(own, depth));
         (noted(magnitude, reports), noted(niceness, reports))
-    }
-
-    /// The direction that a region writes.
-    pub(super) fn course(&mut self, written: &tree::Region) -> Result<Option<Course>, Report> {
-        match written.direction.as_slice() {
-            [] => Ok(None),
-            [course] => Ok(Some(Course {
-                parts: self.direction(&course.direction)?,
-                span: course.span,
-                source: match course.oblique {
-                    true => DirectionSource::Oblique,
-                    false => DirectionSource::Written,
-                },
-            })),
-            [first, second, ..] => Err(Report::error(second.span, "the direction is said twice")
-                .and(first.span, "first here")
-                .help("drop one")),
-        }
     }
 
     /// The region's own word on a quantity.
