@@ -119,6 +119,7 @@ fn regions_of_a_profile_are_held_to_its_depth() {
     let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
     assert!(message.starts_with("the direction of low is 90° from"), "{message}");
     assert_eq!(place, "direction: (0, -1);");
+    assert_eq!(compiled(&split("direction: (0, -1);")).reports().len(), 1);
     assert_eq!(warned(&split("direction: (0, -1) allow oblique;")), []);
     // A magnitude's slope is a direction too.
     let said = warned(&split("magnitude: 3 - d;"));

@@ -26,6 +26,7 @@ mod witness;
 use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
+use crate::model::{DirectionSource, Region};
 use crate::report::Report;
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
@@ -190,16 +191,21 @@ impl Bounds {
     ///
     /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves once
     /// more; regions by hand are looked at in a few thousand boxes, but not for their owners, which the
-    /// plan proves as it is made.
+    /// plan proves as it is made. So are those of a profile for which a direction is written.
     pub(crate) fn of(tool: &Checked) -> (Bounds, Vec<Report>) {
         let rounding = rounding::over(tool);
-        if tool.model.is_exact() {
-            return (Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding }, Vec::new());
+        let written = |region: &Region| region.source == DirectionSource::Written;
+        let exact = Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding };
+        if tool.model.is_exact() && !tool.model.regions.iter().any(written) {
+            return (exact, Vec::new());
         }
         let proved = survey::survey(tool, FEW, false);
-        let [least, lipschitz] = [proved.least(), proved.lipschitz()];
         // What is undecided here may not be in more boxes.
         let reports = proved.certain(tool);
+        if tool.model.is_exact() {
+            return (exact, reports);
+        }
+        let [least, lipschitz] = [proved.least(), proved.lipschitz()];
         let rounding = rounding.map(|rounding| rounding + proved.slack);
         (Bounds { least, lipschitz, rounding }, reports)
     }
