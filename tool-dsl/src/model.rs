@@ -244,7 +244,7 @@ pub struct Region {
     pub source: DirectionSource,
     /// How good a contact is, as the file says it.
     pub niceness: Id,
-    /// Whether niceness may rise with depth: `allow rising`.
+    /// `allow rising`: niceness may rise with depth.
     pub rising: bool,
     /// What the evaluators compute.
     pub outputs: Outputs,

@@ -20,7 +20,7 @@ impl Certificate {
     pub(super) fn certain(&self, tool: &Checked) -> Vec<Report> {
         let model = &tool.model;
         let mut reports: Vec<Report> = Vec::new();
-        // Of one pair once, and of one region once beside the outside.
+        // One report for each pair, and one for each region beside the outside.
         for report in self.borders.iter().filter_map(|border| jump(model, border)) {
             let same = |other: &Report| other.span == report.span && other.second == report.second;
             if !reports.iter().any(same) {

@@ -204,7 +204,7 @@ pub struct Scalar {
     pub quantity: Quantity,
     /// Its value.
     pub value: Expr,
-    /// Whether it is a niceness that may rise with depth.
+    /// `allow rising`, of a niceness.
     pub rising: bool,
     /// The whole property.
     pub span: Span,
@@ -215,7 +215,7 @@ pub struct Scalar {
 pub struct Course {
     /// Where it leads.
     pub direction: Direction,
-    /// Whether it may leave the steepest way out.
+    /// `allow oblique`.
     pub oblique: bool,
     /// The whole property.
     pub span: Span,
@@ -250,7 +250,7 @@ pub struct Law {
     pub surfaces: Vec<Name>,
     /// Its value.
     pub value: Expr,
-    /// Whether it is a niceness that may rise with depth.
+    /// `allow rising`, of a niceness.
     pub rising: bool,
     /// The whole law.
     pub span: Span,
