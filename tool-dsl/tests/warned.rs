@@ -35,7 +35,7 @@ fn tool(text: &str) -> Box<Checked> {
     compiled.into_tool().unwrap_or_else(|| panic!("{text}\n{reports}"))
 }
 
-/// What the proof warns of, beside the place in the text that it warns at.
+/// The warnings of the proof, each with the text that it points at.
 #[track_caller]
 fn warned(text: &str) -> Vec<(String, String)> {
     let tool = tool(text);

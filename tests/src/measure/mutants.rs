@@ -38,7 +38,7 @@ pub struct Mutant {
     pub tool: Checked,
 }
 
-/// What shows that a mutant is broken.
+/// The evidence that a mutant is broken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Caught {
     /// An error.
@@ -183,8 +183,8 @@ pub fn changes(whole: &Checked, broken: &Checked, seed: u64) -> bool {
     })
 }
 
-/// What shows that a tool is broken: what is reported of it, or else how its certificate differs from that of the whole
-/// tool, of which nothing may be reported.
+/// Returns the evidence that a tool is broken: the reports of its own certificate, or else a difference from that of the
+/// whole tool. The whole tool must have no report.
 pub fn caught(whole: &Certificate, mutant: &Checked) -> Caught {
     let broken = Certificate::of(mutant);
     let reports = broken.reports(mutant);

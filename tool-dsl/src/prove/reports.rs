@@ -1,4 +1,4 @@
-//! What is proved to be wrong with a tool and what is left open, in words.
+//! Reports of a certificate: errors and warnings that are proved, and a warning of proofs that stay open.
 
 use super::{Border, Certificate};
 use crate::Checked;
@@ -9,14 +9,14 @@ use crate::source::Span;
 use std::f64::consts::PI;
 
 impl Certificate {
-    /// What is wrong with a tool or undecided: errors with a counterexample, warnings with a point or a box.
+    /// Returns all reports: errors with a counterexample, warnings with a point or a box.
     pub fn reports(&self, tool: &Checked) -> Vec<Report> {
         let mut reports = self.certain(tool);
         reports.extend(self.undecided(tool));
         reports
     }
 
-    /// What is wrong at a point, which more boxes would not change.
+    /// Returns the reports of single points, which more boxes would not change.
     pub(super) fn certain(&self, tool: &Checked) -> Vec<Report> {
         let model = &tool.model;
         let mut reports: Vec<Report> = Vec::new();
@@ -50,7 +50,7 @@ impl Certificate {
         reports
     }
 
-    /// What is not proved, and might be in more boxes.
+    /// Returns the reports of proofs that stay open, and might not in more boxes.
     fn undecided(&self, tool: &Checked) -> Vec<Report> {
         let model = &tool.model;
         let mut reports = Vec::new();

@@ -12,7 +12,7 @@ const STRAIGHT: f64 = 1e-4;
 /// A value that is certain at a point, and the point.
 type At = (f64, [f64; 3]);
 
-/// What is certain of a region at single points.
+/// The facts about a region that are certain at single points.
 #[derive(Clone, Default)]
 pub(super) struct Certain {
     /// The largest angle between the direction and the steepest way out.

@@ -27,7 +27,7 @@ const ITEMS: [&str; 13] = [
     "magnitude",
     "niceness",
 ];
-/// What a direction and a niceness may be allowed.
+/// The words behind `allow`, of a direction and of a niceness.
 pub(super) const OBLIQUE: &str = "oblique";
 pub(super) const RISING: &str = "rising";
 const PROPERTIES: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
