@@ -65,24 +65,11 @@ fn a_direction_that_is_not_the_steepest_way_out_is_warned_of() {
 #[test]
 fn the_largest_angle_is_given_with_its_place() {
     // Straight where z is small, and ever more oblique above.
-    let said = warned(&pin("direction: (40, z);"));
-    let message = &said[0].0;
-    let angle: f64 = message
-        .split("is ")
-        .nth(1)
-        .and_then(|rest| rest.split('°').next())
-        .unwrap()
-        .parse()
-        .unwrap();
-    let z: f64 = message
-        .rsplit(", ")
-        .next()
-        .and_then(|rest| rest.strip_suffix(')'))
-        .unwrap()
-        .parse()
-        .unwrap();
-    assert!((angle.to_radians().tan() - z / 40.0).abs() < 1e-5, "{message}");
-    assert!(z > 38.0, "{message}");
+    let tool = tool(&pin("direction: (40, z);"));
+    let facts = &Certificate::of(&tool).regions[2];
+    let (angle, [_, _, z]) = facts.oblique.expect("the direction is oblique");
+    assert!((angle.tan() - z / 40.0).abs() < 1e-12 && z > 38.0, "{angle} at {z}");
+    assert!(facts.aside.is_some_and(|aside| aside.high >= angle));
 }
 
 #[test]

@@ -11,6 +11,7 @@ use crate::source::Span;
 use crate::syntax::tree::{Direction, Expr, Region, Tuple};
 
 /// A direction that is no unit vector yet, where it is said and where it comes from.
+#[derive(Clone, Copy)]
 pub(super) struct Course {
     pub(super) parts: [Id; 3],
     pub(super) span: Span,
