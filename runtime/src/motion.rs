@@ -111,8 +111,8 @@ mod tests {
             judge(&from, &Pose::from_axis(tip, nudged).expect("an axis"));
             judge(&from, &Pose::from_axis(tip + from.axis() * uniform(), axis).expect("an axis"));
         }
-        // Five units of roundoff as measured; built on rounding along the axis it was twenty.
-        assert!(worst < 3e-15, "{worst:e}");
+        // What a certifier counts on. Built on rounding along the axis it was twenty.
+        assert!(worst <= 8.0 * 0.5 * f64::EPSILON, "{worst:e}");
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::answer::{Along, Witness};
 use super::body::Body;
 use super::containment::{Containment, Cores};
 use super::question::Question;
+use super::rounding;
 use super::sweep::{Stop, Sweeper, Task};
 use super::triangle::course::Goal;
 use super::work::{Setting, Work};
@@ -18,7 +19,7 @@ use crate::tool::{Card, Shape};
 
 /// How far a place is known on a way, in the tool's unit: rounding grows with the way.
 pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
-    setting.error + 64.0 * f64::EPSILON * motion.way().norm() / setting.length
+    setting.error + rounding::far(motion.way().norm() / setting.length)
 }
 
 /// How often a sweep is asked for something deeper than what is known.

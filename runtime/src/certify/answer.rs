@@ -2,12 +2,12 @@
 
 use nalgebra::Point3;
 
-/// A tool of which nothing can be certified: it has no profile that is a function of z, so that its distance
+/// A tool of which nothing can be certified: it has no profile, so that its distance
 /// is not known, and of the depth that its file says it is not proved how fast it changes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{tool} cannot be certified: it has no profile that is a function of z, and how fast its depth changes is \
-     not proved; draw its `profile {{ … }}`, or see what `touchoff check` says of it"
+    "{tool} cannot be certified: it has no profile, and how fast its depth changes is not \
+     proved; draw its `profile {{ … }}`, or see what `touchoff check` says of it"
 )]
 pub struct Uncertified {
     /// Its name.
@@ -30,7 +30,7 @@ pub enum AllowanceError {
     /// It is not known which of its surfaces is the nearest to a place.
     #[error(
         "of {tool} it is not known which surface is the nearest to a place, so none can be allowed for: it has no \
-         profile that is a function of z"
+         profile"
     )]
     NoOwner {
         /// The tool's name.

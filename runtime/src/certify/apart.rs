@@ -4,6 +4,7 @@ use super::Certifier;
 use super::answer::Clearance;
 use super::body::Body;
 use super::question::Question;
+use super::rounding;
 use super::triangle::course::Goal;
 use super::work::{Setting, Work};
 use crate::pose::Pose;
@@ -73,7 +74,7 @@ fn distance(
     }
     let unsure = work.search.open();
     // Rounding grows with the distance.
-    let error = setting.error + 64.0 * f64::EPSILON * work.far();
+    let error = setting.error + rounding::far(work.far());
     // Written so that what is not a number is no tolerance.
     let tolerance = (4.0 * error).max(tolerance / setting.length);
     let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];

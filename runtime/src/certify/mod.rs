@@ -11,7 +11,8 @@
 //! in it on which depth can be greatest (`facet`, `course`).
 //!
 //! **Rounding.** Every place is known to within a part in 2^46 of the tool's and the part's size, and
-//! answers are widened by that. Thin triangles are known less well: their *skew* is added.
+//! answers are widened by that. Thin triangles are known less well: their *skew* is added. `rounding` derives
+//! both.
 
 mod along;
 mod answer;
@@ -21,6 +22,7 @@ mod bounds;
 mod containment;
 mod part;
 mod question;
+mod rounding;
 mod space;
 mod sweep;
 mod triangle;
@@ -121,7 +123,7 @@ impl<'a> Certifier<'a> {
         let length = card.unit.to(facets.unit());
         let sight = Sight::new(&facets.frame, card, length);
         let part = f64::from(facets.frame.size) * facets.frame.scale / length;
-        let error = 64.0 * f64::EPSILON * (card.size() + part);
+        let error = rounding::place(card.size(), part);
         let (body, error) = match Section::new(card, error) {
             Some(section) => (Body::Profile(section), error),
             None => match Field::new(tool, level) {
@@ -179,7 +181,7 @@ impl<'a> Certifier<'a> {
     ///
     /// # Errors
     /// If there is no such surface, or the allowance is not a number or keeps infinitely far, or it is not
-    /// known which surface of the tool is the nearest, since it has no profile or that overhangs.
+    /// known which surface of the tool is the nearest, since it has no profile.
     pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Certifier<'a>, AllowanceError> {
         if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });

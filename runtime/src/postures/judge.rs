@@ -122,7 +122,7 @@ impl<'a> Judge<'a> {
     ///
     /// # Errors
     /// Of a tool whose depth is not known, or of whose surfaces it is not known which is the nearest to a
-    /// place: without a profile, or with one that is no function of z. Rules that mean nothing.
+    /// place: without a profile. Rules that mean nothing.
     pub fn new(
         facets: &'a Facets,
         tool: &'a dyn Tool,

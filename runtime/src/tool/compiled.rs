@@ -1,7 +1,7 @@
 //! Tools that the macros compile.
 
 use super::{
-    Ask, Card, Dual, Felt, LANES, Lane, Number, Points, Senses, Slopes, Tool, Wanted,
+    Ask, Card, Dual, Enclosed, Felt, LANES, Lane, Number, Points, Senses, Slopes, Tool, Wanted,
     number::Floats, on_vectors, present,
 };
 use fearless_simd::{Level, Simd};
@@ -33,6 +33,11 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     /// Distance from a point outside to the tool, in the file's unit, as [`Tool::clearance`] says.
     fn clearance(point: [f64; 3]) -> f64;
 
+    /// What is felt in a box, of a tool that has no profile: see [`Tool::enclose`].
+    fn enclose(_sides: [[f64; 2]; 3]) -> Option<Enclosed> {
+        None
+    }
+
     /// What is asked for at those of the points that are `present`, if they belong to the solid.
     fn feel_lanes<L: Lane>(point: [L; 3], length: L, present: L::Mask, ask: Ask) -> FeltLanes<L>;
 }
@@ -55,7 +60,7 @@ impl<L: Lane> FeltLanes<L> {
     /// Nothing felt, to begin with.
     #[inline(always)]
     pub fn nothing(like: L, none: L::Mask) -> FeltLanes<L> {
-        let zero = like.of(0.0);
+        let zero = like.none();
         FeltLanes {
             inside: none,
             depth: zero,
@@ -71,7 +76,7 @@ impl<L: Lane> FeltLanes<L> {
     #[inline(always)]
     pub fn take(&mut self, lanes: L::Mask, region: L) {
         self.inside = self.inside | lanes;
-        self.region = L::select(lanes, region, self.region);
+        self.region = L::pick(lanes, region, self.region);
     }
 }
 
@@ -88,6 +93,10 @@ impl<T: Evaluators> Tool for T {
         felt.reserve(points, ask);
         on_vectors!(level, simd => lanes::<T, f64, _>(simd, ask, points, length, felt));
         one_by_one::<T>(ask, points, length, felt);
+    }
+
+    fn enclose(&self, sides: [[f64; 2]; 3], _: &mut Felt) -> Option<Enclosed> {
+        T::enclose(sides)
     }
 
     fn slopes(&self, point: [f64; 3], length: f64, _: &mut Felt) -> Slopes {

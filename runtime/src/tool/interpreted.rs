@@ -1,8 +1,8 @@
 //! Tools that are loaded at run time.
 
 use super::{
-    Ask, Card, Circle, Depth, Dual, Felt, LANES, Lane, Piece, Points, Region, Senses, Shape, Slab,
-    Slopes, Surface, Tool, Wanted,
+    Ask, Card, Circle, Depth, Dual, Enclosed, Enclosure, Felt, LANES, Lane, Maybe, Piece, Points,
+    Region, Senses, Shape, Slab, Slopes, Surface, Tool, Wanted,
 };
 use crate::Unit;
 use fearless_simd::{Level, Simd, dispatch};
@@ -147,6 +147,16 @@ impl Tool for Interpreted {
         ));
     }
 
+    fn enclose(&self, sides: [[f64; 2]; 3], room: &mut Felt) -> Option<Enclosed> {
+        if !self.card.outline.is_empty() {
+            return None;
+        }
+        let (point, one) = (Enclosure::of_box(sides), Enclosure::constant(1.0));
+        let mut found = Enclosed::nothing();
+        self.walk.each_owner(point, one, &mut room.enclosures, |owner| found.take(owner));
+        Some(found)
+    }
+
     fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes {
         let mut results = [Dual::default(); OUTPUTS];
         let duals = (Dual::point(point), Dual::constant(length));
@@ -169,14 +179,52 @@ impl Value for Dual {
     fn of(value: f64) -> Dual {
         Dual::constant(value)
     }
-    fn number(self) -> f64 {
-        self.value
-    }
     fn sqrt(self) -> Dual {
         Lane::sqrt(self)
     }
     fn abs(self) -> Dual {
         Lane::abs(self)
+    }
+    fn le(a: Dual, b: Dual) -> [bool; 2] {
+        Value::le(a.value, b.value)
+    }
+    fn lt(a: Dual, b: Dual) -> [bool; 2] {
+        Value::lt(a.value, b.value)
+    }
+}
+
+impl Default for Enclosure {
+    fn default() -> Enclosure {
+        Enclosure::constant(0.0)
+    }
+}
+
+impl Value for Enclosure {
+    fn of(value: f64) -> Enclosure {
+        Enclosure::constant(value)
+    }
+    fn sqrt(self) -> Enclosure {
+        Lane::sqrt(self)
+    }
+    fn abs(self) -> Enclosure {
+        Lane::abs(self)
+    }
+    fn le(a: Enclosure, b: Enclosure) -> [bool; 2] {
+        let Maybe { yes, no } = Lane::le(a, b);
+        [yes, no]
+    }
+    fn lt(a: Enclosure, b: Enclosure) -> [bool; 2] {
+        let Maybe { yes, no } = Lane::lt(a, b);
+        [yes, no]
+    }
+    fn either(self, other: Enclosure) -> Enclosure {
+        self.hull(other)
+    }
+    fn min(a: Enclosure, b: Enclosure) -> Enclosure {
+        Lane::min(a, b)
+    }
+    fn max(a: Enclosure, b: Enclosure) -> Enclosure {
+        Lane::max(a, b)
     }
 }
 

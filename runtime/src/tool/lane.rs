@@ -26,6 +26,11 @@ pub trait Lane:
 
     /// A constant in all the lanes that `self` has.
     fn of(self, value: f64) -> Self;
+    /// What stands where nothing is selected.
+    #[inline(always)]
+    fn none(self) -> Self {
+        self.of(0.0)
+    }
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.
@@ -49,6 +54,12 @@ pub trait Lane:
     #[inline(always)]
     fn max(a: Self, b: Self) -> Self {
         Self::select(Self::lt(b, a), a, b)
+    }
+
+    /// [`Lane::select`] for the numbers of regions.
+    #[inline(always)]
+    fn pick(mask: Self::Mask, region: Self, before: Self) -> Self {
+        Self::select(mask, region, before)
     }
 
     /// `a / b`, and 0 where `b` is 0.

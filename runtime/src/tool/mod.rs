@@ -6,6 +6,7 @@
 mod card;
 mod compiled;
 mod dual;
+mod enclosure;
 #[cfg(feature = "interpreter")]
 mod interpreted;
 mod lane;
@@ -14,6 +15,7 @@ mod number;
 pub use card::{Card, Circle, Depth, Piece, Region, Shape, Slab, Surface};
 pub use compiled::{Evaluators, FeltLanes};
 pub use dual::Dual;
+pub use enclosure::{Enclosed, Enclosure, Maybe};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
@@ -74,6 +76,12 @@ pub trait Tool: Send + Sync {
     /// How what is felt at a point inside changes with where it is: as the region says that it belongs to, on
     /// borders too. `room` is kept between calls.
     fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes;
+
+    /// What is felt in a box of the tool's frame, its sides from one end to another: enclosed in real
+    /// arithmetic, of the expressions as they are evaluated. The box of a tool with an axis lies in the half
+    /// plane `y = 0`, `x ≥ 0`. `None` of a tool that has a profile, of which more is known. `room` is kept
+    /// between calls.
+    fn enclose(&self, sides: [[f64; 2]; 3], room: &mut Felt) -> Option<Enclosed>;
 
     /// Reserves in `felt` the memory that the tool itself keeps there between calls of
     /// [`Tool::evaluate`] and [`Tool::slopes`], so that they allocate none. A tool that keeps nothing
@@ -262,6 +270,9 @@ pub struct Felt<N = f64> {
     /// What it remembers of a point and of how all changes there.
     #[cfg(feature = "interpreter")]
     pub(crate) duals: tool_dsl::interpret::Scratch<Dual>,
+    /// What it remembers of a box.
+    #[cfg(feature = "interpreter")]
+    pub(crate) enclosures: tool_dsl::interpret::Scratch<Enclosure>,
     /// What it remembers of a block of points.
     #[cfg(feature = "interpreter")]
     pub(crate) lanes: tool_dsl::interpret::Registers,

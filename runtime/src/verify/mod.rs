@@ -78,8 +78,8 @@ impl<'a> Verifier<'a> {
     /// A verifier of a tool beside a part, with a tolerance of 0.
     ///
     /// # Errors
-    /// If of the tool it is not known which surface is the nearest to a place, as it has no profile or that
-    /// overhangs.
+    /// If of the tool it is not known which surface is the nearest to a place, as it has no
+    /// profile.
     pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Verifier<'a>, VerifyError> {
         let card = tool.card();
         let certifier = Certifier::new(facets, tool)?;

@@ -1,6 +1,6 @@
 //! Allowances of surfaces, and how deep each is: against the oracle's owners, and where geometry says it.
 
-use crate::{plate, pose, tool};
+use crate::{oracle, overhang, plate, pose, tool};
 use nalgebra::Point3;
 use touchoff::certify::{AllowanceError, Certifier, Clear, Facets, Sweep, Witness};
 use touchoff::mesh::shapes;
@@ -8,11 +8,21 @@ use touchoff::{Mesh, Motion, Pose, Tool, Unit};
 use touchoff_tests::measure::certified::brute::Brute;
 use touchoff_tests::measure::certified::owned::Owned;
 use touchoff_tests::measure::certified::{poses, ways};
-use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::draw::Draw;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
-const TOOLS: [&str; 6] = ["Fig73Exact", "BullNose", "TSlot", "BallEr16", "Lollipop", "Barrel"];
+const TOOLS: [&str; 10] = [
+    "Fig73Exact",
+    "BullNose",
+    "TSlot",
+    "BallEr16",
+    "Lollipop",
+    "Barrel",
+    "FaceMill",
+    "Dished",
+    "Bell",
+    "Skirt",
+];
 
 /// Poses and ways of each part and tool.
 const POSES: usize = 6;
@@ -42,7 +52,7 @@ fn everywhere(tools: &[&str], mut ask: impl FnMut(&str, &Facets, &Owned<'_>, &mu
     for (_, mesh) in poses::parts().expect("parts") {
         let facets = Facets::new(&mesh);
         for name in tools {
-            let oracle = Nearest::of(name);
+            let oracle = oracle(name);
             let length = tool(name).card().unit.to(mesh.unit());
             let brute = Brute::new(&mesh, &oracle, length);
             let names = names(tool(name));
@@ -83,6 +93,12 @@ fn no_sample_of_a_surface_is_deeper_than_it_was_said_to_be() {
 fn nor_is_one_of_a_corner() {
     let owners = each_surface(&["BullNose", "Barrel", "CornerRounding"]);
     assert!(owners > 60, "{owners}");
+}
+
+#[test]
+fn nor_is_one_of_a_profile_that_overhangs() {
+    let owners = each_surface(&[&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat());
+    assert!(owners > 100, "{owners}");
 }
 
 /// Asks how deep each surface is; of how many surfaces and poses samples were.

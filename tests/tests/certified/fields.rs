@@ -7,9 +7,9 @@ use touchoff::mesh::shapes;
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Motion, Pose, Unit};
 use touchoff_tests::oracle::draw::Draw;
-use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Nearest, Oracle, UnitSphere};
+use touchoff_tests::oracle::{Block, Cylinder, Fig73, LBracket, Oracle, UnitSphere};
 
-/// Every tool of the library that has no profile, or one that overhangs, and what is true of it.
+/// Every tool of the library that has no profile, and what is true of it.
 fn all() -> Vec<(&'static str, Box<dyn Oracle>)> {
     vec![
         ("Fig73", Box::new(Fig73::default())),
@@ -17,8 +17,6 @@ fn all() -> Vec<(&'static str, Box<dyn Oracle>)> {
         ("UnitSphere", Box::new(UnitSphere)),
         ("Block", Box::new(Block)),
         ("LBracket", Box::new(LBracket)),
-        ("BoringBar", Box::new(Nearest::of("BoringBar"))),
-        ("FaceMill", Box::new(Nearest::of("FaceMill"))),
     ]
 }
 

@@ -9,6 +9,7 @@ mod closed_forms;
 mod end_in_part;
 mod fields;
 mod hard_cases;
+mod overhang;
 mod ring_of_ties;
 mod sweeps;
 
@@ -22,8 +23,14 @@ use touchoff_tests::oracle::Nearest;
 const POSES: usize = 24;
 const SEED: u64 = 2;
 
+/// A tool of the library, or one of [`overhang`].
 fn tool(name: &str) -> &'static dyn Tool {
-    tools_library::find(name).expect("a tool of the library")
+    tools_library::find(name).or_else(|| overhang::tool(name)).expect("a tool")
+}
+
+/// The same from its drawing's numbers.
+fn oracle(name: &str) -> Nearest {
+    overhang::oracle(name).unwrap_or_else(|| Nearest::of(name))
 }
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
@@ -48,7 +55,7 @@ fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
     for (part, mesh) in poses::parts().expect("parts") {
         let facets = Facets::new(&mesh);
         for (k, name) in names.iter().enumerate() {
-            let oracle = Nearest::of(name);
+            let oracle = oracle(name);
             let (mesh, facets) = (&mesh, &facets);
             let pair = Pair { part, mesh, facets, tool: tool(name), oracle: &oracle };
             let row = pair.measure(each, seed + k as u64);
@@ -63,6 +70,13 @@ fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
 fn brute_force_finds_nothing_outside_the_intervals() {
     let tools = ["Fig73Exact", "BullNose", "TSlot", "BallEr16", "TaperedBall"];
     let violations = violations(&tools, POSES, SEED);
+    assert!(violations.is_empty(), "{violations:#?}");
+}
+
+#[test]
+fn nor_where_a_profile_overhangs() {
+    let tools = [&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat();
+    let violations = violations(&tools, POSES, 7);
     assert!(violations.is_empty(), "{violations:#?}");
 }
 

@@ -44,6 +44,14 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
     let card = card(tool);
     let scalar = scalar(tool);
     let lanes = felt::felt(tool);
+    // Of a profile more is known.
+    let enclose = tool.model.outline().next().is_none().then(|| {
+        quote! {
+            fn enclose(sides: [[f64; 2]; 3]) -> Option<Enclosed> {
+                Some(Enclosed::of::<Self>(sides))
+            }
+        }
+    });
     quote! {
         #[doc = #docs]
         #drawing
@@ -53,13 +61,14 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
         #[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, unused_parens)]
         const _: () = {
             use ::touchoff::tool::{
-                Ask, Card, Circle, Depth, Evaluators, FeltLanes, Lane, Piece, Region, Shape, Slab,
-                Surface,
+                Ask, Card, Circle, Depth, Enclosed, Evaluators, FeltLanes, Lane, Piece, Region, Shape,
+                Slab, Surface,
             };
 
             impl Evaluators for #name {
                 #card
                 #scalar
+                #enclose
                 #lanes
             }
         };

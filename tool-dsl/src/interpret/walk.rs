@@ -44,26 +44,59 @@ pub trait Value:
 {
     /// A constant.
     fn of(value: f64) -> Self;
-    /// The number, by which ways part.
-    fn number(self) -> f64;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
+    /// Whether `a ≤ b` may be, and whether it may not be; of numbers one of the two.
+    fn le(a: Self, b: Self) -> [bool; 2];
+    /// The same of `a < b`.
+    fn lt(a: Self, b: Self) -> [bool; 2];
+    /// What lies between two of which it is not known which one counts.
+    #[must_use]
+    fn either(self, _other: Self) -> Self {
+        self
+    }
+
+    /// The smaller; `b` where they are equal.
+    #[must_use]
+    fn min(a: Self, b: Self) -> Self {
+        pick(Self::lt(a, b), a, b)
+    }
+
+    /// The larger; `b` where they are equal.
+    #[must_use]
+    fn max(a: Self, b: Self) -> Self {
+        pick(Self::lt(b, a), a, b)
+    }
+}
+
+/// The first where a test succeeds, the second where it fails.
+fn pick<V: Value>([yes, no]: [bool; 2], then: V, other: V) -> V {
+    match (yes, no) {
+        (true, true) => then.either(other),
+        (true, false) => then,
+        (false, _) => other,
+    }
 }
 
 impl Value for f64 {
     fn of(value: f64) -> f64 {
         value
     }
-    fn number(self) -> f64 {
-        self
-    }
     fn sqrt(self) -> f64 {
         f64::sqrt(self)
     }
     fn abs(self) -> f64 {
         f64::abs(self)
+    }
+    fn le(a: f64, b: f64) -> [bool; 2] {
+        let is = a <= b;
+        [is, !is]
+    }
+    fn lt(a: f64, b: f64) -> [bool; 2] {
+        let is = a < b;
+        [is, !is]
     }
 }
 
@@ -140,7 +173,7 @@ impl Walk {
                 Fork::Owner(owner) => break *owner,
                 Fork::Test { curve, strict, above } => {
                     let value = self.value(&self.curves[*curve], point, length, scratch);
-                    let below = below(value, *strict);
+                    let [below, _] = below(value, *strict);
                     at = if below { at + 1 } else { *above };
                 }
             }
@@ -149,6 +182,32 @@ impl Walk {
         *first = V::of(owner.map_or(-1.0, |owner| owner as f64));
         let Some(owner) = owner else { return };
         self.felt_in(owner, point, length, scratch, rest);
+    }
+
+    /// Visits each owner that a point may have whose coordinates are known to lie between ends, `None` outside,
+    /// with its depth.
+    pub fn each_owner<V: Value>(
+        &self,
+        point: [V; 3],
+        length: V,
+        scratch: &mut Scratch<V>,
+        mut visit: impl FnMut(Option<(usize, V)>),
+    ) {
+        scratch.start(self.operations.len());
+        let mut open = vec![0];
+        while let Some(at) = open.pop() {
+            match &self.forks[at] {
+                Fork::Owner(owner) => visit(owner.map(|owner| {
+                    (owner, self.value(&self.regions[owner][0], point, length, scratch))
+                })),
+                Fork::Test { curve, strict, above } => {
+                    let value = self.value(&self.curves[*curve], point, length, scratch);
+                    let [is_below, is_above] = below(value, *strict);
+                    open.extend(is_above.then_some(*above));
+                    open.extend(is_below.then_some(at + 1));
+                }
+            }
+        }
     }
 
     /// The owners of the first points of a block: a region's place in the list, -1 outside. Only what
@@ -282,8 +341,9 @@ fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<Fork>) {
     }
 }
 
-fn below<V: Value>(value: V, strict: bool) -> bool {
-    if strict { value.number() < 0.0 } else { value.number() <= 0.0 }
+/// Whether a value may be below 0, or at 0 if not strict, and whether it may not be.
+fn below<V: Value>(value: V, strict: bool) -> [bool; 2] {
+    if strict { V::lt(value, V::of(0.0)) } else { V::le(value, V::of(0.0)) }
 }
 
 #[inline(always)]
@@ -303,27 +363,21 @@ fn perform<V: Value>(operation: Operation, [x, y, z]: [V; 3], length: V, values:
         Operation::Sub(a, b) => v(a) - v(b),
         Operation::Mul(a, b) => v(a) * v(b),
         Operation::Div(a, b) => v(a) / v(b),
-        Operation::Quotient(_, b) if v(b).number() == 0.0 => V::of(0.0),
-        Operation::Quotient(a, b) => v(a) / v(b),
-        Operation::Min(a, b) if v(a).number() < v(b).number() => v(a),
-        Operation::Min(_, b) => v(b),
-        Operation::Max(a, b) if v(b).number() < v(a).number() => v(a),
-        Operation::Max(_, b) => v(b),
+        Operation::Quotient(a, b) => {
+            let zero = V::of(0.0);
+            let ([below, away], [above, beyond]) = (V::le(v(b), zero), V::le(zero, v(b)));
+            let is_zero = [below && above, away || beyond];
+            if is_zero == [true, false] { zero } else { pick(is_zero, zero, v(a) / v(b)) }
+        }
+        Operation::Min(a, b) => V::min(v(a), v(b)),
+        Operation::Max(a, b) => V::max(v(a), v(b)),
         Operation::Abs(a) => v(a).abs(),
         Operation::Sqrt(a) => v(a).sqrt(),
         Operation::Select { low, high, then, other } => {
-            if v(low).number() <= v(high).number() {
-                v(then)
-            } else {
-                v(other)
-            }
+            pick(V::le(v(low), v(high)), v(then), v(other))
         }
         Operation::Side { value, strict, then, other } => {
-            if below(v(value), strict) {
-                v(then)
-            } else {
-                v(other)
-            }
+            pick(below(v(value), strict), v(then), v(other))
         }
     }
 }

@@ -71,20 +71,44 @@ impl Feature {
         }
     }
 
-    /// Height of the centre and radius of a convex arc about the axis, in a tool of that size.
+    /// A ball about a place of the axis that holds that of a convex arc about the axis, in a tool of that
+    /// size: its height and radius.
     pub(crate) fn ball(&self, size: f64) -> Option<[f64; 2]> {
-        let about_axis = |circle: &Circle| circle.convex && circle.centre[0].abs() <= 1e-9 * size;
-        self.circle.filter(about_axis).map(|circle| [circle.centre[1], circle.radius])
+        let Circle { centre: [d, z], radius, convex } = self.circle?;
+        (convex && d.abs() <= 1e-9 * size).then_some([z, radius + d.abs()])
+    }
+
+    /// 1 where the tool is toward the axis, -1 where it is away from it.
+    fn sense(&self) -> f64 {
+        if self.ends[1][1] < self.ends[0][1] { -1.0 } else { 1.0 }
+    }
+
+    /// The distance from the axis at a height between its ends.
+    pub(crate) fn radius_at(&self, z: f64) -> f64 {
+        let [[d0, z0], [d1, z1]] = self.ends;
+        if z == z0 || z == z1 {
+            return if z == z0 { d0 } else { d1 };
+        }
+        let radius = match self.circle {
+            None => d0 + (d1 - d0) * ((z - z0) / (z1 - z0)),
+            Some(Circle { centre, radius, convex }) => {
+                let side = if convex { self.sense() } else { -self.sense() };
+                let up = z - centre[1];
+                centre[0] + side * ((radius - up) * (radius + up)).max(0.0).sqrt()
+            }
+        };
+        radius.clamp(d0.min(d1), d0.max(d1))
     }
 
     /// How far a place is on the tool's side of this, of the places of its heights: at least 0 just
-    /// inside. A convex arc is taken to go on level toward the axis, a hollow one away from it.
+    /// inside. A convex arc is taken to go on level into the tool, a hollow one out of it.
     #[inline]
     pub(crate) fn over(&self, p: Place) -> f64 {
         let Some(Circle { centre, radius, convex }) = self.circle else {
             return cross(self.along, minus(p, self.ends[0]));
         };
         let [d, z] = minus(p, centre);
+        let d = self.sense() * d;
         if convex {
             radius - norm([d.max(0.0), z])
         } else if d <= 0.0 {
@@ -99,19 +123,27 @@ impl Feature {
         let Some(Circle { centre, convex, .. }) = self.circle else {
             return [-self.along[1], self.along[0]];
         };
+        let sense = self.sense();
         let [d, z] = minus(p, centre);
+        let d = sense * d;
         let way = if convex { [-d.max(0.0), -z] } else { [d, z] };
         let far = norm(way);
-        if (!convex && d > 0.0) || far == 0.0 { [-1.0, 0.0] } else { way.map(|part| part / far) }
+        let [d, z] = if (!convex && d > 0.0) || far == 0.0 {
+            [-1.0, 0.0]
+        } else {
+            way.map(|part| part / far)
+        };
+        [sense * d, z]
     }
 
     /// No less than [`Feature::over`] at any place in a triangle.
     #[inline]
     pub(crate) fn over_at_most(&self, triangle: &Triangle) -> f64 {
         match &self.circle {
-            // Tangents that touch toward the axis bound nothing: the tool goes on there.
+            // Tangents that touch on the tool's side bound nothing: the tool goes on there.
             Some(circle) if circle.convex => {
-                below_tangents(circle, triangle, |[d, z]| [d.max(0.0), z])
+                let sense = self.sense();
+                below_tangents(circle, triangle, |[d, z]| [sense * (sense * d).max(0.0), z])
             }
             // Linear, or convex where it is not below 0.
             _ => most(triangle.map(|p| self.over(p))),

@@ -392,7 +392,7 @@ mod tests {
     /// Witnesses of a tool whose surfaces have limits by name; all others may be as deep as they will.
     fn of(tool: &dyn Tool, limits: &[(&str, f64)]) -> Vec<Witness> {
         let card = tool.card();
-        let section = Section::new(card, 1e-12).expect("a function of z");
+        let section = Section::new(card, 1e-12).expect("a profile");
         let limit = |feature: &Feature| {
             let name = &*card.surfaces[feature.surface].name;
             limits
@@ -420,14 +420,14 @@ mod tests {
 
     #[test]
     fn the_greatest_depth_is_that_of_the_middle() {
-        let section = Section::new(Dumbbell.card(), 1e-12).expect("a function of z");
+        let section = Section::new(Dumbbell.card(), 1e-12).expect("a profile");
         let of = |surface: usize| Owners::of(&section, |k| k == surface).greatest_depth(&section);
         // The middle of a cylinder of 3 mm radius, the neck's, and again.
         for (surface, depth) in [(0, 3.0), (2, 3.0)] {
             assert!((0.99 * depth..=depth).contains(&of(surface)), "{surface}: {}", of(surface));
         }
         assert!((1.0..3.0).contains(&of(1)), "{}", of(1));
-        let section = Section::new(Slender.card(), 1e-12).expect("a function of z");
+        let section = Section::new(Slender.card(), 1e-12).expect("a profile");
         for surface in 0..3 {
             let depth = Owners::of(&section, |k| k == surface).greatest_depth(&section);
             assert!((0.495..=0.5).contains(&depth), "{surface}: {depth}");

@@ -23,7 +23,7 @@ struct Rectangle {
 impl Rectangle {
     /// All between a slab's heights that may be inside.
     fn of(slab: &Slab) -> Rectangle {
-        Rectangle { low: [0.0, slab.low], high: [slab.radius, slab.high] }
+        Rectangle { low: [slab.hole, slab.low], high: [slab.radius, slab.high] }
     }
 
     fn corners(&self) -> [Place; 4] {

@@ -1,8 +1,9 @@
 //! A tool's section as its profile bounds it: exact distances in the half plane, and slabs between
 //! heights that say which pieces can matter there.
 //!
-//! Places are `[d, z]` in the tool's frame and unit. The profile is a function of z, so that a slab
-//! holds what lies between the axis and one piece, its *side*.
+//! Places are `[d, z]` in the tool's frame and unit. A slab holds what lies, between two heights, on
+//! the axis' side of one piece, its *side*: as far as the axis, or to another piece, its *inner* side,
+//! where the profile overhangs. No piece ends between a slab's heights.
 
 use crate::certify::body::feature::{Feature, Place, Triangle, cross, dot, minus, norm, quarters};
 use crate::certify::body::owners::Owners;
@@ -15,6 +16,12 @@ pub(crate) struct Slab {
     pub(crate) high: f64,
     /// The feature that bounds it away from the axis.
     pub(crate) side: usize,
+    /// The feature that bounds it toward the axis, if it does not reach that.
+    inner: Option<usize>,
+    /// The least radius.
+    pub(crate) hole: f64,
+    /// The radii of its side at both heights.
+    radii: [f64; 2],
     /// The features that can be the nearest to a place in it.
     near: Vec<usize>,
     /// The largest radius.
@@ -45,20 +52,13 @@ pub(crate) struct Depth {
 }
 
 impl Section {
-    /// The section of a tool with a profile; `None` where that is not a function of z.
+    /// The section of a tool with a profile; `None` without one.
     pub(crate) fn new(card: &Card, error: f64) -> Option<Section> {
         let features: Vec<Feature> = card.outline.iter().flat_map(quarters).collect();
         let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
-        let level = 4.0 * f64::EPSILON * size;
-        let rise = |f: &Feature| f.ends[1][1] - f.ends[0][1];
-        if features.is_empty() || features.iter().any(|f| rise(f) < -level) {
+        let slabs = slabs(&features, 4.0 * f64::EPSILON * size);
+        if slabs.is_empty() {
             return None;
-        }
-        let sides = (0..features.len()).filter(|k| rise(&features[*k]) > level);
-        let mut slabs: Vec<Slab> = sides.map(|side| Slab::new(&features, side)).collect();
-        // What is level is left out; there shall be no gap.
-        for k in 1..slabs.len() {
-            slabs[k].low = slabs[k].low.min(slabs[k - 1].high);
         }
         let mut section = Section { features, slabs, size, error };
         for slab in 0..section.slabs.len() {
@@ -72,9 +72,15 @@ impl Section {
     /// of a slab.
     fn feet(&self, line: &Feature, slab: usize) -> [f64; 2] {
         let at = |z: f64| (z - line.ends[0][1]) / line.along[1];
+        let Slab { low, high, .. } = self.slabs[slab];
         let inside = |other: &&Slab| !self.outside(line, other);
         let below = self.slabs[..slab].iter().rev().find(inside);
         let above = self.slabs[slab + 1..].iter().find(inside);
+        let beside = |other: Option<&Slab>| other.is_some_and(|o| o.low < high && low < o.high);
+        if beside(below) || beside(above) {
+            // The tool goes on beyond a gap: only feet on the side itself are known to be on the surface.
+            return [0.0, line.length];
+        }
         [
             below.map_or(f64::NEG_INFINITY, |other| at(other.high).min(0.0)),
             above.map_or(f64::INFINITY, |other| at(other.low).max(line.length)),
@@ -86,9 +92,8 @@ impl Section {
         let slope = line.along[0] / line.along[1];
         let radius = |z: f64| line.ends[0][0] + slope * (z - line.ends[0][1]);
         let (low, high) = (radius(slab.low), radius(slab.high));
-        let side = &self.features[slab.side];
-        match side.circle {
-            None => low >= side.ends[0][0] && high >= side.ends[1][0],
+        match self.features[slab.side].circle {
+            None => low >= slab.radii[0] && high >= slab.radii[1],
             Some(_) => low.min(high) >= slab.radius,
         }
     }
@@ -96,11 +101,10 @@ impl Section {
     /// Whether no place of a slab is deeper than its distance from a line that touches the slab's side:
     /// the feet of all are on the surface or outside.
     pub(crate) fn covers(&self, line: &Feature, slab: usize) -> bool {
-        let Slab { low, high, side, .. } = self.slabs[slab];
+        let Slab { low, high, hole, radii, .. } = self.slabs[slab];
         let [from, to] = self.feet(line, slab);
-        let ends = self.features[side].ends;
-        let mut corners = [[0.0, low], [0.0, high], ends[0], ends[1]].into_iter();
-        corners.all(|p| {
+        let corners = [[hole, low], [hole, high], [radii[0], low], [radii[1], high]];
+        corners.into_iter().all(|p| {
             let at = dot(line.along, minus(p, line.ends[0]));
             from <= at && at <= to
         })
@@ -132,22 +136,25 @@ impl Section {
 
     /// Whether a place is inside or on the surface.
     pub(crate) fn contains(&self, p: Place) -> bool {
-        let inside = |slab: &Slab| {
-            (slab.low..=slab.high).contains(&p[1]) && self.features[slab.side].over(p) >= 0.0
-        };
+        let inside =
+            |slab: &Slab| (slab.low..=slab.high).contains(&p[1]) && self.over(slab, p).0 >= 0.0;
         self.slabs.iter().any(inside)
+    }
+
+    /// How far a place is on the tool's side of a slab's sides, and of which it is less so.
+    #[inline]
+    fn over(&self, slab: &Slab, p: Place) -> (f64, usize) {
+        let of = |side: usize| (self.features[side].over(p), side);
+        let outer = of(slab.side);
+        slab.inner.map(of).filter(|inner| inner.0 < outer.0).unwrap_or(outer)
     }
 
     /// How deep a place is; below 0 or nothing outside.
     pub(crate) fn depth_at(&self, owners: &Owners, p: Place) -> Option<Depth> {
-        let slab = self.from(p[1]).first().filter(|slab| slab.low - self.error <= p[1])?;
-        let depth = self.depth(owners, slab, p);
-        // What is level belongs to the slabs on both its sides.
-        let above = self.from(p[1]).get(1).filter(|above| above.low - self.error <= p[1]);
-        match above {
-            Some(above) if depth.value < 0.0 => Some(self.depth(owners, above, p)),
-            _ => Some(depth),
-        }
+        // Several slabs are at a height where the profile overhangs, or where they meet.
+        let here = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
+        let depths = here.map(|slab| self.depth(owners, slab, p));
+        depths.reduce(|one, other| if other.value > one.value { other } else { one })
     }
 
     /// The distance of a place from the profile.
@@ -177,12 +184,11 @@ impl Section {
     /// How deep a place in a slab is; less than 0 outside, and nothing where other features are the nearest.
     #[inline]
     pub(crate) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
-        let side = &self.features[slab.side];
-        let over = side.over(p);
+        let (over, side) = self.over(slab, p);
         if over < 0.0 {
             let other = -over <= self.touch() && self.apart(owners, |f| f.away(p));
             let value = if other { f64::NEG_INFINITY } else { over };
-            return Depth { value, gradient: side.inward(p), feature: slab.side };
+            return Depth { value, gradient: self.features[side].inward(p), feature: side };
         }
         let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
         let gradient = self.features[feature].outward(p);
@@ -218,12 +224,14 @@ impl Section {
         enough: f64,
     ) -> f64 {
         let side = &self.features[slab.side];
-        let over = side.over_at_most(triangle);
+        let out = side.over_at_most(triangle);
+        let over =
+            slab.inner.map_or(out, |inner| out.min(self.features[inner].over_at_most(triangle)));
         if over < 0.0 {
             let other = over > enough && self.apart(owners, |f| f.at_least(triangle));
             return if other { f64::NEG_INFINITY } else { over };
         }
-        let mut bound = if side.square(triangle, slab.feet) { over } else { f64::INFINITY };
+        let mut bound = if side.square(triangle, slab.feet) { out } else { f64::INFINITY };
         for near in &slab.near {
             if bound <= enough {
                 return bound;
@@ -295,17 +303,51 @@ impl Section {
     }
 }
 
+/// The slabs between the heights at which features end, upward; features that are level to so much have
+/// none.
+fn slabs(features: &[Feature], level: f64) -> Vec<Slab> {
+    let height = |feature: &Feature, end: usize| feature.ends[end][1];
+    let mut heights: Vec<f64> = features.iter().flat_map(|f| f.ends).map(|end| end[1]).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|upper, lower| *upper - *lower <= level);
+    let mut slabs = Vec::new();
+    for pair in heights.windows(2) {
+        let (low, high) = (pair[0], pair[1]);
+        let middle = f64::midpoint(low, high);
+        let passes = |feature: &Feature| {
+            let [from, to] = [0, 1].map(|end| height(feature, end));
+            (to - from).abs() > level && from.min(to) < middle && middle < from.max(to)
+        };
+        let mut sides: Vec<usize> = (0..features.len()).filter(|k| passes(&features[*k])).collect();
+        let radius = |side: &usize| features[*side].radius_at(middle);
+        sides.sort_by(|one, other| radius(one).total_cmp(&radius(other)));
+        let mut inner = None;
+        for side in sides {
+            if height(&features[side], 0) < height(&features[side], 1) {
+                slabs.push(Slab::new(features, [low, high], side, inner.take()));
+            } else {
+                inner = Some(side);
+            }
+        }
+    }
+    slabs
+}
+
 impl Slab {
-    fn new(features: &[Feature], side: usize) -> Slab {
-        let [[d0, low], [d1, high]] = features[side].ends;
-        // A quarter of a circle is as far out as its ends, and the way out along d no longer.
-        let radius = d0.max(d1);
+    fn new(features: &[Feature], [low, high]: [f64; 2], side: usize, inner: Option<usize>) -> Slab {
+        let radii_of = |side: usize| [low, high].map(|z| features[side].radius_at(z));
+        let radii = radii_of(side);
+        // A quarter of a circle is as far out as its ends.
+        let radius = radii[0].max(radii[1]);
+        let hole = inner.map(radii_of).map_or(0.0, |[first, last]| first.min(last));
+        // The way out on the level is no longer, nor that to the nearer of two sides than half the way between.
+        let deepest = if inner.is_some() { 0.5 * (radius - hole) } else { radius };
         let reaches = |f: &Feature| {
             let [z0, z1] = f.ends.map(|end| end[1]);
-            z0.min(z1) <= high + radius && z0.max(z1) >= low - radius
+            z0.min(z1) <= high + deepest && z0.max(z1) >= low - deepest
         };
         let mut near: Vec<usize> = (0..features.len()).filter(|k| reaches(&features[*k])).collect();
         near.sort_by_key(|k| k.abs_diff(side));
-        Slab { low, high, side, near, radius, feet: [0.0; 2] }
+        Slab { low, high, side, inner, hole, radii, near, radius, feet: [0.0; 2] }
     }
 }

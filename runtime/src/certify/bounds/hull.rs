@@ -25,6 +25,8 @@ pub(crate) struct Slab<R> {
     /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`. The first
     /// is upright.
     pub(crate) planes: Vec<[R; 3]>,
+    /// The radius of the hole about the axis, if there is one: a place is no deeper than it is beyond that.
+    pub(crate) hole: Option<R>,
     /// How far it is inside a ball about a place of the axis, as `[z, radius]`.
     pub(crate) ball: Option<[R; 2]>,
     /// How far it is from a circle about the axis, as `[d, z]`; and whether the level ring beyond the
@@ -62,11 +64,12 @@ impl<R: Real> Hull<R> {
                     planes.push(plane([0.0, 1.0], [0.0, high]));
                 }
                 // Of an arc that does not come to the axis, feet beside it are not on the surface.
-                let to_axis = d0.min(d1) <= 1e-9 * section.size;
+                let to_axis = d0.min(d1) == 0.0;
                 let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
                 let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
                 let [low, high] = [from - error, to + error].map(R::of);
-                Some(Slab { low, high, planes, ball, rings: rings.collect() })
+                let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
+                Some(Slab { low, high, planes, hole, ball, rings: rings.collect() })
             });
         Hull { slabs: slabs.collect() }
     }
@@ -84,6 +87,7 @@ impl<R: Real> Hull<R> {
                 plane(0.0, -1.0, -bottom),
                 plane(0.0, 1.0, top),
             ],
+            hole: None,
             ball: None,
             rings: Vec::new(),
         });
@@ -104,6 +108,7 @@ impl<R: Real> Hull<R> {
                     low: R::of(z0.min(z1) - error),
                     high: R::of(z0.max(z1) + error),
                     planes: vec![[1.0, 0.0, d0.max(d1)].map(R::of)],
+                    hole: None,
                     ball: None,
                     rings: Vec::new(),
                 });
@@ -239,8 +244,17 @@ impl<R: Real> Slab<R> {
             bounds[count] = here;
             count += 1;
         }
-        if !self.rings.is_empty() {
+        if self.hole.is_some() || !self.rings.is_empty() {
             let far = distances(corners);
+            if let Some(hole) = self.hole {
+                let hole = V::splat(simd, hole);
+                let here = [far[0] - hole, far[1] - hole, far[2] - hole];
+                depth = depth.min(most_of(simd, &part, here));
+                if again.is_some() {
+                    bounds[count] = here;
+                    count += 1;
+                }
+            }
             for ring in &self.rings {
                 let here = from_ring(simd, corners, (&out, &far), *ring);
                 depth = depth.min(most_of(simd, &part, here));
@@ -337,6 +351,9 @@ impl Hull<f32> {
                 let along = centre.max(low).min(high) - centre;
                 let beyond = (near * near + along * along).sqrt();
                 depth = depth.min(f32x16::splat(simd, radius) - beyond);
+            }
+            if let Some(hole) = slab.hole {
+                depth = depth.min(far - hole);
             }
             for &([d, z], level) in &slab.rings {
                 let inward = f32x16::splat(simd, d) - near;

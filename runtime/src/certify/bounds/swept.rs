@@ -123,6 +123,13 @@ impl<R: Real> Slab<R> {
             }
             depth = depth.min(V::splat(simd, radius) + grow - least);
         }
+        if let Some(hole) = self.hole {
+            let mut farthest = zero;
+            for [x, y, _] in ends {
+                farthest = farthest.max((*x * *x + *y * *y).sqrt());
+            }
+            depth = depth.min(farthest + grow - V::splat(simd, hole));
+        }
         for &([d, z], level) in &self.rings {
             let ring = [V::splat(simd, d), V::splat(simd, z)];
             let mut farthest = zero;

@@ -116,8 +116,11 @@ impl Sweeper {
         setting.sight.look(frame, first, &mut self.ends[0]);
         setting.sight.look(frame, middle, &mut self.view);
         setting.sight.look(frame, last, &mut self.ends[1]);
-        let margin =
-            setting.margin() + (stretch.goes(f64::INFINITY) + task.keep()) / f64::from(1 << 18);
+        // The tips of poses are rounded where they are in the world.
+        let tip = task.motion.start().coords.norm() + task.motion.way().norm();
+        let margin = setting.margin()
+            + (stretch.goes(f64::INFINITY) + task.keep()) / f64::from(1 << 18)
+            + 2.0 * f64::EPSILON * tip / setting.length;
         let wanted = (task.above() - margin) as f32;
         let (keep, shift) = (task.keep() as f32, stretch.shift(task.keep()));
         let small = PART * stretch.goes(f64::INFINITY);

@@ -7,6 +7,7 @@
 //! meets that plane. A level triangle meets it everywhere: its depth depends on d alone, and any line
 //! through the axis has all values that the edges do not have.
 
+use crate::certify::rounding;
 use crate::certify::space::{Point, cross, dot, minus, norm};
 use crate::certify::triangle::course::Course;
 
@@ -35,12 +36,12 @@ impl Facet {
             cross(edges[0], edges[1])
         };
         let area = norm(across);
-        let reach = corners.iter().flatten().fold(0.0, |most: f64, part| most.max(part.abs()));
+        let shortest = lengths[0].min(lengths[1]).min(lengths[2]);
+        let far = corners.map(norm).into_iter().fold(0.0, f64::max);
         let height = if longest > 0.0 { area / longest } else { 0.0 };
-        // A normal errs by what corners are rounded by, seen across the triangle.
-        let skew = (32.0 * f64::EPSILON * reach * (reach / height)).min(height);
+        let skew = rounding::skew(height, shortest, far);
         if area == 0.0 || !area.is_finite() {
-            return Facet { corners, normal: [0.0; 3], base: a, way: [0.0; 3], skew: 0.0 };
+            return Facet { corners, normal: [0.0; 3], base: a, way: [0.0; 3], skew };
         }
         let normal = across.map(|part| part / area);
         let base = normal.map(|part| part * dot(normal, a));

@@ -22,7 +22,7 @@ const MISSED: Kind = Kind::never("contact missed");
 const CERTIFIED: Kind = Kind::of("outside the certified interval", "64 ε (tool + part)", 1.0);
 /// How wide that is beyond 1e-9.
 const WIDE: Kind = Kind::of("its width beyond 1e-9 mm", "256 ε (tool + part)", 1.0);
-/// Without a profile that is a function of z depth is known by how fast it changes, and looking is given up at some time: the interval
+/// Without a profile depth is known by how fast it changes, and looking is given up at some time: the interval
 /// holds, but is wide.
 const WIDTH: Kind =
     Kind::told("its width, of tools whose distance it does not know", "of the tool's unit");
@@ -63,10 +63,9 @@ fn stands(subject: &Subject) -> f64 {
     if level || ball { 0.5 * first.to[0].to_f64() } else { 0.0 }
 }
 
-/// Whether a tool's profile is a function of z: then the certifier knows the distance.
+/// Whether a tool has a profile: then the certifier knows the distance.
 fn known(subject: &Subject) -> bool {
-    let outline = &subject.tool.card().outline;
-    !outline.is_empty() && outline.iter().all(|piece| piece.from[1] <= piece.to[1])
+    !subject.tool.card().outline.is_empty()
 }
 
 /// Points of a surface, the origin first, then where `at` says, for numbers between -1 and 1.

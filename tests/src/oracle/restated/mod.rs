@@ -43,24 +43,27 @@ pub struct Restated {
 
 impl Restated {
     /// A tool whose profile begins on the axis at `z`.
-    fn new(name: &'static str, z: f64) -> Restated {
+    pub fn new(name: &'static str, z: f64) -> Restated {
         let start = [Big::zero(), Big::decimal(z)];
         Restated { name, start, ways: Vec::new(), cutting: Vec::new(), niceness: |_, _, _| 1.0 }
     }
 
-    fn line(mut self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
+    /// A line to a point.
+    pub fn line(mut self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
         self.ways.push(Way { to: [d.into(), z.into()], centre: None, surface });
         self
     }
 
-    fn lines(mut self, surface: &'static str, points: &[[f64; 2]]) -> Restated {
+    /// Lines to points, one after the other.
+    pub fn lines(mut self, surface: &'static str, points: &[[f64; 2]]) -> Restated {
         for [d, z] in points {
             self = self.line(surface, *d, *z);
         }
         self
     }
 
-    fn arc(
+    /// An arc to a point about a centre.
+    pub fn arc(
         mut self,
         surface: &'static str,
         [d, z]: [impl Into<Big>; 2],
@@ -71,7 +74,8 @@ impl Restated {
         self
     }
 
-    fn cuts(mut self, surfaces: &[&'static str], niceness: Niceness) -> Restated {
+    /// The surfaces that cut.
+    pub fn cuts(mut self, surfaces: &[&'static str], niceness: Niceness) -> Restated {
         self.cutting = surfaces.to_vec();
         self.niceness = niceness;
         self
