@@ -43,8 +43,8 @@ impl Certifier<'_> {
     /// deep at most. Both are in the part's unit; a tolerance below what rounding adds is taken as that. Below
     /// 0 what is allowed is a margin: how far the surface has to keep from all of the part.
     ///
-    /// Allowances that were [set](Certifier::allow) do not count, and what is not a number allows nothing. Where it is not known which surface is the
-    /// nearest, all is undecided.
+    /// Allowances that were [set](Certifier::allow) do not count, and what is not a number allows nothing. Of a solid without an axis, whose
+    /// spin a motion does not say, all is undecided, and so is a margin of a tool without a profile.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -79,12 +79,10 @@ impl Certifier<'_> {
         tolerance: f64,
     ) -> Along {
         let Certifier { setting, card, each, each_cores, work, budget, sweeper, .. } = self;
-        let Body::Profile(section) = &setting.body else { return Along::Undecided(0.0) };
         if card.shape != Shape::Revolved {
             return Along::Undecided(0.0);
         }
-        let question =
-            |limit| Question::new(section, setting.sight.margin, limit, |other| other == surface);
+        let question = |limit| setting.question(limit, |other| other == surface);
         let error = error(setting, motion);
         // Written so that what is not a number is no tolerance.
         let tolerance = (32.0 * error).max(tolerance / setting.length);
@@ -114,6 +112,9 @@ impl Certifier<'_> {
         let found = search.deepest(depth);
         if allowed >= 0.0 || matches!(found, Along::Deeper { .. }) {
             return found;
+        }
+        if let Body::Field(_) = &setting.body {
+            return Along::Undecided(0.0);
         }
         let near = question(allowed);
         search.question = &near;

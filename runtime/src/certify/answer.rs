@@ -27,14 +27,16 @@ pub enum AllowanceError {
         /// Those that there are.
         known: String,
     },
-    /// It is not known which of its surfaces is the nearest to a place.
+    /// How far its surfaces are from places outside is not known.
     #[error(
-        "of {tool} it is not known which surface is the nearest to a place, so none can be allowed for: it has no \
-         profile"
+        "{tool} has no profile, so that `{surface}` can keep no margin: draw its `profile {{ … }}`, or allow 0 or \
+         more"
     )]
-    NoOwner {
+    NoMargin {
         /// The tool's name.
         tool: String,
+        /// The surface's name.
+        surface: String,
     },
     /// It is not a length.
     #[error("an allowance of {allowed} for `{surface}` is no length")]

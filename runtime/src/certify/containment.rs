@@ -1,6 +1,7 @@
 //! Containment in the material: no triangle shows that a part of the tool is wholly inside, so a point of each
 //! connected piece is asked for.
 
+use crate::certify::body::owners::Owners;
 use crate::certify::body::{Body, interior};
 use crate::certify::part::Location;
 use crate::certify::space::Point;
@@ -70,11 +71,23 @@ impl Cores {
                 };
                 Some(witnesses.map(core).collect())
             }
-            // Nothing can be allowed of single surfaces.
             Body::Field(field) => {
-                let deepest = field.core(card, tolerance)?;
-                let core = |(point, surface)| Core { point, surface };
-                Some(deepest.into_iter().map(core).collect())
+                // The tool is taken to be one piece; where not all of it counts, so is each of its regions.
+                let one = self.limits.iter().all(|limit| *limit == self.limits[0]);
+                let mut cores = Vec::new();
+                for (index, region) in card.regions.iter().enumerate() {
+                    let limit = self.limits[region.surface];
+                    if limit.is_infinite() || (one && index > 0) {
+                        continue;
+                    }
+                    let owners = Owners::of_regions(card, |other, _| one || other == index);
+                    let deepest = field.deepest(&owners, limit + tolerance, 2.0)?;
+                    cores.extend(deepest.map(|(point, depth)| Core {
+                        point,
+                        surface: body.surface(depth.feature),
+                    }));
+                }
+                Some(cores)
             }
         }
     }

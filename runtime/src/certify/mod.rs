@@ -135,11 +135,9 @@ impl<'a> Certifier<'a> {
             },
         };
         let surfaces = card.surfaces.len();
-        let whole = match &body {
-            Body::Profile(section) => Question::new(section, sight.margin, 0.0, |_| true),
-            Body::Field(field) => Question::of_field(card, field, [sight.margin, error]),
-        };
         let (size, exact) = (card.size(), card.exact());
+        let setting = Setting { facets, body, size, exact, sight, level, length, error };
+        let whole = setting.question(0.0, |_| true);
         Ok(Certifier {
             whole,
             each: (0..surfaces).map(|_| None).collect(),
@@ -153,7 +151,7 @@ impl<'a> Certifier<'a> {
             work: Work::default(),
             sweeper: Sweeper::default(),
             card,
-            setting: Setting { facets, body, size, exact, sight, level, length, error },
+            setting,
         })
     }
 
@@ -180,8 +178,8 @@ impl<'a> Certifier<'a> {
     /// surface has to keep from all of the part. [`Certifier::clear`] goes by it; no allowance is 0.
     ///
     /// # Errors
-    /// If there is no such surface, or the allowance is not a number or keeps infinitely far, or it is not
-    /// known which surface of the tool is the nearest, since it has no profile.
+    /// If there is no such surface, or the allowance is not a number or keeps infinitely far, or it is a margin
+    /// of a tool without a profile: how far places outside are from which surface its file does not say.
     pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Certifier<'a>, AllowanceError> {
         if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
@@ -195,13 +193,14 @@ impl<'a> Certifier<'a> {
                 known: known.join(", "),
             });
         };
-        let Setting { body, sight, length, .. } = &self.setting;
-        let Body::Profile(section) = body else {
-            return Err(AllowanceError::NoOwner { tool: self.card.name.to_string() });
-        };
+        if let (Body::Field(_), true) = (&self.setting.body, allowed < 0.0) {
+            let (tool, surface) = (self.card.name.to_string(), surface.to_owned());
+            return Err(AllowanceError::NoMargin { tool, surface });
+        }
         self.allowed[index] = allowed;
+        let length = self.setting.length;
         let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
-        self.rules = Some(Question::all(section, sight.margin, &allowed));
+        self.rules = Some(Question::all(&self.setting, &allowed));
         self.cores = Cores::new(allowed);
         Ok(self)
     }
@@ -215,25 +214,16 @@ impl<'a> Certifier<'a> {
     }
 
     /// The deepest penetration where a surface, by its place in the card's list, is the nearest: the
-    /// same, of that surface alone. Where two are as near, both count. Where it is not known which surface
-    /// is the nearest (see [`Certifier::allow`]), it is that of the tool if its place is the surface's, and
-    /// else no more than that.
+    /// same, of that surface alone. Where two are as near, both count. Of a tool without a profile that
+    /// surface is the nearest whose region has the place.
     ///
     /// # Panics
     /// If there is no such surface.
     pub fn deepest_on(&mut self, surface: usize, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, each, work, budget, .. } = self;
-        if let Body::Profile(section) = &setting.body {
-            let question = each[surface].get_or_insert_with(|| {
-                Question::new(section, setting.sight.margin, 0.0, |other| other == surface)
-            });
-            return penetration(setting, question, work, pose, (tolerance, *budget));
-        }
-        let found = self.deepest(pose, tolerance);
-        match found.witness {
-            Some(witness) if witness.surface == surface => found,
-            _ => Penetration { depth: [0.0, found.depth[1]], witness: None },
-        }
+        let question =
+            each[surface].get_or_insert_with(|| setting.question(0.0, |other| other == surface));
+        penetration(setting, question, work, pose, (tolerance, *budget))
     }
 
     /// Whether the tool is clear of the part, or no deeper in it than is [allowed](Certifier::allow). It
@@ -276,16 +266,22 @@ impl<'a> Certifier<'a> {
 
     /// Returns the greatest depth that a surface can have, by its place in the card's list, in the part's
     /// unit: that of the deepest point of the tool that it is the nearest to, to a hundredth. It has it
-    /// where the part's surface passes the middle of the tool. `None` where it is not known which surface is
-    /// the nearest (see [`Certifier::allow`]).
+    /// where the part's surface passes the middle of the tool. `None` where it is not found in time.
     ///
     /// # Panics
     /// If there is no such surface.
     pub fn greatest_depth(&self, surface: usize) -> Option<f64> {
         assert!(surface < self.card.surfaces.len());
-        let Body::Profile(section) = &self.setting.body else { return None };
-        let owners = Owners::of(section, |other| other == surface);
-        Some(owners.greatest_depth(section) * self.setting.length)
+        let depth = match &self.setting.body {
+            Body::Profile(section) => {
+                Owners::of(section, |other| other == surface).greatest_depth(section)
+            }
+            Body::Field(field) => {
+                let owners = Owners::of_regions(self.card, |_, of| of.surface == surface);
+                field.deepest(&owners, 0.0, 1.01)?.map_or(0.0, |(_, depth)| depth.value)
+            }
+        };
+        Some(depth * self.setting.length)
     }
 
     /// Returns whether what may not be in the part is one piece: the points that are deeper than their limit by twice

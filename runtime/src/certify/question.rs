@@ -5,7 +5,7 @@ use crate::certify::body::owners::Owners;
 use crate::certify::body::section::Section;
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::shell::Shell;
-use crate::tool::Card;
+use crate::certify::work::Setting;
 
 /// A question, and what bounds its answer.
 pub(crate) struct Question {
@@ -46,20 +46,27 @@ impl Question {
         }
     }
 
-    /// How deep a tool is that is known by its field; `errors` are how far `f32` and `f64` take a place.
-    pub(crate) fn of_field(card: &Card, field: &Field<'_>, errors: [f64; 2]) -> Question {
+    /// Of some surfaces of a tool that is known by its field; `errors` are how far `f32` and `f64` take a
+    /// place.
+    pub(crate) fn of_field(
+        field: &Field<'_>,
+        errors: [f64; 2],
+        limit: f64,
+        surfaces: impl Fn(usize) -> bool,
+    ) -> Question {
+        let card = field.card();
         Question {
-            owners: Owners::default(),
+            owners: Owners::of_regions(card, |_, region| surfaces(region.surface)),
             hull: Hull::about(card, field.steep, errors[0]),
             exact: Hull::about(card, field.steep, errors[1]),
             shell: Shell::about(card),
-            limit: 0.0,
+            limit,
         }
     }
 
     /// What allowances of surfaces come to, each in its place of the card's list: of all surfaces that
     /// may be as deep one question, and one of those that have to keep as far.
-    pub(crate) fn all(section: &Section, margin: f64, allowed: &[f64]) -> Vec<Question> {
+    pub(crate) fn all(setting: &Setting<'_>, allowed: &[f64]) -> Vec<Question> {
         let depths =
             allowed.iter().map(|allowed| allowed.max(0.0)).filter(|depth| depth.is_finite());
         let gaps = allowed.iter().copied().filter(|allowed| *allowed < 0.0);
@@ -67,7 +74,7 @@ impl Question {
         limits.sort_by(f64::total_cmp);
         limits.dedup();
         let question = |limit: f64| {
-            Question::new(section, margin, limit, |surface| {
+            setting.question(limit, |surface| {
                 let allowed = allowed[surface];
                 if limit < 0.0 { allowed == limit } else { allowed.max(0.0) == limit }
             })

@@ -34,6 +34,16 @@ pub(crate) struct Setting<'a> {
 }
 
 impl Setting<'_> {
+    /// What some surfaces are asked, by their places in the card's list; of a tool by its field no less than
+    /// 0 is a limit.
+    pub(crate) fn question(&self, limit: f64, surfaces: impl Fn(usize) -> bool) -> Question {
+        let margin = self.sight.margin;
+        match &self.body {
+            Body::Profile(section) => Question::new(section, margin, limit, surfaces),
+            Body::Field(field) => Question::of_field(field, [margin, self.error], limit, surfaces),
+        }
+    }
+
     /// Looks at the part from a pose; whether the tool may reach it.
     pub(crate) fn look(&self, work: &mut Work, pose: &Pose) -> bool {
         self.sight.look(&self.facets.frame, pose, &mut work.view)
@@ -262,7 +272,8 @@ impl Work {
         }
         if let Body::Field(field) = &of.body {
             let outside = matches!(side, Side::Outside);
-            let found = field.look(&mut self.search, &mut self.scratch, outside);
+            let scratch = &mut self.scratch;
+            let found = field.look(&mut self.search, scratch, &question.owners, outside);
             self.best = found.or(self.best);
         }
         self.last = self.best.map(|best| best.index);

@@ -34,7 +34,7 @@ pub trait Evaluators: Copy + Send + Sync + 'static {
     fn clearance(point: [f64; 3]) -> f64;
 
     /// What is felt in a box, of a tool that has no profile: see [`Tool::enclose`].
-    fn enclose(_sides: [[f64; 2]; 3]) -> Option<Enclosed> {
+    fn enclose(_sides: [[f64; 2]; 3], _at: [f64; 3]) -> Option<Enclosed> {
         None
     }
 
@@ -95,8 +95,8 @@ impl<T: Evaluators> Tool for T {
         one_by_one::<T>(ask, points, length, felt);
     }
 
-    fn enclose(&self, sides: [[f64; 2]; 3], _: &mut Felt) -> Option<Enclosed> {
-        T::enclose(sides)
+    fn enclose(&self, sides: [[f64; 2]; 3], at: [f64; 3], _: &mut Felt) -> Option<Enclosed> {
+        T::enclose(sides, at)
     }
 
     fn slopes(&self, point: [f64; 3], length: f64, _: &mut Felt) -> Slopes {

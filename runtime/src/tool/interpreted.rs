@@ -147,13 +147,14 @@ impl Tool for Interpreted {
         ));
     }
 
-    fn enclose(&self, sides: [[f64; 2]; 3], room: &mut Felt) -> Option<Enclosed> {
+    fn enclose(&self, sides: [[f64; 2]; 3], at: [f64; 3], room: &mut Felt) -> Option<Enclosed> {
         if !self.card.outline.is_empty() {
             return None;
         }
-        let (point, one) = (Enclosure::of_box(sides), Enclosure::constant(1.0));
+        let (point, one) = (Enclosure::of_box(sides, at), Enclosure::constant(1.0));
         let mut found = Enclosed::nothing();
-        self.walk.each_owner(point, one, &mut room.enclosures, |owner| found.take(owner));
+        let visit = |owner, test| found.take(owner, test);
+        self.walk.each_owner(point, one, &mut room.enclosures, visit);
         Some(found)
     }
 
@@ -210,11 +211,11 @@ impl Value for Enclosure {
         Lane::abs(self)
     }
     fn le(a: Enclosure, b: Enclosure) -> [bool; 2] {
-        let Maybe { yes, no } = Lane::le(a, b);
+        let Maybe { yes, no, .. } = Lane::le(a, b);
         [yes, no]
     }
     fn lt(a: Enclosure, b: Enclosure) -> [bool; 2] {
-        let Maybe { yes, no } = Lane::lt(a, b);
+        let Maybe { yes, no, .. } = Lane::lt(a, b);
         [yes, no]
     }
     fn either(self, other: Enclosure) -> Enclosure {

@@ -15,6 +15,7 @@ mod number;
 pub use card::{Card, Circle, Depth, Piece, Region, Shape, Slab, Surface};
 pub use compiled::{Evaluators, FeltLanes};
 pub use dual::Dual;
+pub(crate) use enclosure::bit;
 pub use enclosure::{Enclosed, Enclosure, Maybe};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
@@ -78,10 +79,10 @@ pub trait Tool: Send + Sync {
     fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes;
 
     /// What is felt in a box of the tool's frame, its sides from one end to another: enclosed in real
-    /// arithmetic, of the expressions as they are evaluated. The box of a tool with an axis lies in the half
-    /// plane `y = 0`, `x ≥ 0`. `None` of a tool that has a profile, of which more is known. `room` is kept
-    /// between calls.
-    fn enclose(&self, sides: [[f64; 2]; 3], room: &mut Felt) -> Option<Enclosed>;
+    /// arithmetic, of the expressions as they are evaluated, with slopes from a point of the box. The box of a
+    /// tool with an axis lies in the half plane `y = 0`, `x ≥ 0`. `None` of a tool that has a profile, of which
+    /// more is known. `room` is kept between calls.
+    fn enclose(&self, sides: [[f64; 2]; 3], at: [f64; 3], room: &mut Felt) -> Option<Enclosed>;
 
     /// Reserves in `felt` the memory that the tool itself keeps there between calls of
     /// [`Tool::evaluate`] and [`Tool::slopes`], so that they allocate none. A tool that keeps nothing

@@ -36,11 +36,11 @@ touchoff::tool! {
         units mm;
         profile {
             start (0, 8);
-            arc to (6, 2) center (0, 2) as dome;
+            arc to (6, 2) center (0, 2) concave as dome;
             arc to (8, 0) center (8, 2) as lip cutting;
-            arc to (10, 2) center (8, 2) as lip;
+            arc to (10, 2) center (8, 2) as lip cutting;
             line to (10, 12) as side cutting;
-            arc to (5, 17) center (10, 17) as neck;
+            arc to (5, 17) center (10, 17) concave as neck;
             line to (5, 40), (0, 40) as shank;
         }
         niceness lip: 1;

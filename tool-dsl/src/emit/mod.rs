@@ -47,8 +47,8 @@ fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
     // Of a profile more is known.
     let enclose = tool.model.outline().next().is_none().then(|| {
         quote! {
-            fn enclose(sides: [[f64; 2]; 3]) -> Option<Enclosed> {
-                Some(Enclosed::of::<Self>(sides))
+            fn enclose(sides: [[f64; 2]; 3], at: [f64; 3]) -> Option<Enclosed> {
+                Some(Enclosed::of::<Self>(sides, at))
             }
         }
     });

@@ -185,26 +185,34 @@ impl Walk {
     }
 
     /// Visits each owner that a point may have whose coordinates are known to lie between ends, `None` outside,
-    /// with its depth.
+    /// with its depth; and of the tests that were not decided on the way the first, and whether it is below 0.
     pub fn each_owner<V: Value>(
         &self,
         point: [V; 3],
         length: V,
         scratch: &mut Scratch<V>,
-        mut visit: impl FnMut(Option<(usize, V)>),
+        mut visit: impl FnMut(Option<(usize, V)>, Option<(V, bool)>),
     ) {
         scratch.start(self.operations.len());
-        let mut open = vec![0];
-        while let Some(at) = open.pop() {
+        let mut open = vec![(0, None)];
+        while let Some((at, test)) = open.pop() {
             match &self.forks[at] {
-                Fork::Owner(owner) => visit(owner.map(|owner| {
-                    (owner, self.value(&self.regions[owner][0], point, length, scratch))
-                })),
+                Fork::Owner(owner) => {
+                    let depth = |owner: usize| &self.regions[owner][0];
+                    let owner = owner
+                        .map(|owner| (owner, self.value(depth(owner), point, length, scratch)));
+                    visit(owner, test);
+                }
                 Fork::Test { curve, strict, above } => {
                     let value = self.value(&self.curves[*curve], point, length, scratch);
-                    let [is_below, is_above] = below(value, *strict);
-                    open.extend(is_above.then_some(*above));
-                    open.extend(is_below.then_some(at + 1));
+                    match below(value, *strict) {
+                        [true, true] => {
+                            open.push((*above, test.or(Some((value, false)))));
+                            open.push((at + 1, test.or(Some((value, true)))));
+                        }
+                        [true, false] => open.push((at + 1, test)),
+                        [false, _] => open.push((*above, test)),
+                    }
                 }
             }
         }

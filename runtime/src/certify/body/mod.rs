@@ -1,6 +1,7 @@
 //! What is known of a tool: its profile, or how deep places are and how fast that changes.
 
 mod deepest;
+mod enclosed;
 pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;
@@ -34,7 +35,7 @@ impl Body<'_> {
     pub(crate) fn surface(&self, feature: usize) -> usize {
         match self {
             Body::Profile(section) => section.features[feature].surface,
-            Body::Field(_) => feature,
+            Body::Field(field) => field.card().regions[feature].surface,
         }
     }
 
@@ -47,7 +48,7 @@ impl Body<'_> {
     ) -> Option<Depth> {
         match self {
             Body::Profile(section) => section.depth_at(owners, place(point)),
-            Body::Field(field) => Some(field.depth(scratch, point)),
+            Body::Field(field) => Some(field.depth_of(scratch, owners, point)),
         }
     }
 
@@ -86,7 +87,7 @@ impl Body<'_> {
             Body::Profile(section) => {
                 section.far_from(owners, rectangle, (place(point), depth, goes))
             }
-            Body::Field(_) => false,
+            Body::Field(field) => field.passes(scratch, owners, point, (goes, limit)),
         }
     }
 }

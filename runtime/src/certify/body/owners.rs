@@ -1,7 +1,9 @@
-//! Which of a tool's features are asked about: those that own a place are the nearest to it.
+//! Which of a tool's features are asked about: those that own a place are the nearest to it. Of a tool that
+//! is known by its field the features are its regions.
 
 use crate::certify::body::feature::{Feature, Place, minus, norm};
 use crate::certify::body::section::{Section, Slab};
+use crate::tool::{Card, Region, bit};
 use std::collections::BinaryHeap;
 
 /// Features, by their places in the section's list.
@@ -9,6 +11,8 @@ use std::collections::BinaryHeap;
 pub(crate) struct Owners {
     /// `None` for all of them.
     some: Option<Vec<bool>>,
+    /// Those that are regions of a tool by its field, a bit each as [`crate::tool::Enclosed`] has them.
+    regions: u64,
     /// Heights at which they own places that are deeper than all others about them that they own.
     pub(crate) peaks: Vec<f64>,
 }
@@ -57,7 +61,7 @@ impl Owners {
     pub(crate) fn of(section: &Section, surfaces: impl Fn(usize) -> bool) -> Owners {
         let some: Vec<bool> = section.features.iter().map(|f| surfaces(f.surface)).collect();
         let some = some.contains(&false).then_some(some);
-        let mut owners = Owners { some, peaks: Vec::new() };
+        let mut owners = Owners { some, ..Owners::default() };
         if !owners.all() {
             match owners.find_peaks(section) {
                 Some(peaks) => owners.peaks = peaks,
@@ -75,7 +79,21 @@ impl Owners {
         let ends = section.features.iter().filter(own).flat_map(|feature| feature.ends);
         let peaks = ends.map(|end| end[1]).collect();
         let some = section.features.iter().map(|f| surfaces(f.surface)).collect();
-        Owners { some: Some(some), peaks }
+        Owners { some: Some(some), peaks, ..Owners::default() }
+    }
+
+    /// Regions of a tool that is known by its field.
+    pub(crate) fn of_regions(card: &Card, own: impl Fn(usize, &Region) -> bool) -> Owners {
+        let some: Vec<bool> =
+            card.regions.iter().enumerate().map(|(index, region)| own(index, region)).collect();
+        let bits = (0..some.len()).filter(|index| some[*index]).map(bit);
+        let regions = bits.fold(0, |all, bit| all | bit);
+        Owners { some: some.contains(&false).then_some(some), regions, peaks: Vec::new() }
+    }
+
+    /// Whether some of a tool's regions are among them.
+    pub(crate) fn own_some(&self, regions: u64) -> bool {
+        self.all() || self.regions & regions != 0
     }
 
     /// Whether these are all features.
