@@ -36,8 +36,8 @@
 //! If not, `x` turned about the axis to that azimuth stays at `d`, and its height in the triangle's plane
 //! changes by `tan θ · d · min(2, η² / (2 sin² θ)) ≤ 1.2 η d`. The computed plane passes that place at
 //! another `2 η r`, `r` being how far corners are from the tip. So some place of the computed meridian is
-//! within `4 η r` of one that is as deep as `x`. And no place of a triangle is farther than `h` from its
-//! longest edge, on which depth is looked for too. See [`skew`].
+//! within `4 η r` of one that is as deep as `x`, its [`skew`]. And no place of a triangle is farther than its
+//! [`height`] from its longest edge, on which depth is looked for too: where that is less, there is no meridian.
 
 /// How far a place is known in the tool's frame, and how deep it is: of a tool that reaches `size` and a part
 /// whose largest extent is `part`.
@@ -51,23 +51,29 @@ pub(super) fn far(distance: f64) -> f64 {
 }
 
 /// How far the meridian of a triangle can be from the true one, by the height over its longest edge, its
-/// shortest edge, and how far its corners are from the tip: `4 η r` with `η ≤ 6u s / h`, and no more than the
-/// height, of which `8u s` may be rounding.
+/// shortest edge, and how far its corners are from the tip: `4 η r` with `η ≤ 6u s / h`.
 pub(super) fn skew(height: f64, shortest: f64, far: f64) -> f64 {
-    (12.0 * f64::EPSILON * far * (shortest / height)).min(height + 4.0 * f64::EPSILON * shortest)
+    12.0 * f64::EPSILON * far * (shortest / height)
+}
+
+/// How far a place of a triangle can be from its longest edge, by its height and its shortest edge: `8u s` may be
+/// rounding.
+pub(super) fn height(height: f64, shortest: f64) -> f64 {
+    height + 4.0 * f64::EPSILON * shortest
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Of a regular triangle it is rounding, of a sliver its height, and it is never more than that.
+    /// Of a regular triangle skew is rounding, and so it is of a needle, whose shortest edge is as short as it is high.
+    /// Of a sliver with three long edges it is more than its height.
     #[test]
-    fn skew_is_between_rounding_and_the_height() {
+    fn skew_is_that_of_the_normal() {
         assert!(skew(0.8, 1.0, 2.0) < 1e-14);
-        assert_eq!(skew(1e-18, 1.0, 1.0), 1e-18 + 4.0 * f64::EPSILON);
-        assert_eq!(skew(0.0, 1.0, 1.0), 4.0 * f64::EPSILON);
-        assert!(skew(1e-8, 1e-8, 1.0) < 1e-14, "a needle, whose shortest edge is as short");
-        assert!((1e-10..1e-6).contains(&skew(1e-8, 1.0, 1.0)), "a sliver with three long edges");
+        assert!(skew(1e-8, 1e-8, 1.0) < 1e-14);
+        assert!((1e-10..1e-6).contains(&skew(1e-8, 1.0, 1.0)));
+        assert!(skew(1e-12, 1.0, 1.0) > height(1e-12, 1.0));
+        assert!(skew(0.0, 1.0, 1.0) > height(0.0, 1.0));
     }
 }

@@ -184,7 +184,12 @@ impl Section {
     /// How deep a place in a slab is; less than 0 outside, and nothing where other features are the nearest.
     #[inline]
     pub(crate) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
-        let (over, side) = self.over(slab, p);
+        let (mut over, side) = self.over(slab, p);
+        // A slab is taken to reach as much farther as heights are known.
+        let beyond = p[1] < slab.low || p[1] > slab.high;
+        if over >= 0.0 && beyond && !self.contains(p) {
+            over = -self.away(p);
+        }
         if over < 0.0 {
             let other = -over <= self.touch() && self.apart(owners, |f| f.away(p));
             let value = if other { f64::NEG_INFINITY } else { over };

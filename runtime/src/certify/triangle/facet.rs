@@ -39,9 +39,17 @@ impl Facet {
         let shortest = lengths[0].min(lengths[1]).min(lengths[2]);
         let far = corners.map(norm).into_iter().fold(0.0, f64::max);
         let height = if longest > 0.0 { area / longest } else { 0.0 };
+        let edges = Facet {
+            corners,
+            normal: [0.0; 3],
+            base: a,
+            way: [0.0; 3],
+            skew: rounding::height(height, shortest),
+        };
         let skew = rounding::skew(height, shortest, far);
-        if area == 0.0 || !area.is_finite() {
-            return Facet { corners, normal: [0.0; 3], base: a, way: [0.0; 3], skew };
+        // Of less than that a normal says nothing, and all of it is as near to an edge.
+        if skew.is_nan() || skew >= edges.skew || !area.is_finite() {
+            return edges;
         }
         let normal = across.map(|part| part / area);
         let base = normal.map(|part| part * dot(normal, a));

@@ -1,0 +1,87 @@
+//! Arithmetic of all numbers between two ends, rounded outward (Moore, *Interval Analysis*, 1966).
+
+/// All numbers between two ends; none if the first is the larger.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Interval {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+pub(super) const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+pub(super) const NOTHING: Interval = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
+pub(super) const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
+impl Interval {
+    pub(super) fn point(value: f64) -> Interval {
+        Interval { low: value, high: value }
+    }
+
+    /// Rounds outward; where an end is not a number, nothing is known.
+    pub(super) fn out(low: f64, high: f64) -> Interval {
+        if low.is_nan() || high.is_nan() {
+            return EVERYTHING;
+        }
+        Interval { low: low.next_down(), high: high.next_up() }
+    }
+
+    pub(super) fn hull(self, other: Interval) -> Interval {
+        Interval { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    pub(super) fn plus(self, other: Interval) -> Interval {
+        // Nothing is rounded.
+        match (self, other) {
+            (ZERO, sum) | (sum, ZERO) => sum,
+            _ => Interval::out(self.low + other.low, self.high + other.high),
+        }
+    }
+
+    pub(super) fn negated(self) -> Interval {
+        Interval { low: -self.high, high: -self.low }
+    }
+
+    pub(super) fn times(self, other: Interval) -> Interval {
+        if self == ZERO || other == ZERO {
+            return ZERO;
+        }
+        // 0 · ∞ stands for a product of finite numbers with a factor 0.
+        let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
+        let ends = [
+            product(self.low, other.low),
+            product(self.low, other.high),
+            product(self.high, other.low),
+            product(self.high, other.high),
+        ];
+        // A product of ±1 is not rounded, and slopes of that are many.
+        if [self, other].iter().any(|one| one.low == one.high && one.low.abs() == 1.0) {
+            return Interval { low: ends[0].min(ends[3]), high: ends[0].max(ends[3]) };
+        }
+        let low = ends.into_iter().fold(f64::INFINITY, f64::min);
+        Interval::out(low, ends.into_iter().fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    pub(super) fn reciprocal(self) -> Interval {
+        if self.low <= 0.0 && self.high >= 0.0 {
+            return EVERYTHING;
+        }
+        Interval::out(1.0 / self.high, 1.0 / self.low)
+    }
+
+    /// Of what is not negative, whatever rounding made of its enclosure.
+    pub(super) fn sqrt(self) -> Interval {
+        let root = Interval::out(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
+        Interval { low: root.low.max(0.0), ..root }
+    }
+
+    pub(super) fn lesser(self, other: Interval) -> Interval {
+        Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
+    }
+
+    pub(super) fn abs(self) -> Interval {
+        match self {
+            Interval { low, .. } if low >= 0.0 => self,
+            Interval { high, .. } if high <= 0.0 => self.negated(),
+            Interval { low, high } => Interval { low: 0.0, high: high.max(-low) },
+        }
+    }
+}
