@@ -10,7 +10,9 @@ mod end_in_part;
 mod fields;
 mod hard_cases;
 mod ring_of_ties;
+mod rounding;
 mod sweeps;
+mod zoomed;
 
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::Facets;

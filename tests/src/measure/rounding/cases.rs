@@ -1,8 +1,9 @@
 //! Triangles, poses and tolerances where rounding does the most.
 
-use super::cutters::{Cutter, Flat};
+use super::cutters::Cutter;
 use super::truth::Point;
 use crate::oracle::draw::Draw;
+use crate::oracle::outline::{Flat, Segment};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
 use touchoff::Pose;
@@ -164,7 +165,7 @@ impl Sketch<'_> {
 
     /// A point under a joint of the profile and the way out there, which is between the two normals.
     fn under_joint(&self, draw: &mut Draw) -> (Point, Point) {
-        let segments = &self.cutter.segments;
+        let segments = &self.cutter.outline.segments;
         let k = 1 + draw.bits() as usize % (segments.len() - 1);
         let ([a, b], part) = (
             [outward(&segments[k - 1], 1.0), outward(&segments[k], 0.0)],
@@ -184,7 +185,7 @@ impl Sketch<'_> {
     }
 
     fn centre(&self, draw: &mut Draw) -> [Point; 3] {
-        let centres = self.cutter.segments.iter().filter_map(|segment| segment.centre);
+        let centres = self.cutter.outline.segments.iter().filter_map(|segment| segment.centre);
         let axis = [0.0, draw.between(0.0, self.cutter.extent[1])];
         let places: Vec<Flat> = centres.filter(|at| at[0] >= 0.0).chain([axis]).collect();
         let turn = draw.between(0.0, TAU).sin_cos();
@@ -195,7 +196,7 @@ impl Sketch<'_> {
 
     fn level(&self, draw: &mut Draw) -> [Point; 3] {
         let mut at = self.place(draw);
-        let segment = one_of(&self.cutter.segments, draw);
+        let segment = one_of(&self.cutter.outline.segments, draw);
         let centre = segment.centre.unwrap_or(segment.to);
         at[2] = one_of(&[at[2], segment.from[1], segment.to[1], centre[1]], draw);
         let mut triangle = about(at, [0.0, 0.0, 1.0], self.size(draw), draw);
@@ -204,7 +205,7 @@ impl Sketch<'_> {
     }
 
     fn tangent(&self, draw: &mut Draw) -> [Point; 3] {
-        let segment = one_of(&self.cutter.segments, draw);
+        let segment = one_of(&self.cutter.outline.segments, draw);
         let part = draw.between(0.0, 1.0);
         let way = outward(&segment, part);
         let off = match draw.bits() % 3 {
@@ -279,7 +280,7 @@ fn unit(v: Flat) -> Flat {
 }
 
 /// The unit normal of a profile's segment, out of the material, at a part of it.
-fn outward(segment: &super::cutters::Segment, part: f64) -> Flat {
+fn outward(segment: &Segment, part: f64) -> Flat {
     let ([a, b], [c, d]) = (segment.from, segment.to);
     let at = [a + part * (c - a), b + part * (d - b)];
     let Some(centre) = segment.centre else { return unit([d - b, a - c]) };

@@ -4,25 +4,12 @@
 //! 256 bits; the tool that is judged is compiled from text with the same numbers.
 
 use crate::oracle::big::Big;
+use crate::oracle::outline::{Flat, Outline, Segment};
 use crate::oracle::reference::Reference;
 use crate::oracle::restated::{Restated, Way};
 use std::fmt::Write;
 use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, ToolError};
-
-/// A point `[d, z]`.
-pub type Flat = [f64; 2];
-
-/// A piece of a profile: its ends, and its centre if it is an arc. Along it z does not fall.
-#[derive(Clone, Copy, Debug)]
-pub struct Segment {
-    /// Its lower end.
-    pub from: Flat,
-    /// Its upper end.
-    pub to: Flat,
-    /// The centre of an arc.
-    pub centre: Option<Flat>,
-}
 
 /// A tool at one scale.
 pub struct Cutter {
@@ -30,8 +17,8 @@ pub struct Cutter {
     pub name: String,
     /// The compiled tool.
     pub tool: Interpreted,
-    /// Its profile from the tip up.
-    pub segments: Vec<Segment>,
+    /// Its profile in doubles.
+    pub outline: Outline,
     /// The same in 256 bits.
     pub reference: Reference,
     /// Largest distance from the axis, and height.
@@ -150,7 +137,7 @@ pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
         tool: Interpreted::parse(&Source::new("cutter.tool", &*text(name, &segments)))?,
         reference: Reference::new(&restated(name, &segments)),
         extent: [most(0), most(1)],
-        segments,
+        outline: Outline::new(segments),
     })
 }
 
@@ -188,60 +175,6 @@ fn restated(name: &'static str, segments: &[Segment]) -> Restated {
     }
 }
 
-impl Cutter {
-    /// The depth of a point `[d, z]` in doubles; below 0 outside.
-    pub fn depth(&self, p: Flat) -> f64 {
-        let distance = self.segments.iter().map(|segment| segment.distance(p));
-        let distance = distance.fold(f64::INFINITY, f64::min);
-        let inside = self.segments.iter().any(|segment| segment.covers(p));
-        if inside { distance } else { -distance }
-    }
-}
-
-impl Segment {
-    /// Whether it is an arc that bulges into the material.
-    pub fn is_hollow(&self) -> bool {
-        let Segment { from, to, centre } = self;
-        centre.is_some_and(|[d, z]| (from[0] - d) * (to[1] - z) < (from[1] - z) * (to[0] - d))
-    }
-
-    fn distance(&self, p: Flat) -> f64 {
-        let Segment { from, to, centre } = self;
-        let off = |q: &Flat| (p[0] - q[0]).hypot(p[1] - q[1]);
-        let Some(centre) = centre else {
-            let along = [to[0] - from[0], to[1] - from[1]];
-            let square = along[0] * along[0] + along[1] * along[1];
-            let part = (p[0] - from[0]) * along[0] + (p[1] - from[1]) * along[1];
-            let part = (part / square).clamp(0.0, 1.0);
-            return off(&[from[0] + part * along[0], from[1] + part * along[1]]);
-        };
-        let arm = |q: Flat| [q[0] - centre[0], q[1] - centre[1]];
-        let cross = |a: Flat, b: Flat| a[0] * b[1] - a[1] * b[0];
-        let (a, b, q) = (arm(*from), arm(*to), arm(p));
-        let turn = cross(a, b).signum();
-        if turn * cross(a, q) >= 0.0 && turn * cross(q, b) >= 0.0 {
-            (q[0].hypot(q[1]) - a[0].hypot(a[1])).abs()
-        } else {
-            off(from).min(off(to))
-        }
-    }
-
-    /// Whether the segment is level with a point, and the point between it and the axis.
-    fn covers(&self, [d, z]: Flat) -> bool {
-        let Segment { from, to, centre } = self;
-        if z < from[1] || z > to[1] || from[1] == to[1] {
-            return false;
-        }
-        let Some(centre) = centre else {
-            return d <= from[0] + (z - from[1]) / (to[1] - from[1]) * (to[0] - from[0]);
-        };
-        let radius = (from[0] - centre[0]).hypot(from[1] - centre[1]);
-        let up = z - centre[1];
-        let across = ((radius - up) * (radius + up)).max(0.0).sqrt();
-        d <= centre[0] + if self.is_hollow() { -across } else { across }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,7 +190,7 @@ mod tests {
             for _ in 0..200 {
                 let (d, z) = (draw.between(0.0, 1.2 * radius), draw.between(-0.1, 1.1) * height);
                 let exact = cutter.reference.depth(&At::new([d, 0.0, z])).to_f64();
-                let off = (cutter.depth([d, z]) - exact).abs();
+                let off = (cutter.outline.depth([d, z]) - exact).abs();
                 assert!(off < 1e-13 * (radius + height), "{} {d} {z}: {off:e}", cutter.name);
             }
         }

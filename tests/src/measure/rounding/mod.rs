@@ -23,7 +23,7 @@ use touchoff::{Mesh, Unit};
 use truth::{Place, Point, Scene};
 
 /// How many violations are shown.
-const SHOWN: usize = 20;
+const SHOWN: usize = 4;
 
 /// The largest of some figures, and the case that has it.
 #[derive(Clone, Copy, Debug, Default)]

@@ -120,7 +120,7 @@ impl<'a> Scene<'a> {
     /// The depth of a place, in doubles.
     pub fn depth(&self, place: &Place) -> f64 {
         let [x, y, z] = self.point(place);
-        self.cutter.depth([x.hypot(y), z])
+        self.cutter.outline.depth([x.hypot(y), z])
     }
 
     /// The depth of a place, in 256 bits.
@@ -178,7 +178,7 @@ impl<'a> Scene<'a> {
         for _ in 0..4 {
             push(nearest([0.0, 0.0, draw.between(0.0, height)], corners));
         }
-        for segment in &self.cutter.segments {
+        for segment in &self.cutter.outline.segments {
             let [d, z] = segment.centre.unwrap_or(segment.to);
             let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
             push(nearest([d * cos, d * sin, z], corners));
