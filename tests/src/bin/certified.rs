@@ -11,7 +11,8 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use touchoff::certify::Facets;
 use touchoff::{Mesh, Unit};
-use touchoff_tests::measure::certified::zoomed::{self, FIELDS, PROFILES, Subject, Zoomed};
+use touchoff_tests::measure::certified::subject::{FIELDS, PROFILES, Subject};
+use touchoff_tests::measure::certified::zoomed::{self, Zoomed};
 use touchoff_tests::measure::certified::{Pair, Row, buried, poses, table};
 use touchoff_tests::oracle::Nearest;
 
@@ -67,7 +68,7 @@ For each tool and part {each} poses: most put the tool's surface between 1e-9 an
 coordinate axes and flush with the part's box, a tenth are anywhere about the part. Tolerances are 0, 1e-9, 1e-6 and 1e-3 in turn.
 All lengths are in the part's unit. *Over* is by how much a sample of brute force, or one beside the witness, is above the upper bound,
 *under* by how much the witness is shallower than the lower one; 0 where it never is. *Brute behind* is by how much brute force without
-the witness falls short of the lower bound, *reached* at how many poses by no more than 1e-6. *Wider* counts intervals wider than the tolerance and rounding.
+the witness, which does not zoom, falls short of the lower bound, *reached* at how many poses by no more than 1e-6. *Wider* counts intervals wider than the tolerance and rounding.
 "
     );
     print!("{}", table(&rows)?);
@@ -128,7 +129,7 @@ fn zoom(
     });
     println!(
         "
-# Zoomed maxima
+## Zoomed maxima
 
 ```sh
 cargo run --release -p touchoff-tests --bin certified -- --zoomed {poses} --samples {samples} --seed {seed} >> docs/measured/certified.md

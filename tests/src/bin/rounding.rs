@@ -17,15 +17,20 @@ const CHUNK: u64 = 2000;
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut count, mut seed, mut only) = (10_000_000, 1, None);
     let mut threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let value = words.next().ok_or_else(|| format!("`{word}` needs a value"))?;
-        match word.as_str() {
+    let mut arguments = std::env::args().skip(1);
+    while let Some(name) = arguments.next() {
+        let value = arguments.next().ok_or_else(|| format!("`{name}` needs a value"))?;
+        match name.as_str() {
             "--cases" => count = value.parse()?,
             "--seed" => seed = value.parse()?,
             "--only" => only = Some(value.parse()?),
             "--threads" => threads = value.parse()?,
-            _ => return Err(format!("`{word}` is not known").into()),
+            _ => {
+                return Err(format!(
+                    "`{name}` is no option: use --cases, --seed, --only or --threads"
+                )
+                .into());
+            }
         }
     }
     let start = Instant::now();
@@ -63,7 +68,7 @@ widenings at most. `--only` and its number show a case.
 All rotations that the public interface of `Pose` makes are orthonormal to 4 ε: axes and quaternions are normalised if their norm is within 1e-3 of 1, and
 composed rotations are corrected. *Drift* has some composed of up to 24 others.
 ",
-        said("git", &["describe", "--always", "--dirty"]),
+        first_line("git", &["describe", "--always", "--dirty"]),
         processor(),
         std::thread::available_parallelism().map_or(1, usize::from),
     );
@@ -104,8 +109,8 @@ fn rows(rounding: &Rounding, count: u64, threads: usize) -> Vec<Row> {
 }
 
 /// The first line that a command prints.
-fn said(command: &str, words: &[&str]) -> String {
-    let output = Command::new(command).args(words).output().map(|output| output.stdout);
+fn first_line(command: &str, arguments: &[&str]) -> String {
+    let output = Command::new(command).args(arguments).output().map(|output| output.stdout);
     let text = output.map(|text| String::from_utf8_lossy(&text).trim().to_owned());
     text.unwrap_or_else(|_| "unknown".to_owned())
 }

@@ -60,13 +60,13 @@ impl Outline {
 }
 
 impl Segment {
-    /// Whether it is an arc that bulges into the material.
+    /// Returns whether it is an arc that bulges into the material.
     pub fn is_hollow(&self) -> bool {
         let Segment { from, to, centre } = self;
         centre.is_some_and(|[d, z]| (from[0] - d) * (to[1] - z) < (from[1] - z) * (to[0] - d))
     }
 
-    /// Whether z does not fall along it: an arc stays on one side of its centre.
+    /// Returns whether z does not fall along it: an arc stays on one side of its centre.
     fn rises(&self) -> bool {
         let Segment { from, to, centre } = self;
         let one_side = centre.is_none_or(|[d, _]| (from[0] - d) * (to[0] - d) >= 0.0);
@@ -94,7 +94,7 @@ impl Segment {
         }
     }
 
-    /// Whether it is level with a point, and the point between it and the axis.
+    /// Returns whether it is level with a point, and the point between it and the axis.
     fn covers(&self, [d, z]: Flat) -> bool {
         let Segment { from, to, centre } = self;
         if z < from[1] || z > to[1] || from[1] == to[1] {

@@ -2,7 +2,8 @@
 
 use super::tool;
 use touchoff::certify::Facets;
-use touchoff_tests::measure::certified::zoomed::{PROFILES, Subject, Zoomed};
+use touchoff_tests::measure::certified::subject::{PROFILES, Subject};
+use touchoff_tests::measure::certified::zoomed::Zoomed;
 use touchoff_tests::measure::certified::{buried, poses};
 
 const SAMPLES: u64 = 40_000;

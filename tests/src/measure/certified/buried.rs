@@ -3,14 +3,14 @@
 //! One face of the block is at a small distance from the tool's extent, inside it or outside, and the others are
 //! farther. Where the tool ends in that direction is known from its numbers, so is the verdict.
 
-use super::zoomed::Subject;
+use super::subject::Subject;
 use crate::oracle::draw::Draw;
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::{Certifier, Clear, Facets};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Tool};
 
-/// What a tool gives.
+/// The verdicts about a tool.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     /// The tool.

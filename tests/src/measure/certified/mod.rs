@@ -9,6 +9,7 @@ pub mod brute;
 pub mod buried;
 pub mod owned;
 pub mod poses;
+pub mod subject;
 pub mod sweeps;
 pub mod ways;
 pub mod zoomed;

@@ -5,10 +5,9 @@
 //! drawn, in neighbourhoods that shrink from round to round until they are as small as rounding. The largest depth must
 //! not be above the upper bound, and should reach the lower one, which the search does not know.
 
+use super::subject::Subject;
 use super::{Worst, buried, poses};
 use crate::oracle::draw::Draw;
-use crate::oracle::outline::Outline;
-use crate::oracle::{Block, Cylinder, Fig73, LBracket, Nearest, Oracle, UnitSphere, restated};
 use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -19,97 +18,10 @@ use touchoff::{Mesh, Pose, Tool};
 /// A point of the tool's frame.
 type Point = [f64; 3];
 
-/// Tools by their profile.
-pub const PROFILES: [&str; 6] =
-    ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
-
-/// Tools by their field: regions written by hand, profiles that overhang, and solids.
-pub const FIELDS: [&str; 7] =
-    ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket", "BoringBar", "FaceMill"];
-
 /// Places that are zoomed in on at first and at last.
 const PLACES: [usize; 2] = [48, 6];
 /// A neighbourhood's part of the one before.
 const SHRINK: f64 = 0.4;
-/// No field of the list changes by more than so many times the way: the thesis's tool by √5.
-const STEEPEST: f64 = 2.24;
-
-/// A tool whose depth is asked for many times.
-pub enum Subject {
-    /// By its profile.
-    Profile(Box<Nearest>, Outline),
-    /// By its field.
-    Field(Box<dyn Oracle + Send + Sync>),
-}
-
-impl Subject {
-    /// A tool of the lists above.
-    ///
-    /// # Panics
-    /// If it is in neither.
-    pub fn of(name: &str) -> Subject {
-        match name {
-            "Fig73" => Subject::Field(Box::<Fig73>::default()),
-            "Cylinder" => Subject::Field(Box::new(Cylinder)),
-            "UnitSphere" => Subject::Field(Box::new(UnitSphere)),
-            "Block" => Subject::Field(Box::new(Block)),
-            "LBracket" => Subject::Field(Box::new(LBracket)),
-            _ => {
-                let nearest = Box::new(Nearest::of(name));
-                match restated::of(name).and_then(|tool| Outline::of(&tool)) {
-                    Some(outline) => Subject::Profile(nearest, outline),
-                    None => Subject::Field(nearest),
-                }
-            }
-        }
-    }
-
-    /// The tool in the oracles' terms.
-    pub fn oracle(&self) -> &dyn Oracle {
-        match self {
-            Subject::Profile(nearest, _) => &**nearest,
-            Subject::Field(field) => &**field,
-        }
-    }
-
-    /// The depth of a point; below 0 outside.
-    fn depth(&self, p: Point) -> f64 {
-        match self {
-            Subject::Profile(_, outline) => {
-                outline.depth([(p[0] * p[0] + p[1] * p[1]).sqrt(), p[2]])
-            }
-            Subject::Field(field) => {
-                field.sense(p).map_or_else(|| -field.signed_distance(p), |sense| sense.depth)
-            }
-        }
-    }
-
-    /// How many times the way depth changes by at most.
-    fn steepest(&self) -> f64 {
-        match self {
-            Subject::Profile(..) => 1.0,
-            Subject::Field(_) => STEEPEST,
-        }
-    }
-
-    /// The smallest gap, as a part of the tool's size, that a verdict is asked about: a field is searched to a thousandth.
-    pub(super) fn finest(&self) -> f64 {
-        match self {
-            Subject::Profile(..) => 1e-7,
-            Subject::Field(_) => 1e-2,
-        }
-    }
-
-    /// The tolerance that is asked for and how near the samples should come to the lower bound, as parts of the tool's
-    /// size.
-    fn tolerance(&self) -> [f64; 2] {
-        match self {
-            Subject::Profile(..) => [1e-9, 1e-9],
-            Subject::Field(_) => [1e-3, 1e-6],
-        }
-    }
-}
-
 /// A tool and a part.
 pub struct Zoomed<'a> {
     /// The part's name, for people.
@@ -124,7 +36,7 @@ pub struct Zoomed<'a> {
     pub subject: &'a Subject,
 }
 
-/// What a tool and a part give. Lengths are parts of the tool's size.
+/// The figures of a tool and a part. Lengths are parts of the tool's size.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     /// The tool.
@@ -428,13 +340,13 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
         sum(|row| row.samples),
         100.0 * reached as f64 / poses.max(1) as f64
     )?;
-    page += "## Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
-             | tool | inside | said so | cut | said to touch | violations |\n|---|--:|--:|--:|--:|--:|\n";
+    page += "### Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
+             | tool | inside | verdict inside | cut | verdict touching | violations |\n|---|--:|--:|--:|--:|--:|\n";
     for buried::Row { tool, inside, cut, violations } in blocks {
         let [[a, b], [c, d]] = [inside, cut];
         writeln!(page, "| {tool} | {a} | {b} | {c} | {d} | {} |", violations.len())?;
     }
-    page += "\n## Violated by zooming or inside\n\n";
+    page += "\n### Violated by these\n\n";
     let violated = rows.iter().flat_map(|row| &row.violations);
     let violated: Vec<&String> =
         violated.chain(blocks.iter().flat_map(|row| &row.violations)).collect();

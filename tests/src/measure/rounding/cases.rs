@@ -52,7 +52,7 @@ impl Family {
     ];
 }
 
-/// What the certifier is asked.
+/// A question to the certifier.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The triangles, in the world.

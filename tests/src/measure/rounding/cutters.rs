@@ -113,7 +113,7 @@ const PROFILES: [Drawn; 10] = [
 /// Exponents of two by which each profile is scaled: from 1e-6 to 1e6.
 const SCALES: [i32; 5] = [-20, -10, 0, 10, 20];
 
-/// How many tools [`cutter`] makes.
+/// The number of tools that [`cutter`] makes.
 pub const COUNT: usize = PROFILES.len() * SCALES.len();
 
 /// The tool with a number below [`COUNT`].

@@ -22,7 +22,7 @@ use touchoff::certify::{Certifier, Facets, Witness};
 use touchoff::{Mesh, Unit};
 use truth::{Place, Point, Scene};
 
-/// How many violations are shown.
+/// Violations that are shown, of a family.
 const SHOWN: usize = 4;
 
 /// The largest of some figures, and the case that has it.
@@ -42,7 +42,7 @@ impl Worst {
     }
 }
 
-/// What cases of a family gave.
+/// The figures of a family's cases.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The family.
@@ -110,7 +110,7 @@ impl Row {
         self.shown.truncate(SHOWN);
     }
 
-    /// How many answers are wrong.
+    /// The number of wrong answers.
     pub fn violations(&self) -> u64 {
         self.exceeded + self.off + self.shallow
     }
@@ -277,13 +277,13 @@ impl Judge<'_> {
 /// A place of a triangle next to a witness.
 struct Beside {
     place: Place,
-    /// How far they are apart.
+    /// The distance between the two.
     way: f64,
-    /// How far rounding in the world may have moved the witness.
+    /// The distance by which rounding in the world may have moved the witness.
     rounded: f64,
 }
 
-/// How far the line of a triangle on which depth is greatest is promised to be known.
+/// The promised bound of the error of the line in a triangle on which depth is greatest.
 fn skew(corners: &[Point; 3]) -> f64 {
     let edge = |a: Point, b: Point| [0, 1, 2].map(|k| b[k] - a[k]);
     let norm = |v: Point| v.iter().map(|part| part * part).sum::<f64>().sqrt();
