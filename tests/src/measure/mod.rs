@@ -12,5 +12,6 @@ pub mod kernels;
 pub mod mutants;
 pub mod points;
 pub mod postures;
+pub mod rounding;
 pub mod search;
 pub mod stress;

@@ -21,6 +21,7 @@ pub mod fig73;
 #[cfg(test)]
 mod fig73_table;
 pub mod nearest;
+pub mod outline;
 mod piece;
 pub mod profile;
 pub mod reference;

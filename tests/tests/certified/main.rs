@@ -11,7 +11,9 @@ mod fields;
 mod hard_cases;
 mod overhang;
 mod ring_of_ties;
+mod rounding;
 mod sweeps;
+mod zoomed;
 
 use nalgebra::{Point3, Vector3};
 use touchoff::certify::Facets;

@@ -6,10 +6,13 @@
 
 pub mod approach;
 pub mod brute;
+pub mod buried;
 pub mod owned;
 pub mod poses;
+pub mod subject;
 pub mod sweeps;
 pub mod ways;
+pub mod zoomed;
 
 use crate::oracle::Nearest;
 use crate::oracle::draw::Draw;
