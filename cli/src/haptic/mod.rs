@@ -69,7 +69,8 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
         ..Limits::default()
     };
     let start = above(&part, tool.card(), unit);
-    let cycles = (wanted.seconds * wanted.rate).round() as u64;
+    // However short, a cycle is run.
+    let cycles = (wanted.seconds * wanted.rate).round().max(1.0) as u64;
     match wielded {
         Wielded::Hand => {
             let wish = pressing(start, unit);

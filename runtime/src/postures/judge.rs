@@ -2,6 +2,7 @@
 
 use super::Record;
 use crate::certify::{AllowanceError, Certifier, Clear, Facets, Uncertified};
+use crate::tool::Shape;
 use crate::{Escaped, Pose, Tool};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -95,7 +96,13 @@ pub enum JudgeError {
     /// Nothing can be proved of it.
     #[error(transparent)]
     Uncertified(#[from] Uncertified),
-    /// Its surfaces cannot be told apart.
+    /// It is a solid without an axis.
+    #[error("{tool} is a solid without an axis, and a posture does not say its spin")]
+    Solid {
+        /// Its name.
+        tool: String,
+    },
+    /// A surface is allowed what means nothing.
     #[error(transparent)]
     Allowance(#[from] AllowanceError),
     /// The rules.
@@ -121,8 +128,8 @@ impl<'a> Judge<'a> {
     /// others.
     ///
     /// # Errors
-    /// Of a tool whose depth is not known, or of whose surfaces it is not known which is the nearest to a
-    /// place: without a profile. Rules that mean nothing.
+    /// Of a tool of which nothing can be proved, and of a solid, whose spin a posture does not say. Rules that mean
+    /// nothing.
     pub fn new(
         facets: &'a Facets,
         tool: &'a dyn Tool,
@@ -133,6 +140,9 @@ impl<'a> Judge<'a> {
         let allowed: Vec<(String, f64)> = rules.allowed.iter().filter(own).cloned().collect();
         Rules { allowed: allowed.clone(), ..*rules }.check(&[tool])?;
         let mut certifier = Certifier::new(facets, tool)?;
+        if let Shape::Solid { .. } = tool.card().shape {
+            return Err(JudgeError::Solid { tool: tool.card().name.to_string() });
+        }
         for surface in surfaces.iter() {
             let depth = if surface.cutting { rules.tolerance } else { 0.0 };
             certifier = certifier.allow(&surface.name, depth)?;

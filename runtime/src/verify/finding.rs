@@ -10,7 +10,15 @@ pub enum VerifyError {
     /// Nothing can be proved of the tool.
     #[error(transparent)]
     Uncertified(#[from] Uncertified),
-    /// What is allowed means nothing, or of the tool it is not known which surface is where.
+    /// The tool is a solid without an axis.
+    #[error(
+        "{tool} is a solid without an axis, and a motion does not say its spin: its poses can be asked with `run`"
+    )]
+    Solid {
+        /// Its name.
+        tool: String,
+    },
+    /// What is allowed means nothing.
     #[error(transparent)]
     Allowance(#[from] AllowanceError),
     /// The program is in another unit than the part.

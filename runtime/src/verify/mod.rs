@@ -25,7 +25,7 @@ use crate::certify::{Along, Certifier, Facets, Sweep};
 use crate::cores;
 use crate::motion::Motion;
 use crate::program::{Program, Stop};
-use crate::tool::{Card, Tool};
+use crate::tool::{Card, Shape, Tool};
 
 /// Checks programs of a tool beside a part.
 ///
@@ -78,13 +78,12 @@ impl<'a> Verifier<'a> {
     /// A verifier of a tool beside a part, with a tolerance of 0.
     ///
     /// # Errors
-    /// If of the tool it is not known which surface is the nearest to a place, as it has no
-    /// profile.
+    /// If nothing can be proved of the tool, or it is a solid, whose spin a motion does not say.
     pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Verifier<'a>, VerifyError> {
         let card = tool.card();
-        let certifier = Certifier::new(facets, tool)?;
-        if let Some(surface) = card.surfaces.first() {
-            certifier.allow(&surface.name, 0.0)?;
+        Certifier::new(facets, tool)?;
+        if let Shape::Solid { .. } = card.shape {
+            return Err(VerifyError::Solid { tool: card.name.to_string() });
         }
         Ok(Verifier {
             facets,

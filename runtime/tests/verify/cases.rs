@@ -15,6 +15,22 @@ touchoff::tool! {
     }
 }
 
+touchoff::tool! {
+    tool Drawn "the same by its profile" {
+        units mm;
+        profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+        niceness cutting: 1;
+    }
+}
+
+touchoff::tool! {
+    solid Brick "a ball without an axis" {
+        units mm;
+        curve ball = hypot(x, y, z) - 1;
+        region all as ball where ball <= 0 { depth: -ball; }
+    }
+}
+
 /// Checks a program with a tolerance and allowances.
 fn check(mesh: &Mesh, text: &str, tolerance: f64, allowed: &[(&str, f64)]) -> Report {
     let facets = Facets::new(mesh);
@@ -171,8 +187,10 @@ fn what_is_not_decided_is_said() {
 #[test]
 fn what_cannot_be_checked_is_refused() {
     let facets = Facets::new(&pillar());
-    let error = Verifier::new(&facets, &ByHand).err().expect("no profile");
-    assert!(matches!(error, VerifyError::Allowance(_)), "{error}");
+    let error = Verifier::new(&facets, &Brick).err().expect("a solid");
+    assert!(matches!(error, VerifyError::Solid { .. }), "{error}");
+    let margin = Verifier::new(&facets, &ByHand).expect("proved").allow("ball", -0.1).err();
+    assert!(margin.is_some_and(|error| error.to_string().contains("has no profile")));
     let verifier = || Verifier::new(&facets, &Mounted).expect("a profile");
     let said = verifier().allow("fluet", 0.1).err().expect("no such surface").to_string();
     assert!(said.contains("no surface `fluet`; it has `ball`, `flute`"), "{said}");
@@ -195,4 +213,32 @@ fn findings_come_in_the_programs_order_and_are_the_same_again() {
     let report = check(&pillar(), &rows, 0.0, &[]);
     assert!(report.findings.len() > 40 && report.findings.is_sorted_by_key(|found| found.stop));
     assert_eq!(check(&pillar(), &rows, 0.0, &[]), report);
+}
+
+/// A tool by its regions is checked as one by its profile: the same is found, as deep.
+#[test]
+fn a_ball_by_hand_is_checked_as_one_by_its_profile() {
+    let facets = Facets::new(&pillar());
+    let text =
+        "-30,0,-0.5,0,0,1\n30,0,-0.5,0,0,1\n30,0,8,0,0.6,0.8\n0,0,-0.25,0,0,1\n0,0,-20,0,0,1\n";
+    let program = Program::parse(text, "a.csv").expect("a program");
+    let check = |verifier: Verifier<'_>| {
+        let verifier = verifier.tolerance(0.01).expect("a length");
+        verifier.check(&program).expect("it can be checked")
+    };
+    let [hand, drawn] = [
+        check(Verifier::new(&facets, &ByHand).expect("proved")),
+        check(Verifier::new(&facets, &Drawn).expect("a profile")),
+    ];
+    assert_eq!(briefly(&hand), briefly(&drawn));
+    assert!(hand.findings.len() > 2, "{hand:?}");
+    for (one, other) in hand.findings.iter().zip(&drawn.findings) {
+        let depth = |kind: &Kind| match kind {
+            Kind::Deep { depth, .. } => Some(*depth),
+            _ => None,
+        };
+        if let (Some([low, high]), Some([least, most])) = (depth(&one.kind), depth(&other.kind)) {
+            assert!(low <= most && least <= high, "{one:?}, {other:?}");
+        }
+    }
 }

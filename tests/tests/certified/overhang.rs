@@ -64,16 +64,16 @@ touchoff::tool! {
 }
 
 /// The names of those above.
-pub const ALL: [&str; 4] = ["HoleSaw", "Dished", "Bell", "Skirt"];
+pub(crate) const ALL: [&str; 4] = ["HoleSaw", "Dished", "Bell", "Skirt"];
 
 /// One of those above.
-pub fn tool(name: &str) -> Option<&'static dyn Tool> {
+pub(crate) fn tool(name: &str) -> Option<&'static dyn Tool> {
     let all: [&dyn Tool; 4] = [&HoleSaw, &Dished, &Bell, &Skirt];
     all.into_iter().find(|tool| tool.card().name == name)
 }
 
 /// The same from its drawing's numbers.
-pub fn oracle(name: &str) -> Option<Nearest> {
+pub(crate) fn oracle(name: &str) -> Option<Nearest> {
     let tool = match name {
         "HoleSaw" => Restated::new("HoleSaw", 12.0)
             .lines("cup", &[[16.0, 12.0], [16.0, 0.0]])

@@ -245,7 +245,8 @@ impl Owners {
             // meet is nearer on either side of a line.
             let of_corner = |feature: usize| section.features[feature].at_ends(corners).is_some();
             let known = |(other, known): &(usize, Place)| {
-                let same = norm(minus(*known, foot)) <= 1e-9 * section.size;
+                // Ends that are shared are the same to the bit.
+                let same = norm(minus(*known, foot)) <= section.error;
                 let owner = self.own(index) == self.own(*other);
                 same && (owner || (of_corner(index) && of_corner(*other)))
             };
