@@ -111,8 +111,7 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
     refused("block.apt", "D2Ball", &["--allow", "flute"], "SURFACE=DEPTH");
     refused("block.apt", "D2Ball", &["--allow", "flute=NaN"], "is no length");
     refused("block.apt", "D2Ball", &["--tolerance=-1"], "is no tolerance");
-    // By hand, so that it is not known which surface is where.
-    refused("block.apt", "Fig73", &[], "it is not known which surface is the nearest");
+    refused("block.apt", "Block", &[], "a motion does not say its spin");
 }
 
 /// A statement that could be a motion is refused with its line, by every command that reads programs.

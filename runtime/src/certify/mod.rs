@@ -453,7 +453,8 @@ fn penetration(
     work.inside(setting, question, pose, goal);
     let more = setting.error + work.skew;
     let (low, high) = match work.best {
-        Some(_) => (work.search.best - more, work.search.best + tolerance),
+        // Slabs reach farther by the error, so that a place outside may count as that deep.
+        Some(_) => (work.search.best - more - setting.error, work.search.best + tolerance),
         None => (0.0, setting.error),
     };
     let high = if work.descent.looked() { high.max(work.search.most) + more } else { 0.0 };

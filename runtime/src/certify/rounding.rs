@@ -11,9 +11,9 @@
 //! |---|--:|
 //! | a corner from the tip: three differences | 1 uM |
 //! | the factors of the rotation by the unit of length: 2u each | 4 uM |
-//! | the rotation: `RᵀR` is the identity to 8u in each entry ([`Pose`](crate::Pose)) | 12 uM |
+//! | the rotation: `RᵀR` is the identity to 10u in each entry ([`Pose`](crate::Pose), [`Motion`](crate::Motion)) | 16 uM |
 //! | its product with the corner: three sums of three products | 6 uM |
-//! | **a corner in the tool's frame** | **23 uM** |
+//! | **a corner in the tool's frame** | **27 uM** |
 //! | an edge from its corners, and the place on it at `t ≤ 1` | 2 uW + 1 uM |
 //! | its parts along and across the way that it goes on the level | 7 uM |
 //! | how far it has gone there, and its distance from the axis | 3 uW + 3 uM |
@@ -25,8 +25,8 @@
 //! | the distance from it | 14 uS |
 //!
 //! A triangle whose corners are moved has every place moved by no more than these, and depth changes by no
-//! more than the way. An upper bound has all of these errors, `64 uM + 5 uW + 18 uS`, which is less than
-//! `82 uS + 120 uP`. [`place`] allows 128 u for both.
+//! more than the way. An upper bound has all of these errors, `68 uM + 5 uW + 18 uS`, which is less than
+//! `86 uS + 127 uP`. [`place`] allows 128 u for both.
 //!
 //! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. Of the two shorter
 //! edges that is no more than the shortest, `s`, times the longest; so the normal is off by an angle

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use touchoff::certify::Facets;
 use touchoff::mesh::shapes;
 use touchoff::postures::sweep::{Batch, Sweep, SweepError, Tally};
-use touchoff::postures::{Directions, Judge, Row, Rules};
+use touchoff::postures::{Directions, Judge, JudgeError, Row, Rules};
 use touchoff::{Mesh, Tool, Unit};
 
 touchoff::tool! {
@@ -296,6 +296,15 @@ fn the_same_part_in_another_unit_is_reached_the_same() {
     }
 }
 
+touchoff::tool! {
+    solid Round "a ball without an axis" {
+        units mm;
+        curve ball = hypot(x, y, z) - 1;
+        region all as ball cutting where ball <= 0 { depth: -ball; }
+        niceness cutting: 1;
+    }
+}
+
 #[test]
 fn what_cannot_be_swept_says_why() {
     let mesh = block([0.0; 3], [9.0; 3]);
@@ -307,7 +316,7 @@ fn what_cannot_be_swept_says_why() {
     assert_eq!(refused(vec![&Stick], rules()), SweepError::Blunt("Stick".into()));
     let none = Rules { tolerance: 0.0, ..rules() };
     assert!(matches!(refused(vec![&Mill], none), SweepError::Rules(_)));
-    assert!(matches!(refused(vec![&crate::Plain], rules()), SweepError::Judge(_)));
+    assert!(matches!(refused(vec![&Round], rules()), SweepError::Judge(JudgeError::Solid { .. })));
 }
 
 #[test]

@@ -60,9 +60,9 @@ A search in doubles finds places; the depth of the best of them in 256 bits is l
 *shallow* if the place of the triangle next to it is less deep than the lower end by more than the two are apart and that rounding: both are violations for certain.
 
 *Found alone* counts cases in which the search comes within 1e-9 of the tool's size of the lower end without knowing the witness, *low certain* those whose lower
-end is no more than a depth in 256 bits. The widening is 64 ε of the tool's and the part's size together, and the skew. *Above* is the largest part that the truth
+end is no more than a depth in 256 bits. The widening is 64 ε of the tool's and the part's size together, and the skew; the lower end has the 64 ε twice. *Above* is the largest part that the truth
 takes of what the upper end adds to the depth that was computed and the tolerance, *below* of what the lower end takes from that depth; at 1 the end would be
-wrong. *Wider* counts intervals wider than the tolerance, or four roundings if that is more, and twice the widening by a hundredth of that; *widest* is by how many
+wrong. *Wider* counts intervals wider than the tolerance, or four roundings if that is more, and both widenings by a hundredth of one; *widest* is by how many
 widenings at most. `--only` and its number show a case.
 
 All rotations that the public interface of `Pose` makes are orthonormal to 4 ε: axes and quaternions are normalised if their norm is within 1e-3 of 1, and

@@ -36,6 +36,8 @@ pub(crate) struct Slab {
 pub(crate) struct Section {
     pub(crate) features: Vec<Feature>,
     pub(crate) slabs: Vec<Slab>,
+    /// Whether some heights have several of them, or one that does not reach the axis.
+    overhangs: bool,
     /// How far it reaches from the tip.
     pub(crate) size: f64,
     /// How far heights are known: slabs are taken to reach that much farther.
@@ -60,7 +62,8 @@ impl Section {
         if slabs.is_empty() {
             return None;
         }
-        let mut section = Section { features, slabs, size, error };
+        let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
+        let mut section = Section { features, slabs, overhangs, size, error };
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
             section.slabs[slab].feet = section.feet(&side, slab);
@@ -116,14 +119,15 @@ impl Section {
     }
 
     /// The reflex corners that can be the nearest to places of a slab, and whether a level piece goes out
-    /// from each.
+    /// from each, on which the tool does not go on.
     pub(crate) fn reflex(&self, slab: &Slab) -> impl Iterator<Item = (Place, bool)> {
         let pairs = self.features.windows(2).filter(|pair| {
             let [before, after] = [pair[0].heading(1), pair[1].heading(0)];
             cross(before, after) < -1e-9
         });
         let near = |z: f64| slab.low - slab.radius <= z && z <= slab.high + slab.radius;
-        let level = |f: &Feature| f.circle.is_none() && f.along[1] == 0.0;
+        // Where the profile overhangs, the tool may be on either side of a level piece.
+        let level = |f: &Feature| !self.overhangs && f.circle.is_none() && f.along[1] == 0.0;
         pairs
             .map(move |pair| (pair[1].ends[0], level(&pair[0]) || level(&pair[1])))
             .filter(move |(place, _)| near(place[1]))
@@ -184,12 +188,7 @@ impl Section {
     /// How deep a place in a slab is; less than 0 outside, and nothing where other features are the nearest.
     #[inline]
     pub(crate) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
-        let (mut over, side) = self.over(slab, p);
-        // A slab is taken to reach as much farther as heights are known.
-        let beyond = p[1] < slab.low || p[1] > slab.high;
-        if over >= 0.0 && beyond && !self.contains(p) {
-            over = -self.away(p);
-        }
+        let (over, side) = self.over(slab, p);
         if over < 0.0 {
             let other = -over <= self.touch() && self.apart(owners, |f| f.away(p));
             let value = if other { f64::NEG_INFINITY } else { over };

@@ -55,7 +55,7 @@ pub struct Row {
     pub alone: u64,
     /// Those in which the lower bound is below a depth in 256 bits, so that it is true beyond doubt.
     pub certain: u64,
-    /// Intervals wider than the tolerance and twice the promised widening.
+    /// Intervals wider than the tolerance and what is promised to be added at both ends.
     pub wider: u64,
     /// The largest excess of an interval's width over that, in widenings.
     pub widest: Worst,
@@ -188,7 +188,7 @@ impl Judge<'_> {
         let tolerance = self.case.tolerance.max(4.0 * rounding);
         let [mut low, mut high] = self.interval;
         if self.pinch > 0.0 && low > 0.0 {
-            low += self.pinch * widening;
+            low += self.pinch * (rounding + widening);
             high -= self.pinch * (tolerance + widening);
         }
         let size = self.scene.cutter.extent[0].max(self.scene.cutter.extent[1]);
@@ -200,7 +200,7 @@ impl Judge<'_> {
         row.touching += u64::from(truth > Big::zero());
         row.alone += u64::from(near);
         row.certain += u64::from(Big::exactly(low) <= truth);
-        let wide = high - low - tolerance - 2.0 * widening;
+        let wide = high - low - tolerance - rounding - 2.0 * widening;
         row.wider += u64::from(wide > 0.01 * widening);
         let worst = |figure: f64| Worst { figure, case: number };
         row.widest.see(worst(wide / widening));
@@ -225,11 +225,13 @@ impl Judge<'_> {
             row.show(format!("{}: the witness is {:e} deep", text(), depth.to_f64()));
         }
         if low > 0.0 {
-            // The certifier takes as much from the depth that it computed as it adds to that and the tolerance.
-            let added = (0.5 * (high - low - tolerance)).clamp(0.5 * rounding, widening);
-            let off = (&truth - &Big::exactly(low + added)).to_f64();
+            // The certifier takes two roundings and the skew from the depth that it computed, and adds one, the skew
+            // and the tolerance.
+            let skewed = (0.5 * (high - low - tolerance - 3.0 * rounding)).clamp(0.0, skew);
+            let [taken, added] = [2.0, 1.0].map(|times| times * rounding + skewed);
+            let off = (&truth - &Big::exactly(low + taken)).to_f64();
             row.above.see(worst((off - tolerance) / added));
-            row.below.see(worst((-off - rounded) / added));
+            row.below.see(worst((-off - rounded) / taken));
         }
     }
 
@@ -248,8 +250,8 @@ impl Judge<'_> {
         truth
     }
 
-    /// The rounding that is promised, and the skew: 64 units of roundoff of the tool's size and the part's, and of
-    /// each triangle `32 ε r²/h`, or its height `h`.
+    /// The rounding that is promised, and the skew: 64 ε of the tool's size and the part's, and of each triangle
+    /// `12 ε r s/h`, or its height `h`.
     fn promised(&self) -> [f64; 2] {
         let [radius, height] = self.scene.cutter.extent;
         let corners = || self.case.triangles.iter().flatten();
@@ -290,12 +292,14 @@ fn skew(corners: &[Point; 3]) -> f64 {
     let [a, b, c] = *corners;
     let edges = [edge(a, b), edge(b, c), edge(c, a)];
     let longest = edges.iter().copied().map(norm).fold(0.0, f64::max);
+    let shortest = edges.iter().copied().map(norm).fold(f64::INFINITY, f64::min);
     let ([x, y, z], [u, v, w]) = (edges[0], edges[1]);
     let area = norm([y * w - z * v, z * u - x * w, x * v - y * u]);
     let height = if longest > 0.0 { area / longest } else { 0.0 };
-    let reach = corners.iter().flatten().fold(0.0f64, |most, part| most.max(part.abs()));
+    let far = corners.iter().copied().map(norm).fold(0.0, f64::max);
     // Differences of corners that were rounded once tell a height to some units.
-    (32.0 * f64::EPSILON * reach * (reach / height)).min(height + 8.0 * f64::EPSILON * longest)
+    let height = height + 8.0 * f64::EPSILON * longest;
+    (12.0 * f64::EPSILON * far * (shortest / height)).min(height)
 }
 
 /// The rows as Markdown, and under them what was violated.
