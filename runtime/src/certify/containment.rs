@@ -72,8 +72,8 @@ impl Cores {
                 Some(witnesses.map(core).collect())
             }
             Body::Field(field) => {
-                // The tool is taken to be one piece; where not all of it counts, so is each of its regions.
-                let one = self.limits.iter().all(|limit| *limit == self.limits[0]);
+                // The tool is taken to be one piece; where only what is deeper counts, so is that of each region.
+                let one = self.limits.iter().all(|limit| *limit == 0.0);
                 let mut cores = Vec::new();
                 for (index, region) in card.regions.iter().enumerate() {
                     let limit = self.limits[region.surface];

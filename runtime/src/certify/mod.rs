@@ -123,7 +123,7 @@ impl<'a> Certifier<'a> {
         let length = card.unit.to(facets.unit());
         let sight = Sight::new(&facets.frame, card, length);
         let part = f64::from(facets.frame.size) * facets.frame.scale / length;
-        let error = rounding::place(card.size(), part);
+        let error = rounding::place(card, part);
         let (body, error) = match Section::new(card, error) {
             Some(section) => (Body::Profile(section), error),
             None => match Field::new(tool, level) {

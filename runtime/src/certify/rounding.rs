@@ -1,8 +1,8 @@
 //! How far rounding takes what is computed in doubles.
 //!
-//! `u` is half of `ε`, `S` how far the tool reaches from its tip, `P` the largest extent of the part, both
-//! in the tool's unit. Poses and meshes are taken as given: their doubles are exact. Only triangles that
-//! reach the tool count, so that no corner is farther from the tip than `M = S + √3 P`, and no edge longer
+//! `u` is half of `ε`, `S` how far the tool and the circles of its arcs reach, along the axis or away from it, `P` the
+//! largest extent of the part, both in the tool's unit. No place of the tool is farther than `√2 S` from its tip. Poses and meshes are taken as given: their doubles are exact. Only triangles that
+//! reach the tool count, so that no corner is farther from the tip than `M = √2 S + √3 P`, and no edge longer
 //! than `W = √3 P`. Sums of three products err by 3u of the sum of their sizes (Higham, *Accuracy and
 //! Stability of Numerical Algorithms*, 2002, section 3.1), and a rotation whose rows are taken as positive
 //! is no longer than √3.
@@ -26,7 +26,7 @@
 //!
 //! A triangle whose corners are moved has every place moved by no more than these, and depth changes by no
 //! more than the way. An upper bound has all of these errors, `68 uM + 5 uW + 18 uS`, which is less than
-//! `86 uS + 127 uP`. [`place`] allows 128 u for both.
+//! `115 uS + 127 uP`. [`place`] allows 128 u for both.
 //!
 //! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. Of the two shorter
 //! edges that is no more than the shortest, `s`, times the longest; so the normal is off by an angle
@@ -34,15 +34,20 @@
 //! the distance `d` from the axis, and let the triangle be inclined by `θ`. The azimuth of the normal is off
 //! by `η / sin θ`. If `sin θ ≥ 1/2`, the plane through the axis at the wrong azimuth passes `x` at `2 η d`.
 //! If not, `x` turned about the axis to that azimuth stays at `d`, and its height in the triangle's plane
-//! changes by `tan θ · d · min(2, η² / (2 sin² θ)) ≤ 1.2 η d`. The computed plane passes that place at
-//! another `2 η r`, `r` being how far corners are from the tip. So some place of the computed meridian is
-//! within `4 η r` of one that is as deep as `x`, its [`skew`]. And no place of a triangle is farther than its
+//! changes by no more than `2 tan θ · d`, and by `tan θ · d · α² / 2` after a small turn `α`: in all by `2 η d` at
+//! most. If it leaves the triangle meanwhile, it does so through an edge, on which depth is looked for too. The
+//! computed plane passes that place at another `2 η r`, `r` being how far corners are from the tip. So some place
+//! of the computed meridian or of an edge is within `4 η r` of one that is as deep as `x`, the [`skew`]; what is
+//! owned within the skew is taken for owned. And no place of a triangle is farther than its
 //! [`height`] from its longest edge, on which depth is looked for too: where that is less, there is no meridian.
 
-/// How far a place is known in the tool's frame, and how deep it is: of a tool that reaches `size` and a part
-/// whose largest extent is `part`.
-pub(super) fn place(size: f64, part: f64) -> f64 {
-    64.0 * f64::EPSILON * (size + part)
+use crate::tool::Card;
+
+/// How far a place is known in the tool's frame, and how deep it is, beside a part whose largest extent is `part`.
+pub(super) fn place(card: &Card, part: f64) -> f64 {
+    let circles = card.outline.iter().filter_map(|piece| piece.circle);
+    let reach = circles.map(|circle| circle.centre[0].hypot(circle.centre[1]) + circle.radius);
+    64.0 * f64::EPSILON * (reach.fold(card.size(), f64::max) + part)
 }
 
 /// How much less a place so far from the tool is known: its distance in the place of `M`.

@@ -336,16 +336,24 @@ impl Work {
         };
         let facet = Facet::new(corners);
         self.skew = self.skew.max(facet.skew);
-        let asked = (section, &question.owners);
-        let peaks = question.owners.peaks.iter().filter_map(|peak| facet.level(*peak));
-        for course in facet.courses().chain(peaks) {
+        let owners = &question.owners;
+        let heights = section.circles.iter().chain(&owners.peaks);
+        let levels = heights.filter_map(|height| facet.level(*height));
+        // Beside the computed meridian it may be deeper by the skew than on it; searches begin lower by two errors.
+        let best = self.best;
+        let known = facet.skew <= of.error;
+        let before = if known { None } else { self.search.lower(facet.skew) };
+        for course in facet.courses().chain(levels) {
             let found = match side {
-                Side::Inside => self.search.inside(asked, &course),
-                Side::Outside => self.search.outside(asked, &course),
+                Side::Inside => self.search.inside((section, owners, facet.skew), &course),
+                Side::Outside => self.search.outside((section, owners), &course),
             };
             if let Some(Found { t, feature }) = found {
                 self.best = Some(Best { point: course.point(t), feature, index });
             }
+        }
+        if before.is_some_and(|before| self.search.raise(before, facet.skew)) {
+            self.best = best;
         }
     }
 }

@@ -53,7 +53,7 @@ cargo run --release -p touchoff-tests --bin rounding -- --cases {count} --seed {
 
 Commit {}, {}, {} cores.
 
-Each case is a triangle, or a few, a tool and a pose, drawn where rounding does the most: ten profiles at five scales from 1e-6 to 1e6 mm, tolerances 0 and
+Each case is a triangle, or a few, a tool and a pose, drawn where rounding does the most: eleven profiles at five scales from 1e-6 to 1e6 mm, tolerances 0 and
 1e-9 of the tool's size. The doubles of the mesh and the pose are exact numbers, and a place `p` of the part is `R⁻¹ (p - tip)` in the tool's frame, as `Pose` says.
 A search in doubles finds places; the depth of the best of them in 256 bits is less than the true greatest depth or equal. The upper end is
 *exceeded* if it is below that. A witness is *off* if it is farther from its triangle than the promised widening and the rounding of a point of the world, and

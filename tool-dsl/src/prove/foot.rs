@@ -2,7 +2,10 @@
 //! on the profile.
 //!
 //! Then depth, being the distance from it, is no less than the distance to the surface, whatever the borders of regions
-//! are. Points whose foot is beyond a piece's end by `o` are as near to that end as to the line or circle, but for `2 o`.
+//! are. Points that are beyond the normal at a piece's end by `o` are as near to that end as to the line or circle, but
+//! for `2 o`. Of an arc that is so on the end's side of the centre. A point on the other side, at the distance `ρ` from the
+//! centre, is as near but for `2 ρ`; of an arc that turns by `T` it is beyond the normal at one end by `ρ sin (T/2)` at
+//! least, and `sin (T/2)` is half the chord by the radius.
 
 use super::cover::{Claim, Cover};
 use super::root::Rooted;
@@ -20,9 +23,15 @@ use std::collections::HashMap;
 /// The error that a depth's expression may have as the distance to its piece, as a part of the tool's size.
 const ROUNDING: f64 = 1e-13;
 
-/// Linear functions that are not negative where feet are on a region's piece, each with a slope of 1: the distances from
-/// the normals at its ends.
-type Ends = Vec<Polynomial>;
+/// An end of a region's piece, by linear functions with a slope of 1.
+struct End {
+    /// The distance from the normal at the end, not negative where feet are on the piece.
+    inside: Polynomial,
+    /// Of an arc, how far a point is on the end's side of the centre, and the diameter by the chord.
+    side: Option<(Polynomial, f64)>,
+}
+
+type Ends = Vec<End>;
 
 /// The pieces of a profile.
 pub(super) struct Feet<'m> {
@@ -62,7 +71,7 @@ impl<'m> Feet<'m> {
         let Some(owner) = claim.owner else { return 0.0 };
         let mut most = 0.0f64;
         for end in 0..self.ends[owner].len() {
-            let mut beyond = -self.ends[owner][end].over(&cell).low;
+            let mut beyond = -self.ends[owner][end].inside.over(&cell).low;
             for (curve, _) in &claim.signs {
                 if beyond <= 0.0 {
                     break;
@@ -72,7 +81,9 @@ impl<'m> Feet<'m> {
                     beyond = beyond.min(-least);
                 }
             }
-            most = most.max(beyond);
+            let side = self.ends[owner][end].side.as_ref();
+            let behind = side.filter(|(side, _)| side.over(&cell).low < 0.0);
+            most = most.max(beyond * behind.map_or(1.0, |(_, scale)| *scale));
         }
         most
     }
@@ -88,7 +99,7 @@ impl<'m> Feet<'m> {
         let (model, ends) = (self.model, &self.ends);
         let beside = || {
             let curve = Polynomial::of(&model.graph, model.curves[curve].value)?;
-            let end = &ends[owner][end];
+            let end = &ends[owner][end].inside;
             if !curve.is_linear() {
                 // Where the end's function is negative the conic has the other sign all over.
                 let clear = curve.clear_of(end)? == (below, true);
@@ -129,13 +140,19 @@ fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
         let ahead = segment.direction()?;
         let back = ahead.each_ref().map(|part| -part);
-        return Some(vec![along(&ahead, &segment.from), along(&back, &segment.to)]);
+        let end = |inside: Polynomial| End { inside, side: None };
+        return Some(vec![end(along(&ahead, &segment.from)), end(along(&back, &segment.to))]);
     };
     // Left of the ray to one end and right of that to the other, or the other way round. Arcs are of no more than 180°.
     let sign = Number::int(if circle.convex { 1 } else { -1 });
+    let [[d0, z0], [d1, z1]] =
+        [&segment.from, &segment.to].map(|end| end.each_ref().map(Number::to_f64));
+    // With more than what doubles err by.
+    let scale = (1.0 + 1e-12) * 2.0 * circle.radius.to_f64() / (d1 - d0).hypot(z1 - z0);
     let beside = |end: &Place, sign: &Number| {
         let [d, z] = unit_between(&circle.centre, end)?;
-        Some(along(&[&-&z * sign, &d * sign], &circle.centre))
+        let side = Some((along(&[d.clone(), z.clone()], &circle.centre), scale));
+        Some(End { inside: along(&[&-&z * sign, &d * sign], &circle.centre), side })
     };
     Some(vec![beside(&segment.from, &sign)?, beside(&segment.to, &-&sign)?])
 }

@@ -5,7 +5,7 @@ use crate::certify::body::owners::Owners;
 use crate::certify::body::section::Depth;
 use crate::certify::space::Point;
 use crate::certify::triangle::piece::Piece;
-use crate::tool::{Enclosed, Shape, bit};
+use crate::tool::{Enclosed, Shape};
 
 impl Field<'_> {
     fn is_revolved(&self) -> bool {
@@ -24,7 +24,7 @@ impl Field<'_> {
         self.tool.enclose([around(x), around(y), around(z)], [x, y, z], &mut scratch.felt)
     }
 
-    /// How deep a place is, if owners have it, or have it as nearly as rounding tells.
+    /// How deep a place is, if owners have it, or a place beside it that is as near as places are known.
     pub(super) fn owned(
         &self,
         scratch: &mut Scratch,
@@ -35,9 +35,21 @@ impl Field<'_> {
         if depth.value < 0.0 || owners.own(depth.feature) {
             return Some(depth);
         }
-        let near = self.about(scratch, point, self.error)?.regions;
-        let mut others = (0..self.card().regions.len()).filter(|index| owners.own(*index));
-        let feature = others.find(|index| near & bit(*index) != 0)?;
+        if !owners.own_some(self.about(scratch, point, self.error)?.regions) {
+            return None;
+        }
+        // One of its neighbours has to be.
+        scratch.points.clear();
+        for axis in 0..3 {
+            for side in [-self.error, self.error] {
+                let mut beside = point;
+                beside[axis] += side;
+                scratch.points.push(beside);
+            }
+        }
+        let beside = self.depths(scratch, 6);
+        let own = |other: &&Depth| other.value >= 0.0 && owners.own(other.feature);
+        let feature = beside[..6].iter().find(own)?.feature;
         Some(Depth { feature, ..depth })
     }
 

@@ -72,10 +72,11 @@ impl Feature {
     }
 
     /// A ball about a place of the axis that holds that of a convex arc about the axis, in a tool of that
-    /// size: its height and radius.
+    /// size: its height and radius. None where that is so large that `f32` would tell nothing of it.
     pub(crate) fn ball(&self, size: f64) -> Option<[f64; 2]> {
         let Circle { centre: [d, z], radius, convex } = self.circle?;
-        (convex && d.abs() <= 1e-9 * size).then_some([z, radius + d.abs()])
+        let small = radius.max(z.abs()) <= 4.0 * size;
+        (convex && small && d.abs() <= 1e-9 * size).then_some([z, radius + d.abs()])
     }
 
     /// 1 where the tool is toward the axis, -1 where it is away from it.

@@ -39,7 +39,7 @@ struct Held {
 pub(crate) struct Scratch {
     /// The deepest on top.
     pieces: BinaryHeap<Held>,
-    points: Points,
+    pub(super) points: Points,
     pub(super) felt: Felt,
 }
 
@@ -87,7 +87,7 @@ impl<'a> Field<'a> {
     }
 
     /// How deep places are; outside, the negative of how far they are from the tool at least.
-    fn depths(&self, scratch: &mut Scratch, count: usize) -> [Depth; LANES] {
+    pub(super) fn depths(&self, scratch: &mut Scratch, count: usize) -> [Depth; LANES] {
         let Scratch { points, felt, .. } = scratch;
         let ask = Ask { depth: true, region: true, ..Ask::INSIDE };
         self.tool.evaluate(self.level, ask, points, 1.0, felt);
@@ -146,7 +146,7 @@ impl<'a> Field<'a> {
                 }
                 let (centre, far) = held.piece.ball();
                 scratch.points.push(centre);
-                (some[count], reach[count]) = (held, far);
+                (some[count], centres[count], reach[count]) = (held, centre, far);
                 count += 1;
             }
             if count == 0 {
@@ -155,9 +155,7 @@ impl<'a> Field<'a> {
             let mut depths = self.depths(scratch, count);
             for (lane, depth) in depths.iter_mut().enumerate().take(count) {
                 depth.value = value(depth.value);
-                let lists = scratch.points.lists();
-                let point = [0, 1, 2].map(|axis| lists[axis][lane]);
-                centres[lane] = point;
+                let point = centres[lane];
                 if depth.value > search.best
                     && let Some(depth) = self.owned(scratch, owners, point, *depth)
                     && search.take(&depth)

@@ -7,7 +7,8 @@
 //! point of it decides which.
 //!
 //! **Every piece is found.** Let `p` be a point of `S` at depth `t`, and `q` its nearest point on the
-//! profile: on a feature, or on a reflex corner. The ball of radius `t` about `p` touches the profile at
+//! profile: on a feature, or on a reflex corner; where the profile begins or ends on the axis, one with its mirror
+//! image. The ball of radius `t` about `p` touches the profile at
 //! `q` and holds nothing of it; so does every smaller ball that touches there. All points of the normal
 //! from `q` between the limit `L` and `p` thus have `q` as their nearest point and lie in the same piece
 //! of `S`. So each piece meets an *offset curve*: the points of the normals of a feature, or of the fan
@@ -15,9 +16,16 @@
 //! other feature is nearer than `L`. Along the curve that can change only where the curve crosses the
 //! axis or a curve at the distance `L` from another feature. These are lines and circles, so their
 //! crossings have closed forms; between two neighbouring crossings one point decides for all.
+//!
+//! **In doubles** `L` is the limit, the tolerance and what rounding makes of a place together, and a point counts as
+//! free if nothing is nearer than `L` but for a quarter of that. Where two circles nearly touch their crossings are
+//! known to the root of rounding only, or lost: but there the curves are apart by rounding at most, which that quarter
+//! holds. Neighbouring spans of free points make one run: nearer to the feature by half of what rounding makes they are
+//! connected, and no triangle is there. So pieces that are deeper than the limit by the tolerance and rounding are found.
 
 use crate::certify::body::feature::{Feature, Place, cross, dot, minus, norm};
 use crate::certify::body::section::Section;
+use std::f64::consts::FRAC_PI_2;
 
 /// A point of a tool's half plane that stands for a connected piece of its restricted interior.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +88,9 @@ impl Normals {
     /// The fan of normals between two features that meet in a reflex corner.
     fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
         let [arrives, leaves] = [before.heading(1), after.heading(0)];
-        if cross(arrives, leaves) >= 0.0 {
+        let turn = cross(arrives, leaves);
+        // Of headings that are opposite rounding decides which way they turn.
+        if turn >= 0.0 && !(turn < 1e-9 && dot(arrives, leaves) < 0.0) {
             return None;
         }
         let inward = |way: Place| angle([-way[1], way[0]]);
@@ -89,6 +99,25 @@ impl Normals {
             centre: after.ends[0],
             from,
             turn: (to - from).rem_euclid(std::f64::consts::TAU),
+            radius: 0.0,
+            grows: 1.0,
+        })
+    }
+
+    /// The fan of normals between a feature's normal at its end on the axis and the axis, if it meets its mirror
+    /// image in a reflex corner there.
+    fn axis_fan(feature: &Feature, end: usize) -> Option<Normals> {
+        let [d, z] = feature.heading(end);
+        if feature.ends[end][0] != 0.0 || z >= 0.0 {
+            return None;
+        }
+        let normal = angle([-z, d]);
+        // Into the tool: up at its beginning, down at its end.
+        let axis = if end == 0 { FRAC_PI_2 } else { -FRAC_PI_2 };
+        Some(Normals::Arc {
+            centre: feature.ends[end],
+            from: normal.min(axis),
+            turn: (axis - normal).abs(),
             radius: 0.0,
             grows: 1.0,
         })
@@ -209,7 +238,11 @@ pub(crate) fn witnesses(section: &Section, limits: &[f64], tolerance: f64) -> Ve
     let more = tolerance + section.error;
     let mut found = Vec::new();
     for (index, feature) in section.features.iter().enumerate() {
-        interior.add(&Normals::of(feature), limits[index] + more, index, &mut found);
+        let limit = limits[index] + more;
+        interior.add(&Normals::of(feature), limit, index, &mut found);
+        for fan in [0, 1].into_iter().filter_map(|end| Normals::axis_fan(feature, end)) {
+            interior.add(&fan, limit, index, &mut found);
+        }
         let Some(next) = section.features.get(index + 1) else { continue };
         // Points of a fan are as near to both features, and so belong to the stricter.
         let owner = if limits[index + 1] < limits[index] { index + 1 } else { index };

@@ -1,5 +1,6 @@
 //! What is known of a tool: its profile, or how deep places are and how fast that changes.
 
+mod circles;
 mod deepest;
 mod enclosed;
 pub(crate) mod feature;

@@ -63,8 +63,13 @@ impl Owners {
         let some = some.contains(&false).then_some(some);
         let mut owners = Owners { some, ..Owners::default() };
         if !owners.all() {
-            match owners.find_peaks(section) {
-                Some(peaks) => owners.peaks = peaks,
+            match owners.find_peaks(section, true) {
+                // Just below and just above: of a seam either side owns only what is on its side.
+                Some(peaks) => {
+                    let beside = 0.25 * section.error;
+                    let both = |peak: f64| [peak - beside, peak + beside];
+                    owners.peaks = peaks.into_iter().flat_map(both).collect();
+                }
                 // No profile that is meant is like this; the whole tool is no less deep.
                 None => owners.some = None,
             }
@@ -191,8 +196,8 @@ impl Owners {
     /// axis nowhere does.
     ///
     /// They are found by rectangles that are halved, to a part of what rounding makes of a place; `None` if
-    /// there are too many.
-    fn find_peaks(&self, section: &Section) -> Option<Vec<f64>> {
+    /// there are too many. If `others`, only those near to which others own places too.
+    pub(super) fn find_peaks(&self, section: &Section, others: bool) -> Option<Vec<f64>> {
         let small = section.error / 32.0;
         // At the centre of an arc all of it is as far.
         let centres = section.features.iter().filter_map(|feature| feature.circle);
@@ -206,7 +211,7 @@ impl Owners {
             }
             let (middle, reach) = rectangle.ball();
             let corners = rectangle.corners();
-            if !self.may_peak(section, (middle, reach), &corners) {
+            if !self.may_peak(section, (middle, reach), &corners, others) {
                 continue;
             }
             if reach <= small {
@@ -217,18 +222,17 @@ impl Owners {
             }
             stack.extend(rectangle.halves());
         }
-        // Just below and just above: of a seam either side owns only what is on its side.
-        let beside = 0.25 * section.error;
-        Some(peaks.into_iter().flat_map(|peak| [peak - beside, peak + beside]).collect())
+        Some(peaks)
     }
 
-    /// Whether a place no farther than that from another may be as far from three features, of which some
-    /// are these and some are not.
+    /// Whether a place no farther than that from another may be as far from three features, and if `others`, some
+    /// of them these and some not.
     fn may_peak(
         &self,
         section: &Section,
         (middle, reach): (Place, f64),
         corners: &[Place],
+        others: bool,
     ) -> bool {
         let away: Vec<f64> = section.features.iter().map(|f| f.away(middle)).collect();
         let nearest = away.iter().copied().fold(f64::INFINITY, f64::min);
@@ -254,7 +258,7 @@ impl Owners {
                 nearby.push((index, foot));
             }
         }
-        nearby.len() > 2 && both == [true, true]
+        nearby.len() > 2 && (both == [true, true] || !others)
     }
 }
 

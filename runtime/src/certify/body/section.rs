@@ -5,6 +5,7 @@
 //! the axis' side of one piece, its *side*: as far as the axis, or to another piece, its *inner* side,
 //! where the profile overhangs. No piece ends between a slab's heights.
 
+use crate::certify::body::circles;
 use crate::certify::body::feature::{Feature, Place, Triangle, cross, dot, minus, norm, quarters};
 use crate::certify::body::owners::Owners;
 use crate::tool::Card;
@@ -38,6 +39,8 @@ pub(crate) struct Section {
     pub(crate) slabs: Vec<Slab>,
     /// Whether some heights have several of them, or one that does not reach the axis.
     overhangs: bool,
+    /// The heights of circles about the axis on which it can be deepest in a triangle.
+    pub(crate) circles: Vec<f64>,
     /// How far it reaches from the tip.
     pub(crate) size: f64,
     /// How far heights are known: slabs are taken to reach that much farther.
@@ -54,7 +57,8 @@ pub(crate) struct Depth {
 }
 
 impl Section {
-    /// The section of a tool with a profile; `None` without one.
+    /// The section of a tool with a profile; `None` without one, or where it overhangs in more ways than
+    /// can be told.
     pub(crate) fn new(card: &Card, error: f64) -> Option<Section> {
         let features: Vec<Feature> = card.outline.iter().flat_map(quarters).collect();
         let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
@@ -63,10 +67,14 @@ impl Section {
             return None;
         }
         let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
-        let mut section = Section { features, slabs, overhangs, size, error };
+        let circles = Vec::new();
+        let mut section = Section { features, slabs, overhangs, circles, size, error };
         for slab in 0..section.slabs.len() {
             let side = section.features[section.slabs[slab].side];
             section.slabs[slab].feet = section.feet(&side, slab);
+        }
+        if overhangs {
+            section.circles = circles::heights(&section)?;
         }
         Some(section)
     }
@@ -157,7 +165,7 @@ impl Section {
     pub(crate) fn depth_at(&self, owners: &Owners, p: Place) -> Option<Depth> {
         // Several slabs are at a height where the profile overhangs, or where they meet.
         let here = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
-        let depths = here.map(|slab| self.depth(owners, slab, p));
+        let depths = here.map(|slab| self.depth((owners, 0.0), slab, p));
         depths.reduce(|one, other| if other.value > one.value { other } else { one })
     }
 
@@ -185,9 +193,10 @@ impl Section {
             })
     }
 
-    /// How deep a place in a slab is; less than 0 outside, and nothing where other features are the nearest.
+    /// How deep a place in a slab is; less than 0 outside, and nothing where other features are the nearest to all
+    /// places no farther than `slack` from it.
     #[inline]
-    pub(crate) fn depth(&self, owners: &Owners, slab: &Slab, p: Place) -> Depth {
+    pub(crate) fn depth(&self, (owners, slack): (&Owners, f64), slab: &Slab, p: Place) -> Depth {
         let (over, side) = self.over(slab, p);
         if over < 0.0 {
             let other = -over <= self.touch() && self.apart(owners, |f| f.away(p));
@@ -199,7 +208,7 @@ impl Section {
         if !owners.own(feature) {
             let owned = self.owned(owners).filter(|owner| !self.behind(*owner, &[p]));
             let (other, owner) = self.nearest(owned, p);
-            if other > value + self.error {
+            if other > value + self.error + 2.0 * slack {
                 return Depth { value: f64::NEG_INFINITY, gradient, feature };
             }
             feature = owner;
@@ -222,7 +231,7 @@ impl Section {
     #[inline]
     pub(crate) fn at_most(
         &self,
-        owners: &Owners,
+        (owners, slack): (&Owners, f64),
         slab: &Slab,
         triangle: &Triangle,
         enough: f64,
@@ -243,7 +252,7 @@ impl Section {
             bound = bound.min(self.features[*near].at_most(triangle));
         }
         if bound > enough && !owners.all() {
-            let apart = bound + 2.0 * self.error;
+            let apart = bound + 2.0 * (self.error + slack);
             let none = |owner: usize| {
                 self.behind(owner, triangle) || self.features[owner].at_least(triangle) > apart
             };

@@ -262,12 +262,13 @@ impl Sweeper {
         let (tolerance, enough, budget) = (0.25 * goes, f64::INFINITY, self.budget);
         self.search.begin(Goal { least, tolerance, enough, budget });
         let mut found = None;
-        let peaks = asked.1.peaks.iter().filter_map(|peak| facet.level(*peak));
+        let heights = asked.0.circles.iter().chain(&asked.1.peaks);
+        let peaks = heights.filter_map(|height| facet.level(*height));
         for course in facet.courses().chain(peaks) {
             let deepest = if least < 0.0 {
                 self.search.outside(asked, &course)
             } else {
-                self.search.inside(asked, &course)
+                self.search.inside((asked.0, asked.1, facet.skew), &course)
             };
             found = deepest.map(|deepest| course.point(deepest.t)).or(found);
         }

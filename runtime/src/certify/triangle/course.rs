@@ -205,6 +205,29 @@ impl Search {
         self.most > f64::NEG_INFINITY
     }
 
+    /// Looks for what is less deep by so much too, if nothing was found yet; returns what it looked for.
+    pub(crate) fn lower(&mut self, by: f64) -> Option<f64> {
+        if self.found {
+            return None;
+        }
+        let before = self.best;
+        self.best -= by;
+        Some(before)
+    }
+
+    /// Looks for what it looked for before. Whether what was found since is not as deep as that; it stays open.
+    pub(crate) fn raise(&mut self, before: f64, by: f64) -> bool {
+        let shallow = self.best <= before;
+        if shallow {
+            if self.found {
+                self.leave(self.best + by);
+            }
+            self.found = false;
+            self.best = before;
+        }
+        shallow
+    }
+
     /// Leaves open what is no deeper than that, since it cannot be looked at more closely.
     pub(crate) fn leave(&mut self, bound: f64) {
         self.most = self.most.max(bound);
@@ -241,10 +264,11 @@ impl Search {
         }
     }
 
-    /// The place of a course where owners are deepest, if deeper than the best, where that is at least 0.
+    /// The place of a course where owners are deepest, if deeper than the best, where that is at least 0. They have
+    /// what is no farther than `slack` from what they own.
     pub(crate) fn inside(
         &mut self,
-        (section, owners): (&Section, &Owners),
+        (section, owners, slack): (&Section, &Owners, f64),
         course: &Course,
     ) -> Option<Found> {
         let mut found = None;
@@ -257,9 +281,9 @@ impl Search {
                 }
                 if let Some([from, to]) = course.within(half, heights) {
                     let bound = |triangle: &Triangle, enough| {
-                        section.at_most(owners, slab, triangle, enough)
+                        section.at_most((owners, slack), slab, triangle, enough)
                     };
-                    let depth = |place| section.depth(owners, slab, place);
+                    let depth = |place| section.depth((owners, slack), slab, place);
                     self.run(course, course.interval(from, to), bound, depth, &mut found);
                 }
             }

@@ -38,7 +38,8 @@ impl Enclosed {
     /// No less than the depth of any place of the convex hull of some, given how far each is from the point along x,
     /// y and z: between two ends each. Infinite or NaN where a slope is not known.
     ///
-    /// By the mean value theorem a region's formula at a place is that at the point and slopes times the way. A choice `f` where `g ≤ 0` is no more than `f - λ g` there, for any `λ ≥ 0` (Lagrange); the least
+    /// The point has to be in the box and in the hull. Where the argument of a root may be below 0 its slope has no
+    /// end, and then the bound of some corner has none. By the mean value theorem a region's formula at a place is that at the point and slopes times the way. A choice `f` where `g ≤ 0` is no more than `f - λ g` there, for any `λ ≥ 0` (Lagrange); the least
     /// of the most of that at the corners is at 0 or where two corners are as much.
     pub fn most_between(&self, ways: [[[f64; 2]; 3]; 3]) -> f64 {
         let Choices::Two(two) = self.depth.choices else {
@@ -49,8 +50,8 @@ impl Enclosed {
             let ends = ways.map(|way| (value.values(way).high, gap.values(way).low));
             // Not 0 times what may be infinite.
             let most = |scale: f64| {
-                let less = |gap: f64| if scale > 0.0 { scale * gap } else { 0.0 };
-                let at = ends.map(|(value, gap)| value - less(gap));
+                let less = |gap: f64| if scale > 0.0 { (scale * gap).next_down() } else { 0.0 };
+                let at = ends.map(|(value, gap)| (value - less(gap)).next_up());
                 at[0].max(at[1]).max(at[2])
             };
             let mut least = most(0.0);
@@ -86,11 +87,7 @@ impl Enclosed {
         };
         let gap =
             test.map(|(value, below)| if below { value.course } else { value.course.negated() });
-        let choices = if self.depth == Enclosure::NOTHING && gap.is_none() {
-            depth.choices
-        } else {
-            self.depth.choices.and(depth.choices(gap))
-        };
+        let choices = self.depth.choices.and(depth.choices(gap));
         self.inside = true;
         self.regions |= bit(region);
         self.depth = Enclosure { choices, ..self.depth.hull(depth) };

@@ -23,13 +23,15 @@ pub struct Cutter {
     pub reference: Reference,
     /// Largest distance from the axis, and height.
     pub extent: [f64; 2],
+    /// How far the circles of its arcs reach from its tip, if farther than the tool.
+    pub reach: f64,
 }
 
 /// A profile: the name, and points with the centre of the arc that ends there.
 type Drawn = (&'static str, &'static [(Flat, Option<Flat>)]);
 
 /// The profiles at scale 1; each begins at the origin.
-const PROFILES: [Drawn; 10] = [
+const PROFILES: [Drawn; 11] = [
     ("Ball", &[([5., 5.], Some([0., 5.])), ([5., 22.], None), ([0., 22.], None)]),
     ("Flat", &[([6., 0.], None), ([6., 26.], None), ([0., 26.], None)]),
     (
@@ -104,6 +106,17 @@ const PROFILES: [Drawn; 10] = [
             ([0., 50.], None),
         ],
     ),
+    // An arc whose radius is 4096.00390625, a hundred times the tool's size.
+    (
+        "Bowed",
+        &[
+            ([6., 0.], None),
+            ([6., 16.], Some([-4089.99609375, 8.])),
+            ([5.5, 16.5], None),
+            ([5.5, 40.], None),
+            ([0., 40.], None),
+        ],
+    ),
     // A point, whose depth has a kink on the axis.
     ("Point", &[([6., 6.], None), ([6., 20.], None), ([0., 20.], None)]),
     // A hundred times as long as it is thick.
@@ -132,7 +145,13 @@ pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
         from = scaled(to);
     }
     let most = |axis: usize| segments.iter().fold(0.0f64, |most, part| most.max(part.to[axis]));
+    let far = |segment: &Segment| {
+        let [x, y] = segment.centre?;
+        Some(x.hypot(y) + (segment.to[0] - x).hypot(segment.to[1] - y))
+    };
+    let reach = segments.iter().filter_map(far).fold(most(0).max(most(1)), f64::max);
     Ok(Cutter {
+        reach,
         name: format!("{name}·2^{exponent}"),
         tool: Interpreted::parse(&Source::new("cutter.tool", &*text(name, &segments)))?,
         reference: Reference::new(&restated(name, &segments)),

@@ -250,10 +250,9 @@ impl Judge<'_> {
         truth
     }
 
-    /// The rounding that is promised, and the skew: 64 ε of the tool's size and the part's, and of each triangle
+    /// The rounding that is promised, and the skew: 64 ε of the tool's reach and the part's size, and of each triangle
     /// `12 ε r s/h`, or its height `h`.
     fn promised(&self) -> [f64; 2] {
-        let [radius, height] = self.scene.cutter.extent;
         let corners = || self.case.triangles.iter().flatten();
         let extent = [0, 1, 2].map(|axis| {
             let parts = || corners().map(|corner| corner[axis]);
@@ -261,7 +260,7 @@ impl Judge<'_> {
         });
         let part = extent.into_iter().fold(0.0, f64::max);
         let skew = self.scene.triangles.iter().map(skew).fold(0.0, f64::max);
-        [64.0 * f64::EPSILON * (radius.max(height) + part), skew]
+        [64.0 * f64::EPSILON * (self.scene.cutter.reach + part), skew]
     }
 
     /// The place of its triangle that is about the nearest to a witness.
