@@ -45,8 +45,8 @@ touchoff::tool! {
             arc to (8, 0) center (8, 2) as lip cutting;
             arc to (10, 2) center (8, 2) as lip cutting;
             line to (10, 12) as side cutting;
-            arc to (5, 17) center (10, 17) concave as neck;
-            line to (5, 40), (0, 40) as shank;
+            arc to (6, 14) center (10, 17) concave as neck;
+            line to (6, 40), (0, 40) as shank;
         }
         niceness lip: 1;
         niceness side: 1;
@@ -125,8 +125,8 @@ pub(crate) fn oracle(name: &str) -> Option<Nearest> {
             .arc("lip", [8.0, 0.0], [8.0, 2.0])
             .arc("lip", [10.0, 2.0], [8.0, 2.0])
             .line("side", 10.0, 12.0)
-            .arc("neck", [5.0, 17.0], [10.0, 17.0])
-            .lines("shank", &[[5.0, 40.0], [0.0, 40.0]])
+            .arc("neck", [6.0, 14.0], [10.0, 17.0])
+            .lines("shank", &[[6.0, 40.0], [0.0, 40.0]])
             .cuts(&["lip", "side"], |_, _, _| 1.0),
         "Skirt" => Restated::new("Skirt", 0.0)
             .line("face", 3.0, 0.0)

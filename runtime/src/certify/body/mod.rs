@@ -53,13 +53,15 @@ impl Body<'_> {
         }
     }
 
-    /// How near owners are to a place outside, as depth: no more than 0.
+    /// How near owners are to a place outside, as depth: no more than 0. Of a tool by its field what is inside is
+    /// others'.
     pub(crate) fn distance(&self, scratch: &mut Scratch, owners: &Owners, point: Point) -> Depth {
         match self {
             Body::Profile(section) => section.distance(owners, place(point)),
             Body::Field(field) => {
                 let depth = field.depth(scratch, point);
-                Depth { value: depth.value.min(0.0), ..depth }
+                let value = if depth.value < 0.0 { depth.value } else { f64::NEG_INFINITY };
+                Depth { value, ..depth }
             }
         }
     }
