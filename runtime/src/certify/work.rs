@@ -10,7 +10,7 @@ use crate::certify::question::Question;
 #[cfg(feature = "postures")]
 use crate::certify::space::Point;
 use crate::certify::triangle::course::{Best, Found, Goal, Search};
-use crate::certify::triangle::facet::Facet;
+use crate::certify::triangle::facet::{Facet, nearest};
 use crate::pose::Pose;
 use crate::tool::LANES;
 use crate::tree::{Sight, View};
@@ -299,7 +299,9 @@ impl Work {
     fn places(&mut self, of: &Setting<'_>, question: &Question) {
         for lane in 0..self.batch.len() {
             if self.batch.bounds[lane] > self.search.wanted() {
-                let (point, index) = (self.batch.place(lane), self.batch.index(lane));
+                // Of a thin triangle the place may be beside it.
+                let point = nearest(self.batch.place(lane), &self.batch.corners(lane));
+                let index = self.batch.index(lane);
                 if let Some(depth) = of.body.depth(&mut self.scratch, &question.owners, point)
                     && self.search.take(&depth)
                 {

@@ -104,3 +104,42 @@ impl Facet {
         [[a, b], [b, c], [c, a]].map(|[from, to]| Course::new(from, minus(to, from), [0.0, 1.0]))
     }
 }
+
+/// A place of a triangle, the nearest to a point but for rounding: a mean of the corners, whatever is rounded.
+///
+/// By the regions of the plane that are nearest to a corner, an edge or the inside (Ericson, *Real-Time Collision
+/// Detection*, 2005, section 5.1.5).
+pub(crate) fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
+    let along = |from: Point, to: Point, part: f64| {
+        let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
+        [0, 1, 2].map(|k| from[k] + part * (to[k] - from[k]))
+    };
+    let (ab, ac) = (minus(b, a), minus(c, a));
+    let of = |corner: Point| {
+        let way = minus(p, corner);
+        [dot(ab, way), dot(ac, way)]
+    };
+    let ([a1, a2], [b1, b2], [c1, c2]) = (of(a), of(b), of(c));
+    if a1 <= 0.0 && a2 <= 0.0 {
+        return a;
+    }
+    if b1 >= 0.0 && b2 <= b1 {
+        return b;
+    }
+    if c2 >= 0.0 && c1 <= c2 {
+        return c;
+    }
+    let [to_a, to_b, to_c] = [b1 * c2 - c1 * b2, c1 * a2 - a1 * c2, a1 * b2 - b1 * a2];
+    if to_c <= 0.0 && a1 >= 0.0 && b1 <= 0.0 {
+        return along(a, b, a1 / (a1 - b1));
+    }
+    if to_b <= 0.0 && a2 >= 0.0 && c2 <= 0.0 {
+        return along(a, c, a2 / (a2 - c2));
+    }
+    if to_a <= 0.0 && b2 >= b1 && c1 >= c2 {
+        return along(b, c, (b2 - b1) / ((b2 - b1) + (c1 - c2)));
+    }
+    // First along the way to the third corner, then as far toward it as that is from the edge.
+    let whole = to_a + to_b + to_c;
+    along(along(a, b, to_b / (to_a + to_b)), c, to_c / whole)
+}
