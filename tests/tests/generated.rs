@@ -12,7 +12,8 @@ use tool_dsl::{compile, emit};
 /// Methods that generated code may call: none panics, none is a libm function.
 const METHODS: [&str; 4] = ["sqrt", "abs", "of", "take"];
 /// Functions that it may call.
-const FUNCTIONS: [&str; 16] = [
+const FUNCTIONS: [&str; 17] = [
+    "Enclosed::of",
     "Some",
     "Lane::of",
     "Lane::le",

@@ -111,7 +111,9 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
     refused("block.apt", "D2Ball", &["--allow", "flute"], "SURFACE=DEPTH");
     refused("block.apt", "D2Ball", &["--allow", "flute=NaN"], "is no length");
     refused("block.apt", "D2Ball", &["--tolerance=-1"], "is no tolerance");
-    refused("block.apt", "Block", &[], "a motion does not say its spin");
+    refused("block.apt", "Block", &[], "an axis does not place `Block`");
+    bench.write("full.csv", "-9,0,3,0,0,0,1\n9,0,3,0,0,0,1\n");
+    refused("full.csv", "Block", &[], "a solid without an axis, whose motions are not proved");
 }
 
 /// A statement that could be a motion is refused with its line, by every command that reads programs.

@@ -12,7 +12,7 @@ pub enum VerifyError {
     Uncertified(#[from] Uncertified),
     /// The tool is a solid without an axis.
     #[error(
-        "{tool} is a solid without an axis, and a motion does not say its spin: its poses can be asked with `run`"
+        "{tool} is a solid without an axis, whose motions are not proved: its poses can be asked with `run`"
     )]
     Solid {
         /// Its name.

@@ -7,7 +7,7 @@ use crate::oracle::{Block, Cylinder, Fig73, LBracket, Nearest, Oracle, UnitSpher
 pub const PROFILES: [&str; 6] =
     ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
 
-/// Tools by their field: regions written by hand, profiles that overhang, and solids.
+/// Regions written by hand, solids, and profiles that overhang.
 pub const FIELDS: [&str; 7] =
     ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket", "BoringBar", "FaceMill"];
 
@@ -85,7 +85,7 @@ impl Subject {
     pub(super) fn tolerance(&self) -> [f64; 2] {
         match self {
             Subject::Profile(..) => [1e-9, 1e-9],
-            Subject::Field(_) => [1e-3, 1e-6],
+            Subject::Field(_) => [1e-6, 1e-6],
         }
     }
 }

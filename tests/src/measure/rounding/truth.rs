@@ -84,11 +84,17 @@ fn nearest(p: Point, corners: &[Point; 3]) -> Point {
         weights[to] = part;
         weights
     });
-    let (e, f, q) = (minus(b, a), minus(c, a), minus(p, a));
+    let (e, f) = (minus(b, a), minus(c, a));
     let (ee, ef, ff) = (product(e, e), product(e, f), product(f, f));
-    let (eq, fq) = (product(e, q), product(f, q));
     let area = ee * ff - ef * ef;
-    let [v, w] = [(ff * eq - ef * fq) / area, (ee * fq - ef * eq) / area];
+    // What is left is solved for again: of a sliver the first weights are known to few digits.
+    let [mut v, mut w] = [0.0; 2];
+    for _ in 0..3 {
+        let left = minus(p, mean(corners, [1.0 - v - w, v, w]));
+        let (of_e, of_f) = (product(e, left), product(f, left));
+        v += (ff * of_e - ef * of_f) / area;
+        w += (ee * of_f - ef * of_e) / area;
+    }
     let inside = (v >= 0.0 && w >= 0.0 && v + w <= 1.0).then_some([1.0 - v - w, v, w]);
     let all = edges.into_iter().chain(inside);
     all.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or([1.0, 0.0, 0.0])
