@@ -81,8 +81,10 @@ pub trait Tool: Send + Sync {
     /// What is felt in a box of the tool's frame, its sides from one end to another: enclosed in real
     /// arithmetic, of the expressions as they are evaluated, with slopes from a point of the box. The box of a
     /// tool with an axis lies in the half plane `y = 0`, `x ≥ 0`. `None` of a tool that has a profile, of which
-    /// more is known. `room` is kept between calls.
-    fn enclose(&self, sides: [[f64; 2]; 3], at: [f64; 3], room: &mut Felt) -> Option<Enclosed>;
+    /// more is known, and of one that does not tell. `room` is kept between calls.
+    fn enclose(&self, _sides: [[f64; 2]; 3], _at: [f64; 3], _room: &mut Felt) -> Option<Enclosed> {
+        None
+    }
 
     /// Reserves in `felt` the memory that the tool itself keeps there between calls of
     /// [`Tool::evaluate`] and [`Tool::slopes`], so that they allocate none. A tool that keeps nothing

@@ -2,7 +2,6 @@
 
 use crate::{pose, soup};
 use nalgebra::Point3;
-use std::f64::INFINITY;
 use touchoff::certify::{Certifier, Clear, Facets};
 use touchoff::mesh::shapes;
 use touchoff::{Tool, Unit};
@@ -197,7 +196,8 @@ fn a_piece_at_a_corner_on_the_axis_is_found_inside() {
     let facets = Facets::new(&block);
     for limit in [0.0, 0.5, 0.8, 0.9] {
         let mut certifier = Certifier::new(&facets, &Dimple).expect("a profile");
-        for (surface, limit) in [("dimple", limit), ("flute", INFINITY), ("top", INFINITY)] {
+        let any = f64::INFINITY;
+        for (surface, limit) in [("dimple", limit), ("flute", any), ("top", any)] {
             certifier = certifier.allow(surface, limit).expect("a surface");
         }
         let found = certifier.clear(&pose([0.0; 3], [0.0, 0.0, 1.0]));
