@@ -12,7 +12,7 @@ fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
     let mut text = format!("tool Rod {{ units mm; {curves}\n");
     for (k, condition) in conditions.into_iter().enumerate() {
         text += &format!("region r{k} where d <= 5, 0 <= z <= 20, {condition} ");
-        text += "{ depth: min(5 - d, min(z, 20 - z)); direction: (1, 0); }\n";
+        text += "{ depth: min(5 - d, min(z, 20 - z)); direction: (1, 0) allow oblique; }\n";
     }
     Source::new("rod", text + "}")
 }

@@ -17,11 +17,11 @@ const PROFILE: &str = "profile {
     }";
 
 const REGIONS: &str = "curve low = z - 1;
-    region own as ball where low <= 0 { direction: (1, -2); magnitude: 2*depth; }
-    region slope where low >= 0, z <= 3 { magnitude: 5 - d - z/10; niceness: depth/4; }
+    region own as ball where low <= 0 { direction: (1, -2) allow oblique; magnitude: 2*depth; }
+    region slope where low >= 0, z <= 3 { magnitude: 5 - d - z/10; niceness: depth/4 allow rising; }
     region law as flute where 3 <= z <= 8, d >= 1 { magnitude: 3*depth^1.5; }
-    region away as flute where 3 <= z <= 8, d <= 1 { direction: away from (0, 20); niceness: 0.25; }
-    region toward as shank where 8 <= z <= 13 { direction: toward (9, 20); }
+    region away as flute where 3 <= z <= 8, d <= 1 { direction: away from (0, 20) allow oblique; niceness: 0.25; }
+    region toward as shank where 8 <= z <= 13 { direction: toward (9, 20) allow oblique; }
     region rest where z >= 13 {}
     magnitude shank: 7*depth;
     niceness cutting: 1 - depth/6;

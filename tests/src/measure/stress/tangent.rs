@@ -216,7 +216,10 @@ fn interval(subject: &Subject, mesh: &Mesh, tip: Point3<f64>, depth: f64, ledger
     let pose = Pose::from_quaternion(tip, [0.0, 0.0, 0.0, 1.0]).expect("a unit quaternion");
     let [low, high] = certifier.deepest(&pose, 1e-9).depth;
     let reach = mesh.bounds().iter().map(|p| p.coords.amax()).fold(tip.coords.amax(), f64::max);
-    let unit = f64::EPSILON * (subject.scale() + reach);
+    // The circles of arcs count as the tool does.
+    let circles = subject.tool.card().outline.iter().filter_map(|piece| piece.circle);
+    let circles = circles.map(|circle| circle.centre[0].hypot(circle.centre[1]) + circle.radius);
+    let unit = f64::EPSILON * (circles.fold(subject.scale(), f64::max) + reach);
     let off = (low - depth).max(depth - high).max(0.0);
     let place = || format!("depth {depth:e} in {low:e} to {high:e}, {}", shown(&pose));
     ledger.see(CERTIFIED, off / (64.0 * unit), place);
