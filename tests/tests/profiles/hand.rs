@@ -1,7 +1,7 @@
 //! Regions by hand beside a profile: they say what is felt, never where the tool is.
 
 use super::outline::{Outline, P2, Piece, add, len, sub, unit};
-use super::{said, tool};
+use super::{said, tool, warned};
 use tool_dsl::Checked;
 use tool_dsl::interpret::{Felt, Interpreter};
 use tool_dsl::source::Source;
@@ -79,7 +79,7 @@ fn wanted(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64
 fn each_region_feels_what_the_table_says() {
     for down in [false, true] {
         let text = text(down, REGIONS);
-        let tool = tool(&text).expect("good regions");
+        let tool = warned(&text).expect("good regions");
         let planned = Interpreted::parse(&Source::new("t.tool", text.as_str())).expect("the same");
         let outline = outline(down);
         let mut draw = Draw::new(31);
@@ -140,7 +140,7 @@ fn judge(tool: &Checked, planned: &Interpreted, outline: &Outline, p: P2) {
 /// The gradient is the magnitude's slope.
 #[test]
 fn gradients_are_slopes() {
-    let tool = tool(&text(false, REGIONS)).expect("good regions");
+    let tool = warned(&text(false, REGIONS)).expect("good regions");
     let mut interpreter = Interpreter::new(&tool);
     let mut draw = Draw::new(32);
     for _ in 0..5_000 {

@@ -26,6 +26,11 @@ fn tool(text: &str) -> Result<Box<Checked>, String> {
     }
 }
 
+/// The tool of a text, whatever is warned of.
+fn warned(text: &str) -> Option<Box<Checked>> {
+    compile(&Source::new("t.tool", text)).into_tool()
+}
+
 /// What is said of a text, each with the text of its place.
 fn said(text: &str) -> Vec<(String, String)> {
     let compiled = compile(&Source::new("t.tool", text));
