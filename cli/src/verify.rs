@@ -12,7 +12,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use touchoff::Unit;
 use touchoff::certify::{Facets, Witness};
-use touchoff::tool::Card;
+use touchoff::tool::{Card, Shape};
 use touchoff::verify::{Finding, Kind, Report, Verifier};
 
 /// The exit status where something is found.
@@ -35,6 +35,9 @@ struct Row<'a> {
     part: f64,
     tip: [f64; 3],
     axis: [f64; 3],
+    /// Of a solid without an axis, whose axis does not place it: `qx, qy, qz, qw`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quaternion: Option<[f64; 4]>,
     kind: &'static str,
     surface: Option<&'a str>,
     cutting: Option<bool>,
@@ -78,10 +81,14 @@ impl<'a> Row<'a> {
             }
             Kind::Inside { .. } => ("inside", None, None),
             Kind::Undecided { .. } => ("undecided", None, None),
-            Kind::Opposite => ("opposite", None, None),
+            Kind::Ambiguous(_) => ("ambiguous", None, None),
         };
         let surface = found.kind.surface().map(|surface| &card.surfaces[surface]);
         let (tip, axis): (Point3<f64>, Vector3<f64>) = (found.pose.tip(), found.pose.axis());
+        let quaternion = match card.shape {
+            Shape::Revolved => None,
+            Shape::Solid { .. } => Some(found.pose.isometry().rotation.coords.into()),
+        };
         Row {
             file,
             line: found.line,
@@ -91,6 +98,7 @@ impl<'a> Row<'a> {
             part: found.part,
             tip: tip.into(),
             axis: axis.into(),
+            quaternion,
             kind,
             surface: surface.map(|surface| &*surface.name),
             cutting: surface.map(|surface| surface.cutting),
@@ -199,9 +207,7 @@ fn shown(found: &Finding, card: &Card, unit: Unit) -> String {
             "whether {} is too deep is not decided, beginning {at}: try a larger `--resolution`",
             name(*surface)
         ),
-        Kind::Opposite => {
-            format!("{}; only this stop was checked", touchoff::MotionError::Opposite)
-        }
+        Kind::Ambiguous(error) => format!("{error}; only this stop was checked"),
     }
 }
 
@@ -245,9 +251,11 @@ fn summary(report: &Report, card: &Card, unit: Unit) -> String {
             each.push(format!("{} {}{deepest}", surface.name, of().count()));
         }
     }
-    let inside = Kind::Inside { surface: None };
-    for (word, kind) in [("wholly inside", inside), ("no one way", Kind::Opposite)] {
-        let count = report.findings.iter().filter(|found| found.kind == kind).count();
+    let count_of =
+        |is: fn(&Kind) -> bool| report.findings.iter().filter(|found| is(&found.kind)).count();
+    let inside = count_of(|kind| *kind == Kind::Inside { surface: None });
+    let ambiguous = count_of(|kind| matches!(kind, Kind::Ambiguous(_)));
+    for (word, count) in [("wholly inside", inside), ("ambiguous", ambiguous)] {
         if count > 0 {
             each.push(format!("{word} {count}"));
         }

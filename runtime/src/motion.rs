@@ -1,37 +1,50 @@
 //! How a tool goes from one pose to another.
 
 use crate::pose::Pose;
-use nalgebra::{Matrix3, Point3, Unit, Vector3};
+use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
-/// A tool's way from one pose to another, as a 5-axis program means it: the tip goes straight, the
-/// axis turns about the normal of both axes (spherical interpolation), both evenly. What spin the tool has
-/// is not felt, and is chosen.
+/// A tool's motion from one pose to another at even speed, the tip along a straight line.
+///
+/// [`Motion::new`] turns the axis about the normal of both axes (spherical interpolation), as a 5-axis program means
+/// it. The spin about the axis is chosen: a tool of revolution does not depend on it. [`Motion::with_spin`] turns the
+/// whole frame about one fixed axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     tip: Point3<f64>,
     way: Vector3<f64>,
-    /// The rotation at the start; its second column is what the axis turns about, at all times the tool's
-    /// second axis.
+    /// The rotation at the start of the turning frame, whose second column is the axis of the turn.
     start: Matrix3<f64>,
+    /// The rotation from the tool's frame to the turning frame, if they differ: then the spin is known.
+    frame: Option<Matrix3<f64>>,
     angle: f64,
 }
 
-/// Two poses between which there is no one way.
+/// Two poses between which the motion is ambiguous.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
-    /// The axes are opposite, so that the axis may turn any way.
-    #[error("the axis turns to its opposite, so that which way is not said: give a pose between")]
+    /// The axes are opposite.
+    #[error("start and end axes are opposite, so the way between is ambiguous: add a pose between")]
     Opposite,
+    /// The rotations differ by half a turn.
+    #[error(
+        "start and end differ by half a turn, so the way between is ambiguous: add a pose between"
+    )]
+    HalfTurn,
+    /// A pose was made from its axis alone.
+    #[error(
+        "a pose from an axis has no spin, which a solid without an axis needs: give a quaternion"
+    )]
+    NoSpin,
 }
 
-/// Axes that are nearer to being opposite turn in a way that rounding decides.
+/// Angles that differ from half a turn by less are ambiguous: rounding decides which way they go.
 const OPPOSITE: f64 = 1e-9;
 
 impl Motion {
-    /// The motion from one pose to another.
+    /// Creates the motion that turns the axis along the shorter great circle.
     ///
     /// # Errors
-    /// If the axes are opposite.
+    /// [`MotionError::Opposite`] if the axes are opposite.
     pub fn new(from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
         let (first, last) = (from.axis(), to.axis());
         let (sine, cosine) = (first.cross(&last), first.dot(&last));
@@ -49,20 +62,80 @@ impl Motion {
             Some(second) => Matrix3::from_columns(&[second.cross(&first), *second, first]),
             None => *from.rotation(),
         };
-        Ok(Motion { tip: from.tip(), way, start, angle: size.atan2(cosine) })
+        Ok(Motion { tip: from.tip(), way, start, frame: None, angle: size.atan2(cosine) })
     }
 
-    /// The pose at a part of the way, from 0 to 1; outside of that it is that of the nearer end.
+    /// Creates the motion that turns the tool's frame about one axis by less than half a turn, as the spherical
+    /// interpolation of quaternions does. A solid without an axis needs it. The axis of a tool of revolution goes
+    /// along a circle that depends on the spins of both poses; [`Motion::new`] ignores them.
+    ///
+    /// # Errors
+    /// [`MotionError::NoSpin`] if a pose is not [full](Pose::is_full), [`MotionError::HalfTurn`] if the rotations differ
+    /// by half a turn.
+    ///
+    /// ```
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::{Motion, Pose};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let half = std::f64::consts::FRAC_1_SQRT_2;
+    /// let turned = Pose::from_quaternion(Point3::new(2.0, 0.0, 0.0), [0.0, 0.0, half, half])?;
+    /// let motion = Motion::with_spin(&Pose::default(), &turned)?;
+    /// let middle = motion.pose(0.5);
+    /// assert!((middle.rotation().column(0) - Vector3::new(half, half, 0.0)).norm() < 1e-15);
+    /// assert!(middle.is_full() && (middle.tip().x - 1.0).abs() < 1e-15);
+    /// # Ok(()) }
+    /// ```
+    pub fn with_spin(from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
+        if !from.is_full() || !to.is_full() {
+            return Err(MotionError::NoSpin);
+        }
+        // The turn in the tool's frame. A quaternion of a rotation matrix is accurate for all angles (Shepperd, 1978).
+        let turn = Rotation3::from_matrix_unchecked(from.rotation().transpose() * to.rotation());
+        let turn = UnitQuaternion::from_rotation_matrix(&turn);
+        let (sine, cosine) = (turn.imag(), turn.w);
+        if cosine.abs() < OPPOSITE {
+            return Err(MotionError::HalfTurn);
+        }
+        let axis = Unit::try_new(sine * cosine.signum(), 0.0).unwrap_or(Vector3::y_axis());
+        // Two directions across the axis, by any frame that has it.
+        let across = Pose::from_axis(Point3::origin(), *axis).map_err(|_| MotionError::HalfTurn)?;
+        let [first, second] = [0, 1].map(|k| Vector3::from(across.rotation().column(k)));
+        let columns = Matrix3::from_columns(&[second, *axis, first]);
+        Ok(Motion {
+            tip: from.tip(),
+            way: to.tip() - from.tip(),
+            start: from.rotation() * columns,
+            frame: Some(columns.transpose()),
+            angle: 2.0 * sine.norm().atan2(cosine.abs()),
+        })
+    }
+
+    /// Returns the pose at a fraction of the motion, from 0 to 1; outside, that of the nearer end.
     ///
     /// # Panics
-    /// If the part is NaN, where there is no pose.
+    /// If the fraction is NaN, where there is no pose.
     pub fn pose(&self, part: f64) -> Pose {
         assert!(!part.is_nan(), "NaN is no part of a motion: give a number from 0 to 1");
         let part = part.clamp(0.0, 1.0);
         let (sine, cosine) = (part * self.angle).sin_cos();
         let [x, y, z] = [0, 1, 2].map(|axis| Vector3::from(self.start.column(axis)));
-        let columns = [cosine * x - sine * z, y, cosine * z + sine * x];
-        Pose::turned(Matrix3::from_columns(&columns), self.tip + part * self.way)
+        let columns = Matrix3::from_columns(&[cosine * x - sine * z, y, cosine * z + sine * x]);
+        let tip = self.tip + part * self.way;
+        match &self.frame {
+            None => Pose::turned(columns, tip),
+            Some(frame) => Pose::spun(columns * frame, tip),
+        }
+    }
+
+    /// Returns whether the spin about the tool's axis is known, so that the motion moves a solid without an axis.
+    pub fn is_full(&self) -> bool {
+        self.frame.is_some()
+    }
+
+    /// Returns the axis of the turn in the tool's frame, a unit vector that stays the same all along. Of
+    /// [`Motion::new`] it is y: the spin is chosen so.
+    pub(crate) fn turns_about(&self) -> Vector3<f64> {
+        self.frame.map_or(Vector3::y(), |frame| frame.row(1).transpose())
     }
 
     /// Where the tip begins, in the world.
@@ -75,7 +148,7 @@ impl Motion {
         self.way
     }
 
-    /// By how much the axis turns, in radians.
+    /// By how much the axis turns, or with spin the frame, in radians.
     pub fn angle(&self) -> f64 {
         self.angle
     }
@@ -113,6 +186,53 @@ mod tests {
         }
         // What a certifier counts on. Built on rounding along the axis it was twenty.
         assert!(worst <= 5.0 * f64::EPSILON, "{worst:e}");
+    }
+
+    /// Against nalgebra's own interpolation of quaternions; short turns, long ones, and nearly half a turn.
+    #[test]
+    fn a_motion_with_spin_is_that_of_quaternions() {
+        let mut random = Pcg64Mcg::seed_from_u64(2);
+        let mut uniform = || (random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
+        let (mut worst, mut ends, mut rotations) = (0.0f64, 0.0f64, 0.0f64);
+        for k in 0..100_000 {
+            let mut quaternion = || UnitQuaternion::new(10.0 * Vector3::from_fn(|_, _| uniform()));
+            let (first, axis) = (quaternion(), quaternion() * Vector3::z_axis());
+            let angle = [1e-17, 1e-9, 1e-3, 1.0, 3.1, 3.13][k % 6];
+            let last = first * UnitQuaternion::from_axis_angle(&axis, angle);
+            let tip = [0, 1].map(|_| Point3::new(uniform(), uniform(), uniform()));
+            let [from, to] = [(first, tip[0]), (last, tip[1])].map(|(turn, tip)| {
+                let [x, y, z, w] = turn.coords.into();
+                Pose::from_quaternion(tip, [x, y, z, w]).expect("a quaternion")
+            });
+            let motion = Motion::with_spin(&from, &to).expect("less than half a turn");
+            for (part, end) in [(0.0, from), (1.0, to)] {
+                ends = ends.max((motion.pose(part).rotation() - end.rotation()).abs().max());
+            }
+            let part = 0.5 + 0.5 * uniform();
+            let pose = motion.pose(part);
+            rotations = rotations.max(off(pose.rotation()));
+            let turned = UnitQuaternion::from_axis_angle(&axis, part * angle);
+            let wanted = (first * turned).to_rotation_matrix();
+            worst = worst.max((pose.rotation() - wanted.matrix()).abs().max());
+            let about = motion.turns_about();
+            assert!((pose.rotation() * about - from.rotation() * about).norm() < 4e-15);
+        }
+        assert!(rotations <= 5.0 * f64::EPSILON, "{rotations:e}");
+        assert!(ends < 8.0 * f64::EPSILON && worst < 1e-14, "{ends:e} {worst:e}");
+    }
+
+    #[test]
+    fn a_motion_with_spin_is_refused_where_it_is_ambiguous() {
+        let pose = |q| Pose::from_quaternion(Point3::origin(), q).expect("a quaternion");
+        let still = pose([0.0, 0.0, 0.0, 1.0]);
+        let axis = Pose::from_axis(Point3::origin(), Vector3::z()).expect("an axis");
+        assert_eq!(Motion::with_spin(&still, &axis), Err(MotionError::NoSpin));
+        assert_eq!(Motion::with_spin(&axis, &still), Err(MotionError::NoSpin));
+        for q in [[1.0, 0.0, 0.0, 0.0], [0.0, 0.6, -0.8, 1e-10]] {
+            assert_eq!(Motion::with_spin(&still, &pose(q)), Err(MotionError::HalfTurn));
+        }
+        assert!(Motion::with_spin(&still, &pose([0.0, 0.6, 0.8, 1e-8])).is_ok());
+        assert!(Motion::with_spin(&still, &pose([0.0, 0.0, 0.0, -1.0])).is_ok());
     }
 
     #[test]

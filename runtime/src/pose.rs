@@ -89,6 +89,11 @@ impl Pose {
         Pose { rotation, tip, full: false }
     }
 
+    /// Of a product of rotations, whose spin is known.
+    pub(crate) fn spun(product: Matrix3<f64>, tip: Point3<f64>) -> Pose {
+        Pose { rotation: orthonormal(product), tip, full: true }
+    }
+
     /// Whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`]. A
     /// tool's answers do not depend on it; those of a solid without an axis do, so that only a
     /// full pose means something for it.

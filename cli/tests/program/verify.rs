@@ -112,8 +112,36 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
     refused("block.apt", "D2Ball", &["--allow", "flute=NaN"], "is no length");
     refused("block.apt", "D2Ball", &["--tolerance=-1"], "is no tolerance");
     refused("block.apt", "Block", &[], "an axis does not place `Block`");
-    bench.write("full.csv", "-9,0,3,0,0,0,1\n9,0,3,0,0,0,1\n");
-    refused("full.csv", "Block", &[], "a solid without an axis, whose motions are not proved");
+}
+
+/// A solid without an axis, along a table of quaternions: the block of 40 by 30 by 20 mm turns above the part.
+#[test]
+fn motions_of_a_solid_are_proved_with_their_spin() {
+    let bench = Bench::new();
+    let table = |height: f64| {
+        format!("-4,0,{height},0,0,0,1\n4,0,{height},0,0,0.6,0.8\n4,0,{height},0,0,-0.8,0.6\n")
+    };
+    bench.write("above.csv", table(0.1));
+    bench.write("below.csv", table(-0.25));
+    let above = verify(&bench, "above.csv", "Block", &[]);
+    assert_eq!(above.status.code(), Some(0), "{}", stderr(&above));
+    let below = verify(&bench, "below.csv", "Block", &["--json"]);
+    assert_eq!(below.status.code(), Some(1), "{}", stderr(&below));
+    let rows: Vec<serde_json::Value> =
+        stdout(&below).lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    let deep = rows.iter().find(|row| row["line"] == 2 && row["surface"] == "bottom");
+    let deep = deep.expect("the block's underside");
+    assert_eq!(deep["kind"], "deep");
+    assert!((deep["depth"][0].as_f64().expect("a number") - 0.25).abs() < 2e-3, "{deep}");
+    assert_eq!(deep["quaternion"].as_array().map(Vec::len), Some(4), "{deep}");
+    // Half a turn either way.
+    bench.write("half.csv", "0,0,9,0,0,0,1\n0,0,9,0,0,1,0\n");
+    let half = verify(&bench, "half.csv", "Block", &["--anyway"]);
+    assert!(
+        stdout(&half).contains("half a turn, so the way between is ambiguous"),
+        "{}",
+        stdout(&half)
+    );
 }
 
 /// A statement that could be a motion is refused with its line, by every command that reads programs.

@@ -17,16 +17,23 @@ use super::{Certifier, penetration};
 use crate::motion::Motion;
 use crate::tool::{Card, Shape};
 
-/// How far a place is known on a way, in the tool's unit: rounding grows with the way.
+/// How far a place is known on a way, in the tool's unit: rounding grows with the way, and with a turn of more than the
+/// axis.
 pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
-    setting.error + rounding::far(motion.way().norm() / setting.length)
+    let turned = if motion.is_full() { 0.5 * setting.error } else { 0.0 };
+    setting.error + turned + rounding::far(motion.way().norm() / setting.length)
+}
+
+/// Returns whether a motion says where a tool is: that of a solid has to say the spin too.
+pub(super) fn places(card: &Card, motion: &Motion) -> bool {
+    card.shape == Shape::Revolved || motion.is_full()
 }
 
 /// How often a sweep is asked for something deeper than what is known.
 const ROUNDS: u32 = 16;
 
 /// At so many times of a motion, and at its beginning, it is asked before it is swept.
-const TIMES: u32 = 8;
+pub(super) const TIMES: u32 = 8;
 
 /// The greatest depth of a motion is bounded to this part of what is too much.
 const CLOSE: f64 = 0.125;
@@ -43,8 +50,8 @@ impl Certifier<'_> {
     /// deep at most. Both are in the part's unit; a tolerance below what rounding adds is taken as that. Below
     /// 0 what is allowed is a margin: how far the surface has to keep from all of the part.
     ///
-    /// Allowances that were [set](Certifier::allow) do not count, and what is not a number allows nothing. Of a solid without an axis, whose
-    /// spin a motion does not say, all is undecided, and so is a margin of a tool without a profile.
+    /// Allowances that were [set](Certifier::allow) do not count, and what is not a number allows nothing. Undecided are a solid without an
+    /// axis on a motion without [spin](Motion::with_spin), and a margin of a tool without a profile.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -79,7 +86,7 @@ impl Certifier<'_> {
         tolerance: f64,
     ) -> Along {
         let Certifier { setting, card, each, each_cores, work, budget, sweeper, .. } = self;
-        if card.shape != Shape::Revolved {
+        if !places(card, motion) {
             return Along::Undecided(0.0);
         }
         let question = |limit| setting.question(limit, |other| other == surface);

@@ -39,7 +39,7 @@ pub(crate) use part::Location;
 
 use crate::motion::Motion;
 use crate::pose::Pose;
-use crate::tool::{Card, Shape, Tool};
+use crate::tool::{Card, Tool};
 use crate::tree::Sight;
 use apart::Apart;
 use body::Body;
@@ -327,8 +327,8 @@ impl<'a> Certifier<'a> {
     /// [allowed](Certifier::allow) by more than a tolerance, in the part's unit; one below what rounding
     /// adds is taken as that.
     ///
-    /// A motion says nothing of spin, so that of a solid without an axis all is undecided. So it is of tools and parts
-    /// larger than some 1e15 of the tool's unit.
+    /// Undecided are a solid without an axis on a motion without [spin](Motion::with_spin), and tools and parts larger
+    /// than some 1e15 of the tool's unit.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -362,7 +362,7 @@ impl<'a> Certifier<'a> {
     /// # Ok(()) }
     /// ```
     pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
-        if self.card.shape != Shape::Revolved || self.setting.margin() > work::MARGIN {
+        if !along::places(self.card, motion) || self.setting.margin() > work::MARGIN {
             return Sweep::Undecided(0.0);
         }
         let Certifier { setting, card, whole, rules, cores, budget, sweeper, .. } = self;
@@ -387,7 +387,7 @@ impl<'a> Certifier<'a> {
             Some(Stop::Deeper { at, best }) => {
                 Sweep::Touching(at, setting.witness(&best, &motion.pose(at)))
             }
-            Some(Stop::Spent { at }) => Sweep::Undecided(at),
+            Some(Stop::Spent { at }) => self.touches_from(motion, at),
             None => match setting.containment((card, cores), &motion.pose(0.0), tolerance) {
                 Containment::Inside(surface) => Sweep::Inside(surface),
                 Containment::Outside => Sweep::Clear,
@@ -395,6 +395,20 @@ impl<'a> Certifier<'a> {
                 Containment::Undecided => Sweep::Undecided(0.0),
             },
         }
+    }
+}
+
+impl Certifier<'_> {
+    /// Looks for contact at some times of a motion after the one at which the budget was spent. Just before contact a sweep
+    /// takes the longest, and deep contact is found at once.
+    fn touches_from(&mut self, motion: &Motion, from: f64) -> Sweep {
+        for step in 1..=along::TIMES {
+            let at = from + (1.0 - from) * f64::from(step) / f64::from(along::TIMES);
+            if let Touch::Yes(witness) = self.touches(&motion.pose(at)) {
+                return Sweep::Touching(at, witness);
+            }
+        }
+        Sweep::Undecided(from)
     }
 }
 

@@ -61,6 +61,7 @@ impl Verifier<'_> {
         let radius = if radius > 0.0 { radius } else { card.radius() };
         let diameter = 2.0 * radius * length;
         let mut search = Search {
+            of: self,
             certifier: Certifier::new(self.facets, self.tool)?.budget(self.budget),
             reach: card.size() * length,
             fine: FINE * diameter,
@@ -94,6 +95,7 @@ impl Verifier<'_> {
 
 /// The search for where the tool is nearest.
 struct Search<'a> {
+    of: &'a Verifier<'a>,
     certifier: Certifier<'a>,
     /// How far the tool reaches from its tip.
     reach: f64,
@@ -106,7 +108,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Returns how far any point of the tool goes at most from one pose to another.
     fn travel(&self, from: &Pose, to: &Pose) -> f64 {
-        match Motion::new(from, to) {
+        match self.of.motion(from, to) {
             Ok(motion) => motion.way().norm() + motion.angle() * self.reach,
             Err(_) => f64::INFINITY,
         }
@@ -148,7 +150,7 @@ impl Search<'_> {
         let mut kept = f64::INFINITY;
         for (pair, ends) in stops.windows(2).zip(least.windows(2)) {
             // Where a motion is not one, only its ends are checked, which is a finding.
-            if let Ok(motion) = Motion::new(&pair[0].pose, &pair[1].pose) {
+            if let Ok(motion) = self.of.motion(&pair[0].pose, &pair[1].pose) {
                 let travel = motion.way().norm() + motion.angle() * self.reach;
                 let span = Span { times: [0.0, 1.0], least: [ends[0], ends[1]], travel };
                 kept = kept.min(self.span(&motion, span, (pair[1].line, HALVINGS))?);

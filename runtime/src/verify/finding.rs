@@ -2,6 +2,7 @@
 
 use super::Approach;
 use crate::certify::{AllowanceError, Uncertified, Witness};
+use crate::motion::MotionError;
 use crate::{Pose, ProgramError};
 
 /// Why a program could not be checked.
@@ -10,14 +11,6 @@ pub enum VerifyError {
     /// Nothing can be proved of the tool.
     #[error(transparent)]
     Uncertified(#[from] Uncertified),
-    /// The tool is a solid without an axis.
-    #[error(
-        "{tool} is a solid without an axis, whose motions are not proved: its poses can be asked with `run`"
-    )]
-    Solid {
-        /// Its name.
-        tool: String,
-    },
     /// What is allowed means nothing.
     #[error(transparent)]
     Allowance(#[from] AllowanceError),
@@ -112,8 +105,9 @@ pub enum Kind {
         /// The tool's surface.
         surface: usize,
     },
-    /// The axis turns to its opposite, so that which way is not said: only the stop itself was checked.
-    Opposite,
+    /// The axis turns to its opposite, or a solid by half a turn, so that the way between is ambiguous: only the stop
+    /// itself was checked.
+    Ambiguous(MotionError),
 }
 
 impl Kind {
@@ -124,7 +118,7 @@ impl Kind {
             | Kind::Near { surface, .. }
             | Kind::Undecided { surface } => Some(*surface),
             Kind::Inside { surface } => *surface,
-            Kind::Opposite => None,
+            Kind::Ambiguous(_) => None,
         }
     }
 }

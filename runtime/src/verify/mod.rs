@@ -23,7 +23,7 @@ pub use finding::{Finding, Kind, Report, VerifyError};
 use crate::Pose;
 use crate::certify::{Along, Certifier, Facets, Sweep};
 use crate::cores;
-use crate::motion::Motion;
+use crate::motion::{Motion, MotionError};
 use crate::program::{Program, Stop};
 use crate::tool::{Card, Shape, Tool};
 
@@ -78,13 +78,10 @@ impl<'a> Verifier<'a> {
     /// A verifier of a tool beside a part, with a tolerance of 0.
     ///
     /// # Errors
-    /// If nothing can be proved of the tool, or it is a solid, whose spin a motion does not say.
+    /// If nothing can be proved of the tool.
     pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Verifier<'a>, VerifyError> {
         let card = tool.card();
         Certifier::new(facets, tool)?;
-        if let Shape::Solid { .. } = card.shape {
-            return Err(VerifyError::Solid { tool: card.name.to_string() });
-        }
         Ok(Verifier {
             facets,
             tool,
@@ -151,9 +148,11 @@ impl<'a> Verifier<'a> {
     /// `parallel` on all cores; the findings are the same, in the program's order.
     ///
     /// # Errors
-    /// If the program states another unit than the part's, or another cutter than the tool.
+    /// If the program states another unit than the part's, or another cutter than the tool, or if its poses have no
+    /// spin and the tool is a solid without an axis.
     pub fn check(&self, program: &Program) -> Result<Report, VerifyError> {
         program.check_unit(self.facets.unit())?;
+        program.check_poses(self.tool.card())?;
         program.check_cutter(self.tool.card(), self.facets.unit())?;
         let stops = &program.stops;
         let certifier = Certifier::new(self.facets, self.tool)?;
@@ -185,6 +184,14 @@ impl<'a> Verifier<'a> {
             .any(|(limit, greatest)| limit < 0.0 || limit + self.resolution < *greatest)
     }
 
+    /// Returns the motion from one pose to another: of a tool of revolution the spin is none of it.
+    fn motion(&self, from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
+        match self.tool.card().shape {
+            Shape::Revolved => Motion::new(from, to),
+            Shape::Solid { .. } => Motion::with_spin(from, to),
+        }
+    }
+
     /// How deep each surface may be.
     fn limits(&self, rapid: bool) -> Vec<f64> {
         let limit = |allowed: &Option<f64>| {
@@ -197,9 +204,9 @@ impl<'a> Verifier<'a> {
 
 /// Checks one motion after the other.
 struct Checker<'a> {
+    of: &'a Verifier<'a>,
     /// In feed, and in rapid traverse.
     modes: [Mode<'a>; 2],
-    resolution: f64,
 }
 
 /// A certifier that goes by what is allowed.
@@ -214,7 +221,7 @@ struct Mode<'a> {
 const THROUGH: f64 = 0.98;
 
 impl<'a> Checker<'a> {
-    fn new(of: &Verifier<'a>, greatest: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
+    fn new(of: &'a Verifier<'a>, greatest: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
         let mode = |rapid| {
             let limits = of.limits(rapid);
             let mut certifier = Certifier::new(of.facets, of.tool)?.budget(of.budget);
@@ -223,7 +230,7 @@ impl<'a> Checker<'a> {
             }
             Ok::<_, VerifyError>(Mode { certifier, limits, greatest })
         };
-        Ok(Checker { modes: [mode(false)?, mode(true)?], resolution: of.resolution })
+        Ok(Checker { of, modes: [mode(false)?, mode(true)?] })
     }
 
     /// What there is to say of the way to a stop.
@@ -243,12 +250,12 @@ impl<'a> Checker<'a> {
         let mode = &mut self.modes[usize::from(to.rapid)];
         let mut findings = Vec::new();
         // Where the way is not known, the stop itself is.
-        let motion = Motion::new(&from, &to.pose).or_else(|_| {
-            findings.push(finding(1.0, to.pose, Kind::Opposite));
-            Motion::new(&to.pose, &to.pose)
+        let motion = self.of.motion(&from, &to.pose).or_else(|error| {
+            findings.push(finding(1.0, to.pose, Kind::Ambiguous(error)));
+            self.of.motion(&to.pose, &to.pose)
         });
         if let Ok(motion) = motion {
-            for (part, kind) in mode.motion(&motion, self.resolution) {
+            for (part, kind) in mode.motion(&motion, self.of.resolution) {
                 findings.push(finding(part, motion.pose(part), kind));
             }
         }

@@ -4,7 +4,7 @@ use crate::block;
 use crate::oracle::Mounted;
 use touchoff::certify::Facets;
 use touchoff::mesh::shapes;
-use touchoff::verify::{Kind, Report, Verifier, VerifyError};
+use touchoff::verify::{Kind, Report, Verifier};
 use touchoff::{Mesh, Program, Unit};
 
 touchoff::tool! {
@@ -50,7 +50,7 @@ fn briefly(report: &Report) -> Vec<(usize, &'static str, Option<usize>)> {
         Kind::Near { .. } => "near",
         Kind::Inside { .. } => "inside",
         Kind::Undecided { .. } => "undecided",
-        Kind::Opposite => "opposite",
+        Kind::Ambiguous(_) => "ambiguous",
     };
     let brief = report.findings.iter().map(|f| (f.line, word(&f.kind), f.kind.surface()));
     brief.collect()
@@ -166,10 +166,10 @@ fn an_axis_that_turns_to_its_opposite_is_found() {
     let text = "0,0,20,0,0,1\n0,0,60,0,0,-1\n0,0,2,0,0,1\n";
     let report = check(&pillar(), text, 0.0, &[]);
     // The tool upside down reaches from 60 down to 20.
-    assert_eq!(briefly(&report), [(2, "opposite", None), (3, "opposite", None)]);
+    assert_eq!(briefly(&report), [(2, "ambiguous", None), (3, "ambiguous", None)]);
     let into = check(&pillar(), "0,0,20,0,0,1\n0,0,30,0,0,-1\n", 0.0, &[]);
     // Over the pillar the corner between shank and nut is nearest, so that both are as deep.
-    let both = [(2, "opposite", None), (2, "deep", Some(2)), (2, "deep", Some(3))];
+    let both = [(2, "ambiguous", None), (2, "deep", Some(2)), (2, "deep", Some(3))];
     assert_eq!(briefly(&into), both);
 }
 
@@ -187,8 +187,9 @@ fn what_is_not_decided_is_said() {
 #[test]
 fn what_cannot_be_checked_is_refused() {
     let facets = Facets::new(&pillar());
-    let error = Verifier::new(&facets, &Brick).err().expect("a solid");
-    assert!(matches!(error, VerifyError::Solid { .. }), "{error}");
+    let spinless = Program::parse("-30,0,9,0,0,1\n30,0,9,0,0,1\n", "a.csv").expect("two stops");
+    let error = Verifier::new(&facets, &Brick).expect("proved").check(&spinless).err();
+    assert!(error.is_some_and(|error| error.to_string().contains("an axis does not place")));
     let margin = Verifier::new(&facets, &ByHand).expect("proved").allow("ball", -0.1).err();
     assert!(margin.is_some_and(|error| error.to_string().contains("has no profile")));
     let verifier = || Verifier::new(&facets, &Mounted).expect("a profile");

@@ -5,7 +5,6 @@ use nalgebra::{Point3, Vector3};
 use tools_library::TOOLS;
 use touchoff::certify::{Certifier, Clear, Facets, Sweep};
 use touchoff::mesh::shapes;
-use touchoff::tool::Shape;
 use touchoff::{Motion, Pose, Tool, Unit};
 use touchoff_tests::oracle::draw::Draw;
 use touchoff_tests::oracle::{Nearest, Oracle};
@@ -35,8 +34,10 @@ fn restricted<'a>(
 #[test]
 fn every_surface_of_every_tool_is_found_inside() {
     let facets = solid();
-    let at = pose([1.3, -2.7, 5.1], [0.36, 0.48, 0.8]);
-    let motion = Motion::new(&at, &pose([9.0, 4.0, -3.0], [0.6, 0.0, 0.8])).expect("one way");
+    let full = |tip: [f64; 3], turn| Pose::from_quaternion(tip.into(), turn).expect("a quaternion");
+    let at = full([1.3, -2.7, 5.1], [0.36, 0.48, 0.0, 0.8]);
+    let motion = Motion::with_spin(&at, &full([9.0, 4.0, -3.0], [0.6, 0.0, 0.0, 0.8]));
+    let motion = motion.expect("less than half a turn");
     let mut asked = 0;
     for tool in TOOLS {
         for (index, surface) in tool.card().surfaces.iter().enumerate() {
@@ -45,13 +46,8 @@ fn every_surface_of_every_tool_is_found_inside() {
             let (name, surface) = (&tool.card().name, &surface.name);
             assert_eq!(certifier.clear(&at), Clear::Inside(index), "{name}/{surface}");
             asked += 1;
-            // A motion does not say the spin of a solid.
             let swept = certifier.sweep_clear(&motion, 1e-6);
-            let expected = match tool.card().shape {
-                Shape::Revolved => Sweep::Inside(index),
-                Shape::Solid { .. } => Sweep::Undecided(0.0),
-            };
-            assert_eq!(swept, expected, "{name}/{surface}");
+            assert_eq!(swept, Sweep::Inside(index), "{name}/{surface}");
         }
     }
     assert!(asked > 100, "{asked}");

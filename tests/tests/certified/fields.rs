@@ -178,16 +178,6 @@ fn surfaces_of_a_field_are_allowed_for_one_by_one() {
 }
 
 #[test]
-fn a_solid_is_not_swept_since_its_spin_is_not_said() {
-    let plate = super::plate();
-    let facets = Facets::new(&plate);
-    let mut certifier = Certifier::new(&facets, super::tool("Block")).expect("proved");
-    let pose = super::pose([0.0, 0.0, 50.0], [0.0, 0.0, 1.0]);
-    let motion = Motion::new(&pose, &pose).expect("at rest");
-    assert_eq!(certifier.sweep_clear(&motion, 1e-3), Sweep::Undecided(0.0));
-}
-
-#[test]
 fn every_tool_of_the_library_is_certified() {
     let facets = Facets::new(&super::plate());
     for tool in tools_library::TOOLS {

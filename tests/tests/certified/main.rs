@@ -12,6 +12,7 @@ mod hard_cases;
 mod overhang;
 mod ring_of_ties;
 mod rounding;
+mod spinning;
 mod sweeps;
 mod zoomed;
 

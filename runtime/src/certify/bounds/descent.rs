@@ -108,18 +108,20 @@ pub(crate) struct Rings<V> {
     pub(crate) high: V,
 }
 
-/// How far places go, in the tool's frame: straight, and by a turn about y.
+/// How far places go, in the tool's frame: straight, and by a turn about an axis through the tip.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Shift {
+    /// The axis of the turn.
+    pub(crate) axis: [f32; 3],
     pub(crate) straight: [f32; 3],
     pub(crate) length: f32,
     pub(crate) turn: f32,
-    /// No place that matters is farther from y.
+    /// No place that matters is farther from the axis of the turn.
     pub(crate) reach: f32,
 }
 
 impl Shift {
-    /// How far the ways are from straight of places that are so far from y.
+    /// How far the ways are from straight of places that are so far from the axis of the turn.
     #[inline(always)]
     pub(crate) fn curve<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
         let reach = f32x16::splat(simd, self.reach).min(far + self.length);
@@ -144,11 +146,15 @@ pub(crate) fn rings<S: Simd>(
     let mut wide = [extent(&half, rows[0]), extent(&half, rows[1]), extent(&half, rows[2])];
     if let Some(shift) = shift {
         let reach = f32x16::splat(simd, shift.reach);
-        let (far_x, far_z) = (x + wide[0], z.abs() + wide[2]);
-        let curve = shift.curve(simd, far_x + far_z);
-        wide[0] = wide[0] + reach.min(far_z) * shift.turn + shift.straight[0] + curve;
-        wide[1] = wide[1] + shift.straight[1] + curve;
-        wide[2] = wide[2] + reach.min(far_x) * shift.turn + shift.straight[2] + curve;
+        let far = [x + wide[0], y + wide[1], z.abs() + wide[2]];
+        // No part of `axis × p` is larger than these.
+        let [u, v, w] = shift.axis.map(f32::abs);
+        let across = [far[2] * v + far[1] * w, far[2] * u + far[0] * w, far[0] * v + far[1] * u];
+        let curve = shift.curve(simd, across[0] + across[1] + across[2]);
+        for axis in 0..3 {
+            let turned = reach.min(across[axis]) * shift.turn;
+            wide[axis] = wide[axis] + turned + shift.straight[axis] + curve;
+        }
     }
     let (near_x, near_y) = ((x - wide[0]).max(zero), (y - wide[1]).max(zero));
     let (far_x, far_y) = (x + wide[0], y + wide[1]);

@@ -3,7 +3,7 @@
 use crate::certify::bounds::batch::{Batch, Lanes, load};
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::swept::Ends;
-use crate::certify::sweep::stretch::{Stretch, about};
+use crate::certify::sweep::stretch::Stretch;
 use crate::certify::triangle::piece::Part;
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
@@ -32,7 +32,7 @@ impl Swath {
                     self.ends[3 + k][axis][lane] = last[axis];
                 }
             }
-            self.grow[lane] = keep + stretch.curve(about(&self.middle.corners(lane)));
+            self.grow[lane] = keep + stretch.curve(stretch.about(&self.middle.corners(lane)));
         }
     }
 

@@ -15,7 +15,7 @@ use crate::certify::body::section::Section;
 use crate::certify::bounds::descent::{Node, of_children};
 use crate::certify::bounds::swath::Swath;
 use crate::certify::space::Point;
-use crate::certify::sweep::stretch::{Stretch, about};
+use crate::certify::sweep::stretch::Stretch;
 use crate::certify::triangle::course::{Best, Goal, Search};
 use crate::certify::triangle::facet::Facet;
 use crate::certify::triangle::piece::{Part, Piece};
@@ -216,7 +216,7 @@ impl Sweeper {
             if task.too_deep(&here) {
                 return Some(stop(here));
             }
-            let goes = stretch.goes(about(&corners));
+            let goes = stretch.goes(stretch.about(&corners));
             let steep = setting.body.steep();
             let left = here.depth + steep * goes > task.wanted()
                 || match self.passes(task, corners, goes) {

@@ -2,6 +2,7 @@
 
 use crate::certify::bounds::descent::{BoxBounds, Node, Seen, Shift, above, rings};
 use crate::certify::bounds::hull::Hull;
+use crate::certify::bounds::nearest::Space;
 use crate::tool::on_vectors;
 use crate::tree::{Boxes, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
@@ -38,9 +39,13 @@ fn of_leaf_on<S: Simd>(
     let [a, b, c] = node.corners(simd, facets, &moving.ends[0]);
     let [d, e, f] = node.corners(simd, facets, &moving.ends[1]);
     let middle = node.corners(simd, facets, view);
-    let [p, q, r] = &middle;
-    let far = (p[0] * p[0] + p[2] * p[2]).max(q[0] * q[0] + q[2] * q[2]);
-    let far = far.max(r[0] * r[0] + r[2] * r[2]).sqrt();
+    let [u, v, w] = moving.shift.axis;
+    let square = |&[x, y, z]: &Space<f32x16<S>>| {
+        let [a, b, c] = [y * w - z * v, z * u - x * w, x * v - y * u];
+        c * c + b * b + a * a
+    };
+    let [p, q, r] = middle.each_ref().map(square);
+    let far = p.max(q).max(r).sqrt();
     let grow = moving.shift.curve(simd, far) + moving.keep;
     let ends = [a, b, c, d, e, f];
     above(moving.hull.swept(simd, (&ends, &middle), grow, wanted), wanted)

@@ -20,6 +20,8 @@ pub(crate) struct Stretch {
     views: [(Vector3<f64>, Matrix3<f64>); 3],
     /// How far a place goes from where it is in the middle, and how far its way is from straight, at most.
     pace: Pace,
+    /// The axis of the turn, in the tool's frame.
+    axis: Vector3<f64>,
 }
 
 #[derive(Clone, Copy)]
@@ -27,7 +29,7 @@ struct Pace {
     straight: [f64; 3],
     length: f64,
     turn: f64,
-    /// No place that matters is farther from what the axis turns about.
+    /// No place that matters is farther from the axis of the turn.
     reach: f64,
 }
 
@@ -48,8 +50,8 @@ impl Stretch {
         let half = 0.5 * (to - from);
         let straight = views[1].1 * motion.way() * half;
         let (length, turn) = (straight.norm(), motion.angle() * half);
-        // A place that comes that near is never farther on this stretch. Of a quarter of a circle no place
-        // is farther from the tip than √2 of its ends.
+        // A turn leaves the distance from the tip as it is, so that a place that comes that near is never farther on
+        // this stretch. No place of the tool is farther from its tip than √2 of its size.
         let reach = 1.5 * setting.size + keep + 2.0 * length;
         Stretch {
             from,
@@ -58,6 +60,7 @@ impl Stretch {
             poses,
             views,
             pace: Pace { straight: straight.abs().into(), length, turn, reach },
+            axis: motion.turns_about(),
         }
     }
 
@@ -77,6 +80,16 @@ impl Stretch {
         far - reach <= length * self.pace.reach
     }
 
+    /// Returns how far corners are from the axis of the turn at most.
+    pub(crate) fn about(&self, corners: &[Point; 3]) -> f64 {
+        let [u, v, w] = [self.axis.x, self.axis.y, self.axis.z];
+        let square = |&[x, y, z]: &Point| {
+            let [a, b, c] = [w * y - v * z, u * z - w * x, v * x - u * y];
+            c * c + b * b + a * a
+        };
+        corners.iter().map(square).fold(0.0, f64::max).sqrt()
+    }
+
     /// Whether the axis turns.
     pub(crate) fn turns(&self) -> bool {
         self.pace.turn > 0.0
@@ -86,8 +99,8 @@ impl Stretch {
         self.from / 2.0 + self.to / 2.0
     }
 
-    /// How far the way is from straight, of a place that is in the middle no farther than that from what
-    /// the axis turns about.
+    /// How far the way is from straight, of a place that is in the middle no farther than that from the axis of the
+    /// turn.
     pub(crate) fn curve(&self, reach: f64) -> f64 {
         let Pace { length, turn, .. } = self.pace;
         turn * (length + 0.5 * turn * self.pace.reach.min(reach + length))
@@ -103,15 +116,11 @@ impl Stretch {
         let Pace { straight, length, turn, reach } = self.pace;
         let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
         Shift {
+            axis: self.axis.map(|part| part as f32).into(),
             straight: straight.map(|part| up(part + keep)),
             length: up(length),
             turn: up(turn),
             reach: up(reach),
         }
     }
-}
-
-/// How far corners are from y at most.
-pub(crate) fn about(corners: &[Point; 3]) -> f64 {
-    corners.iter().map(|[x, _, z]| x * x + z * z).fold(0.0, f64::max).sqrt()
 }

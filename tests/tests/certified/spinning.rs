@@ -1,0 +1,158 @@
+//! Motions of solids without an axis: their spin is known, and the proof counts it.
+
+use super::pose;
+use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
+use touchoff::certify::{Along, Certifier, Facets, Sweep};
+use touchoff::mesh::shapes;
+use touchoff::{Mesh, Motion, Pose, Unit};
+use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{Block, LBracket, Oracle};
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
+}
+
+fn spun(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {
+    Pose::from_quaternion(Point3::from(tip), turn.coords.into()).expect("a quaternion")
+}
+
+/// Turned about its own z by an angle from its x.
+fn about_z(tip: [f64; 3], degrees: f64) -> Pose {
+    spun(tip, UnitQuaternion::from_axis_angle(&Vector3::z_axis(), degrees.to_radians()))
+}
+
+fn motion(from: &Pose, to: &Pose) -> Motion {
+    Motion::with_spin(from, to).expect("less than half a turn")
+}
+
+/// The block is 40 by 30: its sides are 20 and 15 from its axis, its corners 25. It turns beside a wall that is between.
+#[test]
+fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
+    let turning = |x: f64| motion(&about_z([x, 0.0, 0.0], 0.0), &about_z([x, 0.0, 0.0], 90.0));
+    let wall = Facets::new(&cuboid([0.0, -60.0, -20.0], [30.0, 60.0, 40.0]));
+    let mut certifier = Certifier::new(&wall, super::tool("Block")).expect("proved");
+    assert_eq!(certifier.sweep_clear(&turning(-25.003), 1e-6), Sweep::Clear);
+    for reach in [24.9, 24.0, 21.0] {
+        let found = certifier.sweep_clear(&turning(-reach), 1e-6);
+        let Sweep::Touching(at, witness) = found else { panic!("{found:?}") };
+        // The corner at (20, -15) points at the wall after 36.87 degrees, and is in it while its cosine is more.
+        let (corner, half) = (0.75f64.atan(), (reach / 25.0).acos());
+        let angle = at * std::f64::consts::FRAC_PI_2;
+        assert!((angle - corner).abs() <= half + 1e-9, "{reach}: {at}");
+        assert!(witness.point.x.abs() < 1e-9, "{witness:?}");
+    }
+    // On the way the deepest is the wall's place beside the corner; at both ends the block is outside.
+    let most = (0..6)
+        .filter_map(|surface| match certifier.deepest_along(surface, &turning(-24.5), 0.0, 1e-6) {
+            Along::Deeper { depth, most, .. } => Some((depth, most)),
+            Along::Within => None,
+            other => panic!("{other:?}"),
+        })
+        .fold([0.0f64; 2], |[low, high], (depth, most)| [low.max(depth[0]), high.max(most)]);
+    // A wall `h` behind the corner has a place that is as far from both sides: `h / (cos a + sin a)`.
+    let depth = 0.5 / 1.4;
+    assert!(
+        most[0] <= depth + 1e-6 && depth <= most[1] + 1e-6 && most[1] < 1.2 * depth,
+        "{most:?}"
+    );
+}
+
+#[test]
+fn a_solid_is_not_swept_where_its_spin_is_not_said() {
+    let facets = Facets::new(&super::plate());
+    let mut certifier = Certifier::new(&facets, super::tool("Block")).expect("proved");
+    let still = pose([0.0, 0.0, 50.0], [0.0, 0.0, 1.0]);
+    let motion = Motion::new(&still, &still).expect("at rest");
+    assert_eq!(certifier.sweep_clear(&motion, 1e-3), Sweep::Undecided(0.0));
+    assert_eq!(certifier.deepest_along(0, &motion, 0.0, 1e-3), Along::Undecided(0.0));
+}
+
+/// Random motions, short and long, past a ball and a plate. The oracle turns each point by the quaternion's own formula
+/// and has the solid's planes written out.
+#[test]
+fn no_sample_of_a_motion_is_deeper_than_is_proved() {
+    const TOLERANCE: f64 = 1e-3;
+    let mut draw = Draw::new(17);
+    let solids: [(&str, &dyn Oracle); 2] = [("Block", &Block), ("LBracket", &LBracket)];
+    let parts = [
+        shapes::sphere(9.0, 3, Unit::Millimetre).expect("a sphere"),
+        cuboid([-30.0, -2.0, -25.0], [30.0, 2.0, 25.0]),
+    ];
+    let (mut clear, mut touching, mut open, mut bounded) = (0, 0, 0, 0);
+    for mesh in &parts {
+        let facets = Facets::new(mesh);
+        for (name, oracle) in solids {
+            let tool = super::tool(name);
+            let mut certifier = Certifier::new(&facets, tool).expect("proved");
+            for k in 0..24 {
+                let turn =
+                    UnitQuaternion::new(Vector3::from(draw.direction()) * draw.between(0.0, 3.0));
+                let axis = Vector3::from(draw.direction());
+                let angle = [0.0, 0.05, 0.6, 2.5][k % 4];
+                let last = turn * UnitQuaternion::new(axis * angle);
+                let tip = Vector3::from(draw.direction()) * draw.between(20.0, 42.0);
+                let way = Vector3::from(draw.direction()) * [30.0, 3.0, 0.3][k % 3];
+                let (from, to) = (spun(tip.into(), turn), spun((tip + way).into(), last));
+                let motion = motion(&from, &to);
+                let depths = |t: f64| {
+                    let half = 0.5 * t * angle;
+                    let part = Quaternion::from_parts(half.cos(), axis * half.sin());
+                    let whole = turn.quaternion() * part;
+                    let here = tip + t * way;
+                    let seen = move |p: Point3<f64>| -> [f64; 3] {
+                        let q = Quaternion::from_parts(0.0, p.coords - here);
+                        (whole.conjugate() * q * whole).imag().into()
+                    };
+                    let places = (0..mesh.triangles().len() as u32).flat_map(|id| {
+                        let [a, b, c] = mesh.triangle(id);
+                        [
+                            a,
+                            b,
+                            c,
+                            nalgebra::center(&a, &b),
+                            nalgebra::center(&b, &c),
+                            a + ((b - a) + (c - a)) / 3.0,
+                        ]
+                    });
+                    let sensed = places.filter_map(move |p| oracle.sense(seen(p)));
+                    sensed.map(|sense| sense.depth).fold(0.0, f64::max)
+                };
+                let times = (0..=60).map(|step| f64::from(step) / 60.0);
+                let brute = times.map(depths).fold(0.0, f64::max);
+                let text = format!("{name} {k} from {from:?} to {to:?}: {brute}");
+                match certifier.sweep_clear(&motion, TOLERANCE) {
+                    Sweep::Clear => {
+                        clear += 1;
+                        assert!(brute <= TOLERANCE, "{text}");
+                    }
+                    Sweep::Touching(at, witness) => {
+                        touching += 1;
+                        let seen = motion.pose(at);
+                        let p = seen.rotation().transpose() * (witness.point - seen.tip());
+                        assert!(oracle.sense(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
+                    }
+                    Sweep::Inside(_) => assert_eq!(brute, 0.0, "{text}"),
+                    Sweep::Undecided(_) => open += 1,
+                    Sweep::SurfaceOnly => panic!("{text}"),
+                }
+                if k % 3 == 0 {
+                    let surfaces = 0..tool.card().surfaces.len();
+                    let most = surfaces.map(|surface| {
+                        match certifier.deepest_along(surface, &motion, 0.0, TOLERANCE) {
+                            Along::Deeper { most, .. } => most,
+                            Along::Within | Along::Inside => TOLERANCE,
+                            Along::Undecided(_) => f64::INFINITY,
+                        }
+                    });
+                    let most = most.fold(0.0, f64::max);
+                    assert!(brute <= most + 1e-9, "{text}: {most}");
+                    bounded += usize::from(most.is_finite());
+                }
+            }
+        }
+    }
+    assert!(
+        clear > 10 && touching > 10 && open < 6 && bounded > 20,
+        "{clear} {touching} {open} {bounded}"
+    );
+}
