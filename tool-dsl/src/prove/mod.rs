@@ -4,13 +4,14 @@
 //! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
 //! `rounding` how far computed depths err, `root` whether depths agree on a curve, `touch` what
 //! conics that touch imply of each other, `excess` how far distances exceed one another, `tangent` how far they differ where a profile is all but
-//! smooth, `parting` what parts two regions; `survey` goes from box
+//! smooth, `jordan` whether a profile encloses the solid, `parting` what parts two regions; `survey` goes from box
 //! to box.
 
 mod aim;
 mod cover;
 mod excess;
 mod foot;
+mod jordan;
 mod kink;
 mod parting;
 mod range;

@@ -8,7 +8,7 @@ use crate::expr::interval::Cell;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::CurveIndex;
 use crate::plan::spread;
-use crate::regionalise::outline::stations;
+use crate::regionalise::outline::{Segment, stations};
 
 /// Points at which shares are counted.
 const SPREAD: usize = 10_000;
@@ -101,14 +101,14 @@ impl<'t> Witness<'t> {
         *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
     }
 
-    /// Points of a profile beside which the solid does not end, of some on each piece.
-    pub(super) fn off_profile(&mut self) -> Vec<[f64; 3]> {
-        let Some(section) = &self.tool.model.section else { return Vec::new() };
+    /// Returns points of a profile beside which the solid does not end, of some on each piece, and whether it ends beside
+    /// any.
+    pub(super) fn off_profile(&mut self, outline: &[Segment]) -> (Vec<[f64; 3]>, bool) {
         let near = BESIDE * self.size;
-        let mut off = Vec::new();
-        for (index, segment) in section.outline.iter().enumerate() {
+        let (mut off, mut ends) = (Vec::new(), false);
+        for (index, segment) in outline.iter().enumerate() {
             for [at, inward] in stations(segment, STATIONS) {
-                let others = || section.outline.iter().enumerate().filter(|(k, _)| *k != index);
+                let others = || outline.iter().enumerate().filter(|(k, _)| *k != index);
                 // Where another piece is as near, either side may be its.
                 if at[0] < 3.0 * near || others().any(|(_, other)| other.away(at) < 3.0 * near) {
                     continue;
@@ -117,9 +117,11 @@ impl<'t> Witness<'t> {
                 let [inside, outside] = [near, -near].map(|way| self.owner(beside(way)));
                 if inside.is_none() || outside.is_some() {
                     off.push(beside(0.0));
+                } else {
+                    ends = true;
                 }
             }
         }
-        off
+        (off, ends)
     }
 }

@@ -7,6 +7,7 @@ mod meet;
 use super::aim::{self, Aim};
 use super::cover::{Boxes, Claim, Cover, reach};
 use super::foot::Feet;
+use super::jordan::Profile;
 use super::kink::ROUNDING;
 use super::parting::{Pair, Parting};
 use super::range::Ranges;
@@ -354,10 +355,8 @@ impl<'t> Survey<'t> {
         let (least, short) = self.least();
         // A straight way crosses a conic twice at most.
         let crossed = 2.0 * self.steps.values().sum::<f64>();
-        self.undecided.extend(self.witness.off_profile().into_iter().map(|at| Undecided {
-            cell: Cell::point(at),
-            what: "that the solid ends on the profile".to_owned(),
-        }));
+        let slack = self.jumps + crossed + 2.0 * self.beyond + least.max(0.0) * short;
+        let slack = slack + self.off_profile(slack);
         let mut ranges = Ranges {
             cover: &mut self.cover,
             slopes: &mut self.slopes,
@@ -392,12 +391,30 @@ impl<'t> Survey<'t> {
             .collect();
         Certificate {
             least,
-            slack: self.jumps + crossed + 2.0 * self.beyond + least.max(0.0) * short,
+            slack,
             regions,
             borders: self.borders.into_values().collect(),
             undecided: self.undecided,
             tolerance: TOLERANCE * self.size,
             boxes: self.boxes,
         }
+    }
+
+    /// Returns how far the solid's surface may be from the nearest place of its profile, given the slack of depth.
+    fn off_profile(&mut self, slack: f64) -> f64 {
+        let Some(section) = &self.tool.model.section else { return 0.0 };
+        let what = || "that the solid ends on the profile".to_owned();
+        let (off, ends) = self.witness.off_profile(&section.outline);
+        let open = off.into_iter().map(|at| Undecided { cell: Cell::point(at), what: what() });
+        self.undecided.extend(open);
+        // Where something is open, or depth is not the distance from the profile, nothing follows.
+        if self.feet.is_none() || !self.undecided.is_empty() {
+            return 0.0;
+        }
+        let off = Profile::new(&section.outline, self.size).off(slack).filter(|_| ends);
+        off.unwrap_or_else(|| {
+            self.undecided.push(Undecided { cell: self.tool.extent.cell(), what: what() });
+            0.0
+        })
     }
 }

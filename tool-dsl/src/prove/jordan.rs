@@ -1,0 +1,249 @@
+//! A proof that the solid is the set that its profile encloses.
+//!
+//! Let depth be no more than `s` where the solid ends, and no less than the distance to the profile less `s`. Then the
+//! solid ends within `ρ = 2 s` of the profile only. The profile with its mirror image is a simple closed curve. What is
+//! farther from it than `ρ` has two connected pieces, one enclosed and one outside (Jordan), if the distance from the curve
+//! has no critical value up to `ρ`: its level sets are then isotopic (Grove, *Critical point theory for distance
+//! functions*, 1993). Each piece is wholly solid or wholly not, and a point of it tells which.
+//!
+//! A critical point is in the convex hull of the places of the curve that are nearest to it. These are two places that
+//! face each other on a common normal, or three, of which some are on pieces that do not follow each other; any two of them
+//! are at most `2 ρ` apart. [`Profile::narrowest`] is the least distance of such places: between pieces that do not share an
+//! end, along common normals where the material, or the outside, is between, and across circles.
+//!
+//! From a place of the profile that is nearest to a point inside, an outside point farther than `ρ` from the profile is no
+//! farther than `ρ / sin(β/2)`, with the outside angle `β` of a corner next to it. Twice that covers how arcs bend, since no
+//! circle is smaller than four times that. So the surface of the solid is no farther than `4 s / sin(β/2)` from that place.
+
+use crate::regionalise::outline::{Point, Segment, cross, dot, minus, norm};
+
+/// Ends of pieces nearer than this part of the tool's size are one: a profile that is so near to the axis ends on it.
+const SAME: f64 = 4e-12;
+
+/// How narrow the passages of a profile are, and how sharp its corners.
+pub(super) struct Profile {
+    /// The least distance between places of the profile, or of its mirror image, that face each other.
+    narrowest: f64,
+    /// The sine of half the least angle outside of the material at a corner.
+    sharpest: f64,
+}
+
+impl Profile {
+    /// Of a profile of a tool of that size.
+    pub(super) fn new(outline: &[Segment], size: f64) -> Profile {
+        let pieces: Vec<Piece> = outline.iter().map(Piece::new).collect();
+        let mirrored: Vec<Piece> = pieces.iter().map(Piece::mirrored).collect();
+        let diameters = pieces.iter().filter_map(|piece| Some(2.0 * piece.circle?.1));
+        let mut narrowest = diameters.fold(f64::INFINITY, f64::min);
+        for (index, piece) in pieces.iter().enumerate() {
+            let others = pieces[index + 1..].iter().chain(&mirrored[index..]);
+            narrowest =
+                others.fold(narrowest, |least, other| least.min(piece.faces(other, SAME * size)));
+        }
+        // At its ends on the axis the profile goes on as its mirror image.
+        let joints = pieces.windows(2).map(|pair| [pair[0].tangents[1], pair[1].tangents[0]]);
+        let ends = [pieces.first().map(|p| p.tangents[0]), pieces.last().map(|p| p.tangents[1])];
+        let [low, high] = ends.map(|end| end.map(|[d, z]| [[d, -z], [d, z]]));
+        let high = high.map(|[before, after]| [after, before]);
+        let sharpest = joints.chain(low).chain(high).map(|[before, after]| {
+            let turn = cross(before, after).atan2(dot(before, after));
+            (0.5 * turn.min(0.0)).cos()
+        });
+        Profile { narrowest, sharpest: sharpest.fold(1.0, f64::min) }
+    }
+
+    /// Returns how far the surface of the solid may be from the nearest place of the profile, if depth is off by no more
+    /// than `slack` where the solid ends; `None` where that does not show that the profile encloses the solid.
+    pub(super) fn off(&self, slack: f64) -> Option<f64> {
+        let off = 4.0 * slack / self.sharpest;
+        (2.0 * off < self.narrowest).then_some(off)
+    }
+}
+
+/// A piece of a profile or of its mirror image.
+struct Piece {
+    ends: [Point; 2],
+    /// The directions of travel at both ends.
+    tangents: [Point; 2],
+    /// Centre, radius, and whether the material is inside.
+    circle: Option<(Point, f64, bool)>,
+    /// Which side of the direction of travel the material is on: 1 for the left.
+    side: f64,
+}
+
+impl Piece {
+    fn new(segment: &Segment) -> Piece {
+        let tangents = [false, true].map(|at_end| segment.tangent(at_end));
+        Piece { ends: segment.ends(), tangents, circle: segment.round(), side: 1.0 }
+    }
+
+    fn mirrored(&self) -> Piece {
+        let mirror = |[d, z]: Point| [-d, z];
+        let circle = self.circle.map(|(centre, radius, convex)| (mirror(centre), radius, convex));
+        let [ends, tangents] = [self.ends, self.tangents].map(|pair| pair.map(mirror));
+        Piece { ends, tangents, circle, side: -self.side }
+    }
+
+    /// Returns whether a point of the piece's line or circle is between its ends.
+    fn has(&self, p: Point) -> bool {
+        let [from, to] = self.ends;
+        match self.circle {
+            None => {
+                dot(minus(p, from), minus(to, from)) >= 0.0
+                    && dot(minus(p, to), minus(from, to)) >= 0.0
+            }
+            // An arc is of no more than half a turn: its places are on the far side of the chord.
+            Some(_) => {
+                let chord = minus(to, from);
+                cross(self.tangents[0], chord) * cross(chord, minus(p, from)) <= 0.0
+            }
+        }
+    }
+
+    /// Returns the direction into the material at a place of the piece.
+    fn inward(&self, p: Point) -> Point {
+        match self.circle {
+            None => {
+                let [d, z] = self.tangents[0];
+                [-z * self.side, d * self.side]
+            }
+            Some((centre, radius, convex)) => {
+                let way = if convex { minus(centre, p) } else { minus(p, centre) };
+                way.map(|part| part / radius)
+            }
+        }
+    }
+
+    /// Returns the distance of a point from the piece.
+    fn away(&self, p: Point) -> f64 {
+        let [from, to] = self.ends;
+        let ends = norm(minus(p, from)).min(norm(minus(p, to)));
+        let foot = match self.circle {
+            None => {
+                let along = self.tangents[0];
+                let part = dot(minus(p, from), along);
+                [from[0] + part * along[0], from[1] + part * along[1]]
+            }
+            Some((centre, radius, _)) => {
+                let out = minus(p, centre);
+                let far = norm(out);
+                if far == 0.0 {
+                    return radius;
+                }
+                [centre[0] + out[0] * radius / far, centre[1] + out[1] * radius / far]
+            }
+        };
+        if self.has(foot) { ends.min(norm(minus(p, foot))) } else { ends }
+    }
+
+    /// Returns the least distance of places of two pieces that face each other.
+    fn faces(&self, other: &Piece, same: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        for (one, another) in [(self, other), (other, self)] {
+            let shared =
+                |end: &Point| another.ends.iter().any(|own| norm(minus(*own, *end)) <= same);
+            for end in one.ends.iter().filter(|end| !shared(end)) {
+                least = least.min(another.away(*end));
+            }
+        }
+        for [p, q] in self.normals(other) {
+            let facing = dot(self.inward(p), other.inward(q)) < 0.0;
+            if facing && self.has(p) && other.has(q) {
+                least = least.min(norm(minus(p, q)));
+            }
+        }
+        least
+    }
+
+    /// Returns the pairs of places, one of each line or circle, that are on a common normal. Of two lines, and of circles
+    /// about one centre, ends are as near.
+    fn normals(&self, other: &Piece) -> Vec<[Point; 2]> {
+        let on =
+            |centre: Point, way: Point, by: f64| [centre[0] + by * way[0], centre[1] + by * way[1]];
+        match (self.circle, other.circle) {
+            (None, None) => Vec::new(),
+            (None, Some((centre, radius, _))) => {
+                let along = self.tangents[0];
+                let foot = on(self.ends[0], along, dot(minus(centre, self.ends[0]), along));
+                let across = [-along[1], along[0]];
+                [radius, -radius].map(|by| [foot, on(centre, across, by)]).to_vec()
+            }
+            (Some(_), None) => other.normals(self).into_iter().map(|[p, q]| [q, p]).collect(),
+            (Some((a, r, _)), Some((b, s, _))) => {
+                let apart = norm(minus(b, a));
+                if apart == 0.0 {
+                    return Vec::new();
+                }
+                let way = minus(b, a).map(|part| part / apart);
+                let pairs = [[r, s], [r, -s], [-r, s], [-r, -s]];
+                pairs.map(|[r, s]| [on(a, way, r), on(b, way, s)]).to_vec()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    fn of(profile: &str) -> Profile {
+        let profile = profile.replace(';', " as body;").replacen(" as body", "", 1);
+        let text = format!("tool T \"a profile\" {{ units mm; profile {{ {profile} }} }}");
+        let compiled = crate::compile(&Source::new("t.tool", text));
+        assert!(compiled.reports().is_empty(), "{:?}", compiled.reports());
+        let tool = compiled.into_tool().expect("a tool");
+        let section = tool.model.section.as_ref().expect("a profile");
+        Profile::new(&section.outline, 20.0)
+    }
+
+    fn near(value: f64, expected: f64) {
+        assert!((value - expected).abs() < 1e-9, "{value} is not {expected}");
+    }
+
+    #[test]
+    fn narrowest_is_the_width_of_a_slot_a_wall_or_a_bore() {
+        // A groove 0.25 wide in the side; a wall 0.3 thin on the face; a hole 0.2 across in the end.
+        let groove =
+            "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);";
+        near(of(groove).narrowest, 0.25);
+        let wall = "start (0, 2); line to (4, 2), (4, 0), (4.3, 0), (4.3, 20), (0, 20);";
+        near(of(wall).narrowest, 0.3);
+        let hole = "start (0, 2); line to (0.1, 2), (0.1, 0), (6, 0), (6, 20), (0, 20);";
+        // Its bottom ends in the axis, beside its wall.
+        near(of(hole).narrowest, 0.1);
+        let reach = "start (0, 0); line to (5, 0), (5, 20), (0, 20);";
+        near(of(reach).narrowest, 5.0);
+    }
+
+    #[test]
+    fn narrowest_sees_arcs() {
+        // Where a ball and a neck's hollow come nearest to the axis and to each other.
+        near(of("start (0, 0); arc to (0, 6) center (0, 3);").narrowest, 6.0);
+        let neck = "start (0, 0); line to (3, 0), (3, 4); arc to (3, 8) center (3, 6) concave; line to (3, 20), (0, 20);";
+        near(of(neck).narrowest, 2.0);
+        // A bead of a sixth of a circle leaves the wall at 30°, as a corner that is sharp outside.
+        let bead = "start (0, 0); line to (3, 0), (3, 4); arc to (3, 8) center (3 - 2*sqrt(3), 6); line to (3, 20), (0, 20);";
+        near(of(bead).sharpest, 15f64.to_radians().cos());
+    }
+
+    /// A joint at which a line goes on as a circle faces nothing, and neither do the sides of a corner.
+    #[test]
+    fn neighbours_do_not_face_each_other() {
+        let ball = "start (0, 0); arc to (3, 3) center (0, 3); line to (3, 20), (0, 20);";
+        near(of(ball).narrowest, 3.0);
+        let needle = "start (0, 0); line to (4, 10), (0, 10.5);";
+        let profile = of(needle);
+        assert!(profile.narrowest > 3.0, "{}", profile.narrowest);
+        near(profile.sharpest, 1.0);
+    }
+
+    #[test]
+    fn what_is_narrower_than_the_slack_is_not_shown() {
+        let slot = of(
+            "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);",
+        );
+        assert!(slot.off(0.03).is_some() && slot.off(0.04).is_none());
+        assert_eq!(slot.off(0.0), Some(0.0));
+    }
+}
