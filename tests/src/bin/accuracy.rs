@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use touchoff_tests::measure::accuracy::{Row, measure, tools};
+use touchoff_tests::measure::made::made;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let count = match std::env::args().nth(1) {
@@ -41,12 +42,14 @@ fn rows(count: usize) -> Vec<Row> {
 }
 
 fn page(rows: &[Row], count: usize) -> Result<String, std::fmt::Error> {
+    let command = format!(
+        "cargo run --release -p touchoff-tests --bin accuracy -- {count} > docs/measured/accuracy.md"
+    );
+    let head = made(&command, &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"]);
     let mut page = format!(
         "# Rounding of the compiled tools
 
-```sh
-cargo run --release -p touchoff-tests --bin accuracy -- {count} > docs/measured/accuracy.md
-```
+{head}
 
 Compiled evaluators against 256 bits: for each tool {count} points, half of them within 1e-6 of the surface or of a splitting
 curve (as many within 1e-15 as within 1e-6 of it), the others anywhere in its box; besides these every vertex and centre with

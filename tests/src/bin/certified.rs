@@ -14,6 +14,7 @@ use touchoff::{Mesh, Unit};
 use touchoff_tests::measure::certified::subject::{FIELDS, PROFILES, Subject};
 use touchoff_tests::measure::certified::zoomed::{self, Zoomed};
 use touchoff_tests::measure::certified::{Pair, Row, buried, poses, table};
+use touchoff_tests::measure::made::made;
 use touchoff_tests::oracle::Nearest;
 
 const TOOLS: [&str; 6] = ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
@@ -57,12 +58,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let each = count / (parts.len() * TOOLS.len()).max(1);
     let rows = rows(&parts, each, seed);
+    let command = format!(
+        "cargo run --release -p touchoff-tests --bin certified -- --poses {count} --seed {seed} > docs/measured/certified.md"
+    );
+    let head = made(&command, &["runtime/src/certify"]);
     println!(
         "# Certified penetrations beside brute force
 
-```sh
-cargo run --release -p touchoff-tests --bin certified -- --poses {count} --seed {seed} > docs/measured/certified.md
-```
+{head}
 
 For each tool and part {each} poses: most put the tool's surface between 1e-9 and 6 mm into a triangle, a sixth lie along the
 coordinate axes and flush with the part's box, a tenth are anywhere about the part. Tolerances are 0, 1e-9, 1e-6 and 1e-3 in turn.
@@ -127,18 +130,20 @@ fn zoom(
         let count = if matches!(subject, Subject::Profile(..)) { 1000 } else { 20 };
         buried::measure(tool, &subject, count, seed)
     });
+    let command = format!(
+        "cargo run --release -p touchoff-tests --bin certified -- --zoomed {poses} --samples {samples} --seed {seed} >> docs/measured/certified.md"
+    );
+    let head = made(&command, &["runtime/src/certify"]);
     println!(
         "
 ## Zoomed maxima
 
-```sh
-cargo run --release -p touchoff-tests --bin certified -- --zoomed {poses} --samples {samples} --seed {seed} >> docs/measured/certified.md
-```
+{head}
 
 For each tool and part {each} poses with {samples} samples each where a triangle is near. Half of them are middles of triangles and of their halves, the piece that may
 have the deepest place first; the others zoom in on the deepest of these. Lengths are parts of the tool's size. *Over* is by how much a sample is above the upper
 bound, *behind* by how much the samples fall short of the lower one, which they do not know, *reached* at how many poses by no more than 1e-9 or, of the tools by
-their field or with overhangs, 1e-6. Tolerances are 1e-9, and 1e-6 of these.
+their field or with overhangs, 1e-6. Tolerances are 1e-9 of the size, and of these 1e-6 mm; *wider* counts intervals wider than that and rounding.
 "
     );
     print!("{}", zoomed::table(&rows, &blocks)?);

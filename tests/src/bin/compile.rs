@@ -5,6 +5,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::process::Command;
 use touchoff_tests::measure::compile::{Parts, Times, parts, sources, times};
+use touchoff_tests::measure::made::made;
 
 /// Times each tool is compiled, optimised and not.
 const COUNTS: [usize; 2] = [7, 3];
@@ -66,15 +67,9 @@ fn row(parts: &Parts, took: Times, slow: Times) -> String {
 }
 
 fn page(rows: &str) -> Result<String, std::fmt::Error> {
-    let mut page = String::from(
-        "# What compiling a tool costs, and what comes of it
-
-```sh
-cargo run --release -p touchoff-tests --bin compile > docs/measured/compile.md
-```
-
-",
-    );
+    let command = "cargo run --release -p touchoff-tests --bin compile > docs/measured/compile.md";
+    let head = made(command, &["tool-dsl/src", "tools-library/tools"]);
+    let mut page = format!("# What compiling a tool costs, and what comes of it\n\n{head}\n\n");
     writeln!(
         page,
         "**Tests** are those of the tree of owners; **met** is how many of them one point meets on average, within 2 % of the largest

@@ -8,6 +8,7 @@ use touchoff::{Law, Part};
 use touchoff_tests::measure::haptics::page::{Measured, page, plots};
 use touchoff_tests::measure::haptics::shake::{Case, Shaking, Way, shaking, tools};
 use touchoff_tests::measure::haptics::{energy, latency, sheet, wall};
+use touchoff_tests::measure::made::made;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut quick, mut seconds) = (false, 10.0);
@@ -43,12 +44,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     std::fs::create_dir_all(&to)?;
     let quickly = if quick { " --quick" } else { "" };
+    let command = format!(
+        "cargo run --release -p touchoff-tests --bin haptics --{quickly} --latency {seconds}"
+    );
+    let head = made(&command, &["runtime/src"]);
     let text = format!(
         "# The haptic loop
 
-```sh
-cargo run --release -p touchoff-tests --bin haptics --{quickly} --latency {seconds}
-```
+{head}
 
 {}",
         page(&measured)?

@@ -7,6 +7,7 @@ use touchoff::scenes::{Path, tube};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff::{Cloud, Part, Pose, Probe};
 use touchoff_tests::measure::compile::library;
+use touchoff_tests::measure::made::made;
 
 /// Poses of a row; each is asked for once, so that nothing is learnt.
 const POSES: usize = 4_000;
@@ -15,12 +16,13 @@ fn main() {
     let mesh = tube();
     let cloud = Cloud::random(&mesh, 20_000, 1).expect("the tube has a surface");
     let part = Part::from_cloud(&cloud);
+    let command =
+        "cargo run --release -p touchoff-tests --bin interpreter > docs/measured/interpreter.md";
+    let head = made(command, &["runtime/src", "tool-dsl/src", "tools-library/tools"]);
     println!(
         "# What a tool costs that is loaded at run time
 
-```sh
-cargo run --release -p touchoff-tests --bin interpreter > docs/measured/interpreter.md
-```
+{head}
 
 Wrenches at {POSES} poses along the tube of 20,000 points, each pose asked once of both, interleaved; median ns a query.
 The forces are equal to the bit.

@@ -1,11 +1,10 @@
 //! The table of `docs/measured/mutants.md`.
 
 use std::error::Error;
-use std::process::Command;
-use std::thread::available_parallelism;
 use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use touchoff_tests::measure::compile::library;
+use touchoff_tests::measure::made::made;
 use touchoff_tests::measure::mutants::{Caught, KINDS, caught, changes, mutants};
 
 /// How often each tool is broken.
@@ -17,10 +16,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "# The library, broken on purpose
 
-```sh
-cargo run --release -p touchoff-tests --bin mutants > docs/measured/mutants.md
-```
-
 {}
 
 Every tool is broken {EACH} times, in one place each, after it was compiled; and `touchoff check`'s proof is made once more. **Alike** are
@@ -31,7 +26,10 @@ anything reported.
 
 | tool | broken | alike | error | open | warning | comparing | not |
 |---|--:|--:|--:|--:|--:|--:|--:|",
-        made_with()
+        made(
+            "cargo run --release -p touchoff-tests --bin mutants > docs/measured/mutants.md",
+            &["tool-dsl/src", "tools-library/tools"],
+        )
     );
     let mut unseen = Vec::new();
     let (mut all, mut by_kind) = ([0; COLUMNS], vec![[0; 3]; KINDS.len()]);
@@ -99,16 +97,4 @@ anything reported.
 
 fn row(counts: &[usize]) -> String {
     counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" | ")
-}
-
-/// The commit and the machine, as far as they are known.
-fn made_with() -> String {
-    let git = Command::new("git").args(["rev-parse", "--short", "HEAD"]).output();
-    let commit = git.ok().and_then(|output| String::from_utf8(output.stdout).ok());
-    let commit = commit.unwrap_or_default();
-    let cpus = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = cpus.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    let model = model.map_or("an unknown processor", |(_, model)| model);
-    let count = available_parallelism().map_or(0, usize::from);
-    format!("Commit {}, {count} cores of {model}.", commit.trim())
 }

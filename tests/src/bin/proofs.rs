@@ -6,14 +6,15 @@ use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::report::figure;
 use touchoff_tests::measure::compile::sources;
+use touchoff_tests::measure::made::made;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let command = "cargo run --release -p touchoff-tests --bin proofs > docs/measured/proofs.md";
+    let head = made(command, &["tool-dsl/src", "tools-library/tools"]);
     println!(
         "# What is proved about the library
 
-```sh
-cargo run --release -p touchoff-tests --bin proofs > docs/measured/proofs.md
-```
+{head}
 
 `c · distance ≤ depth ≤ L · distance`, and depth is L-Lipschitz; how, is in `docs/proofs.md`. **Joins** are borders of two
 regions on which depths agree exactly, by an identity; **corners** are pairs of regions that meet in a point only or on a border that is

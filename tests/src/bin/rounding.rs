@@ -2,12 +2,11 @@
 //! cases on all cores if it is not said. `--only` shows a single case.
 
 use std::error::Error;
-use std::fs;
-use std::process::Command;
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+use touchoff_tests::measure::made::made;
 use touchoff_tests::measure::rounding::cases::Family;
 use touchoff_tests::measure::rounding::{Rounding, Row, table};
 
@@ -44,14 +43,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     let rows = rows(&rounding, count, threads);
+    let command = format!(
+        "cargo run --release -p touchoff-tests --bin rounding -- --cases {count} --seed {seed} > docs/measured/rounding.md"
+    );
+    let head = made(&command, &["runtime/src/certify"]);
     println!(
         "# Certified depth against 256 bits
 
-```sh
-cargo run --release -p touchoff-tests --bin rounding -- --cases {count} --seed {seed} > docs/measured/rounding.md
-```
-
-Commit {}, {}, {} cores.
+{head}
 
 Each case is a triangle, or a few, a tool and a pose, drawn where rounding does the most: eleven profiles at five scales from 1e-6 to 1e6 mm, tolerances 0 and
 1e-9 of the tool's size. The doubles of the mesh and the pose are exact numbers, and a place `p` of the part is `R⁻¹ (p - tip)` in the tool's frame, as `Pose` says.
@@ -67,10 +66,7 @@ widenings at most. `--only` and its number show a case.
 
 All rotations that the public interface of `Pose` makes are orthonormal to 4 ε: axes and quaternions are normalised if their norm is within 1e-3 of 1, and
 composed rotations are corrected. *Drift* has some composed of up to 24 others.
-",
-        first_line("git", &["describe", "--always", "--dirty"]),
-        processor(),
-        std::thread::available_parallelism().map_or(1, usize::from),
+"
     );
     print!("{}", table(&rows)?);
     eprintln!("{} s", start.elapsed().as_secs());
@@ -106,18 +102,4 @@ fn rows(rounding: &Rounding, count: u64, threads: usize) -> Vec<Row> {
         }
     });
     rows.into_inner().unwrap_or_else(PoisonError::into_inner).to_vec()
-}
-
-/// The first line that a command prints.
-fn first_line(command: &str, arguments: &[&str]) -> String {
-    let output = Command::new(command).args(arguments).output().map(|output| output.stdout);
-    let text = output.map(|text| String::from_utf8_lossy(&text).trim().to_owned());
-    text.unwrap_or_else(|_| "unknown".to_owned())
-}
-
-/// The processor's name.
-fn processor() -> String {
-    let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let line = text.lines().find_map(|line| line.strip_prefix("model name"));
-    line.map_or("unknown", |name| name.trim_start_matches([' ', '\t', ':'])).to_owned()
 }

@@ -9,6 +9,7 @@ use touchoff::Mesh;
 use touchoff::certify::Facets;
 use touchoff_tests::measure::certified::sweeps::{Row, table};
 use touchoff_tests::measure::certified::{Pair, poses};
+use touchoff_tests::measure::made::made;
 use touchoff_tests::oracle::Nearest;
 
 /// The last is in inches.
@@ -41,12 +42,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let parts = poses::parts()?;
     let each = count / (parts.len() * TOOLS.len());
     let rows = rows(&parts, each, seed, only.as_deref());
+    let command = format!(
+        "cargo run --release -p touchoff-tests --bin sweeps -- --motions {count} --seed {seed} > docs/measured/sweeps.md"
+    );
+    let head = made(&command, &["runtime/src/certify", "runtime/src/motion.rs"]);
     println!(
         "# Certified sweeps beside samples
 
-```sh
-cargo run --release -p touchoff-tests --bin sweeps -- --motions {count} --seed {seed} > docs/measured/sweeps.md
-```
+{head}
 
 For each tool and part motions are drawn until {each} are proved: slides, swings about the tip and about a place of the part by up to 150°,
 plunges, straight ways, none at all, rapid moves and any between two poses. Most are moved to where they pass the part by 1e-7 to 0.5 mm,

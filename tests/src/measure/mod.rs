@@ -9,6 +9,7 @@ pub mod continuity;
 pub mod convergence;
 pub mod haptics;
 pub mod kernels;
+pub mod made;
 pub mod mutants;
 pub mod points;
 pub mod postures;

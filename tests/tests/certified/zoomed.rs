@@ -20,7 +20,7 @@ fn samples_that_zoom_in_are_within_the_interval() {
             let zoomed =
                 Zoomed { part, mesh, facets: &facets, tool: tool(name), subject: &subject };
             let row = zoomed.measure(4, SAMPLES, 3);
-            assert!(row.violations.is_empty(), "{row:?}");
+            assert!(row.violations.is_empty() && row.wider == 0, "{row:?}");
             asked += row.poses;
             reached += row.reached;
         }

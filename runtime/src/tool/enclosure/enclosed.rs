@@ -1,7 +1,9 @@
 //! What a tool feels in a box.
 
+use super::Enclosure;
+#[cfg(feature = "interpreter")]
+use super::bit;
 use super::choice::{Choice, Choices, Maybe};
-use super::{Enclosure, bit};
 use crate::tool::compiled::FeltLanes;
 use crate::tool::{Ask, Evaluators};
 

@@ -80,12 +80,12 @@ impl Subject {
         }
     }
 
-    /// The tolerance that is asked for and how near the samples should come to the lower bound, as parts of the tool's
-    /// size.
-    pub(super) fn tolerance(&self) -> [f64; 2] {
+    /// Returns the tolerance to ask for, and how near samples should come to the lower bound, in the part's unit. A
+    /// field is asked for a millionth of the unit, whatever the tool's size.
+    pub(super) fn tolerance(&self, size: f64) -> [f64; 2] {
         match self {
-            Subject::Profile(..) => [1e-9, 1e-9],
-            Subject::Field(_) => [1e-6, 1e-6],
+            Subject::Profile(..) => [1e-9 * size; 2],
+            Subject::Field(_) => [1e-6, 1e-6 * size],
         }
     }
 }

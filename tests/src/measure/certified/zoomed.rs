@@ -57,6 +57,8 @@ pub struct Row {
     pub reached: usize,
     /// The widest interval.
     pub wide: Worst,
+    /// How many intervals are wider than the tolerance and rounding.
+    pub wider: usize,
     /// Poses at which a sample is above the upper bound.
     pub violations: Vec<String>,
 }
@@ -108,7 +110,7 @@ impl Zoomed<'_> {
         let length = card.unit.to(self.mesh.unit());
         let [radius, height] = self.subject.oracle().extent();
         let size = radius.max(height) * length;
-        let [tolerance, near] = self.subject.tolerance().map(|part| part * size);
+        let [tolerance, near] = self.subject.tolerance(size);
         let [low, high] = self.mesh.bounds();
         let part = (high - low).norm() + low.coords.amax().max(high.coords.amax());
         let rounding = 64.0 * f64::EPSILON * (size + part);
@@ -128,6 +130,7 @@ impl Zoomed<'_> {
             row.over.see((found - high) / size, || text.clone());
             row.behind.see((low - found) / size, || text.clone());
             row.wide.see((high - low) / size, || text.clone());
+            row.wider += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
             if found > high + rounding {
                 row.violations.push(text);
             }
@@ -314,19 +317,20 @@ fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
 /// None that a text could have.
 pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::Error> {
     let mut page =
-        "| tool | part | poses | in contact | worst over | worst behind | reached | widest | violations |\n\
-                    |---|---|--:|--:|--:|--:|--:|--:|--:|\n"
+        "| tool | part | poses | in contact | worst over | worst behind | reached | widest | wider | violations |\n\
+                    |---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
             .to_owned();
     for row in rows {
         let [over, behind, wide] = [&row.over, &row.behind, &row.wide].map(|worst| worst.by);
         writeln!(
             page,
-            "| {} | {} | {} | {} | {over:.1e} | {behind:.1e} | {} | {wide:.1e} | {} |",
+            "| {} | {} | {} | {} | {over:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} |",
             row.tool,
             row.part,
             row.poses,
             row.touching,
             row.reached,
+            row.wider,
             row.violations.len()
         )?;
     }
@@ -335,10 +339,11 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
     let reached = sum(|row| row.reached as u64);
     writeln!(
         page,
-        "\n{poses} poses, {} of them in contact, {} samples; at {reached}, {:.1} %, they reach the lower bound.\n",
+        "\n{poses} poses, {} of them in contact, {} samples; at {reached}, {:.1} %, they reach the lower bound; {} intervals are wider.\n",
         sum(|row| row.touching as u64),
         sum(|row| row.samples),
-        100.0 * reached as f64 / poses.max(1) as f64
+        100.0 * reached as f64 / poses.max(1) as f64,
+        sum(|row| row.wider as u64)
     )?;
     page += "### Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
              | tool | inside | verdict inside | cut | verdict touching | violations |\n|---|--:|--:|--:|--:|--:|\n";
