@@ -20,8 +20,9 @@ use crate::regionalise::Feature;
 use crate::regionalise::outline::{Place, Segment, unit_between};
 use std::collections::HashMap;
 
-/// The error that a depth's expression may have as the distance to its piece, as a part of the tool's size.
-const ROUNDING: f64 = 1e-13;
+/// Depths that are farther than this part of the tool's size from the distances to their pieces are taken for none. Nearer
+/// ones add to the certificate's slack, so the proof does not depend on this number.
+const NEAR: f64 = 1e-13;
 
 /// An end of a region's piece, by linear functions with a slope of 1.
 struct End {
@@ -38,6 +39,8 @@ pub(super) struct Feet<'m> {
     model: &'m Model,
     /// The ends of each region's piece; a corner has none.
     ends: Vec<Ends>,
+    /// How far depths are from these distances at most.
+    pub(super) off: f64,
     /// A lower bound of each end's function on a side of a curve.
     beside: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
 }
@@ -49,6 +52,7 @@ impl<'m> Feet<'m> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
         let (features, whole) = (section.inner.features(), tool.extent.cell());
+        let mut off = 0.0f64;
         let ends = depths.iter().enumerate().map(|(index, depth)| {
             let part = section.over.as_ref().map_or(index, |over| over.regions[index].0);
             let (distance, ends) = match *features.get(part)? {
@@ -61,9 +65,12 @@ impl<'m> Feet<'m> {
                     (from_point(&section.outline.get(piece)?.to), Ends::new())
                 }
             };
-            depth.as_ref()?.is_near(&distance, &whole, ROUNDING * size).then_some(ends)
+            let apart = depth.as_ref()?.apart(&distance, &whole)?;
+            off = off.max(apart);
+            (apart <= NEAR * size).then_some(ends)
         });
-        Some(Feet { model, ends: ends.collect::<Option<_>>()?, beside: HashMap::new() })
+        let ends = ends.collect::<Option<_>>()?;
+        Some(Feet { model, ends, off, beside: HashMap::new() })
     }
 
     /// Returns by how much feet of a claim's points of a box are beyond the ends of its owner's piece at most.
@@ -145,14 +152,34 @@ fn ends(segment: &Segment) -> Option<Ends> {
     };
     // Left of the ray to one end and right of that to the other, or the other way round. Arcs are of no more than 180°.
     let sign = Number::int(if circle.convex { 1 } else { -1 });
-    let [[d0, z0], [d1, z1]] =
-        [&segment.from, &segment.to].map(|end| end.each_ref().map(Number::to_f64));
-    // With more than what doubles err by.
-    let scale = (1.0 + 1e-12) * 2.0 * circle.radius.to_f64() / (d1 - d0).hypot(z1 - z0);
+    let scale = diameter_by_chord([&segment.from, &segment.to], &circle.radius)?;
     let beside = |end: &Place, sign: &Number| {
         let [d, z] = unit_between(&circle.centre, end)?;
         let side = Some((along(&[d.clone(), z.clone()], &circle.centre), scale));
         Some(End { inside: along(&[&-&z * sign, &d * sign], &circle.centre), side })
     };
     Some(vec![beside(&segment.from, &sign)?, beside(&segment.to, &-&sign)?])
+}
+
+/// Returns the diameter of an arc by its chord, or a little more.
+fn diameter_by_chord([from, to]: [&Place; 2], radius: &Number) -> Option<f64> {
+    // With 256 bits: the ends of a short arc have the first digits of their coordinates in common.
+    let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
+    let chord = (&(&d * &d) + &(&z * &z)).sqrt()?;
+    // The nearest double may be less.
+    Some((&Number::int(2) * radius).over(&chord)?.to_f64().next_up())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In doubles the chord would be a fifth off.
+    #[test]
+    fn short_arcs_far_out_have_their_chord() {
+        let place = |d: &str, z: &str| [d, z].map(|text| Number::decimal(text).expect("a number"));
+        let [from, to] = [place("1000.1", "0"), place("1000.1000000000006", "0.0000000000008")];
+        let scale = diameter_by_chord([&from, &to], &Number::int(5)).expect("two ends");
+        assert!((1e13..=1e13 * (1.0 + 1e-15)).contains(&scale), "{scale:e}");
+    }
 }

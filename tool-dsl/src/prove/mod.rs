@@ -31,14 +31,16 @@ use crate::model::{DirectionSource, Region};
 use crate::report::Report;
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
-/// size.
+/// size, and nowhere inside a region is depth further below 0: [`Certificate::tolerance`]. By how much they do not agree is
+/// in the slack besides.
 const TOLERANCE: f64 = 1e-6;
 
 /// The boxes, as a part of the tool's size, in which it is looked where depths differ, and whether a third explains how two
 /// meet.
 const SMALL: f64 = 1.0 / 1024.0;
 
-/// Where both bounds are 1 to this, depth is said to be the distance.
+/// Where both bounds are 1 to this, depth is said to be the distance: a choice, stated by [`Certificate::is_exact`]. `c` of
+/// a distance is lowered by a tenth of it ([`kink::ROUNDING`]).
 const EXACT: f64 = 1e-8;
 
 /// Boxes that a proof may take, and one while a tool is compiled.
@@ -54,14 +56,17 @@ pub struct Certificate {
     pub borders: Vec<Border>,
     /// Where a proof did not come to an end.
     pub undecided: Vec<Undecided>,
-    /// How much depth may change at points where several regions meet, in the file's unit.
+    /// How much depth may change at points where several regions meet, and how far below 0 it may be inside, in the file's
+    /// unit.
     pub tolerance: f64,
     /// How many boxes were looked at.
     pub boxes: usize,
     /// The least slope of the depth toward the surface.
     least: f64,
     /// How much depth may jump at points where regions meet that no curve joins, in the file's unit: `c · distance -
-    /// slack ≤ depth ≤ L · distance + slack`, and depth changes by no more than L times the way and the slack.
+    /// slack ≤ depth ≤ L · distance + slack`, and depth changes by no more than L times the way and the slack. Of a profile,
+    /// how far feet may be beyond a piece's ends, and how far depths are from the distances to the pieces. What is less than
+    /// 2^-95 of the tool's size counts as 0: constants have 256 bits.
     pub slack: f64,
 }
 
@@ -80,7 +85,8 @@ pub struct RegionFacts {
     pub magnitude: Interval,
     /// Niceness, before what is below 0 counts as 0.
     pub niceness: Interval,
-    /// Whether niceness nowhere grows with depth.
+    /// Whether niceness nowhere grows with depth, by its slope along that of depth, but for 1e-9 of both lengths: constants
+    /// of a file have few digits.
     pub falls: bool,
     /// The angle between the direction and the steepest way down, in radians, if it is known anywhere.
     pub aside: Option<Interval>,

@@ -110,18 +110,19 @@ impl Rooted {
         Rooted { plain, root: Some((factor, under)) }
     }
 
-    /// Returns whether two distances, with factors of ±1, differ by no more than this in a box.
-    pub(super) fn is_near(&self, other: &Rooted, cell: &Cell, most: f64) -> bool {
+    /// Returns by how much two distances, with factors of ±1, differ at most in a box; nothing if only one has a root, or
+    /// their signs differ.
+    pub(super) fn apart(&self, other: &Rooted, cell: &Cell) -> Option<f64> {
         let minus = Number::int(-1);
-        let plain = self.plain.clone().plus(&other.plain.scaled(&minus)).over(cell).abs().high;
+        let plain = self.plain.clone().plus(&other.plain.scaled(&minus)).over(cell).abs();
         match (&self.root, &other.root) {
-            (None, None) => plain <= most,
+            (None, None) => Some(plain.high),
             (Some((k, p)), Some((m, q))) => {
                 // |√P - √Q| is no more than √|P - Q|.
-                let squares = p.clone().plus(&q.scaled(&minus)).over(cell).abs().high;
-                k.agrees(m) && plain + squares.sqrt() <= most
+                let squares = p.clone().plus(&q.scaled(&minus)).over(cell).abs();
+                k.agrees(m).then(|| plain.plus(squares.sqrt()).high)
             }
-            _ => false,
+            _ => None,
         }
     }
 

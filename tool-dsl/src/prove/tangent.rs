@@ -95,6 +95,8 @@ impl Tangency {
                 let by = monomial_of(coord);
                 depth.part().factor(by) * line.factor(by)
             });
+            // With unit roundoff u each product errs by 3u, their sum, the root and the quotient by one each: 6u in all,
+            // of a product of lengths that is the line's.
             let across = (slopes[0] + slopes[1]).abs() / size + 4.0 * f64::EPSILON;
             self.across = self.across.max(across);
             return Some(());
@@ -142,7 +144,7 @@ impl Tangency {
             let factor = if from_foot.high < 0.0 { -&root.factor } else { root.factor.clone() };
             rest = &rest - &(&factor * &root.foot);
             slope = &slope + &factor;
-            // No slack is spared by rounding these to the last place.
+            // A root is within its `off` of what is without; twice that holds the rounding of `off` and of the sum.
             noise += 2.0 * root.off;
             across = across.max(2.0 * root.off / (root.scale * from_foot.abs().low));
         }

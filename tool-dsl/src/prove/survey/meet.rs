@@ -4,12 +4,13 @@ use super::super::cover::{Claim, reach};
 use super::super::kink::{across, angle};
 use super::super::parting::{Joint, Pair, Parted};
 use super::super::{Border, SMALL, Seen, TOLERANCE, Undecided};
-use super::{Grain, SLOPING, Survey, VAGUE};
+use super::{Grain, SLOPING, Survey, VAGUE, up};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 
-/// On the surface directions are told to this, in radians, or by boxes that are as good as points.
+/// On the surface directions are told to this, in radians, or by boxes that are as good as points. It says only when a box
+/// is divided: the angle that is stated is that of its enclosure.
 const VAGUE_TURN: f64 = 1e-5;
 
 /// Two claims to a box that a curve parts.
@@ -80,7 +81,8 @@ impl Survey<'_> {
         self.least = self.least.min(least);
         let unjoined = all.iter().filter(|met| met.by.joint == Joint::None && met.seen.is_none());
         let pairs: Vec<Pair> = unjoined.map(|met| met.pair).collect();
-        self.jumps += pairs.into_iter().map(|pair| self.jump(pair).high).fold(0.0, f64::max);
+        let jump = pairs.into_iter().map(|pair| self.jump(pair).high).fold(0.0, f64::max);
+        self.jumps = up(self.jumps, jump);
         for met in &all {
             let off = self.steps.entry((met.pair, met.by.curve)).or_insert(0.0);
             *off = met.by.off.max(*off);

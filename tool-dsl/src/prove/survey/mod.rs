@@ -28,10 +28,11 @@ use std::collections::BTreeMap;
 const FINE: f64 = 1.0 / 56.0;
 const FINE_OF_SPACE: f64 = 1.0 / 7.0;
 /// Boxes where nothing explains a border are divided to this part of the tool's size, or, where too many boxes are
-/// needed for that, to the second. Where curves touch it takes so many more boxes as the root of this is smaller.
+/// needed for that, to the second. Where curves touch it takes so many more boxes as the root of this is smaller. How far
+/// depths may differ in such boxes adds to the slack, so these only say when the search ends.
 const FINEST: [f64; 2] = [1e-12, 1e-7];
 /// Feet may be beyond the ends of pieces by this part of the tool's size, and by so many times the half diagonal of a box
-/// that is as good as a point.
+/// that is as good as a point. By how much they are adds to the slack, so these only say when a box is divided.
 const BEYOND: f64 = 1e-11;
 const FAR: f64 = 4096.0;
 /// More claims to a box are not compared two by two.
@@ -60,6 +61,17 @@ pub(super) fn survey(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
     let mut survey = Survey::new(tool, coarsest, alone);
     survey.run(boxes, true);
     survey.certificate()
+}
+
+/// Returns the sum of two lengths, no less than it is; nothing is rounded where one is 0.
+fn up(a: f64, b: f64) -> f64 {
+    Interval::new(a, a).plus(Interval::new(b, b)).high
+}
+
+/// Returns a length, or 0 for one that is rounding of constants with 256 bits, less than 2^-95 of the tool's size: the root
+/// of what a sum of squares keeps when it cancels.
+fn unless_rounding(length: f64, size: f64) -> f64 {
+    if length > size * number::ROUNDING.sqrt() { length } else { 0.0 }
 }
 
 /// How small a box is.
@@ -237,9 +249,7 @@ impl<'t> Survey<'t> {
         for claim in claims {
             let beyond = feet.beyond(claim, &mut self.cover, cell);
             if beyond <= allowed {
-                // Less is rounding of constants with 256 bits.
-                let is_some = beyond > self.size * number::ROUNDING.sqrt();
-                self.beyond = if is_some { self.beyond.max(beyond) } else { self.beyond };
+                self.beyond = self.beyond.max(unless_rounding(beyond, self.size));
             } else if grain.is_last() {
                 let what =
                     format!("that {} has what is nearest to its points", self.named(claim.owner));
@@ -354,9 +364,11 @@ impl<'t> Survey<'t> {
         let shares = self.witness.shares();
         let (least, short) = self.least();
         // A straight way crosses a conic twice at most.
-        let crossed = 2.0 * self.steps.values().sum::<f64>();
-        let slack = self.jumps + crossed + 2.0 * self.beyond + least.max(0.0) * short;
-        let slack = slack + self.off_profile(slack);
+        let crossed = 2.0 * self.steps.values().copied().fold(0.0, up);
+        let off = self.feet.as_ref().map_or(0.0, |feet| unless_rounding(feet.off, self.size));
+        let slack = [crossed, 2.0 * self.beyond, off, up(0.0, least.max(0.0) * short)];
+        let slack = slack.into_iter().fold(self.jumps, up);
+        let slack = up(slack, self.off_profile(slack));
         let mut ranges = Ranges {
             cover: &mut self.cover,
             slopes: &mut self.slopes,
