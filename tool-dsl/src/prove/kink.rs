@@ -1,17 +1,36 @@
 //! Slopes on the two sides of a border.
 
+use super::parting::TANGENT_SLOPE;
 use super::slope::Slope;
 use crate::expr::interval::{Interval, ZERO};
 
-/// What of a slope is rounding.
+/// `c` is lowered by so much for what is neglected of slopes, and niceness is said to fall where its slope along that of
+/// depth is no more than this part of both lengths.
+///
+/// Neglected are, at a point with an owner whose depth has a slope of at least `c`:
+///
+/// - on a border, a difference of two slopes up to [`EQUAL`], so that a combination of them is shorter than either by
+///   no more than that, and by twice that where a third region lies between;
+/// - on the axis, a slope away from it up to [`EQUAL`], so that what is left along the axis is shorter by no more;
+/// - on a border that is all but smooth, of distances, the slope across it: `1 - √(1 - t²) ≤ t²`, with
+///   [`TANGENT_SLOPE`] for `t`.
+///
+/// That is `3 EQUAL + t²` in all.
 pub(super) const ROUNDING: f64 = 1e-9;
+
+/// Slopes that differ by no more are taken for equal; they have no unit.
+pub(super) const EQUAL: f64 = 2.5e-10;
+
+const _: () = assert!(3.0 * EQUAL + TANGENT_SLOPE * TANGENT_SLOPE <= ROUNDING);
+
+/// Platforms' `acos` err by an ulp or two of the result; no angle has a larger ulp than π, 2^-51. This is four of these.
+const ACOS: f64 = 8.0 * f64::EPSILON;
 
 /// The angle between two unit vectors, in radians.
 pub(super) fn angle(a: [Interval; 3], b: [Interval; 3]) -> Interval {
     let product = (0..3).fold(ZERO, |sum, k| sum.plus(a[k].times(b[k])));
     let [low, high] = [product.high, product.low].map(|cos| cos.clamp(-1.0, 1.0).acos());
-    // acos is known to a few units of the last place.
-    Interval { low: (low - 1e-15).max(0.0), high: high + 1e-15 }
+    Interval { low: (low - ACOS).max(0.0), high: high + ACOS }
 }
 
 /// How steeply depth falls at least toward one of the sides of a border on which two depths agree, and
@@ -27,7 +46,8 @@ pub(super) fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f6
     let widths = own.parts.iter().chain(&other.parts).map(|part| part.high - part.low);
     let slack = widths.fold(0.0, f64::max);
     let falls = if below { rise.low } else { -rise.high };
-    if falls >= -ROUNDING * curve.length.high {
+    // The two slopes differ along the curve's alone, since depths agree on it: by -falls over its length.
+    if falls >= 0.0 || falls >= -EQUAL * curve.length.low {
         return (f64::INFINITY, 0.0);
     }
     let way = combined.map(|[a, b]| b - a);
@@ -35,6 +55,50 @@ pub(super) fn across(own: Slope, other: Slope, curve: Slope, below: bool) -> (f6
         [combined.map(|[a, _]| a), way].map(|v| v.iter().zip(way).map(|(a, b)| a * b).sum::<f64>());
     let part = if long > 0.0 { (-start / long).clamp(0.0, 1.0) } else { 0.0 };
     let nearest = combined.map(|[a, b]| a + part * (b - a));
-    // Each end is known to half its width.
-    (nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack, slack)
+    // Each part is known to half its width, and the vector to √3 times that.
+    let shortest = nearest.iter().map(|part| part * part).sum::<f64>().sqrt() - slack;
+    (shortest.min(along(nearest, [own, other])), slack)
+}
+
+/// Returns how long any combination of slopes is at least, by how far they all go in a direction: whatever was rounded in
+/// finding that, this holds.
+fn along(direction: [f64; 3], slopes: [Slope; 2]) -> f64 {
+    let direction = direction.map(|part| Interval::new(part, part));
+    let squares = direction.map(Interval::square);
+    let per = squares.into_iter().fold(ZERO, Interval::plus).sqrt().reciprocal();
+    let far = |slope: Slope| {
+        let parts = [0, 1, 2].map(|k| slope.parts[k].times(direction[k]));
+        parts.into_iter().fold(ZERO, Interval::plus).times(per).low
+    };
+    slopes.map(far).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::slope::Slopes;
+    use super::*;
+    use crate::domain::Domain;
+    use crate::expr::interval::Cell;
+    use crate::expr::{Coord, Graph};
+    use crate::number::Number;
+
+    /// Two depths whose slopes differ by 2e-7 along z, and a curve that is a thousand times flatter where it goes along z
+    /// than elsewhere in the box. Each depth is the lesser on the other's side, and the shortest combination counts.
+    #[test]
+    fn slopes_are_equal_by_the_flattest_part_of_a_curve() {
+        let mut graph = Graph::default();
+        let mut number = |text: &str| graph.number(Number::decimal(text).expect("a number"));
+        let [less, more, flat] = ["0.9999999", "1.0000001", "0.001"].map(&mut number);
+        let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
+        let [own, other, along] = [less, more, flat].map(|factor| graph.mul(factor, z));
+        let square = graph.mul(d, d);
+        let curve = graph.add(square, along);
+        let mut slopes = Slopes::new(&graph, Domain::HalfPlane, [own, other, curve]);
+        slopes.set(Cell::half_plane(Interval::new(0.0, 1.0), Interval::new(-1.0, 1.0)));
+        let [own, other, curve] = [own, other, curve].map(|id| slopes.get(id));
+        let (least, _) = across(own, other, curve, true);
+        assert!((0.99..1.0).contains(&least), "{least}");
+        // On the other sides each is the lesser.
+        assert_eq!(across(own, other, curve, false).0, f64::INFINITY);
+    }
 }

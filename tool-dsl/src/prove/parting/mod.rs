@@ -24,10 +24,10 @@ use std::rc::Rc;
 const TRIES: u32 = 12;
 
 /// Bounds on the border of a profile that is all but smooth: depths differ by no more than the first, as a part of the tool's
-/// size, and their slopes across it are no more than the second, so that a way down that stays on either side falls as steeply but for the half of its
-/// square.
+/// size, which adds to the slack, and their slopes across it are no more than the second, so that a way down that stays on
+/// either side falls as steeply but for its square, by which `c` is lowered: see [`ROUNDING`](super::kink::ROUNDING).
 const TANGENT_JUMP: f64 = 4e-9;
-const TANGENT_SLOPE: f64 = 1e-5;
+pub(super) const TANGENT_SLOPE: f64 = 1e-5;
 
 /// A region and another, `None` for the outside, where depth is 0.
 pub(super) type Pair = (usize, Option<usize>);

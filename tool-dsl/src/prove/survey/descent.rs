@@ -1,7 +1,7 @@
 //! Bounds of how steeply depth falls toward the surface, for tools whose depth the feet of a profile do not bound.
 
 use super::super::cover::reach;
-use super::super::kink::ROUNDING;
+use super::super::kink::{EQUAL, ROUNDING};
 use super::{Grain, Survey};
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
@@ -43,7 +43,9 @@ impl Survey<'_> {
             }
             self.descend_on_axis(cell);
         } else if owners.contains(&None) {
-            self.near = self.near.max(2.0 * reach(&cell));
+            let [first, last] = [0, 1]
+                .map(|end| cell.sides.map(|side| if end == 0 { side.low } else { side.high }));
+            self.near = self.near.max(farthest(&cell, first)).max(farthest(&cell, last));
         } else {
             let descent = self.descent_from_point(owners, cell);
             self.descents.push(descent);
@@ -60,7 +62,7 @@ impl Survey<'_> {
         self.slopes.set(axis);
         for owner in self.cover.claims(axis).iter().filter_map(|claim| claim.owner) {
             let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-            if depth.parts[0].high > ROUNDING {
+            if depth.parts[0].high > EQUAL {
                 self.least = self.least.min(depth.parts[2].abs().low);
             }
         }
@@ -93,14 +95,15 @@ impl Survey<'_> {
             for way in steps.clone().chain(STEPS.map(|part| part * self.size)) {
                 let to = [0, 1, 2].map(|k| middle[k] - way * up[k] / long);
                 let Some(high) = self.deepest_at(to) else { continue };
-                // `to` is rounded, by far less than the box is wide.
-                let farthest = (way + 2.0 * half) * (1.0 + 1e-12);
+                let farthest = farthest(&cell, to).max(way + 2.0 * half);
                 let is_near = way <= NEAR[NEAR.len() - 1] * half;
                 if high == 0.0 && is_near {
                     self.near = self.near.max(farthest);
                     return Descent { steepest: f64::INFINITY, step: None };
                 }
-                best.steepest = best.steepest.max((low - high) / farthest);
+                let falls = Interval::new(low, low).plus(Interval::new(-high, -high));
+                let by = Interval::new(farthest, farthest).reciprocal();
+                best.steepest = best.steepest.max(falls.times(by).low);
                 if high < low && is_near && best.step.is_none_or(|step| farthest < step) {
                     best.step = Some(farthest);
                 }
@@ -135,8 +138,15 @@ impl Survey<'_> {
                 None => least = least.min(descent.steepest),
             }
         }
-        // Slopes that are taken for equal may differ by rounding; of a set without an inside nothing was asked.
+        // What was neglected of slopes; of a set without an inside nothing was asked.
         let least = if least.is_finite() { least - ROUNDING } else { 0.0 };
         (least, self.near + steps)
     }
+}
+
+/// Returns how far the points of a box are from another at most.
+fn farthest(cell: &Cell, from: [f64; 3]) -> f64 {
+    let away = |axis: usize| cell.sides[axis].plus(Interval::new(-from[axis], -from[axis]));
+    let squares = [0, 1, 2].map(|axis| away(axis).square());
+    squares.into_iter().fold(NOTHING, Interval::plus).sqrt().high
 }
