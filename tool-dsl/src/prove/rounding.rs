@@ -1,6 +1,21 @@
 //! How far rounding can take a computed value from the true one, operation by operation: forward
 //! error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, chapter 3) over
-//! boxes, to first order.
+//! boxes.
+//!
+//! Let `u` be the unit roundoff, and let operands `a` and `b` err by `e u` and `f u`. Computed operands are at most `|a| + e u`
+//! and at least `|b| - f u`. So nothing is left out but underflow:
+//!
+//! | operation | brings, in `u` | own rounding, in `u` |
+//! |---|---|---|
+//! | a sum or difference | `e + f` | the size of what is rounded |
+//! | a product | `e |b| + f |a| + e f u` | the same |
+//! | a quotient `q` | `(e + f |q|) / (|b| - f u)` | the same |
+//! | a root | `e / (√a + √(a - e u))` | the same |
+//! | the length of `n` parts: no more than `n` roundings below the root, one of it | the length of their errors | `γ(n/2 + 1)` of what is rounded |
+//! | the lesser, the larger | the larger of `e` and `f` | none |
+//!
+//! with `γ(m) = m / (1 - m u)`, which is no less than `((1 + u)^m - 1) / u`. What is rounded is as large as the true value
+//! and what was brought.
 
 use crate::Checked;
 use crate::domain::Domain;
@@ -10,8 +25,9 @@ use std::collections::HashMap;
 
 /// The unit roundoff of `f64` and of `f32`.
 const UNITS: [f64; 2] = [1.110_223_024_625_156_5e-16, 5.960_464_477_539_063e-8];
-/// What products of errors add, as a part of their sum.
-const SECOND_ORDER: f64 = 1e-4;
+/// What computing an error loses itself. No operation takes more than 16 roundings of positive terms beside those of an
+/// operand each, which lose half of this each at most.
+const KEPT: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 /// A value over a box, and its error in unit roundoffs of `f64` and of `f32`.
 #[derive(Clone, Copy)]
@@ -55,10 +71,11 @@ impl<'g> Errors<'g> {
     /// The largest error of a node over a box, computed in `f64` and in `f32`.
     pub(super) fn over(&mut self, root: Id, cell: &Cell) -> [f64; 2] {
         for &id in self.needed.get(&root).into_iter().flatten() {
-            self.values[id.index()] = self.node(id, cell);
+            let Rounded { value, error } = self.node(id, cell);
+            self.values[id.index()] = Rounded { value, error: error.map(|error| error * KEPT) };
         }
         let error = self.values[root.index()].error;
-        [0, 1].map(|format| error[format] * UNITS[format] * (1.0 + SECOND_ORDER))
+        [0, 1].map(|format| error[format] * UNITS[format] * KEPT)
     }
 
     fn node(&self, id: Id, cell: &Cell) -> Rounded {
@@ -67,18 +84,20 @@ impl<'g> Errors<'g> {
         // An operation's own rounding, on what its operands bring.
         let rounded = |value: Interval, brought: [f64; 2]| Rounded {
             value,
-            error: brought.map(|error| error + size(value)),
+            error: [0, 1].map(|k| brought[k] + (size(value) + brought[k] * UNITS[k])),
         };
-        let both = |a: Rounded, b: Rounded, of: &dyn Fn(f64, f64) -> f64| {
-            [of(a.error[0], b.error[0]), of(a.error[1], b.error[1])]
+        let both = |a: Rounded, b: Rounded, of: &dyn Fn(f64, f64, f64) -> f64| {
+            [0, 1].map(|k| of(a.error[k], b.error[k], UNITS[k]))
         };
         match self.graph.node(id) {
             Node::Const(number) => {
                 let value = Interval::about(number);
                 let near = number.to_f64();
                 let wide = if value.low == value.high { 0.0 } else { near.abs() };
+                // Rounded twice, to `f64` and to `f32`.
+                let twice = near.abs() * (1.0 + 2.0 * UNITS[0] / UNITS[1]);
                 let narrow =
-                    if wide == 0.0 && f64::from(near as f32) == near { 0.0 } else { near.abs() };
+                    if wide == 0.0 && f64::from(near as f32) == near { 0.0 } else { twice };
                 Rounded { value, error: [wide, narrow] }
             }
             Node::Coord(coord) => self.coordinate(*coord, cell),
@@ -86,17 +105,19 @@ impl<'g> Errors<'g> {
             Node::Abs(a) => Rounded { value: v(a).value.abs(), ..v(a) },
             Node::Add(a, b) => {
                 let (a, b) = (v(a), v(b));
-                rounded(a.value.plus(b.value), both(a, b, &|e, f| e + f))
+                rounded(a.value.plus(b.value), both(a, b, &|e, f, _| e + f))
             }
             Node::Sub(a, b) => {
                 let (a, b) = (v(a), v(b));
-                rounded(a.value.plus(b.value.negated()), both(a, b, &|e, f| e + f))
+                rounded(a.value.plus(b.value.negated()), both(a, b, &|e, f, _| e + f))
             }
             Node::Mul(a, b) => {
                 let value = if a == b { v(a).value.square() } else { v(a).value.times(v(b).value) };
                 let (a, b) = (v(a), v(b));
-                let brought =
-                    both(a, b, &|e, f| product(e, size(b.value)) + product(f, size(a.value)));
+                let brought = both(a, b, &|e, f, unit| {
+                    let first = product(e, size(b.value)) + product(f, size(a.value));
+                    first + product(e, product(f, unit))
+                });
                 let exact = [a.value, b.value].iter().any(|factor| is_power_of_two(*factor));
                 if exact { Rounded { value, error: brought } } else { rounded(value, brought) }
             }
@@ -104,19 +125,25 @@ impl<'g> Errors<'g> {
                 let (a, b) = (v(a), v(b));
                 let value = a.value.times(b.value.reciprocal());
                 let least = b.value.abs().low;
-                rounded(value, both(a, b, &|e, f| (e + product(f, size(value))) / least))
+                let brought = both(a, b, &|e, f, unit| {
+                    let least = least - f * unit;
+                    let more = e + product(f, size(value));
+                    if least > 0.0 { more / least } else { f64::INFINITY }
+                });
+                rounded(value, brought)
             }
             Node::Min(a, b) | Node::Max(a, b) => {
                 let smaller = matches!(self.graph.node(id), Node::Min(..));
                 let (a, b) = (v(a), v(b));
                 let value = if smaller { a.value.min(b.value) } else { a.value.max(b.value) };
-                Rounded { value, error: both(a, b, &f64::max) }
+                Rounded { value, error: both(a, b, &|e, f, _| e.max(f)) }
             }
             Node::Sqrt(a) => {
                 if let Some(parts) = self.graph.squares_of(*a) {
                     // As a length, x² + y² brings what its root would without the root's own rounding.
                     let axis = || {
                         let value = cell.radius();
+                        // Two roundings below the root are one of it.
                         Rounded { value, error: [value.abs().high; 2] }
                     };
                     let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
@@ -125,16 +152,23 @@ impl<'g> Errors<'g> {
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();
                     // Squares and their sums are each right to one unit of themselves.
-                    let own = (parts.len() as f64 / 2.0 + 1.0) * size(value);
-                    let brought = |k: usize| {
-                        parts.iter().map(|part| part.error[k] * part.error[k]).sum::<f64>().sqrt()
-                    };
-                    return Rounded { value, error: [0, 1].map(|k| brought(k) + own) };
+                    let error = [0, 1].map(|k| {
+                        let brought = parts.iter().map(|part| part.error[k] * part.error[k]);
+                        let brought = brought.sum::<f64>().sqrt();
+                        let own = gamma(parts.len() as f64 / 2.0 + 1.0, UNITS[k]);
+                        brought + own * (size(value) + brought * UNITS[k])
+                    });
+                    return Rounded { value, error };
                 }
                 let a = v(a);
                 let value = a.value.sqrt();
-                let twice = 2.0 * value.low;
-                rounded(value, a.error.map(|error| if error == 0.0 { 0.0 } else { error / twice }))
+                let brought = |k: usize| match a.error[k] {
+                    0.0 => 0.0,
+                    error => error / (value.low + (a.value.low - error * UNITS[k]).max(0.0).sqrt()),
+                };
+                // What may be computed to be below 0 may have no root.
+                let lost = |k: usize| a.error[k] * UNITS[k] > a.value.low;
+                rounded(value, [0, 1].map(|k| if lost(k) { f64::INFINITY } else { brought(k) }))
             }
             Node::Select { low, high, then, other } => {
                 let (low, high) = (v(low).value, v(high).value);
@@ -154,7 +188,10 @@ impl<'g> Errors<'g> {
     fn coordinate(&self, coord: Coord, cell: &Cell) -> Rounded {
         let given = |axis: usize| Rounded { value: cell.sides[axis], error: [0.0; 2] };
         // Of x² + y² every operation rounds once; the root halves their error and adds its own.
-        let twice = |value: Interval| Rounded { value, error: [2.0 * value.abs().high; 2] };
+        let twice = |value: Interval| Rounded {
+            value,
+            error: UNITS.map(|unit| gamma(2.0, unit) * value.abs().high),
+        };
         match coord {
             Coord::X if self.domain == Domain::Space => given(0),
             Coord::Y => given(1),
@@ -168,6 +205,11 @@ impl<'g> Errors<'g> {
     }
 }
 
+/// What so many roundings take from 1 or add to it at most, in unit roundoffs.
+fn gamma(count: f64, unit: f64) -> f64 {
+    count / (1.0 - count * unit)
+}
+
 /// An error times a size, 0 if there is no error.
 fn product(error: f64, size: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error * size }
@@ -176,4 +218,33 @@ fn product(error: f64, size: f64) -> f64 {
 /// Whether a factor is known and only moves the exponent.
 fn is_power_of_two(factor: Interval) -> bool {
     factor.low == factor.high && factor.low != 0.0 && factor.low.abs().to_bits() << 12 == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Number;
+
+    /// On the circle `d = 1` only the product of both factors' errors is left of `(d - 1)²`. A quotient by what may be
+    /// computed to be 0 may be anything.
+    #[test]
+    fn products_of_errors_count() {
+        let mut graph = Graph::default();
+        let one = graph.number(Number::int(1));
+        let d = graph.coord(Coord::D);
+        let off = graph.sub(d, one);
+        let square = graph.mul(off, off);
+        let quotient = graph.quotient(one, off);
+        let mut errors = Errors::new(&graph, Domain::HalfPlane, [square, quotient]);
+        let circle = Cell::half_plane(Interval::new(1.0, 1.0), ZERO);
+        let found = errors.over(square, &circle);
+        for (bound, unit) in found.into_iter().zip(UNITS) {
+            // `d` is computed to two units.
+            let most = (2.0 * unit) * (2.0 * unit);
+            assert!((most..2.0 * most).contains(&bound), "{bound:e}");
+        }
+        let low = 1.0 + f64::EPSILON;
+        let beside = Cell::half_plane(Interval::new(low, 1.5), ZERO);
+        assert_eq!(errors.over(quotient, &beside)[1], f64::INFINITY);
+    }
 }
