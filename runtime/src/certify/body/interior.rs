@@ -89,7 +89,8 @@ impl Normals {
     fn fan(before: &Feature, after: &Feature) -> Option<Normals> {
         let [arrives, leaves] = [before.heading(1), after.heading(0)];
         let turn = cross(arrives, leaves);
-        // Of headings that are opposite rounding decides which way they turn.
+        // Of headings that are opposite rounding decides which way they turn, so a cusp has a fan whether it goes into the
+        // tool or out of it. It does not matter which turns are taken for opposite: a fan that goes out has no witness.
         if turn >= 0.0 && !(turn < 1e-9 && dot(arrives, leaves) < 0.0) {
             return None;
         }
@@ -279,7 +280,10 @@ impl Interior<'_> {
                     let s = f64::midpoint(from, to);
                     let longest = self.length(normals, s, limit);
                     let place = normals.point(s, limit + DEEP * (longest - limit));
-                    found.push(Witness { place, feature });
+                    // The fan of a cusp may go out of the tool; rounding does not tell, as nothing of the profile is near.
+                    if self.section.contains(place) {
+                        found.push(Witness { place, feature });
+                    }
                     run = None;
                 }
                 (None, None) => {}
@@ -382,6 +386,8 @@ mod tests {
     use super::*;
     use crate::Tool;
     use crate::certify::body::owners::Owners;
+    use crate::tool::{Card, Circle, Piece};
+    use std::borrow::Cow;
 
     crate::tool! {
         tool Slender "a flat end, a long flute" {
@@ -449,6 +455,50 @@ mod tests {
         assert!(face.place[1] < 0.5 && face.feature == 0, "{face:?}");
         let [chamfer] = of(&Chamfered, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
         assert_eq!(chamfer.feature, 1);
+    }
+
+    /// A profile of lines and concave or convex quarters, as a tool of a user's own may have it: `.tool` files may not turn
+    /// straight back.
+    fn drawn(pieces: &[([f64; 2], [f64; 2], Option<Circle>)]) -> Section {
+        let pieces = pieces.iter().map(|(from, to, circle)| Piece {
+            from: *from,
+            to: *to,
+            circle: *circle,
+            surface: 0,
+        });
+        let card = Card { outline: Cow::Owned(pieces.collect()), ..Dumbbell.card().clone() };
+        Section::new(&card, 1e-12).expect("a profile")
+    }
+
+    /// Two arcs meet with opposite headings: in the rim of a disc, whose fan goes out of the tool, and at the bottom of a
+    /// groove, whose fan goes into it.
+    #[test]
+    fn cusps_have_no_witness_outside() {
+        let circle =
+            |d: f64, z: f64, convex: bool| Some(Circle { centre: [d, z], radius: 2.0, convex });
+        let disc = drawn(&[
+            ([0.0, 0.0], [3.0, 0.0], None),
+            ([3.0, 0.0], [5.0, 2.0], circle(5.0, 0.0, false)),
+            ([5.0, 2.0], [3.0, 4.0], circle(5.0, 4.0, false)),
+            ([3.0, 4.0], [3.0, 10.0], None),
+            ([3.0, 10.0], [0.0, 10.0], None),
+        ]);
+        let groove = drawn(&[
+            ([0.0, 0.0], [5.0, 0.0], None),
+            ([5.0, 0.0], [3.0, 2.0], circle(3.0, 0.0, true)),
+            ([3.0, 2.0], [5.0, 4.0], circle(3.0, 4.0, true)),
+            ([5.0, 4.0], [5.0, 10.0], None),
+            ([5.0, 10.0], [0.0, 10.0], None),
+        ]);
+        for section in [disc, groove] {
+            for limit in [0.0, 0.1] {
+                let found = witnesses(&section, &vec![limit; section.features.len()], 1e-9);
+                assert!(!found.is_empty());
+                for witness in found {
+                    assert!(section.signed(witness.place) > limit, "{witness:?}");
+                }
+            }
+        }
     }
 
     #[test]
