@@ -36,10 +36,10 @@ pub struct Facets {
 #[derive(Clone, Debug)]
 pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
 
-/// So far beside a triangle, as a part of the part's size, it is looked whether its shell is a void.
-const BESIDE: f64 = 1e-9;
-
-/// What is no farther from a plane is in it, in the part's unit: a part of what rounding makes of a place.
+/// What is no farther from a plane is in it, in the part's unit. It adds to the depth of a face, so that any number would
+/// be right; with `32 u` of the part's extent (`u = ε/2`) triangles of a plane whose corners were rounded once are of one
+/// face. Telling that itself errs by less than `10 u` of a face's extent, which [`rounding`](crate::certify::rounding) has room
+/// for: a face is asked for a bound only, and not for the `41 uM` of meridians and ways.
 pub(crate) fn flat(frame: &Frame) -> f64 {
     16.0 * f64::EPSILON * f64::from(frame.size) * frame.scale
 }
@@ -108,12 +108,13 @@ impl Facets {
     /// Returns whether pieces that face inward are voids in the material: beside none of their triangles does the
     /// surface go around a point less than 0 times, as it does inside a piece that is inside out.
     fn voids_are_voids(&self, mesh: &Mesh) -> bool {
-        let off = BESIDE * f64::from(self.frame.size) * self.frame.scale;
-        inverted(mesh).into_iter().all(|id| {
-            let [a, b, c] = mesh.triangle(id);
-            let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
-            mesh.normal(id).is_none_or(|normal| !self.is_negative(middle + normal * off))
-        })
+        let inverted = inverted(mesh);
+        let mut places = vec![0; if inverted.is_empty() { 0 } else { self.len() }];
+        if !inverted.is_empty() {
+            self.ids.iter().enumerate().for_each(|(place, id)| places[*id as usize] = place);
+        }
+        let is_void = |id: u32| !self.is_negative_beside(places[id as usize]);
+        inverted.into_iter().all(|id| mesh.normal(id).is_none() || is_void(id))
     }
 
     /// The lowest and the highest corner of the box about the triangles.

@@ -59,7 +59,7 @@ impl Facets {
             return Location::Outside;
         }
         for ray in 0..RAYS {
-            match self.winding(point, direction(ray)) {
+            match self.winding(point, direction(ray), None) {
                 Ok(winding) if winding > 0 => return Location::Inside,
                 Ok(0) => return Location::Outside,
                 // Material and its opposite: an inside-out lobe of a surface that crosses itself.
@@ -70,17 +70,56 @@ impl Facets {
         Location::Undecided
     }
 
-    /// Returns whether the surface goes around a point less than 0 times, if a ray tells.
-    pub(super) fn is_negative(&self, point: Point3<f64>) -> bool {
-        let windings = (0..RAYS).map(|ray| self.winding(point, direction(ray)));
-        windings.flatten().next().is_some_and(|winding| winding < 0)
+    /// Returns whether the surface goes around the points just outside a triangle less than 0 times, if a ray tells.
+    ///
+    /// The ray begins in the triangle's middle. It counts all other triangles, and this one if it goes to its inner side: no
+    /// distance from it has to be chosen, and another surface may be as near as doubles have it.
+    pub(super) fn is_negative_beside(&self, own: usize) -> bool {
+        let corners = self.corners[own];
+        let middle = Point3::from([0, 1, 2].map(|k| {
+            let [a, b, c] = corners.map(|corner| corner[k]);
+            (a + b + c) / 3.0
+        }));
+        let mut windings = (0..RAYS).filter_map(|ray| {
+            let way = direction(ray);
+            let others = self.winding(middle, way, Some(own)).ok()?;
+            let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
+            let ([a, b, c], end) = (corners.map(coord), coord(self.end(middle, way).into()));
+            match orient3d(a, b, c, end) {
+                inner if inner > 0.0 => Some(others - 1),
+                outer if outer < 0.0 => Some(others),
+                _ => None,
+            }
+        });
+        windings.next().is_some_and(|winding| winding < 0)
     }
 
-    /// Returns how often the surface goes around a point, by what a ray crosses; what it does where that does not
-    /// tell.
-    fn winding(&self, point: Point3<f64>, way: Vector3<f64>) -> Result<i32, Crossing> {
+    /// Returns where a ray ends.
+    fn end(&self, point: Point3<f64>, way: Vector3<f64>) -> Point3<f64> {
+        point + way * (FAR * f64::from(self.frame.size) * self.frame.scale)
+    }
+
+    /// Returns by how much a box is to be wider for a ray from a point, in the tree's unit.
+    ///
+    /// Let `u` be the unit roundoff. In that unit the part's places are no farther than 1 from its origin, and the ray goes
+    /// no farther than 9. A corner, and the point, are taken there within 2u; the ray's end is rounded by u of where it is in
+    /// the world, and by 18u of how far it goes, and no place of the ray is farther beside its direction. The ends of
+    /// the box from the point, 3 at most, and their quotients by the direction have three roundings. All that is less than
+    /// `32u` and `2u` of where the point is.
+    fn margin(&self, point: Point3<f64>) -> f64 {
+        f64::EPSILON * (16.0 + point.coords.amax() / self.frame.scale)
+    }
+
+    /// Returns how often the surface goes around a point, by what a ray crosses, one triangle left out; what it does where
+    /// that does not tell.
+    fn winding(
+        &self,
+        point: Point3<f64>,
+        way: Vector3<f64>,
+        without: Option<usize>,
+    ) -> Result<i32, Crossing> {
         let p = self.frame.inside([point.x, point.y, point.z]);
-        let end = point + way * (FAR * f64::from(self.frame.size) * self.frame.scale);
+        let (end, margin) = (self.end(point, way), self.margin(point));
         let mut winding = 0;
         let mut stack = vec![(0, 0)];
         while let Some((level, index)) = stack.pop() {
@@ -90,7 +129,7 @@ impl Facets {
                     let boxes = &level_boxes[index];
                     let near = |axis: usize| {
                         let from = f64::from(boxes.centre[axis][lane]) - p[axis];
-                        let half = f64::from(boxes.half[axis][lane]) * (1.0 + 1e-6) + 1e-12;
+                        let half = f64::from(boxes.half[axis][lane]) + margin;
                         let [a, b] = [(from - half) / way[axis], (from + half) / way[axis]];
                         [a.min(b), a.max(b)]
                     };
@@ -98,7 +137,7 @@ impl Facets {
                     if a.max(c).max(e).max(0.0) <= b.min(d).min(f) {
                         stack.push((level + 1, child));
                     }
-                } else {
+                } else if Some(child) != without {
                     match crossing(self.corners[child], point, end) {
                         Crossing::Misses => {}
                         Crossing::Through(side) => winding += side,
@@ -184,6 +223,13 @@ mod tests {
         assert!(has_inside(block(-2.0, 2.0, 0.0), true));
         assert!(!has_inside(block(-2.0, 2.0, 30.0), true));
         assert!(!has_inside(block(-2.0, 2.0, 10.0), true));
+        // As thin as a part in 10^10 of the whole.
+        let plate = |at: f64| {
+            let [low, high] = [(-2.0, 0.0), (2.0, 4e-9)].map(|(x, z)| Point3::new(x + at, x, z));
+            shapes::cuboid(low, high, Unit::Millimetre).expect("a plate")
+        };
+        assert!(!has_inside(plate(30.0), true));
+        assert!(has_inside(plate(0.0), true));
         // Beside it in one vertex, which they share.
         let [low, high] = [10.0, 14.0].map(|c| Point3::new(c, c, c));
         let mesh = with(shapes::cuboid(low, high, Unit::Millimetre).expect("a block"), true);
@@ -238,7 +284,7 @@ mod tests {
         let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
         let inside = Point3::new(0.3, -0.7, 0.9);
         let turns: Vec<i32> =
-            (0..RAYS).filter_map(|ray| block.winding(inside, direction(ray)).ok()).collect();
+            (0..RAYS).filter_map(|ray| block.winding(inside, direction(ray), None).ok()).collect();
         assert!(turns.len() > 28 && turns.iter().all(|winding| *winding == 1), "{turns:?}");
     }
 }
