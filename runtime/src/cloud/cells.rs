@@ -16,8 +16,17 @@ const MOST_CROWD: usize = 1 << 14;
 const LEAST_CROWD: usize = 1 << 10;
 /// Those of all pieces, if that leaves enough for each.
 const MOST_CROWDS: usize = 1 << 26;
-/// How far a corner can be from where it is computed, of the part's size.
+/// How far a corner can be from where it is computed, of the part's size and of the radius: 9000u, with unit roundoff u.
+///
+/// A corner of a piece errs by u of the part's size where it is put together, and by 5u of the cut edge for each of the cuts
+/// that made the piece. Each cut halves the longer of two extents, so that these edges add up to less than six times the
+/// triangle's: 120u of the part's size in all. A cell's corner errs by 5u of its distance for each line that cut it (see
+/// `diagram`), which holds up to 1700 lines, and the distance itself by 4u.
 const ROUNDED: f64 = 1e-12;
+/// Cells are shown to fill a piece, but for rounding (see `diagram`). Where they do not by these parts of its area, something
+/// else went wrong, or its area is rounding itself, and nothing is taken from them: of weights, and of the covering radius.
+const FILLED: f64 = 1.0 - 1e-6;
+const WHOLE: f64 = 1.0 - 1e-9;
 
 /// A place far from all points.
 #[derive(Clone, Copy)]
@@ -115,7 +124,7 @@ impl Surface {
                     shares.push((room.met[0], all));
                 }
                 // Cells that do not fill the piece tell nothing of what they leave.
-                let fills = whole && sum >= (1.0 - 1e-6) * piece.area;
+                let fills = whole && sum >= FILLED * piece.area;
                 reaches.push(if fills { reach.sqrt() } else { f64::INFINITY });
                 if !whole {
                     crowded.push((some[index], shares.split_off(from)));
@@ -143,7 +152,7 @@ impl Surface {
                 most = cell.iter().map(|(v, _)| v.norm()).fold(most, f64::max);
             });
             work = work.saturating_sub(room.held);
-            if !whole || filled < (1.0 - 1e-9) * piece.area {
+            if !whole || filled < WHOLE * piece.area {
                 // No place is farther from all points than from one.
                 let one = sites.points[room.met[0] as usize];
                 most = self.corners(piece).iter().map(|c| (c - one).norm()).fold(0.0, f64::max);

@@ -29,7 +29,8 @@ use pieces::Surface;
 /// Points whose normals are at more than 107°, a cosine below this, are on two sides of something thin.
 const SAME_SIDE: f64 = -0.3;
 
-/// How far the norm of a given normal may be from 1 before it is refused rather than normalised.
+/// How far the norm of a given normal may be from 1 before it is refused rather than normalised: files have normals with a
+/// few decimals. A choice of what is taken for a mistake; what is kept has a norm of 1.
 pub const NORMAL_TOLERANCE: f64 = 1e-3;
 
 /// A weighted point cloud on a part's surface.
