@@ -72,7 +72,8 @@ impl Feature {
     }
 
     /// A ball about a place of the axis that holds that of a convex arc about the axis, in a tool of that
-    /// size: its height and radius. None where that is so large that `f32` would tell nothing of it.
+    /// size: its height and radius. None where that is so large that `f32` would tell nothing of it. It holds the arc's
+    /// however far that is from the axis; from a part in 10^9 on it is not close enough to be of use.
     pub(crate) fn ball(&self, size: f64) -> Option<[f64; 2]> {
         let Circle { centre: [d, z], radius, convex } = self.circle?;
         let small = radius.max(z.abs()) <= 4.0 * size;
@@ -346,12 +347,14 @@ pub(crate) fn quarters(piece: &Piece) -> Vec<Feature> {
     let angle = |p: Place| (p[1] - centre[1]).atan2(p[0] - centre[0]);
     let sense = if convex { 1.0 } else { -1.0 };
     let turned = |p: Place| (sense * (angle(p) - angle(piece.from))).rem_euclid(FULL);
-    let turn = turned(piece.to);
+    // Ends so near each other are those of a short arc, whose angles rounding may have put the other way round.
+    let turn = Some(turned(piece.to)).filter(|turn| *turn < FULL - 1e-9).unwrap_or(0.0);
     let mut cuts: Vec<Place> = [[radius, 0.0], [0.0, radius], [-radius, 0.0], [0.0, -radius]]
         .into_iter()
         .map(|[d, z]| [centre[0] + d, centre[1] + z])
-        // Those at the ends are none.
-        .filter(|cut| (1e-9..turn - 1e-9).contains(&turned(*cut)))
+        // Those at the ends are none. An arc that goes so much farther than a quarter reaches beyond its end by
+        // radius (1 - cos 1e-9), 5e-19 of the radius, which is less than its centre and radius are rounded by.
+        .filter(|cut| turned(*cut) >= 1e-9 && turned(*cut) < turn - 1e-9)
         .collect();
     cuts.sort_by(|a, b| turned(*a).total_cmp(&turned(*b)));
     cuts.push(piece.to);
@@ -359,4 +362,20 @@ pub(crate) fn quarters(piece: &Piece) -> Vec<Feature> {
     cuts.into_iter()
         .map(|to| Feature::new([std::mem::replace(&mut from, to), to], Some(circle), piece.surface))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Its end is an ulp before its beginning, as rounding may have it.
+    #[test]
+    fn an_arc_as_short_as_rounding_is_no_full_circle() {
+        let (from, to) = ([5.0, 0.3], [5.0, 0.3f64.next_down()]);
+        for convex in [true, false] {
+            let (from, to) = if convex { (from, to) } else { (to, from) };
+            let circle = Some(Circle { centre: [3.0, 0.1], radius: 2.0_f64.hypot(0.2), convex });
+            assert_eq!(quarters(&Piece { from, to, circle, surface: 0 }).len(), 1);
+        }
+    }
 }

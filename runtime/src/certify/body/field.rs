@@ -81,7 +81,11 @@ impl<'a> Field<'a> {
     pub(crate) fn new(tool: &'a dyn Tool, level: Level) -> Option<Field<'a>> {
         let card = tool.card();
         let steep = card.depth.lipschitz?.max(1.0);
-        // Halving rounds a place by half a unit of it, and no piece is halved more than some hundred times.
+        // With unit roundoff u halving rounds a middle by u of how far it is from the tip. A piece that matters and is `l`
+        // long is no farther than √2 size + l; `l` is halved by two or three halvings, which makes 10 u of the part's extent
+        // at most, and 1.5 u size for each of the halvings after. `rounding::place` has room for the first, since no meridian
+        // is looked for here. 256 u size are 160 halvings: 120 end at a part in 2^40 of the tool, which is as near as depths are
+        // told, and 10 u size are left for the middle and the reach of the last piece.
         let error = card.depth.rounding + 128.0 * f64::EPSILON * steep * card.size();
         Some(Field { tool, steep, error, level })
     }

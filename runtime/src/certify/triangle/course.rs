@@ -119,7 +119,8 @@ fn change(depth: &Depth, end: &End, course: &Course) -> f64 {
 }
 
 /// Where to cut between two places: where the feature that is nearest at both is deepest, or else
-/// where depths go over into each other, as far as slopes tell.
+/// where depths go over into each other, as far as slopes tell. Wherever it is cut both parts are looked at, so no number
+/// here makes an answer wrong.
 fn cut(Interval(first, last): &Interval, depths: [&Depth; 2], course: &Course) -> f64 {
     let length = last.t - first.t;
     let [up, down] = [change(depths[0], first, course), change(depths[1], last, course)];
