@@ -7,6 +7,7 @@ mod draw;
 mod hand;
 mod outline;
 mod random;
+mod rounded;
 mod smooth;
 mod valid;
 

@@ -1,7 +1,8 @@
 //! `regions smooth w`: the depth stays, the direction is the normal of the rounded profile.
 
 use super::derived::FIG_7_3;
-use super::outline::{P2, Piece, Round, add, cross, dot, len, sub, unit};
+use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
+use super::rounded::{lowered, rounded, size};
 use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use tool_dsl::Checked;
@@ -51,60 +52,23 @@ fn thesis(w: f64) -> Pair {
 
 /// A profile of lines, its corners rounded in the order of the points.
 fn lines(points: &[P2], w: f64) -> Pair {
-    let count = points.len();
-    let way = |k: usize| unit(sub(points[k + 1], points[k]));
-    let mut rounded: Vec<Piece> = Vec::new();
-    let mut from = points[0];
-    for (k, corner) in points.iter().copied().enumerate() {
-        let mirrored = |[d, z]: P2| [d, -z];
-        let a = if k == 0 { mirrored(way(0)) } else { way(k - 1) };
-        let b = if k + 1 == count { mirrored(way(k - 1)) } else { way(k) };
-        let turn = cross(a, b).atan2(dot(a, b));
-        let (mut start, mut end) = (corner, corner);
-        let mut arc = None;
-        if turn.abs() > 1e-9 {
-            (start, end) = (add(corner, a, -w), add(corner, b, w));
-            let radius = w / (turn.abs() / 2.0).tan();
-            let left = if turn > 0.0 { [-a[1], a[0]] } else { [a[1], -a[0]] };
-            let mut centre = add(start, left, radius);
-            if k == 0 || k + 1 == count {
-                centre[0] = 0.0;
-                // From the start on, or up to the end, the mirror image takes the other half.
-                let low = (k == 0) == (turn > 0.0);
-                let pole = [0.0, centre[1] + if low { -radius } else { radius }];
-                if k == 0 { start = pole } else { end = pole }
-            }
-            arc = Some(Piece::about(start, end, centre, turn > 0.0));
-        }
-        if k > 0 && len(sub(start, from)) > 1e-9 {
-            rounded.push(Piece::line(from, start));
-        }
-        rounded.extend(arc);
-        from = end;
-    }
-    let path =
-        points[1..].iter().map(|[d, z]| format!("({d}, {z})")).collect::<Vec<_>>().join(", ");
-    let low = points.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
-    let text = |regions: &str| {
-        let [d, z] = points[0];
-        let profile = format!("profile {{ start ({d}, {z}); line to {path} as body; }}");
-        format!("tool T {{ units mm; tip z = {low}; {profile} {regions} }}")
-    };
-    let most = |k: usize| points.iter().map(|p| p[k]).fold(0.0, f64::max);
-    Pair {
-        smooth: tool(&text(&format!("regions smooth {w};"))).expect("fits"),
-        nearest: tool(&text("")).expect("good"),
-        rounded: rounded.iter().map(|piece| lowered(piece, low)).collect(),
-        down: None,
-        extent: [most(0), most(1) - low],
-    }
+    profile(surface_of(points), w)
 }
 
-fn lowered(piece: &Piece, by: f64) -> Piece {
-    let down = |p: P2| add(p, [0.0, by], -1.0);
-    let mut piece = Piece { from: down(piece.from), to: down(piece.to), ..*piece };
-    piece.round = piece.round.map(|round| Round { centre: down(round.centre), ..round });
-    piece
+/// A profile whose corners are rounded.
+fn profile(pieces: Vec<Piece>, w: f64) -> Pair {
+    let outline = Outline { pieces, down: false };
+    let rounded = rounded(&outline, w);
+    let [low, high] = outline.reach();
+    let nearest = outline.text();
+    let smooth = format!("{} regions smooth {w}; }}", nearest.trim_end_matches('}'));
+    Pair {
+        smooth: tool(&smooth).expect("fits"),
+        nearest: tool(&nearest).expect("good"),
+        rounded: rounded.iter().map(|piece| lowered(piece, low[1])).collect(),
+        down: None,
+        extent: [high[0], high[1] - low[1]],
+    }
 }
 
 impl Pair {
@@ -173,7 +137,7 @@ impl Pair {
         let mut interpreter = Interpreter::new(&self.smooth);
         let (mut last, mut most) = (None, 0.0f64);
         for piece in surface {
-            let length = len(sub(piece.to, piece.from)).max(piece.sweep().abs());
+            let length = size(piece);
             let count = (length / step).ceil() as u32;
             for k in 0..=count {
                 let on = piece.at(f64::from(k) / f64::from(count));
@@ -291,6 +255,85 @@ fn fans_are_the_rounded_profiles() {
     }
 }
 
+/// Corners between lines and arcs, and between arcs, that stand out and that do not, on the axis too.
+#[test]
+fn fans_touch_arcs() {
+    let arc = |from, to, centre, convex| Piece::about(from, to, centre, convex);
+    let (line, round) = (Piece::line, Piece::by_radius);
+    let shapes: [(Vec<Piece>, f64); 5] = [
+        // A ball under a step, and a dome.
+        (
+            vec![
+                arc([0.0, 0.0], [3.0, 3.0], [0.0, 3.0], true),
+                line([3.0, 3.0], [5.0, 3.0]),
+                line([5.0, 3.0], [5.0, 9.0]),
+                round([5.0, 9.0], [0.0, 10.0], 7.0, true),
+            ],
+            0.5,
+        ),
+        // A pointed tip of an arc, a groove between two beads, an edge between two hollows.
+        (
+            vec![
+                round([0.0, 0.0], [3.0, 2.0], 4.0, true),
+                round([3.0, 2.0], [3.0, 4.0], 1.2, true),
+                round([3.0, 4.0], [3.0, 6.0], 1.2, true),
+                round([3.0, 6.0], [4.0, 9.0], 5.0, false),
+                round([4.0, 9.0], [2.0, 11.0], 4.0, false),
+                line([2.0, 11.0], [0.0, 11.0]),
+            ],
+            0.4,
+        ),
+        // A hollow tip and a hollow flank.
+        (
+            vec![
+                round([0.0, 1.0], [2.0, 0.0], 5.0, true),
+                round([2.0, 0.0], [3.0, 4.0], 6.0, false),
+                round([3.0, 4.0], [5.0, 5.0], 2.5, false),
+                line([5.0, 5.0], [5.0, 9.0]),
+                line([5.0, 9.0], [0.0, 9.0]),
+            ],
+            0.4,
+        ),
+        // A convex and a concave arc at a reflex corner, and at one that stands out.
+        (
+            vec![
+                line([0.0, 0.0], [2.0, 0.0]),
+                round([2.0, 0.0], [2.5, 3.0], 3.0, true),
+                round([2.5, 3.0], [5.0, 4.0], 2.0, false),
+                round([5.0, 4.0], [4.0, 7.0], 3.0, true),
+                line([4.0, 7.0], [0.0, 7.0]),
+            ],
+            0.6,
+        ),
+        // Corners of two degrees, where the fan touches a tight arc far from the corner.
+        (
+            vec![
+                line([0.0, 0.0], [3.0, 0.0]),
+                round([3.0, 0.0], [5.0, 1.9], 1.98, true),
+                line([5.0, 1.9], [5.0, 5.0]),
+                round([5.0, 5.0], [6.0, 5.98], 0.99, false),
+                line([6.0, 5.98], [8.0, 6.0]),
+                line([8.0, 6.0], [8.0, 9.0]),
+                line([8.0, 9.0], [0.0, 9.0]),
+            ],
+            0.3,
+        ),
+    ];
+    for (pieces, w) in shapes {
+        // An arc may reach lower than its ends.
+        let low = Outline { pieces: pieces.clone(), down: false }.tip();
+        let surface: Vec<Piece> = pieces.iter().map(|piece| lowered(piece, low)).collect();
+        let pair = profile(pieces, w);
+        pair.agrees(20_000);
+        let rho = pair.rounded.iter().filter_map(|piece| piece.round).map(|round| round.radius);
+        let rho = rho.fold(f64::INFINITY, f64::min);
+        for step in [1e-2, 1e-4] {
+            let most = pair.steps(&surface, step);
+            assert!(most <= step / rho * (1.0 + 1e-3) + 1e-8, "{most} in {step} on {surface:?}");
+        }
+    }
+}
+
 /// On the axis itself the direction lies along it.
 #[test]
 fn a_smooth_tip_points_along_the_axis() {
@@ -315,8 +358,19 @@ fn fans_that_do_not_fit_are_refused() {
         let message = tool(&with(w)).expect_err("too long");
         assert!(words.iter().all(|word| message.contains(word)), "{message}");
     }
-    let bulge = "tool T { units mm; profile { start (0, 0);
-        arc to (3, 3) center (0, 3) as ball; line to (5, 3), (5, 9), (0, 9) as shank; } regions smooth 0.5; }";
-    let message = tool(bulge).expect_err("an arc ends in a corner");
-    assert!(message.contains("rounds corners between lines, at (3, 3) an arc ends"), "{message}");
+    let round = |w: &str| {
+        format!(
+            "tool T {{ units mm; profile {{ start (0, 0); arc to (3, 3) center (0, 3) as ball;
+            arc to (4, 4) center (3, 4) as bead; arc to (3.4, 5.4) radius 1 concave as bead;
+            line to (4, 6), (4, 9), (0, 9) as shank; }} regions smooth {w}; }}"
+        )
+    };
+    let cases = [
+        ("1.2", &["do not fit on the edge of length", "write at most 0."][..]),
+        ("5", &["write at most 0."]),
+    ];
+    for (w, words) in cases {
+        let message = tool(&round(w)).expect_err("too long");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
 }

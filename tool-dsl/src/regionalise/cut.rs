@@ -94,6 +94,15 @@ impl Piece {
         [0, 1].map(|k| self.vertices.iter().map(|p| p[k]).sum::<f64>() / count)
     }
 
+    /// Its middle, and those of the lines between two of its vertices each.
+    pub(crate) fn chords(&self) -> impl Iterator<Item = Point> {
+        let pairs =
+            self.vertices.iter().enumerate().flat_map(|(k, a)| {
+                self.vertices[k + 1..].iter().map(move |b| between(*a, *b, 0.5))
+            });
+        std::iter::once(self.middle()).chain(pairs)
+    }
+
     /// Whether it is so thin that it may lie between a curve and its chord.
     pub(crate) fn is_sliver(&self) -> bool {
         let first = self.vertices[0];

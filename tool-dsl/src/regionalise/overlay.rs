@@ -91,22 +91,34 @@ pub(crate) struct Overlay {
     pub(crate) double: Option<(usize, usize, Point)>,
 }
 
-/// Lays conditions over cells. What is narrower than a curve's chords is not looked at.
+/// Lays conditions over cells of parts. What may lie between a curve and its chord counts if a point of it is clearly inside.
 pub(crate) fn overlay(
     cells: &[Cell],
+    parts: &[&Formula],
     conditions: &[Formula],
     shapes: &[Shape<'_>],
     size: f64,
 ) -> Overlay {
     let mut found = Overlay { pairs: Vec::new(), bare: None, double: None };
+    // On both sides of every curve that a point is as good as on.
+    let inside = |formula: &Formula, p: Point| {
+        let value = |curve: usize, sign: f64| match shapes[curve].side(p, size) {
+            0 => sign,
+            _ => shapes[curve].value(p),
+        };
+        [-1.0, 1.0].into_iter().all(|sign| formula.holds(&|curve| value(curve, sign)))
+    };
     for cell in cells {
         let whole = piece(cell, Some(cell.part), shapes, size);
         for (part, holding) in divided(whole, conditions, shapes, size) {
             let middle = part.middle();
-            let holds =
-                |k: &usize| conditions[*k].holds(&|curve: usize| shapes[curve].value(middle));
-            if part.is_sliver() && !holding.first().is_some_and(holds) {
-                continue;
+            if part.is_sliver() {
+                let Some(first) = holding.first() else { continue };
+                let both = [parts[cell.part], &conditions[*first]];
+                let clear = |p: &Point| both.into_iter().all(|formula| inside(formula, *p));
+                if !part.chords().any(|p| clear(&p)) {
+                    continue;
+                }
             }
             match holding.as_slice() {
                 [] => found.bare = found.bare.or(Some(middle)),

@@ -1,11 +1,17 @@
 //! An outline whose corners are rounded, of which directions are taken.
 //!
-//! A corner is rounded by the arc that touches both edges at a distance `w` from it, the tangent
-//! length; its radius is `w / tan(θ/2)`, θ being the turn. Normals of the rounded outline turn
+//! A corner is rounded by the largest arc that touches both of its segments no more than a length `w` from it, measured along
+//! them: its normals are the fan. Between lines it touches both at `w`, and its radius is `w / tan(θ/2)`, θ being the turn. Where
+//! an arc ends it touches one segment at `w` and the other nearer to the corner. Normals of the rounded outline turn
 //! steadily, so a direction that follows them does not jump along the surface.
 
-use super::outline::{Circle, Place, Segment, doubles, turn};
+use super::outline::{Circle, Place, Segment, cross, dot, doubles, minus, turn};
 use crate::number::Number;
+use crate::report::figure;
+use std::f64::consts::PI;
+
+/// Lengths may differ by this part of theirs and count as equal.
+const ROUNDING: f64 = 1e-12;
 
 /// Where a piece of the rounded outline comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,8 +24,8 @@ pub(crate) enum Origin {
 
 /// Why an outline cannot be rounded.
 pub(crate) enum Rough {
-    /// The corner behind a piece joins an arc.
-    Round(Option<usize>),
+    /// No arc so near to the corner behind a piece touches both of its segments.
+    Untouched(Option<usize>),
     /// A piece is too short for its corners: its length, and how many there are.
     Short(usize, f64, usize),
 }
@@ -33,12 +39,18 @@ pub(crate) fn rounded(
     // Corner k lies before piece k; the last behind all.
     let corners: Vec<Option<Corner>> =
         (0..=count).map(|k| corner(outline, k, length)).collect::<Result<_, _>>()?;
-    let ends = |k: usize| usize::from(corners[k].is_some()) + usize::from(corners[k + 1].is_some());
-    let room = |k: &usize| outline[*k].chord() / ends(*k) as f64;
+    let taken = |k: usize| {
+        let [before, after] = [&corners[k], &corners[k + 1]];
+        let [before, after] =
+            [before.as_ref().map(|c| c.taken[1]), after.as_ref().map(|c| c.taken[0])];
+        before.unwrap_or(0.0) + after.unwrap_or(0.0)
+    };
+    let room = |k: &usize| size(&outline[*k]) / taken(*k);
     if let Some(tightest) = (0..count).min_by(|a, b| room(a).total_cmp(&room(b)))
-        && length.to_f64() > room(&tightest) * (1.0 + 1e-12)
+        && 1.0 > room(&tightest) * (1.0 + ROUNDING)
     {
-        return Err(Rough::Short(tightest, outline[tightest].chord(), ends(tightest)));
+        let fans = corners[tightest..].iter().take(2).flatten().count();
+        return Err(Rough::Short(tightest, size(&outline[tightest]), fans));
     }
     let mut pieces = Vec::new();
     for (k, segment) in outline.iter().enumerate() {
@@ -48,8 +60,7 @@ pub(crate) fn rounded(
         {
             pieces.push((corner.arc(segment), Origin::Fan(None)));
         }
-        let used = length.to_f64() * ends(k) as f64;
-        if used < segment.chord() * (1.0 - 1e-12) {
+        if room(&k) * (1.0 - ROUNDING) > 1.0 {
             let from = before.as_ref().map_or(&segment.from, |corner| &corner.to);
             let to = after.as_ref().map_or(&segment.to, |corner| &corner.from);
             let ends = [from.clone(), to.clone()];
@@ -63,11 +74,35 @@ pub(crate) fn rounded(
     Ok(pieces)
 }
 
+/// Returns a length below `length` over which an outline can be rounded, most often nearly the largest of six digits.
+pub(crate) fn fitting(outline: &[Segment], length: &Number) -> Option<String> {
+    let fits = |length: f64| Number::from_f64(length).is_some_and(|w| rounded(outline, &w).is_ok());
+    let halves = (1..64).map(|k| length.to_f64() / f64::from(k).exp2());
+    let mut low = halves.into_iter().find(|length| fits(*length))?;
+    let mut high = 2.0 * low;
+    while high - low > 1e-9 * high {
+        let middle = f64::midpoint(low, high);
+        if fits(middle) { low = middle } else { high = middle }
+    }
+    let shown = [low, low * (1.0 - 1e-5)].map(figure);
+    shown.into_iter().find(|text| text.parse().is_ok_and(fits))
+}
+
+/// The length of a segment, along it.
+fn size(segment: &Segment) -> f64 {
+    match segment.round() {
+        None => segment.chord(),
+        Some((_, radius, _)) => radius * segment.angles()[1].abs(),
+    }
+}
+
 /// A corner's arc.
 struct Corner {
     from: Place,
     to: Place,
     circle: Circle,
+    /// The lengths that it takes of the segments before and behind the corner.
+    taken: [f64; 2],
 }
 
 impl Corner {
@@ -93,44 +128,178 @@ fn corner(outline: &[Segment], k: usize, length: &Number) -> Result<Option<Corne
     if turned == 0.0 {
         return Ok(None);
     }
-    let line = |segment: Option<&Segment>| match segment {
-        Some(segment) if segment.circle.is_some() => Err(Rough::Round(behind)),
-        Some(segment) => Ok(segment.direction()),
-        None => Ok(None),
-    };
-    let mirror = |[d, z]: &Place| [d.clone(), -z];
-    let (first, last) = (line(before)?, line(after)?);
-    let a = first.clone().or_else(|| last.as_ref().map(mirror)).ok_or(Rough::Round(behind))?;
-    let b = last.or_else(|| first.as_ref().map(mirror)).ok_or(Rough::Round(behind))?;
-    let place = match (before, after) {
-        (Some(before), _) => &before.to,
-        (None, Some(after)) => &after.from,
+    let convex = turned > 0.0;
+    let arm = |segment, at_end| Arm { segment, at_end, convex };
+    let found = match (before, after) {
+        (Some(before), Some(after)) => {
+            let (before, after) = (arm(before, true), arm(after, false));
+            fan(&before, &after, length)
+                .or_else(|| fan(&after, &before, length).map(Corner::turned))
+        }
+        (None, Some(after)) => arm(after, false).to_axis(length),
+        (Some(before), None) => arm(before, true).to_axis(length).map(Corner::turned),
         (None, None) => return Ok(None),
     };
-    let along = |way: &Place, by: &Number| [0, 1].map(|k| &place[k] + &(&way[k] * by));
-    let (from, to) = (along(&a, &-length), along(&b, length));
-    let sine = &(&a[0] * &b[1]) - &(&a[1] * &b[0]);
-    let cosine = &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
-    // 1 / tan(θ/2) = (1 + cos θ) / |sin θ|
-    let radius =
-        (&(&Number::int(1) + &cosine) * length).over(&sine.abs()).ok_or(Rough::Round(behind))?;
-    let toward = if turned > 0.0 { radius.clone() } else { -&radius };
-    let centre = [&from[0] - &(&a[1] * &toward), &from[1] + &(&a[0] * &toward)];
-    let circle = Circle { centre, radius, convex: turned > 0.0 };
-    // Half of an arc that crosses the axis is the mirror image's.
-    let pole = |start: &Place| {
-        let up = doubles(start)[1] > doubles(&circle.centre)[1];
-        let reach = if up { circle.radius.clone() } else { -&circle.radius };
-        [Number::int(0), &circle.centre[1] + &reach]
-    };
-    let axis = Number::int(0);
-    let centred = |circle: &Circle| Circle {
-        centre: [axis.clone(), circle.centre[1].clone()],
-        ..circle.clone()
-    };
-    Ok(Some(match (before, after) {
-        (None, _) => Corner { from: pole(&to), to, circle: centred(&circle) },
-        (_, None) => Corner { to: pole(&from), from, circle: centred(&circle) },
-        _ => Corner { from, to, circle },
-    }))
+    found.map(Some).ok_or(Rough::Untouched(behind))
+}
+
+impl Corner {
+    fn turned(self) -> Corner {
+        let [before, behind] = self.taken;
+        Corner { from: self.to, to: self.from, taken: [behind, before], ..self }
+    }
+}
+
+/// A segment that ends in a corner, and whether the material is inside the corner's arc.
+struct Arm<'o> {
+    segment: &'o Segment,
+    at_end: bool,
+    convex: bool,
+}
+
+impl Arm<'_> {
+    fn corner(&self) -> &Place {
+        if self.at_end { &self.segment.to } else { &self.segment.from }
+    }
+
+    /// The unit direction of a line, away from the corner.
+    fn away(&self) -> Option<Place> {
+        let way = self.segment.direction()?;
+        Some(if self.at_end { way.map(|part| -&part) } else { way })
+    }
+
+    /// The unit normal in a point, toward the centre of the corner's arc.
+    fn normal(&self, at: &Place) -> Option<Place> {
+        let (normal, inward) = match &self.segment.circle {
+            None => {
+                let [d, z] = self.segment.direction()?;
+                ([-&z, d], true)
+            }
+            Some(circle) => {
+                let out = off(at, &circle.centre).map(|part| part.over(&circle.radius));
+                let [Some(d), Some(z)] = out else { return None };
+                ([d, z], !circle.convex)
+            }
+        };
+        Some(if inward == self.convex { normal } else { normal.map(|part| -&part) })
+    }
+
+    /// Whether a circle is bent as the corner's arc is.
+    fn is_alike(&self, circle: &Circle) -> bool {
+        circle.convex == self.convex
+    }
+
+    /// The point so far from the corner along the segment, if its line or circle goes on for so long.
+    fn at(&self, length: &Number) -> Option<Place> {
+        let corner = self.corner();
+        let Some(circle) = &self.segment.circle else {
+            return Some(along(corner, &self.away()?, length));
+        };
+        let angle = length.over(&circle.radius)?;
+        if angle.to_f64() >= PI {
+            return None;
+        }
+        // Away from the end of a convex arc is clockwise.
+        let (cos, sin) = (angle.cos(), angle.sin());
+        let sin = if circle.convex == self.at_end { -&sin } else { sin };
+        let [d, z] = off(corner, &circle.centre);
+        let turned = [&(&cos * &d) - &(&sin * &z), &(&sin * &d) + &(&cos * &z)];
+        Some([0, 1].map(|k| &circle.centre[k] + &turned[k]))
+    }
+
+    /// How far from the corner, along the segment, a point of its line or circle is; less than 0 on the other side.
+    fn distance(&self, at: &Place) -> Option<f64> {
+        let way = doubles(&off(at, self.corner()));
+        Some(match self.segment.round() {
+            None => dot(way, doubles(&self.away()?)),
+            Some((centre, radius, convex)) => {
+                let [from, to] = [self.corner(), at].map(|place| minus(doubles(place), centre));
+                let turn = cross(from, to).atan2(dot(from, to)) * radius;
+                if convex == self.at_end { -turn } else { turn }
+            }
+        })
+    }
+
+    /// The radius of the circle that touches another segment in a point with this normal, and this one too.
+    fn radius(&self, at: &Place, normal: &Place) -> Option<Number> {
+        match &self.segment.circle {
+            None => {
+                let own = self.normal(self.corner())?;
+                let height = product(&off(at, self.corner()), &own);
+                height.over(&(&Number::int(1) - &product(normal, &own)))
+            }
+            Some(circle) => {
+                let off = off(at, &circle.centre);
+                let short = &(&circle.radius * &circle.radius) - &product(&off, &off);
+                let out = product(&off, normal);
+                let two = Number::int(2);
+                if self.is_alike(circle) {
+                    short.over(&(&two * &(&circle.radius + &out)))
+                } else {
+                    (-&short).over(&(&two * &(&circle.radius - &out)))
+                }
+            }
+        }
+    }
+
+    /// Where a circle that touches the segment does so.
+    fn touched(&self, centre: &Place, radius: &Number) -> Option<Place> {
+        let Some(circle) = &self.segment.circle else {
+            let (corner, way) = (self.corner(), self.away()?);
+            return Some(along(corner, &way, &product(&off(centre, corner), &way)));
+        };
+        let reach = if self.is_alike(circle) { -radius } else { radius.clone() };
+        let share = circle.radius.over(&(&circle.radius + &reach))?;
+        Some(along(&circle.centre, &off(centre, &circle.centre), &share))
+    }
+
+    /// Whether a circle that touches the segment from within is the smaller.
+    fn holds(&self, radius: &Number) -> bool {
+        let circle = self.segment.circle.as_ref();
+        circle.is_none_or(|circle| !self.is_alike(circle) || *radius < circle.radius)
+    }
+
+    /// The half of a corner's arc on the axis, from there to where it touches the segment.
+    fn to_axis(&self, length: &Number) -> Option<Corner> {
+        let to = self.at(length)?;
+        let normal = self.normal(&to)?;
+        let radius = (-&to[0]).over(&normal[0])?;
+        if radius.to_f64() <= 0.0 || !self.holds(&radius) {
+            return None;
+        }
+        let centre = [Number::int(0), &to[1] + &(&radius * &normal[1])];
+        let up = self.at_end == self.convex;
+        let pole = if up { &centre[1] + &radius } else { &centre[1] - &radius };
+        let from = [Number::int(0), pole];
+        let circle = Circle { centre, radius, convex: self.convex };
+        Some(Corner { from, to, circle, taken: [0.0, length.to_f64()] })
+    }
+}
+
+/// The arc that touches one segment of a corner at a length from it, and the other no farther.
+fn fan(first: &Arm<'_>, second: &Arm<'_>, length: &Number) -> Option<Corner> {
+    let from = first.at(length)?;
+    let normal = first.normal(&from)?;
+    let radius = second.radius(&from, &normal)?;
+    if radius.to_f64() <= 0.0 || !first.holds(&radius) || !second.holds(&radius) {
+        return None;
+    }
+    let centre = along(&from, &normal, &radius);
+    let to = second.touched(&centre, &radius)?;
+    let (most, other) = (length.to_f64(), second.distance(&to)?);
+    let circle = Circle { centre, radius, convex: first.convex };
+    let near = other > 0.0 && other <= most * (1.0 + ROUNDING);
+    near.then_some(Corner { from, to, circle, taken: [most, other] })
+}
+
+fn off(to: &Place, from: &Place) -> Place {
+    [0, 1].map(|k| &to[k] - &from[k])
+}
+
+fn along(from: &Place, way: &Place, by: &Number) -> Place {
+    [0, 1].map(|k| &from[k] + &(&way[k] * by))
+}
+
+fn product(a: &Place, b: &Place) -> Number {
+    &(&a[0] * &b[0]) + &(&a[1] * &b[1])
 }

@@ -92,7 +92,8 @@ pub(super) fn derived(
             }
         }
         Some(conditions) if reports.len() == before => {
-            let pairs = conditions.pairs(whole, (curves, lowering), span, reports);
+            let pairs =
+                conditions.pairs((&outline, &inner, &parts), (curves, lowering), span, reports);
             for (part, index) in &pairs {
                 let pair = (&parts[*part], *index);
                 regions.extend(conditions.region(pair, &surfaces, laws, lowering, reports));

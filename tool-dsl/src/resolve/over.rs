@@ -36,6 +36,10 @@ pub(super) struct Conditions<'t> {
     kinds: Vec<Kind<'t>>,
 }
 
+impl Conditions<'_> {
+    const NONE: Conditions<'static> = Conditions { conditions: Vec::new(), kinds: Vec::new() };
+}
+
 enum Kind<'t> {
     Hand(&'t tree::Region, Option<usize>),
     /// The way to the rounded outline, and where that comes from.
@@ -67,7 +71,7 @@ impl Divider<'_> {
         match self {
             Divider::Features => None,
             Divider::Hand(regions) => {
-                let mut all = Conditions { conditions: Vec::new(), kinds: Vec::new() };
+                let mut all = Conditions::NONE;
                 for region in regions {
                     let surface = noted(written(region, &regions[..], surfaces), reports);
                     let condition = inside(region, lowering, curves, reports);
@@ -154,28 +158,30 @@ fn fans<'t>(
         };
         Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)])
     };
-    let pieces = smooth::rounded(outline, &width).map_err(|rough| match rough {
-        Rough::Round(behind) => Report::error(
-            span,
-            format!(
-                "`smooth` rounds corners between lines, at {} an arc ends",
-                shown(behind, lowering)
-            ),
-        )
-        .help("let the arc run into its neighbour without a corner, or write regions by hand"),
-        Rough::Short(piece, size, count) => {
-            let [from, to] =
-                [piece.checked_sub(1), Some(piece)].map(|behind| shown(behind, lowering));
-            let most = crate::report::figure(size / count as f64);
-            let size = crate::report::figure(size);
-            let fans = if count == 2 {
-                format!("the fans of {from} and {to} do not fit")
-            } else {
-                "its fan does not fit".to_owned()
-            };
-            Report::error(span, format!("{fans} on the edge of length {size}"))
-                .and(outline[piece].span, "this edge")
-                .help(format!("write at most {most}"))
+    let pieces = smooth::rounded(outline, &width).map_err(|rough| {
+        let remedy = match smooth::fitting(outline, &width) {
+            Some(most) => format!("write at most {most}"),
+            None => "write regions by hand".to_owned(),
+        };
+        match rough {
+            Rough::Untouched(behind) => {
+                let message =
+                    format!("no arc touches both segments so near to {}", shown(behind, lowering));
+                Report::error(span, message).help(remedy)
+            }
+            Rough::Short(piece, size, count) => {
+                let [from, to] =
+                    [piece.checked_sub(1), Some(piece)].map(|behind| shown(behind, lowering));
+                let size = crate::report::figure(size);
+                let fans = if count == 2 {
+                    format!("the fans of {from} and {to} do not fit")
+                } else {
+                    "its fan does not fit".to_owned()
+                };
+                Report::error(span, format!("{fans} on the edge of length {size}"))
+                    .and(outline[piece].span, "this edge")
+                    .help(remedy)
+            }
         }
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
@@ -186,7 +192,7 @@ fn fans<'t>(
             .help("give another tangent length")
     };
     let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
-    let mut all = Conditions { conditions: Vec::new(), kinds: Vec::new() };
+    let mut all = Conditions::NONE;
     for part in &parts {
         let Feature::Piece(piece) = part.feature else { continue };
         let mut inside = part.inside.clone();
@@ -212,14 +218,15 @@ impl Conditions<'_> {
     /// The parts and conditions that have points in common.
     pub(super) fn pairs(
         &self,
-        (outline, inner): (&[Segment], &Partition),
+        (outline, inner, parts): (&[Segment], &Partition, &[Part]),
         (curves, lowering): (&Curves, &Lowering),
         span: Span,
         reports: &mut Vec<Report>,
     ) -> Vec<(usize, usize)> {
         let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, outline);
+        let parts: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
         let Overlay { pairs, bare, double } =
-            overlay::overlay(&inner.cells(8), &self.conditions, &shapes, size);
+            overlay::overlay(&inner.cells(8), &parts, &self.conditions, &shapes, size);
         let shown = |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = bare {
             reports.push(
