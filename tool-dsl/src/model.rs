@@ -104,12 +104,26 @@ pub(crate) struct Over {
     pub(crate) conditions: Vec<Formula>,
     /// The part and the condition of each region.
     pub(crate) regions: Vec<(usize, usize)>,
+    /// The distances from the pieces of the outline with rounded corners, which conditions compare.
+    pub(crate) distances: Vec<Id>,
 }
 
 impl Model {
     /// A point of the tool's frame as the file has it.
     pub fn shown(&self, [x, y, z]: [f64; 3]) -> String {
         self.domain.shown([x, y, self.frame.to_file(z)])
+    }
+
+    /// The depths of the regions in their order, and behind them the distances of [`Over`] that no region has.
+    pub(crate) fn depths(&self) -> Vec<Id> {
+        let mut depths: Vec<Id> = self.regions.iter().map(|region| region.depth).collect();
+        let over = self.section.iter().filter_map(|section| section.over.as_ref());
+        for distance in over.flat_map(|over| &over.distances) {
+            if !depths.contains(distance) {
+                depths.push(*distance);
+            }
+        }
+        depths
     }
 
     /// Whether depth and clearance are true distances.

@@ -17,7 +17,7 @@ const CHOICES: usize = 8;
 
 /// The curves that are linear in the coordinates or in monomials of them.
 pub(crate) struct Linear {
-    /// Each curve that is a linear form, and behind them regions' depths.
+    /// Each curve that is a linear form, and behind them depths.
     forms: Vec<Option<Known>>,
     variables: usize,
     /// The variable that is the coordinate along each axis that the domain has.
@@ -53,14 +53,14 @@ impl Linear {
         Linear { choices: Vec::new(), ..Linear::of(model, [], None) }
     }
 
-    /// With the regions' depths, and with what takes a choice.
+    /// With the depths of [`Model::depths`], and with what takes a choice.
     ///
     /// Where curves compare squares of roots, all that compare squares are taken for comparisons of
     /// what is squared, as far as its sign is known in a box that has the tool.
     pub(crate) fn with_depths(model: &Model, cell: Cell) -> Linear {
         let mut values = model.curves.iter().map(|curve| curve.value);
         let roots = values.any(|value| compares_roots(&model.graph, value)).then_some(cell);
-        Linear::of(model, model.regions.iter().map(|region| region.depth), roots)
+        Linear::of(model, model.depths(), roots)
     }
 
     fn of(model: &Model, depths: impl IntoIterator<Item = Id>, roots: Option<Cell>) -> Linear {

@@ -8,7 +8,7 @@
 //! least, and `sin (T/2)` is half the chord by the radius.
 
 use super::cover::{Claim, Cover};
-use super::root::Rooted;
+use super::root::{Forms, Rooted};
 use crate::Checked;
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
@@ -46,14 +46,14 @@ pub(super) struct Feet<'m> {
 }
 
 impl<'m> Feet<'m> {
-    /// Returns the pieces of a profile each of whose regions' depths, given as forms, is the distance from its own piece's
-    /// line, circle or corner.
-    pub(super) fn of(tool: &'m Checked, depths: &[Option<Rooted>], size: f64) -> Option<Feet<'m>> {
+    /// Returns the pieces of a profile each of whose regions' depths is the distance from its own piece's line, circle or
+    /// corner.
+    pub(super) fn of(tool: &'m Checked, forms: &mut Forms<'_>, size: f64) -> Option<Feet<'m>> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
         let (features, whole) = (section.inner.features(), tool.extent.cell());
         let mut off = 0.0f64;
-        let ends = depths.iter().enumerate().map(|(index, depth)| {
+        let ends = model.regions.iter().enumerate().map(|(index, region)| {
             let part = section.over.as_ref().map_or(index, |over| over.regions[index].0);
             let (distance, ends) = match *features.get(part)? {
                 Feature::Piece(piece) => {
@@ -65,7 +65,7 @@ impl<'m> Feet<'m> {
                     (from_point(&section.outline.get(piece)?.to), Ends::new())
                 }
             };
-            let apart = depth.as_ref()?.apart(&distance, &whole)?;
+            let apart = forms.of(region.depth)?.apart(&distance, &whole)?;
             off = off.max(apart);
             (apart <= NEAR * size).then_some(ends)
         });

@@ -2,7 +2,7 @@
 //! that are emitted, and by identities of polynomials where a box cannot tell 0 from nearly 0.
 //!
 //! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
-//! `rounding` how far computed depths err, `root` whether depths agree on a curve, `touch` what
+//! `rounding` how far computed depths err, `root` whether depths agree on a curve, `sum` which curves are differences of depths, `touch` what
 //! conics that touch imply of each other, `excess` how far distances exceed one another, `tangent` how far they differ where a profile is all but
 //! smooth, `jordan` whether a profile encloses the solid, `parting` what parts two regions; `survey` goes from box
 //! to box.
@@ -19,6 +19,7 @@ mod reports;
 mod root;
 mod rounding;
 mod slope;
+mod sum;
 mod survey;
 mod tangent;
 mod touch;

@@ -4,7 +4,7 @@ use super::condition::Curves;
 use super::direction::Course;
 use super::law::Laws;
 use super::lower::Lowering;
-use super::over::Divider;
+use super::over::{Conditions, Divider};
 use super::region::{Bare, Felt, noted};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
@@ -98,7 +98,8 @@ pub(super) fn derived(
                 let pair = (&parts[*part], *index);
                 regions.extend(conditions.region(pair, &surfaces, laws, lowering, reports));
             }
-            over = Some(Over { conditions: conditions.conditions, regions: pairs });
+            let Conditions { conditions, distances, .. } = conditions;
+            over = Some(Over { conditions, regions: pairs, distances });
         }
         Some(_) => {}
     }

@@ -33,11 +33,14 @@ pub(super) enum Divider<'t> {
 /// Conditions over the parts of a partition, and what they change.
 pub(super) struct Conditions<'t> {
     pub(super) conditions: Vec<Formula>,
+    /// The distances from the pieces of the rounded outline.
+    pub(super) distances: Vec<Id>,
     kinds: Vec<Kind<'t>>,
 }
 
 impl Conditions<'_> {
-    const NONE: Conditions<'static> = Conditions { conditions: Vec::new(), kinds: Vec::new() };
+    const NONE: Conditions<'static> =
+        Conditions { conditions: Vec::new(), distances: Vec::new(), kinds: Vec::new() };
 }
 
 enum Kind<'t> {
@@ -206,6 +209,7 @@ fn fans<'t>(
             inside = inside.without_own(edges);
         }
         all.conditions.push(formula(&inside, curves, graph));
+        all.distances.push(part.depth);
         let zero = graph.int(0);
         let course = regionalise::course(graph, &rounded, part.feature).unwrap_or([zero, zero]);
         let course = Domain::HalfPlane.vector(graph, &course);

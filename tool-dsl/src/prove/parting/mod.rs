@@ -5,13 +5,14 @@ mod order;
 mod signs;
 
 use super::cover::{Claim, Cover, reach};
-use super::root::{Agreement, Rooted};
+use super::root::{Agreement, Forms, Rooted};
+use super::sum::RootSum;
 use super::tangent::{Off, Tangency};
 use super::touch::Touch;
-use crate::expr::Node;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::Evaluator;
+use crate::expr::{Id, Node};
 use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::ROUNDING;
@@ -67,6 +68,8 @@ pub(super) type Curve = (Polynomial, Option<Polynomial>);
 pub(super) struct Parting<'m> {
     model: &'m Model,
     size: f64,
+    /// The depths of [`Model::depths`], and their forms.
+    ids: Vec<Id>,
     depths: Vec<Option<Rooted>>,
     /// True if depths of regions that meet may differ by rounding, however their slopes do.
     may_step: bool,
@@ -75,6 +78,9 @@ pub(super) struct Parting<'m> {
     /// Whether it is looked whether owners are those that the list of regions says.
     listed: bool,
     curves: Vec<Option<Curve>>,
+    /// The curves that are no polynomials but sums of roots.
+    sums: Vec<Option<RootSum>>,
+    differences: BTreeMap<[usize; 2], Rc<Vec<(CurveIndex, bool)>>>,
     /// Straight curves with a slope of 1.
     lines: HashMap<CurveIndex, Option<Polynomial>>,
     nothing: Rooted,
@@ -104,21 +110,32 @@ pub(super) struct Parting<'m> {
 }
 
 impl<'m> Parting<'m> {
-    /// Prepares the forms of a tool's depths and curves for its box. Depths may differ by `steps` of rounding if ways down are
+    /// Finds the forms of a tool's depths and curves, for its box. Depths may differ by `steps` of rounding if ways down are
     /// not asked for.
     pub(super) fn new(
         model: &'m Model,
         cell: Cell,
-        (depths, curves): (Vec<Option<Rooted>>, Vec<Option<Curve>>),
+        forms: &mut Forms<'_>,
         (steps, finest): (bool, f64),
     ) -> Parting<'m> {
-        let size = reach(&cell);
+        let (size, ids) = (reach(&cell), model.depths());
+        let depths = ids.iter().map(|depth| forms.of(*depth)).collect();
+        let values = || model.curves.iter().map(|curve| curve.value);
+        let curves: Vec<_> = values().map(|value| forms.of(value)?.curve()).collect();
+        let sums = values().zip(&curves).map(|(value, curve)| match curve {
+            Some(_) => None,
+            None => RootSum::of(&model.graph, forms, value),
+        });
         Parting {
             model,
             size,
             may_step: steps,
             largest_step: finest.min(TANGENT_JUMP) * size,
             listed: !model.is_exact(),
+            values: Evaluator::new(&model.graph, ids.iter().copied()),
+            ids,
+            sums: sums.collect(),
+            differences: BTreeMap::new(),
             depths,
             curves,
             nothing: Rooted::zero(),
@@ -135,7 +152,6 @@ impl<'m> Parting<'m> {
             lines: HashMap::new(),
             touches: HashMap::new(),
             tangencies: HashMap::new(),
-            values: Evaluator::new(&model.graph, model.regions.iter().map(|region| region.depth)),
             cell,
         }
     }
@@ -301,7 +317,8 @@ impl<'m> Parting<'m> {
             self.model.regions[owner].inside.open(&vec![ANY; self.curves.len()], &mut atoms);
         }
         let asked: BTreeSet<CurveIndex> = atoms.into_iter().map(|(curve, _)| curve).collect();
-        let mut joints = self.differences(pair);
+        let differences = self.differences(pair);
+        let mut joints: Vec<CurveIndex> = differences.iter().map(|(curve, _)| *curve).collect();
         joints.extend(asked.into_iter().filter(|curve| self.agree(pair, *curve).is_some()));
         self.joints.insert(pair, joints.clone());
         joints
@@ -322,15 +339,28 @@ impl<'m> Parting<'m> {
         agree
     }
 
-    /// The curves that are said to be where two depths do not differ.
-    fn differences(&self, (own, other): (usize, Option<usize>)) -> Vec<CurveIndex> {
-        let model = &self.model;
-        let [own, other] = [Some(own), other].map(|owner| owner.map(|r| model.regions[r].depth));
-        let is = |curve: &CurveIndex| match *model.graph.node(model.curves[*curve].value) {
-            Node::Sub(a, b) => [(Some(a), Some(b)), (Some(b), Some(a))].contains(&(own, other)),
-            _ => false,
+    /// The curves that are where two depths do not differ, by what is written or by their sums of roots; with each whether it is
+    /// positive where the first is more.
+    fn differences(&mut self, (own, other): Pair) -> Rc<Vec<(CurveIndex, bool)>> {
+        let Some(other) = other else { return Rc::default() };
+        if let Some(known) = self.differences.get(&[own, other]) {
+            return known.clone();
+        }
+        let graph = &self.model.graph;
+        let [a, b] = [own, other].map(|depth| self.ids[depth]);
+        let forms = self.depths[own].as_ref().zip(self.depths[other].as_ref());
+        let is_more = |curve: CurveIndex| match *graph.node(self.model.curves[curve].value) {
+            Node::Sub(more, less) if [more, less] == [a, b] => Some(true),
+            Node::Sub(more, less) if [more, less] == [b, a] => Some(false),
+            _ => {
+                let ratio = self.sums[curve].as_ref()?.by_difference(forms?.0, forms?.1)?;
+                Some(!ratio.is_negative())
+            }
         };
-        (0..model.curves.len()).filter(is).collect()
+        let curves = 0..self.model.curves.len();
+        let found = Rc::new(curves.filter_map(|curve| Some((curve, is_more(curve)?))).collect());
+        self.differences.insert([own, other], Rc::clone(&found));
+        found
     }
 }
 

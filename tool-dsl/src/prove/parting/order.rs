@@ -24,7 +24,7 @@ pub(super) enum LowerByLinear {
     Each([bool; 2]),
 }
 
-/// A region, or the outside, where depth is 0.
+/// A depth by its place in [`Model::depths`](crate::model::Model::depths), or that of the outside, 0.
 type Owner = Option<usize>;
 
 impl Parting<'_> {
@@ -144,15 +144,19 @@ impl Parting<'_> {
         let turned = less.is_none() || more.is_some_and(|more| Some(more) < less);
         let ordered = if turned { [more, less] } else { [less, more] };
         let [Some(own), other] = ordered else { return false };
+        let by_difference = self.differences((own, other)).iter().any(|(curve, own_is_more)| {
+            one_side(cover.own_sign(claim, *curve)) == Some(*own_is_more != turned)
+        });
         let one_sided = claim.signs.iter().filter(|(_, signs)| one_side(*signs).is_some());
-        one_sided.into_iter().any(|(curve, _)| {
-            let agreement = self.agree((own, other), *curve);
-            let Some(order) = agreement.as_ref().and_then(|found| found.order.as_ref()) else {
-                return false;
-            };
-            self.signed(*curve).is_some()
-                && order.is_lesser(turned, cover.own_sign(claim, *curve), &self.cell)
-        })
+        by_difference
+            || one_sided.into_iter().any(|(curve, _)| {
+                let signs = cover.own_sign(claim, *curve);
+                let agreement = self.agree((own, other), *curve);
+                let Some(order) = agreement.as_ref().and_then(|found| found.order.as_ref()) else {
+                    return false;
+                };
+                self.signed(*curve).is_some() && order.is_lesser(turned, signs, &self.cell)
+            })
     }
 
     /// Returns by how much a region's depth exceeds another's at most: anywhere, or by what is linear wherever curves have
@@ -190,8 +194,8 @@ impl Parting<'_> {
         steps.reduce(f64::min)
     }
 
-    /// Returns the regions whose depths may be between two depths all over the present box, if that is small. Nothing
-    /// but time depends on which are returned.
+    /// Returns the depths that may be between two depths all over the present box, if that is small. Nothing but time
+    /// depends on which are returned.
     fn thirds(&mut self, pair: [Owner; 2]) -> Vec<Owner> {
         let reach = reach(&self.cell);
         if reach > SMALL * self.size {
@@ -199,13 +203,12 @@ impl Parting<'_> {
         }
         let [x, y, z] = self.cell.middle();
         self.values.set(At::point(x, y, z));
-        let regions = &self.model.regions;
-        let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(regions[owner].depth));
+        let depth = |owner: Owner| owner.map_or(0.0, |owner| self.values.get(self.ids[owner]));
         let is_near = |third: &Owner| {
             let off = |owner: Owner| (depth(*third) - depth(owner)).abs();
             !pair.contains(third) && pair.into_iter().all(|owner| off(owner) <= NEAR * reach)
         };
-        (0..regions.len()).map(Some).filter(is_near).collect()
+        (0..self.ids.len()).map(Some).filter(is_near).collect()
     }
 
     /// Returns the signs at two claims' points.

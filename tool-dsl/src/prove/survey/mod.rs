@@ -141,10 +141,8 @@ impl<'t> Survey<'t> {
         let roots = felt.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
         let mut forms = Forms::new(&model.graph);
-        let depths = model.regions.iter().map(|region| forms.of(region.depth)).collect::<Vec<_>>();
-        let feet = Feet::of(tool, &depths, reach(&whole));
-        let curves = model.curves.iter().map(|curve| forms.of(curve.value)?.curve()).collect();
-        let parting = Parting::new(model, whole, (depths, curves), (feet.is_some(), finest));
+        let feet = Feet::of(tool, &mut forms, reach(&whole));
+        let parting = Parting::new(model, whole, &mut forms, (feet.is_some(), finest));
         let aim = |(index, region)| Aim::new(aim::straight(model, region, parting.depth(index)));
         let aims = model.regions.iter().enumerate().map(aim).collect();
         Survey {

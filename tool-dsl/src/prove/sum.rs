@@ -1,0 +1,71 @@
+//! Curves that compare two depths of different roots, which no polynomial is: sums of a polynomial and roots.
+
+use super::root::{Forms, Rooted};
+use crate::expr::polynomial::Polynomial;
+use crate::expr::{Graph, Id, Node};
+use crate::number::Number;
+
+/// `l + k √P + m √Q + …`
+#[derive(Clone)]
+pub(super) struct RootSum {
+    plain: Polynomial,
+    roots: Vec<(Number, Polynomial)>,
+}
+
+impl RootSum {
+    /// The sum that a node is, if it is one.
+    pub(super) fn of(graph: &Graph, forms: &mut Forms<'_>, id: Id) -> Option<RootSum> {
+        if let Some(form) = forms.of(id) {
+            return Some(RootSum::from(&form));
+        }
+        let mut of = |id: Id| RootSum::of(graph, forms, id);
+        match *graph.node(id) {
+            Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
+            Node::Add(a, b) => Some(of(a)?.plus(of(b)?)),
+            Node::Sub(a, b) => Some(of(a)?.plus(of(b)?.scaled(&Number::int(-1)))),
+            Node::Mul(a, b) => match (graph.constant(a), graph.constant(b)) {
+                (Some(factor), _) => Some(of(b)?.scaled(factor)),
+                (_, Some(factor)) => Some(of(a)?.scaled(factor)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn from(form: &Rooted) -> RootSum {
+        let roots = form.root().map(|(factor, under)| (factor.clone(), under.clone()));
+        RootSum { plain: form.part().clone(), roots: roots.into_iter().collect() }
+    }
+
+    /// Returns the factor by which this is the first of two depths less the other.
+    pub(super) fn by_difference(&self, a: &Rooted, b: &Rooted) -> Option<Number> {
+        let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
+        let (factor, under) = self.roots.first()?;
+        let (other, _) = difference.roots.iter().find(|(_, own)| is_same(own, under))?;
+        let ratio = factor.over(other)?;
+        let rest = difference.scaled(&-&ratio).plus(self.clone());
+        (rest.plain.is_nothing() && rest.roots.is_empty()).then_some(ratio)
+    }
+
+    fn scaled(self, by: &Number) -> RootSum {
+        let roots = self.roots.into_iter().map(|(factor, under)| (&factor * by, under));
+        RootSum { plain: self.plain.scaled(by), roots: roots.collect() }
+    }
+
+    fn plus(mut self, other: RootSum) -> RootSum {
+        for (factor, under) in other.roots {
+            match self.roots.iter_mut().find(|(_, own)| is_same(own, &under)) {
+                // What cancels in 256 bits is 0.
+                Some((own, _)) if own.agrees(&-&factor) => *own = Number::int(0),
+                Some((own, _)) => *own = &*own + &factor,
+                None => self.roots.push((factor, under)),
+            }
+        }
+        self.roots.retain(|(factor, _)| !factor.is_zero());
+        RootSum { plain: self.plain.plus(&other.plain), roots: self.roots }
+    }
+}
+
+fn is_same(a: &Polynomial, b: &Polynomial) -> bool {
+    a.ratio(b).is_some_and(|ratio| ratio.agrees(&Number::int(1)))
+}

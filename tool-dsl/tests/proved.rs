@@ -1,0 +1,74 @@
+//! Tools whose depth is proved to be the distance to the surface, and some that only look like them.
+
+use tool_dsl::prove::Certificate;
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, compile};
+
+fn tool(text: &str) -> Option<Box<Checked>> {
+    compile(&Source::new("t.tool", text)).into_tool()
+}
+
+/// Asserts that the depth of a tool is proved to be the distance to its surface.
+fn is_proved(text: &str) {
+    let tool = tool(text).unwrap_or_else(|| panic!("refused: {text}"));
+    let proved = Certificate::of(&tool);
+    assert!(proved.is_exact(), "{text}\n{:?}", proved.undecided.first());
+    assert!(proved.slack < 1e-9 * tool.extent.scale(), "{text}\n{:e}", proved.slack);
+}
+
+/// A ring of teeth about a bore that a web closes, with this bore and these edges.
+fn annular(start: &str, bore: &str, edges: &str, regions: &str) -> String {
+    format!(
+        "tool Annular {{ units mm; tip z = 0;
+           profile {{ start {start}; {bore} {edges}
+             line to (6, 25) as flute cutting; line to (6, 40), (0, 40) as shank; }} {regions} }}"
+    )
+}
+
+#[test]
+fn annular_cutters_are_proved() {
+    let plain = "line to (4, 20), (4, 0.5) as bore;";
+    let filleted = "line to (3, 20) as bore; arc to (4, 19) radius 1 concave as bore; line to (4, 0.5) as bore;";
+    let domed = "arc to (4, 20) radius 8 concave as bore; line to (4, 0.5) as bore;";
+    let chamfers = "line to (4.5, 0), (5.5, 0), (6, 0.5) as edge cutting;";
+    let rounded = "arc to (4.5, 0) radius 0.5 as edge cutting; line to (5.5, 0) as edge cutting;
+        arc to (6, 0.5) radius 0.5 as edge cutting;";
+    for edges in [chamfers, rounded] {
+        for (start, bore) in [("(0, 20)", plain), ("(0, 20)", filleted), ("(0, 22)", domed)] {
+            is_proved(&annular(start, bore, edges, ""));
+        }
+        is_proved(&annular("(0, 20)", plain, edges, "regions smooth 0.2;"));
+    }
+}
+
+/// A border of two flat arcs is no polynomial.
+const HOLLOW: &str = "tool Hollow { units mm; tip z = 0;
+    profile { start (0, 1); arc to (2, 0) radius 5 as tip; arc to (3, 4) radius 6 concave as tip;
+      arc to (5, 5) radius 2.5 concave as tip; line to (5, 9), (0, 9) as nut; } regions nearest; }";
+
+#[test]
+fn borders_of_flat_arcs_are_proved() {
+    is_proved(HOLLOW);
+}
+
+#[test]
+fn fans_at_arcs_are_proved() {
+    is_proved(&HOLLOW.replace("nearest", "smooth 0.4"));
+    let shapes = [
+        "start (0, 0); arc to (3, 3) center (0, 3) as ball; line to (5, 3), (5, 9), (0, 9) as nut;",
+        "start (0, 0); line to (2, 0), (2, 10) as pin; line to (4, 10), (4, 30), (0, 30) as nut;",
+        "start (0, 0); line to (3, 3), (3, 20), (5, 20), (6, 22), (0, 25) as nut;",
+        "start (0, 0); arc to (3, 2) radius 4 as tip; arc to (3, 4) radius 1.2 as bead;
+         arc to (3, 6) radius 1.2 as bead; arc to (4, 9) radius 5 concave as neck;
+         arc to (2, 11) radius 4 concave as neck; line to (0, 11) as nut;",
+        "start (0, 0); line to (2, 0) as face; arc to (2.5, 3) radius 3 as bead;
+         arc to (5, 4) radius 2 concave as bead; arc to (4, 7) radius 3 as bead; line to (0, 7) as nut;",
+    ];
+    for shape in shapes {
+        for length in ["0.2", "0.4"] {
+            is_proved(&format!(
+                "tool T {{ units mm; profile {{ {shape} }} regions smooth {length}; }}"
+            ));
+        }
+    }
+}
