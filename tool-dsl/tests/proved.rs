@@ -72,3 +72,69 @@ fn fans_at_arcs_are_proved() {
         }
     }
 }
+
+/// Half a ball of radius 2 on a cylinder of radius 1 along x.
+const HALF_BALL: &str = "solid HalfBall { units mm;
+    curve ball = 2 - hypot(x, y, z); curve away = hypot(y, z); curve side = 1 - away; curve end = 6 - x;
+    curve edge = hypot(x, away - 1);
+    region ball where x <= 0, away >= 1, 0 <= ball <= -x { depth: ball; }
+    region step where x <= 0, away >= 1, -x <= ball { depth: -x; }
+    region core as ball where x <= 0, away <= 1, 0 <= ball <= edge { depth: ball; }
+    region rim as step where x <= 0, away <= 1, edge <= ball { depth: edge; }
+    region stem where x >= 0, 0 <= side <= end { depth: side; }
+    region end where x >= 0, 0 <= end <= side { depth: end; } }";
+
+/// The same along another axis.
+fn along(axis: char) -> String {
+    let turned = |c: char| match (axis, c) {
+        ('y', 'x' | 'y' | 'z') => char::from(b'x' + (c as u8 - b'x' + 1) % 3),
+        ('z', 'x' | 'y' | 'z') => char::from(b'x' + (c as u8 - b'x' + 2) % 3),
+        _ => c,
+    };
+    // Single letters only: `away` is no coordinate.
+    let letters: Vec<char> = HALF_BALL.chars().collect();
+    let alone = |k: usize| {
+        [k.checked_sub(1), Some(k + 1)]
+            .into_iter()
+            .flatten()
+            .all(|k| !letters.get(k).is_some_and(|c| c.is_alphanumeric()))
+    };
+    letters.iter().enumerate().map(|(k, c)| if alone(k) { turned(*c) } else { *c }).collect()
+}
+
+#[test]
+fn solids_of_revolution_are_proved() {
+    for axis in ['x', 'y', 'z'] {
+        is_proved(&along(axis));
+    }
+}
+
+/// What is proved in a half plane is said of space: extents, shares, directions, and what is wrong.
+#[test]
+fn solids_of_revolution_are_judged_in_space() {
+    let solid = tool(HALF_BALL).expect("a solid");
+    let proved = Certificate::of(&solid);
+    let share = |name: &str| {
+        let named = solid.model.regions.iter().zip(&proved.regions);
+        named.filter(|(region, _)| region.name == name).map(|(_, facts)| facts.share).sum::<f64>()
+    };
+    // Of a volume of 16 π/3 + 6 π, the end has a cone's π/3.
+    let part = 1.0 / (16.0 + 18.0);
+    assert!((share("end") - part).abs() < 0.01, "{} {part}", share("end"));
+    // A direction that does not turn with the point is looked at all about the axis.
+    let aslant = HALF_BALL.replace(
+        "<= end { depth: side; }",
+        "<= end { depth: side; direction: (0, 1, 0) allow oblique; }",
+    );
+    let solid = tool(&aslant).expect("a solid");
+    let proved = Certificate::of(&solid);
+    let stem = solid.model.regions.iter().position(|region| region.name == "stem").expect("it");
+    let aside = proved.regions[stem].aside.expect("known");
+    assert!(aside.high > 3.1, "{aside:?}");
+    // A depth that jumps is not proved to go on, be it all about the axis or on one side only.
+    for wrong in ["0.9*edge", "edge + 0.01*max(y, 0)"] {
+        let text = HALF_BALL.replace("depth: edge", &format!("depth: {wrong}"));
+        let proved = tool(&text).map(|tool| Certificate::of(&tool));
+        assert!(proved.is_none_or(|proved| !proved.is_continuous()), "{wrong}");
+    }
+}

@@ -5,7 +5,7 @@
 //! `rounding` how far computed depths err, `root` whether depths agree on a curve, `sum` which curves are differences of depths, `touch` what
 //! conics that touch imply of each other, `excess` how far distances exceed one another, `tangent` how far they differ where a profile is all but
 //! smooth, `jordan` whether a profile encloses the solid, `parting` what parts two regions; `survey` goes from box
-//! to box.
+//! to box, of a solid of revolution in a half plane, which `meridian` makes.
 
 mod aim;
 mod cover;
@@ -13,6 +13,7 @@ mod excess;
 mod foot;
 mod jordan;
 mod kink;
+mod meridian;
 mod parting;
 mod range;
 mod reports;
@@ -30,6 +31,7 @@ use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
 use crate::model::{DirectionSource, Region};
 use crate::report::Report;
+use meridian::Meridian;
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
 /// size, and nowhere inside a region is depth further below 0: [`Certificate::tolerance`]. By how much they do not agree is
@@ -207,7 +209,7 @@ impl Bounds {
         if tool.model.is_exact() && !tool.model.regions.iter().any(written) {
             return (exact, Vec::new());
         }
-        let proved = survey::survey(tool, FEW, false);
+        let proved = proved(tool, FEW, false);
         // What is undecided here may not be in more boxes.
         let reports = proved.certain(tool);
         if tool.model.is_exact() {
@@ -219,10 +221,18 @@ impl Bounds {
     }
 }
 
+/// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if that is asked for.
+fn proved(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
+    match Meridian::of(tool) {
+        Some(meridian) => meridian.turned(survey::survey(&meridian.tool, boxes, alone), tool),
+        None => survey::survey(tool, boxes, alone),
+    }
+}
+
 impl Certificate {
     /// Proves what can be proved about a tool.
     pub fn of(tool: &Checked) -> Certificate {
-        survey::survey(tool, MANY, true)
+        proved(tool, MANY, true)
     }
 
     /// Whether depth is continuous and 0 on the surface, but for [`Certificate::tolerance`].

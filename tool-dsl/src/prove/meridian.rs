@@ -1,0 +1,261 @@
+//! Solids of revolution about a coordinate axis, proved in a half plane through it.
+//!
+//! Depths, curves, magnitudes and nicenesses are to be functions of the place along the axis and the distance from it, and directions
+//! are to turn with the point, but for where they vanish. All that is proved is then the same in each half plane that ends on the axis, and is proved in
+//! one of them, as of a tool: in far fewer boxes, and where lengths of lengths, `hypot(x, hypot(y, z) - r)`, are lengths.
+
+use super::rounding::Errors;
+use super::witness::Witness;
+use super::{Certificate, RegionFacts};
+use crate::Checked;
+use crate::bound::Extent;
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
+use crate::expr::{Coord, Graph, Id, Node};
+use crate::model::{Model, Outputs};
+use std::collections::HashMap;
+
+const COORDINATES: [Coord; 3] = [Coord::X, Coord::Y, Coord::Z];
+
+/// A solid of revolution as a tool of a half plane.
+pub(super) struct Meridian {
+    pub(super) tool: Checked,
+    axis: usize,
+    /// The axes across it: along the first lies the half plane.
+    across: [usize; 2],
+}
+
+impl Meridian {
+    /// Returns the half plane of a solid, if it is one of revolution as far as that shows.
+    pub(super) fn of(tool: &Checked) -> Option<Meridian> {
+        if tool.model.domain != Domain::Space {
+            return None;
+        }
+        let mut axes = [(0, [1, 2]), (1, [2, 0]), (2, [0, 1])].into_iter();
+        let (axis, across) = axes.find(|(axis, across)| {
+            let coords = across.map(|axis| COORDINATES[axis]);
+            let turns = &mut Turns::new(&tool.model.graph, coords);
+            let model = &tool.model;
+            let [first, second] = *across;
+            model.curves.iter().all(|curve| turns.keeps(curve.value))
+                && model.regions.iter().all(|region| {
+                    let felt = [region.depth, region.magnitude, region.niceness];
+                    let (course, _) = region.course;
+                    felt.into_iter().chain([course[*axis]]).all(|id| turns.keeps(id))
+                        && turns.turns([course[first], course[second]])
+                })
+        })?;
+        let model = in_half_plane(&tool.model, axis, across)?;
+        let sides = tool.extent.cell().sides;
+        let reach = across.map(|axis| sides[axis].abs().high);
+        let radius = reach[0].min(reach[1]);
+        let cell = Cell::half_plane(Interval::new(0.0, radius), sides[axis]);
+        let extent = Extent::of(cell, radius);
+        let (plan, bounds) = (tool.plan.clone(), tool.bounds);
+        let tool = Checked { model, extent, envelope: Vec::new(), plan, bounds };
+        Some(Meridian { tool, axis, across })
+    }
+
+    /// The certificate of the solid, of which this is the half plane, from that of the half plane.
+    pub(super) fn turned(&self, proved: Certificate, tool: &Checked) -> Certificate {
+        let (model, whole) = (&tool.model, tool.extent.cell());
+        let depths = model.regions.iter().map(|region| region.depth);
+        let mut errors = Errors::new(&model.graph, model.domain, depths);
+        let shares = Witness::new(tool, proved.tolerance).shares();
+        let facts = proved.regions.into_iter().zip(&model.regions).zip(shares);
+        let regions = facts.map(|((facts, region), share)| RegionFacts {
+            share,
+            oblique: facts.oblique.map(|(angle, at)| (angle, self.point(at))),
+            rises: facts.rises.map(|(rate, at)| (rate, self.point(at))),
+            singular: facts.singular.iter().map(|cell| self.cell(cell)).collect(),
+            rounding: errors.over(region.depth, &whole),
+            ..facts
+        });
+        let regions = regions.collect();
+        let mut borders = proved.borders;
+        for border in &mut borders {
+            border.seen = border.seen.map(|(at, depths)| (self.point(at), depths));
+        }
+        let mut undecided = proved.undecided;
+        undecided.iter_mut().for_each(|open| open.cell = self.cell(&open.cell));
+        Certificate { regions, borders, undecided, ..proved }
+    }
+
+    fn point(&self, [d, _, z]: [f64; 3]) -> [f64; 3] {
+        let mut point = [0.0; 3];
+        point[self.axis] = z;
+        point[self.across[0]] = d;
+        point
+    }
+
+    /// A box about what a box of the half plane becomes when it is turned.
+    fn cell(&self, cell: &Cell) -> Cell {
+        let [d, _, z] = cell.sides;
+        let mut sides = [ZERO; 3];
+        sides[self.axis] = z;
+        for axis in self.across {
+            sides[axis] = Interval { low: -d.high, high: d.high };
+        }
+        Cell { sides }
+    }
+}
+
+/// What of a graph keeps its value or turns with the point that is turned about an axis.
+struct Turns<'g> {
+    graph: &'g Graph,
+    /// The coordinates across the axis.
+    across: [Coord; 2],
+    polynomials: Polynomials,
+    known: HashMap<Id, bool>,
+}
+
+impl<'g> Turns<'g> {
+    fn new(graph: &'g Graph, across: [Coord; 2]) -> Turns<'g> {
+        Turns { graph, across, polynomials: Polynomials::default(), known: HashMap::new() }
+    }
+
+    /// Whether a node keeps its value: a polynomial does if `y ∂/∂z - z ∂/∂y` of it is 0, any other node if its operands do.
+    fn keeps(&mut self, id: Id) -> bool {
+        for id in self.graph.needed([id]) {
+            if !self.known.contains_key(&id) {
+                let node = self.graph.node(id);
+                let keeps = match self.polynomials.of(self.graph, id).and_then(in_space) {
+                    Some(polynomial) => is_kept(&polynomial, self.across),
+                    None if *node == Node::Coord(Coord::D) => self.across == [Coord::X, Coord::Y],
+                    None => node.operands().all(|operand| self.known[&operand]),
+                };
+                self.known.insert(id, keeps);
+            }
+        }
+        self.known[&id]
+    }
+
+    /// Whether two nodes are the coordinates across the axis, both times the same that keeps its value.
+    fn turns(&mut self, [a, b]: [Id; 2]) -> bool {
+        let graph = self.graph;
+        let is_zero = |id: Id| graph.constant(id).is_some_and(|value| value.is_zero());
+        match (graph.node(a), graph.node(b)) {
+            _ if is_zero(a) && is_zero(b) => true,
+            (Node::Coord(a), Node::Coord(b)) => [*a, *b] == self.across,
+            (Node::Neg(a), Node::Neg(b)) => self.turns([*a, *b]),
+            (Node::Add(a, b), Node::Add(c, d)) => {
+                self.turns([*a, *c]) && self.turns([*b, *d])
+                    || self.turns([*a, *d]) && self.turns([*b, *c])
+            }
+            (Node::Sub(a, b), Node::Sub(c, d)) => self.turns([*a, *c]) && self.turns([*b, *d]),
+            (Node::Div(a, b), Node::Div(c, d)) | (Node::Quotient(a, b), Node::Quotient(c, d)) => {
+                b == d && self.keeps(*b) && self.turns([*a, *c])
+            }
+            (Node::Mul(a, b), Node::Mul(c, d)) => {
+                [(a, b), (b, a)].into_iter().any(|(factor, part)| {
+                    [(c, d), (d, c)].into_iter().any(|(other, other_part)| {
+                        factor == other && self.keeps(*factor) && self.turns([*part, *other_part])
+                    })
+                })
+            }
+            (
+                Node::Select { low, high, then: a, other: b },
+                Node::Select { low: lower, high: higher, then: c, other: d },
+            ) => {
+                [low, high] == [lower, higher]
+                    && self.keeps(*low)
+                    && self.keeps(*high)
+                    && self.turns([*a, *c])
+                    && self.turns([*b, *d])
+            }
+            _ => false,
+        }
+    }
+}
+
+/// A polynomial with `x² + y²` in place of `d²`; none if it has an odd power of `d`.
+fn in_space(polynomial: &Polynomial) -> Option<Polynomial> {
+    let [x, y] = [Coord::X, Coord::Y].map(Polynomial::coordinate);
+    let square = x.times(&x)?.plus(&y.times(&y)?);
+    let mut sum = Polynomial::zero();
+    for (monomial, factor) in polynomial.terms() {
+        let mut term = Polynomial::constantly(factor);
+        for (exponent, coord) in monomial[1..].iter().zip(COORDINATES) {
+            for _ in 0..*exponent {
+                term = term.times(&Polynomial::coordinate(coord))?;
+            }
+        }
+        for _ in 0..monomial[0] / 2 {
+            term = term.times(&square)?;
+        }
+        sum = if monomial[0] % 2 == 0 { sum.plus(&term) } else { return None };
+    }
+    Some(sum)
+}
+
+/// Whether a polynomial keeps its value about an axis.
+fn is_kept(polynomial: &Polynomial, across: [Coord; 2]) -> bool {
+    let [y, z] = across;
+    let term = |by: Coord, times: Coord| {
+        let at = monomial_of(by).iter().position(|exponent| *exponent > 0)?;
+        polynomial.derivative(at).times(&Polynomial::coordinate(times))
+    };
+    let Some((up, down)) = term(z, y).zip(term(y, z)) else { return false };
+    up.plus(&down.scaled(&crate::number::Number::int(-1))).is_nothing()
+}
+
+/// A model on the half plane where the second coordinate across the axis is 0 and the first is not negative.
+fn in_half_plane(model: &Model, axis: usize, across: [usize; 2]) -> Option<Model> {
+    let mut graph = Graph::default();
+    let mut moved: HashMap<Id, Id> = HashMap::new();
+    let mut here = [graph.int(0); 3];
+    here[axis] = graph.coord(Coord::Z);
+    here[across[0]] = graph.coord(Coord::D);
+    let squares = [0, 1].map(|axis| graph.mul(here[axis], here[axis]));
+    let square = graph.add(squares[0], squares[1]);
+    let felt = model.regions.iter().flat_map(|region| {
+        let felt = [region.depth, region.magnitude, region.niceness];
+        felt.into_iter().chain(region.direction).chain(region.course.0)
+    });
+    for id in model.graph.needed(felt.chain(model.curves.iter().map(|curve| curve.value))) {
+        let at = |id: &Id| moved[id];
+        let there = match model.graph.node(id) {
+            Node::Const(value) => graph.number(value.clone()),
+            Node::Coord(Coord::X) => here[0],
+            Node::Coord(Coord::Y) => here[1],
+            Node::Coord(Coord::Z) => here[2],
+            Node::Coord(Coord::Q) => square,
+            Node::Coord(Coord::D) => graph.sqrt(square)?,
+            Node::Coord(coord) => graph.coord(*coord),
+            Node::Neg(a) => graph.neg(at(a)),
+            Node::Add(a, b) => graph.add(at(a), at(b)),
+            Node::Sub(a, b) => graph.sub(at(a), at(b)),
+            Node::Mul(a, b) => graph.mul(at(a), at(b)),
+            Node::Div(a, b) => graph.div(at(a), at(b))?,
+            Node::Quotient(a, b) => graph.quotient(at(a), at(b)),
+            Node::Min(a, b) => graph.min(at(a), at(b)),
+            Node::Max(a, b) => graph.max(at(a), at(b)),
+            Node::Abs(a) => graph.abs(at(a)),
+            Node::Sqrt(a) => graph.sqrt(at(a))?,
+            Node::Select { low, high, then, other } => {
+                graph.select(at(low), at(high), at(then), at(other))
+            }
+        };
+        moved.insert(id, there);
+    }
+    let zero = graph.int(0);
+    let at = |id: Id| moved[&id];
+    let way = |way: [Id; 3]| [at(way[across[0]]), zero, at(way[axis])];
+    let mut model = Model { domain: Domain::HalfPlane, graph, ..model.clone() };
+    model.curves.iter_mut().for_each(|curve| curve.value = at(curve.value));
+    for region in &mut model.regions {
+        region.direction = way(region.direction);
+        region.course.0 = way(region.course.0);
+        [region.depth, region.magnitude, region.niceness] =
+            [region.depth, region.magnitude, region.niceness].map(at);
+        region.outputs = Outputs {
+            depth: region.depth,
+            magnitude: region.magnitude,
+            gradient: [zero; 3],
+            direction: region.direction,
+            niceness: region.niceness,
+        };
+    }
+    Some(model)
+}
