@@ -27,10 +27,12 @@ use std::collections::BTreeMap;
 /// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
 const FINE: f64 = 1.0 / 56.0;
 const FINE_OF_SPACE: f64 = 1.0 / 7.0;
-/// Boxes where nothing explains a border are divided to this part of the tool's size, or, where too many boxes are
-/// needed for that, to the second. Where curves touch it takes so many more boxes as the root of this is smaller. How far
-/// depths may differ in such boxes adds to the slack, so these only say when the search ends.
-const FINEST: [f64; 2] = [1e-12, 1e-7];
+/// Tries of a proof: boxes where nothing explains a border are divided to this part of the tool's size, and no more boxes are
+/// looked at than these thirds of what it may take. Tools of which no borders touch need few; where curves touch it takes so many
+/// more boxes as the root of their size is smaller. How far depths may differ in such boxes adds to the slack.
+const TRIES: [(f64, usize); 3] = [(1e-12, 1), (1e-10, 3), (1e-12, 9)];
+/// The same of the last try, which comes to an end.
+const COARSEST: f64 = 1e-7;
 /// Feet may be beyond the ends of pieces by this part of the tool's size, and by so many times the half diagonal of a box
 /// that is as good as a point. By how much they are adds to the slack, so these only say when a box is divided.
 const BEYOND: f64 = 1e-11;
@@ -51,14 +53,14 @@ const VAGUE: f64 = 0.1;
 /// that is asked for.
 pub(super) fn survey(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
     let boxes = boxes.min(WORK / tool.model.regions.len().max(1));
-    let [finest, coarsest] = FINEST;
-    let mut survey = Survey::new(tool, finest, alone);
-    // Tools of which no borders touch need far fewer.
-    let some = (boxes / 3).max(FEW.min(boxes));
-    if survey.run(some, false) && survey.undecided.is_empty() {
-        return survey.certificate();
+    let hasty = [(TRIES[0].0, 3)];
+    for (finest, thirds) in if boxes > FEW { &TRIES[..] } else { &hasty } {
+        let mut survey = Survey::new(tool, *finest, alone);
+        if survey.run(thirds * boxes / 3, false) && survey.undecided.is_empty() {
+            return survey.certificate();
+        }
     }
-    let mut survey = Survey::new(tool, coarsest, alone);
+    let mut survey = Survey::new(tool, COARSEST, alone);
     survey.run(boxes, true);
     survey.certificate()
 }
