@@ -119,7 +119,7 @@ fn what_cannot_be_checked_has_a_status_of_its_own() {
 fn motions_of_a_solid_are_proved_with_their_spin() {
     let bench = Bench::new();
     let table = |height: f64| {
-        format!("-4,0,{height},0,0,0,1\n4,0,{height},0,0,0.6,0.8\n4,0,{height},0,0,-0.8,0.6\n")
+        format!("-4,0,{height},0,0,0,1\n4,0,{height},0,0,0.6,0.8\n4,0,{height},0,0,0.8,0.6\n")
     };
     bench.write("above.csv", table(0.1));
     bench.write("below.csv", table(-0.25));

@@ -116,9 +116,14 @@ impl Search<'_> {
 
     /// Asks at a pose: no triangle is nearer than what is returned.
     fn ask(&mut self, pose: &Pose, line: usize) -> f64 {
-        let [low, high] = self.certifier.clearance(pose, self.fine).distance;
-        // A field knows no upper bound of the distance.
-        let high = if high.is_finite() { high } else { low };
+        let [mut low, mut high] = self.certifier.clearance(pose, self.fine).distance;
+        if high == f64::INFINITY {
+            // A field has no upper bound of the distance: a lower one of 0 is looked at more closely.
+            if low == 0.0 {
+                [low, _] = self.certifier.clearance(pose, FINE * FINE * self.fine).distance;
+            }
+            high = low;
+        }
         if high < self.distance {
             (self.distance, self.line) = (high, line);
         }
