@@ -110,7 +110,8 @@ fn every_tool_of_the_library_is_proved() {
         // The thesis's magnitudes are no distances.
         assert_eq!(proved.is_exact(), name != "Fig73", "{name}");
         let slack = proved.slack / tool.extent.scale();
-        assert!(slack < 1e-10, "{name}: {slack:e}");
+        // Some 1e-10 of it is how far depths differ, and four times that how far the surface is from the profile.
+        assert!(slack < 5e-10, "{name}: {slack:e}");
     }
 }
 
