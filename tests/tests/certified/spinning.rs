@@ -49,8 +49,14 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
             other => panic!("{other:?}"),
         })
         .fold([0.0f64; 2], |[low, high], (depth, most)| [low.max(depth[0]), high.max(most)]);
-    // A wall `h` behind the corner has a place that is as far from both sides: `h / (cos a + sin a)`.
-    let depth = 0.5 / 1.4;
+    // A wall `h` behind the corner has a place that is as far from both sides, `h / (cos a + sin a)` deep, with the angle
+    // `a` between the wall's normal and a side's: most where the corner points a little past the wall.
+    let turns = (-1000..=1000).map(|step| 1e-5 * f64::from(step));
+    let depths = turns.map(|turn| {
+        let (sine, cosine) = (0.75f64.atan() + turn).sin_cos();
+        (25.0 * turn.cos() - 24.5) / (cosine + sine)
+    });
+    let depth = depths.fold(0.0, f64::max);
     assert!(
         most[0] <= depth + 1e-6 && depth <= most[1] + 1e-6 && most[1] < 1.2 * depth,
         "{most:?}"
