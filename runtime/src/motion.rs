@@ -96,7 +96,10 @@ impl Motion {
         if cosine.abs() < OPPOSITE {
             return Err(MotionError::HalfTurn);
         }
-        let axis = Unit::try_new(sine * cosine.signum(), 0.0).unwrap_or(Vector3::y_axis());
+        // The square of what is shorter is no number, and a turn by it is none.
+        let axis = Unit::try_new(sine * cosine.signum(), f64::MIN_POSITIVE.sqrt());
+        let turn = if axis.is_some() { 2.0 * sine.norm().atan2(cosine.abs()) } else { 0.0 };
+        let axis = axis.unwrap_or(Vector3::y_axis());
         // Two directions across the axis, by any frame that has it.
         let across = Pose::from_axis(Point3::origin(), *axis).map_err(|_| MotionError::HalfTurn)?;
         let [first, second] = [0, 1].map(|k| Vector3::from(across.rotation().column(k)));
@@ -106,7 +109,7 @@ impl Motion {
             way: to.tip() - from.tip(),
             start: from.rotation() * columns,
             frame: Some(columns.transpose()),
-            angle: 2.0 * sine.norm().atan2(cosine.abs()),
+            angle: turn,
         })
     }
 
@@ -197,7 +200,7 @@ mod tests {
         for k in 0..100_000 {
             let mut quaternion = || UnitQuaternion::new(10.0 * Vector3::from_fn(|_, _| uniform()));
             let (first, axis) = (quaternion(), quaternion() * Vector3::z_axis());
-            let angle = [1e-17, 1e-9, 1e-3, 1.0, 3.1, 3.13][k % 6];
+            let angle = [[1e-17, 1e-160, 2e-161][k % 3], 1e-9, 1e-3, 1.0, 3.1, 3.13][k % 6];
             let last = first * UnitQuaternion::from_axis_angle(&axis, angle);
             let tip = [0, 1].map(|_| Point3::new(uniform(), uniform(), uniform()));
             let [from, to] = [(first, tip[0]), (last, tip[1])].map(|(turn, tip)| {

@@ -20,7 +20,7 @@ use crate::tool::{Card, Shape};
 /// How far a place is known on a way, in the tool's unit: rounding grows with the way, and with a turn of more than the
 /// axis.
 pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
-    let turned = if motion.is_full() { 0.5 * setting.error } else { 0.0 };
+    let turned = if motion.is_full() { setting.error } else { 0.125 * setting.error };
     setting.error + turned + rounding::far(motion.way().norm() / setting.length)
 }
 

@@ -6,19 +6,18 @@
 //! has no critical value up to `ρ`: its level sets are then isotopic (Grove, *Critical point theory for distance
 //! functions*, 1993). Each piece is wholly solid or wholly not, and a point of it tells which.
 //!
-//! A critical point is in the convex hull of the places of the curve that are nearest to it. These are two places that
-//! face each other on a common normal, or three, of which some are on pieces that do not follow each other; any two of them
-//! are at most `2 ρ` apart. [`Profile::narrowest`] is the least distance of such places: between pieces that do not share an
-//! end, along common normals where the material, or the outside, is between, and across circles.
+//! A critical point is in the convex hull of the places of the curve that are nearest to it: two places, corners among them,
+//! that face each other, or three, of which some are on pieces that do not follow each other; any two are at most `2 ρ` apart
+//! and see each other through the empty ball. Shortening the way between two of them ends at an end of a piece, at facing
+//! normals, or at a third piece, to which it is shorter still. [`Profile::narrowest`] is no more than the least distance of
+//! such places: of ends from pieces that they are not on, along facing normals, and across circles. Doubles err by far
+//! less than the factor of 2 that is asked for besides.
 //!
 //! From a place of the profile that is nearest to a point inside, an outside point farther than `ρ` from the profile is no
-//! farther than `ρ / sin(β/2)`, with the outside angle `β` of a corner next to it. Twice that covers how arcs bend, since no
-//! circle is smaller than four times that. So the surface of the solid is no farther than `4 s / sin(β/2)` from that place.
+//! farther than `ρ / sin(β/2)`, with the outside angle `β` of a corner next to it. Twice that covers how arcs bend, since
+//! facing normals, far ends of neighbours and diameters are all longer than four times that. So the surface of the solid is no farther than `4 s / sin(β/2)` from that place.
 
 use crate::regionalise::outline::{Point, Segment, cross, dot, minus, norm};
-
-/// Ends of pieces nearer than this part of the tool's size are one: a profile that is so near to the axis ends on it.
-const SAME: f64 = 4e-12;
 
 /// How narrow the passages of a profile are, and how sharp its corners.
 pub(super) struct Profile {
@@ -29,16 +28,24 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Of a profile of a tool of that size.
-    pub(super) fn new(outline: &[Segment], size: f64) -> Profile {
+    pub(super) fn new(outline: &[Segment]) -> Profile {
         let pieces: Vec<Piece> = outline.iter().map(Piece::new).collect();
         let mirrored: Vec<Piece> = pieces.iter().map(Piece::mirrored).collect();
         let diameters = pieces.iter().filter_map(|piece| Some(2.0 * piece.circle?.1));
         let mut narrowest = diameters.fold(f64::INFINITY, f64::min);
+        let last = pieces.len().saturating_sub(1);
         for (index, piece) in pieces.iter().enumerate() {
-            let others = pieces[index + 1..].iter().chain(&mirrored[index..]);
-            narrowest =
-                others.fold(narrowest, |least, other| least.min(piece.faces(other, SAME * size)));
+            for (other, own) in pieces.iter().enumerate().skip(index + 1) {
+                let joint = (other == index + 1).then_some([1, 0]);
+                narrowest = narrowest.min(piece.faces(own, joint.as_slice()));
+            }
+            // The first piece and the last one go on as their own mirror images.
+            for (other, image) in mirrored.iter().enumerate().skip(index) {
+                let ends = [(index == 0).then_some([0, 0]), (index == last).then_some([1, 1])];
+                let joints: Vec<_> =
+                    ends.into_iter().flatten().filter(|_| other == index).collect();
+                narrowest = narrowest.min(piece.faces(image, &joints));
+            }
         }
         // At its ends on the axis the profile goes on as its mirror image.
         let joints = pieces.windows(2).map(|pair| [pair[0].tangents[1], pair[1].tangents[0]]);
@@ -53,10 +60,11 @@ impl Profile {
     }
 
     /// Returns how far the surface of the solid may be from the nearest place of the profile, if depth is off by no more
-    /// than `slack` where the solid ends; `None` where that does not show that the profile encloses the solid.
-    pub(super) fn off(&self, slack: f64) -> Option<f64> {
+    /// than `slack` where the solid ends, and points `beside` the profile tell what is solid; `None` where that does not show
+    /// that the profile encloses the solid.
+    pub(super) fn off(&self, slack: f64, beside: f64) -> Option<f64> {
         let off = 4.0 * slack / self.sharpest;
-        (2.0 * off < self.narrowest).then_some(off)
+        (2.0 * off < self.narrowest && 4.0 * slack < beside).then_some(off)
     }
 }
 
@@ -136,14 +144,15 @@ impl Piece {
         if self.has(foot) { ends.min(norm(minus(p, foot))) } else { ends }
     }
 
-    /// Returns the least distance of places of two pieces that face each other.
-    fn faces(&self, other: &Piece, same: f64) -> f64 {
+    /// Returns the least distance of places of two pieces that face each other. `joints` are the ends that they share, each
+    /// as the end of the one and of the other.
+    fn faces(&self, other: &Piece, joints: &[[usize; 2]]) -> f64 {
         let mut least = f64::INFINITY;
-        for (one, another) in [(self, other), (other, self)] {
-            let shared =
-                |end: &Point| another.ends.iter().any(|own| norm(minus(*own, *end)) <= same);
-            for end in one.ends.iter().filter(|end| !shared(end)) {
-                least = least.min(another.away(*end));
+        for (side, one, another) in [(0, self, other), (1, other, self)] {
+            for end in [0, 1] {
+                if !joints.iter().any(|joint| joint[side] == end) {
+                    least = least.min(another.away(one.ends[end]));
+                }
             }
         }
         for [p, q] in self.normals(other) {
@@ -194,7 +203,7 @@ mod tests {
         assert!(compiled.reports().is_empty(), "{:?}", compiled.reports());
         let tool = compiled.into_tool().expect("a tool");
         let section = tool.model.section.as_ref().expect("a profile");
-        Profile::new(&section.outline, 20.0)
+        Profile::new(&section.outline)
     }
 
     fn near(value: f64, expected: f64) {
@@ -244,7 +253,9 @@ mod tests {
             "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);",
         );
         // Its bottom has corners of 90° outside.
-        assert!(slot.off(0.02).is_some() && slot.off(0.025).is_none());
-        assert_eq!(slot.off(0.0), Some(0.0));
+        assert!(slot.off(0.02, 0.1).is_some() && slot.off(0.025, 0.2).is_none());
+        assert_eq!(slot.off(0.0, 0.1), Some(0.0));
+        // Points that near tell nothing.
+        assert_eq!(slot.off(0.02, 0.08), None);
     }
 }

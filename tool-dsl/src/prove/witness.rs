@@ -14,7 +14,7 @@ use crate::regionalise::outline::{Segment, stations};
 const SPREAD: usize = 10_000;
 /// Points on each piece of a profile, and how far beside them it is looked, as a part of the tool's size.
 const STATIONS: usize = 8;
-const BESIDE: f64 = 1e-4;
+pub(super) const BESIDE: f64 = 1e-4;
 
 /// Asks of points what is felt there.
 pub(super) struct Witness<'t> {

@@ -14,7 +14,7 @@ use super::range::Ranges;
 use super::root::Forms;
 use super::rounding::Errors;
 use super::slope::Slopes;
-use super::witness::Witness;
+use super::witness::{BESIDE, Witness};
 use super::{Border, Certificate, FEW, RegionFacts, SMALL, Seen, TOLERANCE, Undecided};
 use crate::Checked;
 use crate::domain::Domain;
@@ -423,7 +423,7 @@ impl<'t> Survey<'t> {
         if self.feet.is_none() || !self.undecided.is_empty() {
             return 0.0;
         }
-        let off = Profile::new(&section.outline, self.size).off(slack).filter(|_| ends);
+        let off = Profile::new(&section.outline).off(slack, BESIDE * self.size).filter(|_| ends);
         off.unwrap_or_else(|| {
             self.undecided.push(Undecided { cell: self.tool.extent.cell(), what: what() });
             0.0
