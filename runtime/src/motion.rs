@@ -1,6 +1,6 @@
 //! How a tool goes from one pose to another.
 
-use crate::pose::Pose;
+use crate::pose::{Pose, orthonormal};
 use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// A tool's motion from one pose to another at even speed, the tip along a straight line.
@@ -62,6 +62,7 @@ impl Motion {
             Some(second) => Matrix3::from_columns(&[second.cross(&first), *second, first]),
             None => *from.rotation(),
         };
+        let start = orthonormal(start);
         Ok(Motion { tip: from.tip(), way, start, frame: None, angle: size.atan2(cosine) })
     }
 
@@ -107,7 +108,7 @@ impl Motion {
         Ok(Motion {
             tip: from.tip(),
             way: to.tip() - from.tip(),
-            start: from.rotation() * columns,
+            start: orthonormal(from.rotation() * columns),
             frame: Some(columns.transpose()),
             angle: turn,
         })
@@ -125,8 +126,8 @@ impl Motion {
         let columns = Matrix3::from_columns(&[cosine * x - sine * z, y, cosine * z + sine * x]);
         let tip = self.tip + part * self.way;
         match &self.frame {
-            None => Pose::turned(columns, tip),
-            Some(frame) => Pose::spun(columns * frame, tip),
+            None => Pose::turned(columns, tip, false),
+            Some(frame) => Pose::turned(columns * frame, tip, true),
         }
     }
 
@@ -187,8 +188,8 @@ mod tests {
             judge(&from, &Pose::from_axis(tip, nudged).expect("an axis"));
             judge(&from, &Pose::from_axis(tip + from.axis() * uniform(), axis).expect("an axis"));
         }
-        // What a certifier counts on. Built on rounding along the axis it was twenty.
-        assert!(worst <= 5.0 * f64::EPSILON, "{worst:e}");
+        // 6u of the rotation, and 3u of its judge. Built on rounding along the axis it was forty.
+        assert!(worst <= 4.5 * f64::EPSILON, "{worst:e}");
     }
 
     /// Against nalgebra's own interpolation of quaternions; short turns, long ones, and nearly half a turn.
@@ -220,7 +221,7 @@ mod tests {
             let about = motion.turns_about();
             assert!((pose.rotation() * about - from.rotation() * about).norm() < 4e-15);
         }
-        assert!(rotations <= 5.0 * f64::EPSILON, "{rotations:e}");
+        assert!(rotations <= 4.5 * f64::EPSILON, "{rotations:e}");
         assert!(ends < 8.0 * f64::EPSILON && worst < 1e-14, "{ends:e} {worst:e}");
     }
 

@@ -17,10 +17,9 @@ use super::{Certifier, penetration};
 use crate::motion::Motion;
 use crate::tool::{Card, Shape};
 
-/// How far a place is known on a way, in the tool's unit: rounding grows with the way, and with a turn of more than the
-/// axis.
+/// Returns the error bound of a point of the tool on a motion, in the tool's unit: `rounding` derives it.
 pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
-    let turned = if motion.is_full() { setting.error } else { 0.125 * setting.error };
+    let turned = if motion.is_full() { setting.error } else { 0.5 * setting.error };
     setting.error + turned + rounding::far(motion.way().norm() / setting.length)
 }
 

@@ -1,6 +1,6 @@
 //! How far rounding takes what is computed in doubles.
 //!
-//! `u` is half of `ε`, `S` how far the tool and the circles of its arcs reach, along the axis or away from it, `P` the
+//! `ε = 2⁻⁵²`, and `u` is half of it, `S` how far the tool and the circles of its arcs reach, along the axis or away from it, `P` the
 //! largest extent of the part, both in the tool's unit. No place of the tool is farther than `√2 S` from its tip. Poses and meshes are taken as given: their doubles are exact. Only triangles that
 //! reach the tool count, so that no corner is farther from the tip than `M = √2 S + √3 P`, and no edge longer
 //! than `W = √3 P`. Sums of three products err by 3u of the sum of their sizes (Higham, *Accuracy and
@@ -11,9 +11,9 @@
 //! |---|--:|
 //! | a corner from the tip: three differences | 1 uM |
 //! | the factors of the rotation by the unit of length: 2u each | 4 uM |
-//! | the rotation: `RᵀR` is the identity to 10u in each entry ([`Pose`](crate::Pose), [`Motion`](crate::Motion)) | 16 uM |
+//! | the rotation: `RᵀR` is the identity to 6u in each entry ([`Pose`](crate::Pose) derives it), so it is within 9u of one | 9 uM |
 //! | its product with the corner: three sums of three products | 6 uM |
-//! | **a corner in the tool's frame** | **27 uM** |
+//! | **a corner in the tool's frame** | **20 uM** |
 //! | an edge from its corners, and the place on it at `t ≤ 1` | 2 uW + 1 uM |
 //! | its parts along and across the way that it goes on the level | 7 uM |
 //! | how far it has gone there, and its distance from the axis | 3 uW + 3 uM |
@@ -25,14 +25,15 @@
 //! | the distance from it | 14 uS |
 //!
 //! A triangle whose corners are moved has every place moved by no more than these, and depth changes by no
-//! more than the way. An upper bound has all of these errors, `68 uM + 5 uW + 18 uS`, which is less than
-//! `115 uS + 127 uP`. [`place`] allows 128 u for both.
+//! more than the way. An upper bound has all of these errors, `61 uM + 5 uW + 18 uS`, which is less than
+//! `105 uS + 115 uP`. [`place`] allows 128 u for both.
 //!
-//! **Motions.** A motion is that of its stored start, frame and way. The sine and cosine of a pose's angle err by 3u each,
-//! as `part · angle` is rounded too, and its columns, sums of two products, by another 3u: by norms a place errs by 8 uM, less
-//! than `12 uS + 14 uP`, an eighth of [`place`] (128 u of each). With spin the product with the frame adds 12u for the frame,
-//! 9u for its start and 9u for sums of three products, and the step toward the nearest rotation changes a pose by no more than is
-//! wrong with it: 51 uM in all, less than `73 uS + 89 uP`. A whole [`place`] is allowed for that.
+//! **Motions.** A motion turns by the exact fraction of its stored angle, from the rotation nearest to its stored start. By norms: a
+//! matrix whose `RᵀR` is the identity to 6u in each entry (every start, frame and pose) is within 9u of a rotation; an
+//! angle of less than half a turn, rounded, with its sine and cosine adds 5u, columns that are sums of two products 4u, and the
+//! step toward the nearest rotation 7u of its own. That is 25 uM, less than `36 uS + 44 uP`: half of [`place`], which has 128 u of
+//! each. With spin the frame adds 9u and its product, sums of three, another 9u: 43 uM, less than `61 uS + 75 uP`. A whole [`place`] is allowed
+//! for that.
 //!
 //! **Meridians.** The cross product of two edges `e` and `f` errs by 6u of `|e| |f|`. Of the two shorter
 //! edges that is no more than the shortest, `s`, times the longest; so the normal is off by an angle

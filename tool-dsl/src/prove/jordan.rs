@@ -29,37 +29,34 @@ pub(super) struct Profile {
 
 impl Profile {
     pub(super) fn new(outline: &[Segment]) -> Profile {
-        let pieces: Vec<Piece> = outline.iter().map(Piece::new).collect();
-        let mirrored: Vec<Piece> = pieces.iter().map(Piece::mirrored).collect();
-        let diameters = pieces.iter().filter_map(|piece| Some(2.0 * piece.circle?.1));
+        let mirrored: Vec<Segment> = outline.iter().map(Segment::mirrored).collect();
+        let diameters = outline.iter().filter_map(|piece| Some(2.0 * piece.round()?.1));
         let mut narrowest = diameters.fold(f64::INFINITY, f64::min);
-        let last = pieces.len().saturating_sub(1);
-        for (index, piece) in pieces.iter().enumerate() {
-            for (other, own) in pieces.iter().enumerate().skip(index + 1) {
+        let last = outline.len().saturating_sub(1);
+        for (index, piece) in outline.iter().enumerate() {
+            for (other, own) in outline.iter().enumerate().skip(index + 1) {
                 let joint = (other == index + 1).then_some([1, 0]);
-                narrowest = narrowest.min(piece.faces(own, joint.as_slice()));
+                narrowest = narrowest.min(facing(piece, own, joint.as_slice()));
             }
-            // The first piece and the last one go on as their own mirror images.
+            // The first piece and the last one go on as their own mirror images, which run the other way.
             for (other, image) in mirrored.iter().enumerate().skip(index) {
-                let ends = [(index == 0).then_some([0, 0]), (index == last).then_some([1, 1])];
+                let ends = [(index == 0).then_some([0, 1]), (index == last).then_some([1, 0])];
                 let joints: Vec<_> =
                     ends.into_iter().flatten().filter(|_| other == index).collect();
-                narrowest = narrowest.min(piece.faces(image, &joints));
+                narrowest = narrowest.min(facing(piece, image, &joints));
             }
         }
-        // At its ends on the axis the profile goes on as its mirror image.
-        let joints = pieces.windows(2).map(|pair| [pair[0].tangents[1], pair[1].tangents[0]]);
-        let ends = [pieces.first().map(|p| p.tangents[0]), pieces.last().map(|p| p.tangents[1])];
-        let [low, high] = ends.map(|end| end.map(|[d, z]| [[d, -z], [d, z]]));
-        let high = high.map(|[before, after]| [after, before]);
-        let sharpest = joints.chain(low).chain(high).map(|[before, after]| {
+        // The whole curve, once around.
+        let around = || outline.iter().chain(mirrored.iter().rev());
+        let sharpest = around().zip(around().cycle().skip(1)).map(|(before, after)| {
+            let [before, after] = [before.tangent(true), after.tangent(false)];
             let turn = cross(before, after).atan2(dot(before, after));
             (0.5 * turn.min(0.0)).cos()
         });
         Profile { narrowest, sharpest: sharpest.fold(1.0, f64::min) }
     }
 
-    /// Returns how far the surface of the solid may be from the nearest place of the profile, if depth is off by no more
+    /// Returns how far the surface of the solid may be from the nearest point of the profile, if depth is off by no more
     /// than `slack` where the solid ends, and points `beside` the profile tell what is solid; `None` where that does not show
     /// that the profile encloses the solid.
     pub(super) fn off(&self, slack: f64, beside: f64) -> Option<f64> {
@@ -68,125 +65,50 @@ impl Profile {
     }
 }
 
-/// A piece of a profile or of its mirror image.
-struct Piece {
-    ends: [Point; 2],
-    /// The directions of travel at both ends.
-    tangents: [Point; 2],
-    /// Centre, radius, and whether the material is inside.
-    circle: Option<(Point, f64, bool)>,
-    /// Which side of the direction of travel the material is on: 1 for the left.
-    side: f64,
+/// Returns a lower bound of the distance between points of two segments that face each other. `joints` are the ends that
+/// the segments share, each as the end of the one and of the other.
+fn facing(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64 {
+    let mut least = f64::INFINITY;
+    for (side, from, to) in [(0, one, other), (1, other, one)] {
+        for (end, point) in from.ends().into_iter().enumerate() {
+            if !joints.iter().any(|joint| joint[side] == end) {
+                least = least.min(to.away(point));
+            }
+        }
+    }
+    let between = |segment: &Segment, p| segment.sector(p).iter().all(|side| *side >= 0.0);
+    for [p, q] in normals(one, other) {
+        let facing = dot(one.inward(p), other.inward(q)) < 0.0;
+        if facing && between(one, p) && between(other, q) {
+            least = least.min(norm(minus(p, q)));
+        }
+    }
+    least
 }
 
-impl Piece {
-    fn new(segment: &Segment) -> Piece {
-        let tangents = [false, true].map(|at_end| segment.tangent(at_end));
-        Piece { ends: segment.ends(), tangents, circle: segment.round(), side: 1.0 }
-    }
-
-    fn mirrored(&self) -> Piece {
-        let mirror = |[d, z]: Point| [-d, z];
-        let circle = self.circle.map(|(centre, radius, convex)| (mirror(centre), radius, convex));
-        let [ends, tangents] = [self.ends, self.tangents].map(|pair| pair.map(mirror));
-        Piece { ends, tangents, circle, side: -self.side }
-    }
-
-    /// Returns whether a point of the piece's line or circle is between its ends.
-    fn has(&self, p: Point) -> bool {
-        let [from, to] = self.ends;
-        match self.circle {
-            None => {
-                dot(minus(p, from), minus(to, from)) >= 0.0
-                    && dot(minus(p, to), minus(from, to)) >= 0.0
-            }
-            // An arc is of no more than half a turn: its places are on the far side of the chord.
-            Some(_) => {
-                let chord = minus(to, from);
-                cross(self.tangents[0], chord) * cross(chord, minus(p, from)) <= 0.0
-            }
+/// Returns the pairs of points, one of each line or circle, that lie on a common normal. Lines, and circles about one
+/// centre, have none: their ends are as near.
+fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
+    let on = |from: Point, direction: Point, by: f64| {
+        [from[0] + by * direction[0], from[1] + by * direction[1]]
+    };
+    match (one.round(), other.round()) {
+        (None, None) => Vec::new(),
+        (None, Some((centre, radius, _))) => {
+            let (start, along) = (one.ends()[0], one.tangent(false));
+            let foot = on(start, along, dot(minus(centre, start), along));
+            let across = [-along[1], along[0]];
+            [radius, -radius].map(|by| [foot, on(centre, across, by)]).to_vec()
         }
-    }
-
-    /// Returns the direction into the material at a place of the piece.
-    fn inward(&self, p: Point) -> Point {
-        match self.circle {
-            None => {
-                let [d, z] = self.tangents[0];
-                [-z * self.side, d * self.side]
+        (Some(_), None) => normals(other, one).into_iter().map(|[p, q]| [q, p]).collect(),
+        (Some((a, r, _)), Some((b, s, _))) => {
+            let apart = norm(minus(b, a));
+            if apart == 0.0 {
+                return Vec::new();
             }
-            Some((centre, radius, convex)) => {
-                let way = if convex { minus(centre, p) } else { minus(p, centre) };
-                way.map(|part| part / radius)
-            }
-        }
-    }
-
-    /// Returns the distance of a point from the piece.
-    fn away(&self, p: Point) -> f64 {
-        let [from, to] = self.ends;
-        let ends = norm(minus(p, from)).min(norm(minus(p, to)));
-        let foot = match self.circle {
-            None => {
-                let along = self.tangents[0];
-                let part = dot(minus(p, from), along);
-                [from[0] + part * along[0], from[1] + part * along[1]]
-            }
-            Some((centre, radius, _)) => {
-                let out = minus(p, centre);
-                let far = norm(out);
-                if far == 0.0 {
-                    return radius;
-                }
-                [centre[0] + out[0] * radius / far, centre[1] + out[1] * radius / far]
-            }
-        };
-        if self.has(foot) { ends.min(norm(minus(p, foot))) } else { ends }
-    }
-
-    /// Returns the least distance of places of two pieces that face each other. `joints` are the ends that they share, each
-    /// as the end of the one and of the other.
-    fn faces(&self, other: &Piece, joints: &[[usize; 2]]) -> f64 {
-        let mut least = f64::INFINITY;
-        for (side, one, another) in [(0, self, other), (1, other, self)] {
-            for end in [0, 1] {
-                if !joints.iter().any(|joint| joint[side] == end) {
-                    least = least.min(another.away(one.ends[end]));
-                }
-            }
-        }
-        for [p, q] in self.normals(other) {
-            let facing = dot(self.inward(p), other.inward(q)) < 0.0;
-            if facing && self.has(p) && other.has(q) {
-                least = least.min(norm(minus(p, q)));
-            }
-        }
-        least
-    }
-
-    /// Returns the pairs of places, one of each line or circle, that are on a common normal. Of two lines, and of circles
-    /// about one centre, ends are as near.
-    fn normals(&self, other: &Piece) -> Vec<[Point; 2]> {
-        let on =
-            |centre: Point, way: Point, by: f64| [centre[0] + by * way[0], centre[1] + by * way[1]];
-        match (self.circle, other.circle) {
-            (None, None) => Vec::new(),
-            (None, Some((centre, radius, _))) => {
-                let along = self.tangents[0];
-                let foot = on(self.ends[0], along, dot(minus(centre, self.ends[0]), along));
-                let across = [-along[1], along[0]];
-                [radius, -radius].map(|by| [foot, on(centre, across, by)]).to_vec()
-            }
-            (Some(_), None) => other.normals(self).into_iter().map(|[p, q]| [q, p]).collect(),
-            (Some((a, r, _)), Some((b, s, _))) => {
-                let apart = norm(minus(b, a));
-                if apart == 0.0 {
-                    return Vec::new();
-                }
-                let way = minus(b, a).map(|part| part / apart);
-                let pairs = [[r, s], [r, -s], [-r, s], [-r, -s]];
-                pairs.map(|[r, s]| [on(a, way, r), on(b, way, s)]).to_vec()
-            }
+            let direction = minus(b, a).map(|part| part / apart);
+            let pairs = [[r, s], [r, -s], [-r, s], [-r, -s]];
+            pairs.map(|[r, s]| [on(a, direction, r), on(b, direction, s)]).to_vec()
         }
     }
 }

@@ -126,6 +126,24 @@ impl Segment {
         Segment::new([self.to.clone(), self.from.clone()], circle, self.surface, self.span)
     }
 
+    /// The mirror image in the axis, walked so that the material stays on the left.
+    pub(crate) fn mirrored(&self) -> Segment {
+        let mirror = |[d, z]: &Place| [-d, z.clone()];
+        let circle = self.circle.clone();
+        let circle = circle.map(|circle| Circle { centre: mirror(&circle.centre), ..circle });
+        Segment::new([mirror(&self.to), mirror(&self.from)], circle, self.surface, self.span)
+    }
+
+    /// The unit direction into the material at a point of the piece's line or circle.
+    pub(crate) fn inward(&self, p: Point) -> Point {
+        match self.flat.circle {
+            None => [-self.flat.along[1], self.flat.along[0]],
+            Some((centre, _, convex)) => {
+                unit(if convex { minus(centre, p) } else { minus(p, centre) })
+            }
+        }
+    }
+
     /// The direction of travel at its start or end.
     pub(crate) fn tangent(&self, at_end: bool) -> Point {
         let Some((centre, _, convex)) = self.flat.circle else { return self.flat.along };
@@ -295,18 +313,14 @@ pub(crate) fn stations(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
     (0..count)
         .map(|k| {
             let part = (k as f64 + 0.5) / count as f64;
-            match segment.flat.circle {
-                None => {
-                    let along = segment.flat.along;
-                    let at = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
-                    [at, [-along[1], along[0]]]
-                }
-                Some((centre, radius, convex)) => {
+            let at = match segment.flat.circle {
+                None => [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])),
+                Some((centre, radius, _)) => {
                     let (sin, cos) = (start + part * turn).sin_cos();
-                    let at = [centre[0] + radius * cos, centre[1] + radius * sin];
-                    [at, if convex { [-cos, -sin] } else { [cos, sin] }]
+                    [centre[0] + radius * cos, centre[1] + radius * sin]
                 }
-            }
+            };
+            [at, segment.inward(at)]
         })
         .collect()
 }
