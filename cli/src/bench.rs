@@ -1,74 +1,130 @@
-//! Run time against error, as words: which scenes, rows as they come, a page at the end.
+//! `touchoff bench`: run time against error of one part, tool and path. Clouds of more and more points are judged by what is
+//! certified of the triangles, and by a cloud with more points than any of them.
 
-use crate::arguments::{ALL_SCENES, Bench};
+use crate::arguments::Bench;
 use crate::failure::Failure;
 use crate::files::Found;
-use crate::output::{Output, refuse_inputs, unwritable};
+use crate::output::Output;
 use crate::program;
+use nalgebra::Vector3;
+use serde::Serialize;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path as File;
+use std::time::Instant;
+use touchoff::certify::{Certifier, Facets};
 use touchoff::mesh::Shape;
-use touchoff::{AtomicFile, Unit};
-use touchoff_tests::measure::bench::{self, Own, Plan, Row};
+use touchoff::scenes::{Path, tube};
+use touchoff::{Cloud, Mesh, Part, Pose, Probe, Tool, Unit, Wrench};
 
-/// Measures, and prints a row at a time.
+/// Points of the clouds, and of the one whose forces the others are judged by.
+const POINTS: [usize; 6] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000];
+const REFERENCE: usize = 1_000_000;
+/// The same of a quick run.
+const QUICK: usize = 3;
+const QUICK_REFERENCE: usize = 100_000;
+/// Tolerances of certified depth, as fractions of the tool's length or diameter.
+const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
+/// Poses that a path is thinned to.
+const POSES: usize = 1_000;
+
+/// What is measured.
+struct Case<'t> {
+    mesh: Mesh,
+    tool: &'t dyn Tool,
+    poses: Vec<Pose>,
+}
+
+/// The wrench at every pose, the sorted times of the queries, and the bound that is stated for depths.
+struct Answers {
+    wrenches: Vec<Wrench>,
+    times: Vec<u64>,
+    bound: Option<f64>,
+}
+
+/// A method: queries on a cloud, or certified depth.
+#[derive(Debug, Serialize)]
+struct Row {
+    method: &'static str,
+    /// Points of the cloud.
+    points: Option<usize>,
+    /// The tolerance of certified depth, in the part's unit.
+    tolerance: Option<f64>,
+    /// Times of single queries: the median, and what 99 of 100 do not exceed.
+    p50_ns: u64,
+    p99_ns: u64,
+    /// Errors of force and torque: root mean squares over the poses, relative to those of the reference.
+    err_force: Option<f64>,
+    err_torque: Option<f64>,
+    /// The largest error of a depth, or the widest interval, in the part's unit.
+    worst_depth: Option<f64>,
+    /// The bound that the method states for it.
+    bound_depth: Option<f64>,
+}
+
+/// Measures, and prints a row per method.
 pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
-    if let Some(folder) = &wanted.out {
-        let part = wanted.part.as_deref();
-        let own = part.map(name_of);
-        let scenes = scenes(wanted).into_iter().chain(own.as_deref());
-        let outputs: Vec<PathBuf> = bench::files(folder, scenes).collect();
-        let tool = wanted.tool.as_deref().map(Path::new);
-        let inputs = part.into_iter().chain(tool).chain(wanted.path.as_deref());
-        refuse_inputs(outputs.iter().map(PathBuf::as_path), inputs)?;
-        // Before minutes are spent: a folder that cannot be written is known now.
-        std::fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))?;
-        for output in &outputs {
-            AtomicFile::create(output).map_err(|source| unwritable(output, source))?;
-        }
+    let found = wanted.tool.as_ref().map(|name| Found::find(name, &wanted.given)).transpose()?;
+    if found.is_none() && !wanted.given.is_none() {
+        return Err(Failure::NothingToSet("name one with `--tool`"));
     }
-    let found = match &wanted.tool {
-        Some(name) => Some(Found::find(name, &wanted.given)?),
-        None if wanted.given.is_none() => None,
-        None => return Err(Failure::NothingToSet("name one with `--tool`")),
+    let case = match (&wanted.part, wanted.unit, &found, &wanted.path) {
+        (Some(part), Some(unit), Some(found), Some(path)) => own(part, unit, found.tool(), path)?,
+        _ => built_in(),
     };
-    let own = match (&wanted.part, wanted.unit, &found, &wanted.path) {
-        (Some(part), Some(unit), Some(found), Some(path)) => Some(own(part, unit, found, path)?),
-        _ => None,
-    };
-    let plan = if wanted.quick { Plan::quick(wanted.seed) } else { Plan::full(wanted.seed) };
+    let (points, reference) =
+        if wanted.quick { (&POINTS[..QUICK], QUICK_REFERENCE) } else { (&POINTS[..], REFERENCE) };
     let mut out = Output::lines();
     if !json {
-        writeln!(out, "{}", bench::head())?;
+        let (tool, unit) = (&case.tool.card().name, case.mesh.unit());
+        writeln!(
+            out,
+            "{tool} at {} poses, {} triangles",
+            case.poses.len(),
+            case.mesh.triangles().len()
+        )?;
+        writeln!(
+            out,
+            "method          points   tolerance   p50 µs   p99 µs    force   torque  depth ({unit})  bound ({unit})"
+        )?;
     }
-    // A reader who has enough of it ends the rows, not the measurement of a page.
-    let mut failed = None;
-    let mut print = |row: Row| {
-        if failed.is_none() {
-            let line = if json { row.json() } else { bench::line(&row) };
-            failed = writeln!(out, "{line}").and_then(|()| out.flush()).err();
+    let card = case.tool.card();
+    let [low, high] = card.reach();
+    let size = (high - low).max(2.0 * card.radius()) * card.unit.to(case.mesh.unit());
+    let facets = Facets::new(&case.mesh);
+    let certifier = Certifier::new(&facets, case.tool);
+    let certified = match certifier {
+        Ok(mut certifier) => TOLERANCES
+            .map(|part| certified(&case, &mut certifier, part * size))
+            .into_iter()
+            .collect::<Vec<_>>(),
+        Err(refused) => {
+            say!("{refused}; depths are judged by the reference cloud");
+            Vec::new()
         }
     };
-    let measured = bench::measure(&scenes(wanted), own, &plan, &mut print)?;
-    if let Some(folder) = &wanted.out {
-        bench::write(folder, &measured, &plan, &command(wanted))
-            .map_err(|source| unwritable(folder, source))?;
+    let truth = case.wrenches(reference, wanted.seed)?.wrenches;
+    let depths: Vec<f64> = match certified.last() {
+        Some((_, depths)) => depths.clone(),
+        None => truth.iter().map(Wrench::depth).collect(),
+    };
+    for count in points {
+        let row = case.cloud(*count, wanted.seed, (&truth, &depths))?;
+        print(&mut out, &row, json)?;
     }
-    failed.map_or(Ok(()), |error| Err(error.into()))
+    for (row, _) in &certified {
+        print(&mut out, row, json)?;
+    }
+    Ok(())
 }
 
-/// The scenes that are meant.
-fn scenes(wanted: &Bench) -> Vec<&str> {
-    let said = wanted.scene.iter().map(String::as_str);
-    let all = wanted.scene.iter().any(|word| word == ALL_SCENES);
-    if all || (wanted.scene.is_empty() && wanted.part.is_none()) {
-        return bench::scenes();
-    }
-    said.collect()
+/// The tube and the tool of the thesis's figures.
+fn built_in() -> Case<'static> {
+    let tool = tools_library::find("Fig73Exact").unwrap_or(tools_library::TOOLS[0]);
+    let poses = (0..POSES).map(|k| Path::Outside.pose(k, POSES)).collect();
+    Case { mesh: tube(), tool, poses }
 }
 
-fn own<'t>(part: &Path, unit: Unit, found: &'t Found, path: &Path) -> Result<Own<'t>, Failure> {
-    let tool = found.tool();
+fn own<'t>(part: &File, unit: Unit, tool: &'t dyn Tool, path: &File) -> Result<Case<'t>, Failure> {
     let program = program::read(path, tool.card(), unit)?;
     let file = part.display().to_string();
     let Shape::Mesh(mesh) = Shape::read(part, unit)? else {
@@ -77,40 +133,115 @@ fn own<'t>(part: &Path, unit: Unit, found: &'t Found, path: &Path) -> Result<Own
     for finding in mesh.survey().findings() {
         say!("{file}: {finding}");
     }
-    let name = name_of(part);
-    let poses = program.stops.iter().map(|stop| stop.pose).collect();
-    let compiled = matches!(found, Found::Compiled(_));
-    Ok(Own { mesh, name, tool, compiled, poses })
+    let step = program.stops.len().div_ceil(POSES).max(1);
+    let poses = program.stops.iter().step_by(step).map(|stop| stop.pose).collect();
+    Ok(Case { mesh, tool, poses })
 }
 
-/// The name of a part's scene.
-fn name_of(part: &Path) -> String {
-    part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy().into_owned())
+impl Case<'_> {
+    /// Asks a cloud of so many points at every pose.
+    fn wrenches(&self, points: usize, seed: u64) -> Result<Answers, Failure> {
+        let part = Part::new(&Cloud::blue(&self.mesh, points, seed)?, self.mesh.survey());
+        let mut probe = Probe::new(&part, self.tool);
+        let (wrenches, times) = timed(&self.poses, |pose| probe.wrench(pose));
+        Ok(Answers { wrenches, times, bound: probe.unseen() })
+    }
+
+    /// Measures a cloud beside the true forces and depths.
+    fn cloud(
+        &self,
+        points: usize,
+        seed: u64,
+        (truth, depths): (&[Wrench], &[f64]),
+    ) -> Result<Row, Failure> {
+        let Answers { wrenches: found, times, bound } = self.wrenches(points, seed)?;
+        let error = |of: fn(&Wrench) -> Vector3<f64>| {
+            let squares = |wrenches: &mut dyn Iterator<Item = Vector3<f64>>| {
+                wrenches.map(|part| part.norm_squared()).sum::<f64>()
+            };
+            let off = squares(&mut found.iter().zip(truth).map(|(a, b)| of(a) - of(b)));
+            let all = squares(&mut truth.iter().map(of));
+            (all > 0.0).then(|| (off / all).sqrt())
+        };
+        let worst = found.iter().zip(depths).map(|(a, depth)| (a.depth() - depth).abs());
+        Ok(Row {
+            method: "cloud",
+            points: Some(points),
+            tolerance: None,
+            p50_ns: part(&times, 0.5),
+            p99_ns: part(&times, 0.99),
+            err_force: error(|wrench| wrench.force),
+            err_torque: error(|wrench| wrench.torque),
+            worst_depth: Some(worst.fold(0.0, f64::max)),
+            bound_depth: bound,
+        })
+    }
 }
 
-/// The command that measures the same, with names of files in the place of paths.
-fn command(wanted: &Bench) -> String {
-    let name = |path: &Path| path.file_name().map_or(String::new(), |n| n.to_string_lossy().into());
-    let mut words = vec!["touchoff bench".to_owned()];
-    if wanted.quick {
-        words.push("--quick".to_owned());
+/// Measures certified depth, and returns the middles of its intervals.
+fn certified(case: &Case<'_>, certifier: &mut Certifier<'_>, tolerance: f64) -> (Row, Vec<f64>) {
+    let (found, times) = timed(&case.poses, |pose| certifier.deepest(pose, tolerance).depth);
+    let row = Row {
+        method: "certified",
+        points: None,
+        tolerance: Some(tolerance),
+        p50_ns: part(&times, 0.5),
+        p99_ns: part(&times, 0.99),
+        err_force: None,
+        err_torque: None,
+        worst_depth: Some(found.iter().map(|[low, high]| high - low).fold(0.0, f64::max)),
+        bound_depth: Some(tolerance),
+    };
+    (row, found.into_iter().map(|[low, high]| 0.5 * (low + high)).collect())
+}
+
+/// Asks at every pose, once each after some to warm up, and returns the answers and the sorted times.
+fn timed<R>(poses: &[Pose], mut ask: impl FnMut(&Pose) -> R) -> (Vec<R>, Vec<u64>) {
+    const WARM: usize = 50;
+    for pose in poses.iter().rev().take(WARM) {
+        ask(pose);
     }
-    words.push(format!("--seed {}", wanted.seed));
-    if !wanted.scene.is_empty() {
-        words.push(format!("--scene {}", wanted.scene.join(",")));
+    let mut times = Vec::with_capacity(poses.len());
+    let found = poses.iter().map(|pose| {
+        let start = Instant::now();
+        let found = ask(pose);
+        times.push(u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX));
+        found
+    });
+    let found = found.collect();
+    times.sort_unstable();
+    (found, times)
+}
+
+/// The time that a fraction of the queries do not exceed.
+fn part(times: &[u64], fraction: f64) -> u64 {
+    let last = times.len().saturating_sub(1);
+    times.get((fraction * last as f64).round() as usize).copied().unwrap_or_default()
+}
+
+fn print(out: &mut Output, row: &Row, json: bool) -> Result<(), Failure> {
+    if json {
+        serde_json::to_writer(&mut *out, row)?;
+        writeln!(out)?;
+    } else {
+        let text = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+        let percent =
+            |error: Option<f64>| text(error.map(|error| format!("{:.2} %", 100.0 * error)));
+        let length = |value: Option<f64>| text(value.map(|value| format!("{value:.2e}")));
+        writeln!(
+            out,
+            "{:<12}{:>10}{:>12}{:>9.2}{:>9.2}{:>9}{:>9}{:>12}{:>12}",
+            row.method,
+            text(row.points.map(|points| points.to_string())),
+            length(row.tolerance),
+            row.p50_ns as f64 / 1e3,
+            row.p99_ns as f64 / 1e3,
+            percent(row.err_force),
+            percent(row.err_torque),
+            length(row.worst_depth),
+            length(row.bound_depth),
+        )?;
     }
-    if let (Some(part), Some(unit), Some(tool), Some(path)) =
-        (&wanted.part, wanted.unit, &wanted.tool, &wanted.path)
-    {
-        let [part, path] = [part, path].map(|path| name(path));
-        words.push(format!(
-            "--part {part} --unit {} --tool {} --path {path}",
-            unit.word(),
-            tool.display()
-        ));
-    }
-    if let Some(folder) = &wanted.out {
-        words.push(format!("--out {}", folder.display()));
-    }
-    words.join(" ")
+    out.flush()?;
+    Ok(())
 }

@@ -22,9 +22,6 @@ impl Failure {
 /// The reason for which the program ends with an exit status other than 0.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
-    /// Run time against error could not be measured.
-    #[error(transparent)]
-    Bench(#[from] touchoff_tests::measure::bench::Failure),
     /// A cloud could not be made.
     #[error(transparent)]
     Cloud(#[from] CloudError),

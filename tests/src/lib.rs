@@ -1,8 +1,8 @@
-//! What the tests stand on: oracles that share no code with the project.
+//! Oracles that share no code with the project, and the scenes and tools that tests ask.
 
-pub mod measure;
+pub mod accuracy;
+pub mod fixtures;
+pub mod haptics;
+pub mod library;
 pub mod oracle;
-#[cfg(feature = "peers")]
-pub mod peers;
-pub mod plot;
-pub mod race;
+pub mod points;

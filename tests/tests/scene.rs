@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::scenes::Path;
 use touchoff::{Part, Pose, Probe, Scene, Tool, Unit, Wrench};
-use touchoff_tests::measure::kernels::{part, poses};
+use touchoff_tests::fixtures::{part, poses};
 
 fn fig73() -> &'static dyn Tool {
     tools_library::find("Fig73").expect("a tool of the library")

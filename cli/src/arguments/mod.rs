@@ -2,7 +2,6 @@
 
 pub(crate) mod postures;
 
-use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use nalgebra::Point3;
 use std::ffi::OsString;
@@ -60,10 +59,10 @@ pub(crate) enum Command {
     Path(Box<postures::Path>),
     /// Take points of a part, and save them to be felt later.
     Sample(Box<Sample>),
-    /// Measure run time against error: many ways to ask, from few points to a million.
+    /// Measure run time against error: clouds by their number of points, certified depth by its tolerance.
     ///
-    /// Prints a row a method and scene as it is measured: medians and 99th percentiles of single queries,
-    /// root mean squares of errors, the share of missed contacts.
+    /// Prints a row per method: median and 99th percentile of single queries, relative errors of force and torque
+    /// (root mean squares, beside a larger cloud), the largest error of a depth (beside certified depth) and its bound.
     Bench(Box<Bench>),
     /// List the compiled tools, or those of files.
     Tools {
@@ -315,19 +314,13 @@ pub(crate) struct Haptic {
 
 #[derive(Args)]
 pub(crate) struct Bench {
-    /// A sample of it, less than a minute long.
+    /// Fewer and smaller clouds: some seconds.
     #[arg(long)]
     pub(crate) quick: bool,
-    /// The same seed, the same clouds and placements.
+    /// The seed of the clouds.
     #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     pub(crate) seed: u64,
-    /// Only these scenes [default: all, or with `--part` none but that].
-    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', value_parser = PossibleValuesParser::new(scenes()))]
-    pub(crate) scene: Vec<String>,
-    /// Where the page `work-precision.md` goes, with its diagrams and rows.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// A part of your own: a mesh in STL, PLY or OBJ.
+    /// The part, a mesh in STL, PLY or OBJ [default: the tube of the figures, with its tool and path].
     #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "path"])]
     pub(crate) part: Option<PathBuf>,
     /// The part's unit: `mm`, `inch` or `m`.
@@ -342,16 +335,6 @@ pub(crate) struct Bench {
     #[arg(long, value_name = "FILE", requires = "part")]
     pub(crate) path: Option<PathBuf>,
 }
-
-/// The words for scenes, and that for all of them.
-fn scenes() -> Vec<&'static str> {
-    let mut words = touchoff_tests::measure::bench::scenes();
-    words.push(ALL_SCENES);
-    words
-}
-
-/// All scenes.
-pub(crate) const ALL_SCENES: &str = "all";
 
 /// A length that is not negative.
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -7,8 +7,8 @@ use touchoff::haptic::{Limits, Rendering, Scripted, Session, Settings};
 use touchoff::precision::{Double, Precision, Single};
 use touchoff::tool::{Interpreted, Senses};
 use touchoff::{Law, Part, Probe, Tool};
-use touchoff_tests::measure::haptics::wall::LIMITS;
-use touchoff_tests::measure::haptics::{block, upright};
+use touchoff_tests::haptics::wall::LIMITS;
+use touchoff_tests::haptics::{block, upright};
 
 // A cone that takes in all of a block as it goes down, a ring of its points in each cycle.
 touchoff::include_tool!("tests/allocations/cone.tool");

@@ -12,7 +12,7 @@ use touchoff::haptic::{
 };
 use touchoff::scenes::{Path, tube};
 use touchoff::{Law, Pose, Probe};
-use touchoff_tests::measure::kernels::{part, poses};
+use touchoff_tests::fixtures::{part, poses};
 
 #[global_allocator]
 static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use touchoff::haptic::{Coupling, Energy, Limits, Rendering, Scripted, Session, Settings};
 use touchoff::scenes::{Path, tube};
 use touchoff::{Law, Part, Probe};
-use touchoff_tests::measure::haptics::energy::{height, plane, tapping, tapping_at};
-use touchoff_tests::measure::haptics::tool;
-use touchoff_tests::measure::haptics::wall::LIMITS;
+use touchoff_tests::haptics::energy::{height, plane, tapping, tapping_at};
+use touchoff_tests::haptics::tool;
+use touchoff_tests::haptics::wall::LIMITS;
 
 const STRONG: Limits = Limits { force: 40.0, torque: 2000.0, ..LIMITS };
 

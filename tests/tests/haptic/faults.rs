@@ -2,8 +2,8 @@
 
 use touchoff::haptic::{Device, DeviceError, Limits, Push, Scripted, Session, Settings};
 use touchoff::{Law, Pose, PoseError, Probe};
-use touchoff_tests::measure::haptics::wall::LIMITS;
-use touchoff_tests::measure::haptics::{block, tool, upright};
+use touchoff_tests::haptics::wall::LIMITS;
+use touchoff_tests::haptics::{block, tool, upright};
 
 fn session(part: &touchoff::Part) -> Session<'_> {
     let probe = Probe::new(part, tool("Flat")).law(Law::Gradient);

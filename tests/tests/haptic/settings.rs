@@ -5,8 +5,8 @@ use touchoff::haptic::{
     Coupling, Fastest, Grip, Hand, Limits, Rendering, Session, SettingError, Settings, Tremor,
 };
 use touchoff::{Pose, Probe, Unit};
-use touchoff_tests::measure::haptics::wall::LIMITS;
-use touchoff_tests::measure::haptics::{block, tool, upright};
+use touchoff_tests::haptics::wall::LIMITS;
+use touchoff_tests::haptics::{block, tool, upright};
 
 const BAD: [f64; 4] = [0.0, -1.0, f64::NAN, f64::INFINITY];
 

@@ -2,7 +2,7 @@
 
 use touchoff::Law;
 use touchoff::haptic::Rendering;
-use touchoff_tests::measure::haptics::sheet::{pressed, sheet};
+use touchoff_tests::haptics::sheet::{pressed, sheet};
 
 /// On its side: the tip is never below the middle of the sheet, where the other surface would be nearer. The
 /// hand feels its grip of 0.2 N/mm and the coupling of 1 N/mm in a row, as far as it wants the tool below where

@@ -4,8 +4,8 @@ use nalgebra::{Point3, Vector3};
 use touchoff::haptic::{Axes, Grip, Hand, Limits, Push, Session, Settings, State};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Unit};
-use touchoff_tests::measure::haptics::tool;
-use touchoff_tests::measure::haptics::wall::LIMITS;
+use touchoff_tests::haptics::tool;
+use touchoff_tests::haptics::wall::LIMITS;
 
 const LIMITED: Limits = Limits { axes: Axes::Six, ..LIMITS };
 

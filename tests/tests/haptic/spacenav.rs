@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use touchoff::haptic::spacenav::{Flight, Spacenav};
 use touchoff::haptic::{Device, DeviceError};
 use touchoff::{Pose, Unit};
-use touchoff_tests::measure::haptics::upright;
+use touchoff_tests::haptics::upright;
 
 fn event(kind: i32, pushed: [i32; 6]) -> [u8; 32] {
     let mut bytes = [0; 32];

@@ -7,8 +7,8 @@ use touchoff::haptic::{
     watched,
 };
 use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::measure::haptics::wall::LIMITS;
-use touchoff_tests::measure::haptics::{block, tool, upright};
+use touchoff_tests::haptics::wall::LIMITS;
+use touchoff_tests::haptics::{block, tool, upright};
 
 fn session(part: &Part) -> Session<'_> {
     let probe = Probe::new(part, tool("Flat")).law(Law::Gradient);

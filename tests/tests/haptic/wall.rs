@@ -2,8 +2,8 @@
 //! spectral radius of two by two numbers.
 
 use touchoff::haptic::{Coupling, Grip, Rendering};
-use touchoff_tests::measure::haptics::block;
-use touchoff_tests::measure::haptics::wall::{DIRECT, LIMITS, Wall, theory};
+use touchoff_tests::haptics::block;
+use touchoff_tests::haptics::wall::{DIRECT, LIMITS, Wall, theory};
 
 #[test]
 fn it_is_stable_as_far_as_theory_says() {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::{Cloud, Part, Pose, Probe};
-use touchoff_tests::measure::accuracy::tools;
+use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Draw;
 use touchoff_tests::oracle::reference::{At, Reference};

@@ -7,12 +7,12 @@ use tools_library::{Barrel, Fig73Exact, UnitSphere};
 use touchoff::precision::{Double, Single};
 use touchoff::tool::Senses;
 use touchoff::{Law, Level, Pose, Probe, Unit};
-use touchoff_tests::measure::accuracy;
-use touchoff_tests::measure::points::points;
+use touchoff_tests::accuracy;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Draw;
 use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::points::points;
 
 /// The filter rules nothing out that is inside: without it each contact has the same bits.
 #[test]

@@ -4,8 +4,8 @@ use crate::compare::tools;
 use crate::{parts, poses};
 use nalgebra::{Matrix6, Point3, Rotation3, UnitQuaternion, Vector3, Vector6};
 use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
-use touchoff_tests::measure::haptics::{block, tool, upright};
-use touchoff_tests::measure::search::tool::read;
+use touchoff_tests::haptics::{block, tool, upright};
+use touchoff_tests::library::read;
 use touchoff_tests::oracle::Oracle;
 use touchoff_tests::oracle::draw::Draw;
 

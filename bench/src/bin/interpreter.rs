@@ -1,0 +1,81 @@
+//! How much slower a tool is that is loaded at run time than the same tool compiled: the same
+//! queries, interleaved pose by pose in one process. Prints a Markdown table.
+
+use std::path::Path as File;
+use std::time::Instant;
+use touchoff::scenes::{Path, tube};
+use touchoff::tool::{Interpreted, Tool};
+use touchoff::{Cloud, Part, Pose, Probe};
+use touchoff_bench::made::made;
+use touchoff_tests::library::library;
+
+/// Poses of a row; each is asked for once, so that nothing is learnt.
+const POSES: usize = 4_000;
+
+fn main() {
+    let mesh = tube();
+    let cloud = Cloud::random(&mesh, 20_000, 1).expect("the tube has a surface");
+    let part = Part::from_cloud(&cloud);
+    let command =
+        "cargo run --release -p touchoff-bench --bin interpreter > docs/measured/interpreter.md";
+    let head = made(command, &["runtime/src", "tool-dsl/src", "tools-library/tools"]);
+    println!(
+        "# What a tool costs that is loaded at run time
+
+{head}
+
+Wrenches at {POSES} poses along the tube of 20,000 points, each pose asked once of both, interleaved; median ns a query.
+The forces are equal to the bit.
+"
+    );
+    println!("| tool | path | contacts | compiled | interpreted | ratio |");
+    println!("|---|---|---|---|---|---|");
+    let mut ratios = Vec::new();
+    let only: Vec<String> = std::env::args().skip(1).collect();
+    let mut sources = library();
+    sources.retain(|source| {
+        only.is_empty() || only.iter().any(|name| File::new(&source.name).ends_with(name))
+    });
+    for source in sources {
+        let Ok(loaded) = Interpreted::parse(&source) else { continue };
+        let Some(compiled) = tools_library::find(&loaded.card().name) else { continue };
+        for path in [Path::Outside, Path::Inside] {
+            let (contacts, [fast, slow]) = measure(&part, [compiled, &loaded], path);
+            let ratio = slow / fast;
+            ratios.push(ratio);
+            let name = &loaded.card().name;
+            println!(
+                "| {name} | {} | {contacts:.1} | {fast:.0} | {slow:.0} | {ratio:.1} |",
+                path.name()
+            );
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    println!(
+        "\nMedian ratio {:.1}, worst {:.1}.",
+        ratios[ratios.len() / 2],
+        ratios[ratios.len() - 1]
+    );
+}
+
+/// Contacts on average, and the median time of each of two tools.
+fn measure(part: &Part, tools: [&dyn Tool; 2], path: Path) -> (f64, [f64; 2]) {
+    let mut probes = tools.map(|tool| Probe::new(part, tool));
+    let mut times = [Vec::with_capacity(POSES), Vec::with_capacity(POSES)];
+    let mut contacts = 0;
+    for k in 0..POSES {
+        let pose: Pose = path.pose(k, POSES);
+        let order = if k % 2 == 0 { [0, 1] } else { [1, 0] };
+        let mut forces = [None; 2];
+        for which in order {
+            let start = Instant::now();
+            let felt = probes[which].wrench(&pose);
+            times[which].push(start.elapsed().as_secs_f64() * 1e9);
+            contacts += felt.colliding;
+            forces[which] = Some(felt.force);
+        }
+        assert_eq!(forces[0], forces[1], "both do the same operations");
+    }
+    times.iter_mut().for_each(|times| times.sort_by(f64::total_cmp));
+    (contacts as f64 / (2 * POSES) as f64, times.map(|times| times[POSES / 2]))
+}

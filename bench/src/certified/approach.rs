@@ -1,0 +1,184 @@
+//! How deep a tool comes on its way by trying many times and places.
+//!
+//! Each time is asked as a pose: a triangle whose centre is shallower than the best by more than its size is
+//! left out, the others are sampled. From the best a search climbs in time and place at once.
+
+use super::brute::{Brute, GROUP, Point, Seen, nearest};
+use nalgebra::Point3;
+use touchoff::Pose;
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::draw::Draw;
+
+/// How many triangles of a pose are sampled, and how often each.
+const TRIANGLES: usize = 40;
+const SAMPLES: usize = 6;
+/// How many times are looked at more closely, how often, from how many the search climbs, and in how many steps.
+const CLOSER: usize = 5;
+const AGAIN: usize = 6;
+const STARTS: usize = 6;
+const STEPS: usize = 700;
+
+/// A tool's way, as it is meant.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Where it begins.
+    pub from: Pose,
+    /// Where it ends.
+    pub to: Pose,
+}
+
+impl Way {
+    /// The pose at a part of the way: Shoemake's formula for the axis.
+    ///
+    /// # Panics
+    /// If the axes are opposite.
+    pub fn pose(&self, t: f64) -> Pose {
+        let (a, b) = (self.from.axis(), self.to.axis());
+        let angle = self.angle();
+        let axis = if angle > 0.0 {
+            (((1.0 - t) * angle).sin() * a + (t * angle).sin() * b) / angle.sin()
+        } else {
+            a
+        };
+        let tip = (1.0 - t) * self.from.tip().coords + t * self.to.tip().coords;
+        Pose::from_axis(Point3::from(tip), axis).expect("axes that are not opposite")
+    }
+
+    /// By how much the axis turns.
+    pub fn angle(&self) -> f64 {
+        let (a, b) = (self.from.axis(), self.to.axis());
+        2.0 * (b - a).norm().atan2((b + a).norm())
+    }
+}
+
+/// A place on the way.
+#[derive(Clone, Copy, Debug)]
+pub struct Closest {
+    /// When.
+    pub t: f64,
+    /// The triangle that it lies on.
+    pub triangle: usize,
+    /// Where, in the part's frame.
+    pub point: Point,
+    /// How deep it is in the part's unit; below 0 how near.
+    pub depth: f64,
+}
+
+fn point(of: Point3<f64>) -> Point {
+    [of.x, of.y, of.z]
+}
+
+impl Brute<'_> {
+    fn felt(&self, seen: &Seen, p: Point) -> f64 {
+        self.depth(self.to_tool(seen, Point3::from(p))) * self.length
+    }
+
+    /// The deepest of samples at a time.
+    pub fn at(&self, way: &Way, t: f64, draw: &mut Draw) -> Closest {
+        let seen = self.seen(&way.pose(t));
+        let [radius, height] = self.oracle.extent();
+        let mut best = Closest { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
+        // No place of a ball is deeper.
+        let at_most = |(middle, reach): &(Point3<f64>, f64)| {
+            let p = self.to_tool(&seen, *middle);
+            let out = (p[0].hypot(p[1]) - radius).max(0.0);
+            let beyond = (p[2] - height).max(-p[2]).max(0.0);
+            reach - (out * out + beyond * beyond).sqrt() * self.length
+        };
+        let bounds = self.groups.iter().map(at_most).enumerate();
+        let mut groups: Vec<(usize, f64)> = bounds.collect();
+        groups.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut near = Vec::new();
+        for (group, bound) in groups {
+            if bound < best.depth {
+                break;
+            }
+            for id in GROUP * group..(GROUP * (group + 1)).min(self.balls.len()) {
+                let (middle, reach) = &self.balls[id];
+                if at_most(&self.balls[id]) < best.depth {
+                    continue;
+                }
+                let depth = self.felt(&seen, point(*middle));
+                near.push((depth + reach, id));
+                if depth > best.depth {
+                    best = Closest { t, triangle: id, point: point(*middle), depth };
+                }
+            }
+        }
+        near.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (bound, id) in near.into_iter().take(TRIANGLES) {
+            if bound < best.depth {
+                break;
+            }
+            let corners = self.mesh.triangle(id as u32).map(point);
+            let (tip, turn) = (way.pose(t).tip(), *way.pose(t).rotation());
+            let mut points = corners.to_vec();
+            for _ in 0..SAMPLES {
+                let mut across = || draw.between(-1.0, 1.0) * radius;
+                let (x, y) = (across(), across());
+                let z = draw.between(0.0, 1.0) * if draw.bits() & 1 == 0 { height } else { radius };
+                let inside = tip + turn * nalgebra::Vector3::new(x, y, z) * self.length;
+                points.push(nearest(point(inside), &corners));
+            }
+            for p in points {
+                let depth = self.felt(&seen, p);
+                if depth > best.depth {
+                    best = Closest { t, triangle: id, point: p, depth };
+                }
+            }
+        }
+        best
+    }
+
+    /// The deepest place of a whole way, of so many times; if `closely`, also of those beside the best of them.
+    pub fn closest(&self, way: &Way, times: u32, closely: bool, draw: &mut Draw) -> Closest {
+        let step = 1.0 / f64::from(times);
+        let middle = |k| (f64::from(k) + draw.between(0.0, 1.0)) * step;
+        let mut at: Vec<f64> = (0..times).map(middle).collect();
+        at.extend([0.0, 1.0]);
+        let mut found: Vec<Closest> = at.into_iter().map(|t| self.at(way, t, draw)).collect();
+        let deepest = |found: &mut Vec<Closest>| found.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+        deepest(&mut found);
+        for k in 0..if closely { CLOSER.min(found.len()) } else { 0 } {
+            for _ in 0..AGAIN {
+                let t = (found[k].t + draw.between(-step, step)).clamp(0.0, 1.0);
+                found.push(self.at(way, t, draw));
+            }
+        }
+        deepest(&mut found);
+        let starts = found.iter().take(if closely { STARTS } else { 1 });
+        let climbed = starts.map(|from| self.climb_on(way, *from, step, draw));
+        climbed.fold(found[0], |best, other| if other.depth > best.depth { other } else { best })
+    }
+
+    /// The deepest that a search in time and place reaches.
+    fn climb_on(&self, way: &Way, from: Closest, step: f64, draw: &mut Draw) -> Closest {
+        let corners = self.mesh.triangle(from.triangle as u32).map(point);
+        let mut best = from;
+        let (mut part, mut wide) =
+            (step, self.balls[from.triangle].1.min(self.length * self.oracle.extent()[0]));
+        let mut failed = 0;
+        for k in 0..STEPS {
+            if part < 1e-17 && wide < 1e-14 {
+                break;
+            }
+            let go = if k % 3 == 0 { 0.0 } else { part * draw.between(-1.0, 1.0) };
+            let t = (best.t + go).clamp(0.0, 1.0);
+            let aside = if k % 3 == 1 { 0.0 } else { wide };
+            let turn = draw.direction();
+            let p = nearest([0, 1, 2].map(|axis| best.point[axis] + aside * turn[axis]), &corners);
+            let depth = self.felt(&self.seen(&way.pose(t)), p);
+            if depth > best.depth {
+                best = Closest { t, point: p, depth, ..best };
+                failed = 0;
+                (part, wide) = ((1.3 * part).min(step), 1.3 * wide);
+            } else {
+                failed += 1;
+                if failed % 5 == 0 {
+                    (part, wide) = (0.6 * part, 0.6 * wide);
+                }
+            }
+        }
+        best
+    }
+}

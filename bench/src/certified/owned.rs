@@ -1,0 +1,136 @@
+//! How deep each surface of a tool is by trying many places, and by how much that is more than is allowed.
+
+use super::brute::{Brute, Point, distance, nearest};
+use touchoff::Pose;
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::draw::Draw;
+
+/// How many triangles of a pose are sampled at most, and how often each.
+const TRIANGLES: usize = 300;
+const SAMPLES: usize = 8;
+/// From how many samples the search climbs, and in how many steps.
+const STARTS: usize = 3;
+const STEPS: usize = 250;
+
+/// A place of a triangle, in the tool's frame and unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The triangle.
+    pub triangle: usize,
+    /// Where.
+    pub point: Point,
+    /// How deep, or by how much too deep, in the part's unit.
+    pub value: f64,
+}
+
+/// A tool's surfaces beside a part, each with how deep it may be.
+pub struct Owned<'a> {
+    /// What samples the triangles.
+    pub brute: &'a Brute<'a>,
+    /// The surfaces' names, in the card's order.
+    pub names: Vec<String>,
+    /// What they are allowed, in the part's unit; below 0 how far they have to keep.
+    pub allowed: Vec<f64>,
+}
+
+impl Owned<'_> {
+    /// How far a place is from a surface, in the part's unit.
+    pub fn away(&self, surface: usize, p: Point) -> f64 {
+        self.brute.oracle.away(&self.names[surface], p) * self.brute.length
+    }
+
+    /// How deep a place is, in the part's unit, if it is inside and the surface is the nearest.
+    pub fn depth(&self, surface: usize, p: Point) -> f64 {
+        let depth = self.brute.depth(p) * self.brute.length;
+        let mine = self.away(surface, p);
+        let nearest = (0..self.names.len()).all(|other| mine <= self.away(other, p));
+        if depth >= 0.0 && nearest { depth } else { f64::NEG_INFINITY }
+    }
+
+    /// By how much a place is deeper than is allowed, or nearer.
+    pub fn over(&self, p: Point) -> f64 {
+        let of = |surface: usize| {
+            let allowed = self.allowed[surface];
+            let deep = self.depth(surface, p) - allowed.max(0.0);
+            if allowed < 0.0 { deep.max(-self.away(surface, p) - allowed) } else { deep }
+        };
+        let most = (0..self.names.len()).map(of).filter(|over| !over.is_nan());
+        most.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Samples of the triangles near a pose, of no value yet.
+    pub fn samples(&self, pose: &Pose, draw: &mut Draw) -> Vec<Sample> {
+        let (brute, seen) = (self.brute, self.brute.seen(pose));
+        let [radius, height] = brute.oracle.extent();
+        let keep = self.allowed.iter().fold(0.0, |keep: f64, allowed| keep.max(-allowed));
+        let near = |id: &usize| {
+            let (middle, reach) = brute.balls[*id];
+            let (p, reach) = (brute.to_tool(&seen, middle), (reach + keep) / brute.length);
+            p[2] + reach >= 0.0 && p[2] - reach <= height && p[0].hypot(p[1]) <= radius + reach
+        };
+        let mut near: Vec<usize> = (0..brute.balls.len()).filter(near).collect();
+        while near.len() > TRIANGLES {
+            near.swap_remove(draw.bits() as usize % near.len());
+        }
+        let each = SAMPLES * (TRIANGLES / near.len().max(1)).clamp(1, 8);
+        let mut samples = Vec::new();
+        for triangle in near {
+            let corners = brute.triangle(&seen, triangle);
+            let mut take = |point| samples.push(Sample { triangle, point, value: f64::NAN });
+            corners.into_iter().for_each(&mut take);
+            for _ in 0..each {
+                let high = if draw.bits().is_multiple_of(2) { height } else { 2.0 * radius };
+                let mut across = || draw.between(-1.0, 1.0) * radius;
+                let inside = [across(), across(), draw.between(0.0, high)];
+                take(nearest(inside, &corners));
+            }
+        }
+        samples
+    }
+
+    /// The most of something that samples and a search from the best of them find.
+    pub fn most(
+        &self,
+        pose: &Pose,
+        samples: &[Sample],
+        value: impl Fn(Point) -> f64,
+        draw: &mut Draw,
+    ) -> Option<Sample> {
+        let valued = samples.iter().map(|sample| Sample { value: value(sample.point), ..*sample });
+        let mut valued: Vec<Sample> =
+            valued.filter(|sample| sample.value > f64::NEG_INFINITY).collect();
+        valued.sort_by(|a, b| b.value.total_cmp(&a.value));
+        valued.truncate(STARTS);
+        let climbed = valued.into_iter().map(|from| self.climb(pose, from, &value, draw));
+        climbed.max_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    fn climb(
+        &self,
+        pose: &Pose,
+        from: Sample,
+        value: impl Fn(Point) -> f64,
+        draw: &mut Draw,
+    ) -> Sample {
+        let triangle = self.brute.triangle(&self.brute.seen(pose), from.triangle);
+        let [a, b, c] = triangle;
+        let wide = distance(a, b).max(distance(b, c)).max(distance(c, a));
+        let (mut step, mut best, mut failed) = (wide.min(self.brute.oracle.extent()[0]), from, 0);
+        for _ in 0..STEPS {
+            let way = draw.direction();
+            let next = [0, 1, 2].map(|axis| best.point[axis] + step * way[axis]);
+            let point = nearest(next, &triangle);
+            let here = value(point);
+            if here > best.value {
+                (best, failed) = (Sample { point, value: here, ..best }, 0);
+                step *= 1.5;
+            } else {
+                failed += 1;
+                if failed % 4 == 0 {
+                    step *= 0.6;
+                }
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,365 @@
+//! Certified depths beside the largest of millions of samples that zoom in on the deepest places.
+//!
+//! Half of the samples are middles of triangles and of their halves. Next is always the piece that may have the deepest
+//! place, since depth changes by no more than so many times the way. About the deepest of these samples the others are
+//! drawn, in neighbourhoods that shrink from round to round until they are as small as rounding. The largest depth must
+//! not be above the upper bound, and should reach the lower one, which the search does not know.
+
+use super::subject::Subject;
+use super::{Worst, buried, poses};
+use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::fmt::Write;
+use touchoff::certify::{Certifier, Facets};
+use touchoff::{Mesh, Pose, Tool};
+use touchoff_tests::oracle::draw::Draw;
+
+/// A point of the tool's frame.
+type Point = [f64; 3];
+
+/// Places that are zoomed in on at first and at last.
+const PLACES: [usize; 2] = [48, 6];
+/// A neighbourhood's part of the one before.
+const SHRINK: f64 = 0.4;
+/// A tool and a part.
+pub struct Zoomed<'a> {
+    /// The part's name, for people.
+    pub part: &'a str,
+    /// The part.
+    pub mesh: &'a Mesh,
+    /// Its triangles in a tree.
+    pub facets: &'a Facets,
+    /// The tool.
+    pub tool: &'a dyn Tool,
+    /// The tool as the oracle knows it.
+    pub subject: &'a Subject,
+}
+
+/// The figures of a tool and a part. Lengths are parts of the tool's size.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    /// The tool.
+    pub tool: String,
+    /// The part.
+    pub part: String,
+    /// Poses that were asked about.
+    pub poses: usize,
+    /// Those at which a sample is inside the tool.
+    pub touching: usize,
+    /// All samples.
+    pub samples: u64,
+    /// By how much a sample is above the upper bound. More than rounding is a violation.
+    pub over: Worst,
+    /// By how much the samples fall short of the lower bound.
+    pub behind: Worst,
+    /// At how many poses they come near enough.
+    pub reached: usize,
+    /// The widest interval.
+    pub wide: Worst,
+    /// How many intervals are wider than the tolerance and rounding.
+    pub wider: usize,
+    /// Poses at which a sample is above the upper bound.
+    pub violations: Vec<String>,
+}
+
+/// A sample: its depth, its triangle, and two of its weights there.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    depth: f64,
+    triangle: usize,
+    at: [f64; 2],
+}
+
+/// A piece of a triangle whose middle was asked: no place of it is deeper than the bound.
+struct Piece {
+    bound: f64,
+    triangle: usize,
+    /// Two weights of each corner.
+    corners: [[f64; 2]; 3],
+}
+
+impl Ord for Piece {
+    fn cmp(&self, other: &Piece) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl PartialOrd for Piece {
+    fn partial_cmp(&self, other: &Piece) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Piece {
+    fn eq(&self, other: &Piece) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Piece {}
+
+impl Zoomed<'_> {
+    /// Asks about so many poses, with so many samples each.
+    ///
+    /// # Panics
+    /// If the tool is refused.
+    pub fn measure(&self, poses: usize, samples: u64, seed: u64) -> Row {
+        let mut draw = Draw::new(seed);
+        let card = self.tool.card();
+        let length = card.unit.to(self.mesh.unit());
+        let [radius, height] = self.subject.oracle().extent();
+        let size = radius.max(height) * length;
+        let [tolerance, near] = self.subject.tolerance(size);
+        let [low, high] = self.mesh.bounds();
+        let part = (high - low).norm() + low.coords.amax().max(high.coords.amax());
+        let rounding = 64.0 * f64::EPSILON * (size + part);
+        let mut certifier = Certifier::new(self.facets, self.tool).expect("a tool that is proved");
+        let (tool, part) = (card.name.to_string(), self.part.to_owned());
+        let mut row = Row { tool, part, poses, ..Row::default() };
+        for _ in 0..poses {
+            let pose = self.pose(length, &mut draw);
+            let [low, high] = certifier.deepest(&pose, tolerance).depth;
+            let (deepest, asked) = self.deepest(&pose, samples, &mut draw);
+            let found = (deepest * length).max(0.0);
+            row.samples += asked;
+            row.touching += usize::from(found > 0.0);
+            row.reached += usize::from(found >= low - near);
+            let text =
+                format!("{} in {}: [{low:e}, {high:e}], {found:e} at {pose:?}", row.tool, row.part);
+            row.over.see((found - high) / size, || text.clone());
+            row.behind.see((low - found) / size, || text.clone());
+            row.wide.see((high - low) / size, || text.clone());
+            row.wider += usize::from(high - low > 1.01 * tolerance + 8.0 * rounding);
+            if found > high + rounding {
+                row.violations.push(text);
+            }
+        }
+        row
+    }
+
+    /// A pose at which the tool is likely to touch the part.
+    fn pose(&self, length: f64, draw: &mut Draw) -> Pose {
+        if let Subject::Profile(nearest, _) = self.subject {
+            return poses::pose(self.mesh, nearest, length, draw);
+        }
+        // Some place of the tool is at some place of the part.
+        let [a, b, c] =
+            self.mesh.triangle((draw.bits() as usize % self.mesh.triangles().len()) as u32);
+        let (v, w) = (draw.between(0.0, 0.5), draw.between(0.0, 0.5));
+        let place = a + v * (b - a) + w * (c - a);
+        let [radius, height] = self.subject.oracle().extent();
+        let (d, way) = (draw.between(0.0, radius), draw.direction());
+        let inside = Vector3::new(d * way[0], d * way[1], draw.between(0.0, height)) * length;
+        let turn = loop {
+            let turn = [0; 4].map(|_| draw.between(-1.0, 1.0));
+            let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
+            if (0.1..=1.0).contains(&norm) {
+                break turn.map(|part| part / norm);
+            }
+        };
+        let turned = Pose::from_quaternion(Point3::origin(), turn).expect("a quaternion");
+        turned.shifted(place.coords - turned.rotation() * inside).expect("a place near the part")
+    }
+
+    /// The largest depth of samples in the tool's unit, and how many these are: none if no triangle is near.
+    fn deepest(&self, pose: &Pose, samples: u64, draw: &mut Draw) -> (f64, u64) {
+        let triangles = self.near(pose);
+        if triangles.is_empty() {
+            return (f64::NEG_INFINITY, 0);
+        }
+        let mut asked = 0;
+        let (mut best, mut reach) = self.halved(&triangles, samples / 2, &mut asked);
+        let [radius, height] = self.subject.oracle().extent();
+        let size = radius.max(height);
+        let rounds = ((1e-15 * size / reach).ln() / SHRINK.ln()).ceil().max(1.0) as u64;
+        for round in 0..rounds {
+            let each = (samples.saturating_sub(asked) / (rounds - round)) / best.len() as u64;
+            for sample in &mut best {
+                for _ in 0..each {
+                    self.beside(&triangles[sample.triangle], reach, sample, draw);
+                }
+            }
+            asked += each * best.len() as u64;
+            best.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+            best.truncate((best.len() * 3 / 4).max(PLACES[1]));
+            reach *= SHRINK;
+        }
+        (best[0].depth, asked)
+    }
+
+    /// The deepest middles of halved triangles, and how far the pieces reached at last.
+    fn halved(&self, triangles: &[[Point; 3]], count: u64, asked: &mut u64) -> (Vec<Sample>, f64) {
+        let mut best: Vec<Sample> = Vec::new();
+        let mut pieces = BinaryHeap::new();
+        for triangle in 0..triangles.len() {
+            let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+            for at in corners {
+                let depth = self.subject.depth(point(&triangles[triangle], at));
+                keep(&mut best, Sample { depth, triangle, at });
+            }
+            pieces.push(self.piece(triangles, triangle, corners, &mut best).0);
+            *asked += 4;
+        }
+        let mut reach = f64::INFINITY;
+        while let Some(piece) = pieces.pop()
+            && *asked < count
+            && piece.bound > best[0].depth
+        {
+            for half in halves(&triangles[piece.triangle], piece.corners) {
+                let (half, reaches) = self.piece(triangles, piece.triangle, half, &mut best);
+                reach = reaches;
+                if half.bound > best[0].depth {
+                    pieces.push(half);
+                }
+            }
+            *asked += 2;
+        }
+        let widest = self.subject.oracle().extent();
+        (best, (4.0 * reach).min(widest[0].max(widest[1])))
+    }
+
+    /// A piece of a triangle, its middle asked, and how far it reaches from there.
+    fn piece(
+        &self,
+        triangles: &[[Point; 3]],
+        triangle: usize,
+        corners: [[f64; 2]; 3],
+        best: &mut Vec<Sample>,
+    ) -> (Piece, f64) {
+        let at = [0, 1].map(|k| (corners[0][k] + corners[1][k] + corners[2][k]) / 3.0);
+        let middle = point(&triangles[triangle], at);
+        let depth = self.subject.depth(middle);
+        keep(best, Sample { depth, triangle, at });
+        let reaches = corners.map(|corner| distance(middle, point(&triangles[triangle], corner)));
+        let reach = reaches[0].max(reaches[1]).max(reaches[2]);
+        let steep = self.subject.steepest();
+        // Outside depth is the distance; only inside it may be steeper.
+        let bound = if depth < 0.0 { steep * (depth + reach) } else { depth + steep * reach };
+        (Piece { bound, triangle, corners }, reach)
+    }
+
+    /// The triangles whose boxes meet that of the tool, in its frame and unit.
+    fn near(&self, pose: &Pose) -> Vec<[Point; 3]> {
+        let length = self.tool.card().unit.to(self.mesh.unit());
+        let [radius, height] = self.subject.oracle().extent();
+        let back = pose.rotation().transpose();
+        let inside = |p: Point3<f64>| -> Point { (back * (p - pose.tip()) / length).into() };
+        let near = |corners: &[Point; 3]| {
+            let boxes = [[-radius, radius], [-radius, radius], [0.0, height]];
+            (0..3).all(|axis| {
+                let parts = corners.map(|corner| corner[axis]);
+                let low = parts[0].min(parts[1]).min(parts[2]);
+                let high = parts[0].max(parts[1]).max(parts[2]);
+                low <= boxes[axis][1] && high >= boxes[axis][0]
+            })
+        };
+        let ids = 0..self.mesh.triangles().len() as u32;
+        ids.map(|id| self.mesh.triangle(id).map(inside)).filter(near).collect()
+    }
+
+    /// A sample in a neighbourhood of another, which it replaces if it is deeper.
+    fn beside(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, draw: &mut Draw) {
+        let [a, b, c] = corners;
+        let step = |to: &Point| {
+            let way = [0, 1, 2].map(|k| to[k] - a[k]);
+            let long = way.iter().map(|part| part * part).sum::<f64>().sqrt();
+            if long > reach { reach / long } else { 1.0 }
+        };
+        let [v, w] = best.at;
+        let mut at = [
+            (v + step(b) * draw.between(-1.0, 1.0)).max(0.0),
+            (w + step(c) * draw.between(-1.0, 1.0)).max(0.0),
+        ];
+        let sum = at[0] + at[1];
+        if sum > 1.0 {
+            at = at.map(|part| part / sum);
+        }
+        let depth = self.subject.depth(point(corners, at));
+        if depth > best.depth {
+            *best = Sample { depth, at, ..*best };
+        }
+    }
+}
+
+/// Puts a sample among the deepest, which are in order.
+fn keep(best: &mut Vec<Sample>, sample: Sample) {
+    if best.len() < PLACES[0] || sample.depth > best[PLACES[0] - 1].depth {
+        let place = best.partition_point(|other| other.depth >= sample.depth);
+        best.insert(place, sample);
+        best.truncate(PLACES[0]);
+    }
+}
+
+/// The halves of a piece, cut through its longest side.
+fn halves(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64; 2]; 3]; 2] {
+    let places = corners.map(|corner| point(triangle, corner));
+    let long = [0, 1, 2].map(|k| distance(places[k], places[(k + 1) % 3]));
+    let k = (0..3).max_by(|a, b| long[*a].total_cmp(&long[*b])).unwrap_or(0);
+    let [a, b, c] = [0, 1, 2].map(|step| corners[(k + step) % 3]);
+    let middle = [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]));
+    [[a, middle, c], [middle, b, c]]
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    let way = [0, 1, 2].map(|k| b[k] - a[k]);
+    way.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+/// The point of a triangle with two of its weights.
+fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
+    [0, 1, 2].map(|k| a[k] + v * (b[k] - a[k]) + w * (c[k] - a[k]))
+}
+
+/// The rows as Markdown, those of tools inside blocks, and what was violated.
+///
+/// # Errors
+/// None that a text could have.
+pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::Error> {
+    let mut page =
+        "| tool | part | poses | in contact | worst over | worst behind | reached | widest | wider | violations |\n\
+                    |---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+            .to_owned();
+    for row in rows {
+        let [over, behind, wide] = [&row.over, &row.behind, &row.wide].map(|worst| worst.by);
+        writeln!(
+            page,
+            "| {} | {} | {} | {} | {over:.1e} | {behind:.1e} | {} | {wide:.1e} | {} | {} |",
+            row.tool,
+            row.part,
+            row.poses,
+            row.touching,
+            row.reached,
+            row.wider,
+            row.violations.len()
+        )?;
+    }
+    let sum = |of: fn(&Row) -> u64| rows.iter().map(of).sum::<u64>();
+    let poses = sum(|row| row.poses as u64);
+    let reached = sum(|row| row.reached as u64);
+    writeln!(
+        page,
+        "\n{poses} poses, {} of them in contact, {} samples; at {reached}, {:.1} %, they reach the lower bound; {} intervals are wider.\n",
+        sum(|row| row.touching as u64),
+        sum(|row| row.samples),
+        100.0 * reached as f64 / poses.max(1) as f64,
+        sum(|row| row.wider as u64)
+    )?;
+    page += "### Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
+             | tool | inside | verdict inside | cut | verdict touching | violations |\n|---|--:|--:|--:|--:|--:|\n";
+    for buried::Row { tool, inside, cut, violations } in blocks {
+        let [[a, b], [c, d]] = [inside, cut];
+        writeln!(page, "| {tool} | {a} | {b} | {c} | {d} | {} |", violations.len())?;
+    }
+    page += "\n### Violated by these\n\n";
+    let violated = rows.iter().flat_map(|row| &row.violations);
+    let violated: Vec<&String> =
+        violated.chain(blocks.iter().flat_map(|row| &row.violations)).collect();
+    if violated.is_empty() {
+        page += "Nothing.\n";
+    }
+    for violation in violated {
+        writeln!(page, "- {violation}")?;
+    }
+    Ok(page)
+}

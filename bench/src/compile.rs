@@ -1,0 +1,194 @@
+//! What a tool costs: the splits of its plan, the operations of its code, the time to compile it.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+use syn::visit::{self, Visit};
+use tool_dsl::expr::value::{At, Evaluator};
+use tool_dsl::plan::Tree;
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, compile, emit};
+use touchoff_tests::library::{folder, library};
+use touchoff_tests::oracle::draw::Draw;
+
+/// Points at which splits are counted.
+const TRIES: usize = 100_000;
+/// How close to the surface the shell's points are, as a part of the tool's largest radius.
+const SHELL: f64 = 0.02;
+
+/// Cutter, nut, holder and spindle: 30 segments.
+const ASSEMBLY: &str = r#"tool Assembly30 "12 mm bull nose end mill, ER32, HSK-A63, spindle nose" {
+    units mm;
+    mount "bull_nose.tool" as cutter;
+    mount "holders/er32.tool" as nut at z = 45;
+    mount "holders/hsk63.tool" as holder at z = 67.5;
+    mount "holders/spindle_a63.tool" as spindle at z = 131.5;
+}"#;
+
+/// Every tool of the library, and the assembly of 30 segments.
+///
+/// # Panics
+/// If the library's folder cannot be read.
+pub fn sources() -> Vec<Source> {
+    let mut sources = library();
+    sources.push(Source::new("Assembly30", ASSEMBLY).held_by(folder().join("assembly.tool")));
+    sources
+}
+
+/// Seconds from a text to its tokens, of several times.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// The best, which other work on the machine disturbs least.
+    pub best: f64,
+    /// The median.
+    pub median: f64,
+    /// The worst.
+    pub worst: f64,
+}
+
+/// Times how long a tool takes from its text to tokens.
+///
+/// # Panics
+/// If it has an error.
+pub fn times(source: &Source, count: usize) -> Times {
+    let mut all: Vec<f64> = (0..count.max(1))
+        .map(|_| {
+            let start = Instant::now();
+            let compiled = compile(source);
+            let tokens = emit::emit(&compiled.into_tool().expect("a tool of the library"));
+            let time = start.elapsed().as_secs_f64();
+            assert!(!tokens.is_empty());
+            time
+        })
+        .collect();
+    all.sort_by(f64::total_cmp);
+    Times { best: all[0], median: all[all.len() / 2], worst: all[all.len() - 1] }
+}
+
+/// What a tool is made of.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// The tool.
+    pub name: String,
+    /// Its regions.
+    pub regions: usize,
+    /// Segments of its profile, if it has one.
+    pub segments: Option<usize>,
+    /// Curves that bound regions, inside or outside.
+    pub curves: usize,
+    /// Tests in the tree of owners.
+    pub tests: usize,
+    /// Tests that one point meets, on average: within 2 % of the largest radius from the surface, and anywhere in the box.
+    pub splits: [f64; 2],
+    /// Operations of the code for lanes, by evaluator.
+    pub operations: BTreeMap<String, usize>,
+}
+
+/// Takes a tool to pieces.
+///
+/// # Panics
+/// If it has an error.
+pub fn parts(source: &Source) -> Parts {
+    let tool = compile(source).into_tool().expect("a tool of the library");
+    let regions = &tool.model.regions;
+    let pieces = regions.iter().filter(|region| !region.name.contains('/')).count();
+    Parts {
+        name: tool.model.name.clone(),
+        regions: regions.len(),
+        segments: tool.model.is_exact().then_some(pieces),
+        curves: tool.model.curves.len(),
+        tests: tool.plan.owner.tests(),
+        splits: splits(&tool),
+        operations: operations(&emit::rust(&tool)),
+    }
+}
+
+fn splits(tool: &Checked) -> [f64; 2] {
+    let mut tree = Walked::new(tool);
+    let mut draw = Draw::new(4);
+    let (radius, low, high) = (tool.extent.radius, tool.extent.low, tool.extent.high);
+    let shell = SHELL * radius;
+    // A step of the shell's thickness along d or z leaves the tool or enters it.
+    let steps = [[shell, 0.0], [-shell, 0.0], [0.0, shell], [0.0, -shell]];
+    let mut means = [(0, 0); 2];
+    for _ in 0..TRIES {
+        let [d, z] = [draw.between(0.0, 1.1 * radius), draw.between(low, high)];
+        let (inside, met) = tree.walk([d, z]);
+        let near = steps.iter().any(|s| tree.walk([(d + s[0]).abs(), z + s[1]]).0 != inside);
+        for (_, (count, sum)) in [near, true].iter().zip(&mut means).filter(|(counts, _)| **counts)
+        {
+            *count += 1;
+            *sum += met;
+        }
+    }
+    means.map(|(count, sum): (usize, usize)| sum as f64 / count.max(1) as f64)
+}
+
+/// The tree of owners, walked as the nested code does.
+struct Walked<'t> {
+    tool: &'t Checked,
+    curves: Evaluator<'t>,
+}
+
+impl<'t> Walked<'t> {
+    fn new(tool: &'t Checked) -> Walked<'t> {
+        let curves = tool.model.curves.iter().map(|curve| curve.value);
+        Walked { tool, curves: Evaluator::new(&tool.model.graph, curves) }
+    }
+
+    /// Whether a point is inside, and how many tests it meets.
+    fn walk(&mut self, [d, z]: [f64; 2]) -> (bool, usize) {
+        self.curves.set(At::meridian(d, z));
+        let (mut tree, mut met) = (&self.tool.plan.owner, 0);
+        loop {
+            match tree {
+                Tree::Leaf(owner) => return (owner.is_some(), met),
+                Tree::Split { curve, strict, below, above } => {
+                    met += 1;
+                    let value = self.curves.get(self.tool.model.curves[*curve].value);
+                    let holds = if *strict { value < 0.0 } else { value <= 0.0 };
+                    tree = if holds { below } else { above };
+                }
+            }
+        }
+    }
+}
+
+/// Counts arithmetic, comparisons and selects in each function for lanes.
+#[derive(Default)]
+struct Count(usize);
+
+impl<'ast> Visit<'ast> for Count {
+    fn visit_expr(&mut self, expr: &'ast syn::Expr) {
+        let one = match expr {
+            syn::Expr::Binary(_) => true,
+            // A literal's sign is none.
+            syn::Expr::Unary(unary) => !matches!(*unary.expr, syn::Expr::Lit(_)),
+            syn::Expr::MethodCall(call) => call.method != "of",
+            syn::Expr::Call(call) => {
+                !matches!(&*call.func, syn::Expr::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "of"))
+            }
+            _ => false,
+        };
+        self.0 += usize::from(one);
+        visit::visit_expr(self, expr);
+    }
+}
+
+fn operations(code: &str) -> BTreeMap<String, usize> {
+    struct Functions(BTreeMap<String, usize>);
+    impl<'ast> Visit<'ast> for Functions {
+        fn visit_impl_item_fn(&mut self, function: &'ast syn::ImplItemFn) {
+            let name = function.sig.ident.to_string();
+            if let Some(name) = name.strip_suffix("_lanes") {
+                let mut count = Count::default();
+                count.visit_block(&function.block);
+                self.0.insert(name.to_owned(), count.0);
+            }
+        }
+    }
+    let mut functions = Functions(BTreeMap::new());
+    if let Ok(file) = syn::parse_file(code) {
+        functions.visit_file(&file);
+    }
+    functions.0
+}

@@ -1,0 +1,196 @@
+//! The page `docs/measured/haptics.md`.
+
+use super::shake::{Case, Shaking};
+use crate::plot::{Axis, Mark, Plot, Series};
+use std::fmt::{self, Write};
+use touchoff::haptic::{Energy, Report};
+use touchoff_tests::haptics::wall::{Row, STEP};
+
+/// What was measured.
+pub struct Measured {
+    /// By rate.
+    pub walls: Vec<Row>,
+    /// With how many points.
+    pub shaking: Vec<(usize, Case<'static>, Shaking)>,
+    /// How the sheet was pressed, in words, and what came of it.
+    pub sheet: Vec<(&'static str, Vec<[f64; 3]>)>,
+    /// A hand that taps, in words, and its energy cycle by cycle.
+    pub tapping: Vec<(&'static str, Vec<Energy>)>,
+    /// By rate, for so many seconds: a hand that presses, and a loop that does nothing.
+    pub latency: Vec<(f64, f64, [Report; 2])>,
+}
+
+/// Walls of people: the stiffness that was rendered cleanly, N/mm, by Choi and Tan, *Effect of update rate on
+/// perceived instability of virtual haptic texture*, 2004.
+const FELT: [[f64; 2]; 2] = [[250.0, 0.33], [40_000.0, 0.90]];
+
+/// The plots by their file's name.
+pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
+    let limits = |name: &str, of: &dyn Fn(&Row) -> f64| {
+        let points = measured.walls.iter().map(|row| [row.rate, of(row)]).collect();
+        Series::line(name, points)
+    };
+    let theory = measured.walls.iter().map(|row| [row.rate, row.theory]).collect();
+    let walls = Plot::new(
+        "the stiffest wall that a hand comes to rest at",
+        Axis::log("cycles a second"),
+        Axis::log("N/mm"),
+    )
+    .with(Series::dashes("theory", theory))
+    .with(limits("direct", &|row| row.measured[0]))
+    .with(limits("direct, encoders of 0.01 mm", &|row| row.measured[1]))
+    .with(limits("coupling, at a wall of 10 kN/mm", &|row| row.coupling))
+    .with(Series::points("felt as clean (Choi and Tan)", FELT.to_vec()));
+    let axes = |what: &str| (Axis::linear("how deep the hand wants it, mm"), Axis::linear(what));
+    let sheet = |what: &str, title: &str, row: usize| {
+        let (x, y) = axes(what);
+        measured.sheet.iter().fold(Plot::new(title, x, y), |plot, (name, points)| {
+            let points = points.iter().step_by(20).map(|point| [point[0], point[row]]).collect();
+            plot.with(Series::line(*name, points))
+        })
+    };
+    let tapping = measured.tapping.iter().fold(
+        Plot::new(
+            "a ball taps a plane",
+            Axis::linear("s"),
+            Axis::linear("energy put in and not held, N·mm"),
+        ),
+        |plot, (name, energies)| {
+            let point = |(cycle, energy): (usize, &Energy)| {
+                [cycle as f64 / 1000.0, energy.put_in - energy.held]
+            };
+            let points = energies.iter().enumerate().step_by(25).map(point).collect();
+            plot.with(Series::line(*name, points))
+        },
+    );
+    vec![
+        ("haptics-energy.svg", tapping.mark(Mark::across(0.0, "nothing")).svg()),
+        ("haptics-walls.svg", walls.svg()),
+        (
+            "haptics-sheet.svg",
+            sheet("tip, mm", "a ball on a sheet of 0.5 mm", 1)
+                .mark(Mark::across(0.0, "sheet"))
+                .svg(),
+        ),
+        ("haptics-push.svg", sheet("force, N", "and what the hand feels", 2).svg()),
+    ]
+}
+
+/// The text of the page.
+///
+/// # Errors
+/// None that a string could have.
+pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
+    let mut page = String::new();
+    walls(&mut page, measured)?;
+    shaking(&mut page, measured)?;
+    writeln!(page, "## Energy\n")?;
+    writeln!(
+        page,
+        "`D2Ball` moved up and down on a plane eight times a second: what the hand put in and contact and coupling do not hold. Below\n\
+         0 it was given energy from nowhere.\n"
+    )?;
+    writeln!(page, "![energy](haptics-energy.svg)\n")?;
+    writeln!(page, "| | after 5 s, N·mm | generated at most | taken out |\n|---|--:|--:|--:|")?;
+    for (name, energies) in &measured.tapping {
+        let Some(Energy { put_in, held, generated, taken_out }) = energies.last() else { continue };
+        let net = put_in - held;
+        writeln!(page, "| {name} | {net:.4} | {generated:.1e} | {taken_out:.1e} |")?;
+    }
+    writeln!(page)?;
+    writeln!(page, "## A thin sheet\n")?;
+    writeln!(
+        page,
+        "`D2Ball` (2 mm) pressed on a sheet of 0.5 mm, 100 N/mm³: where its tip is, and what the hand feels.\n"
+    )?;
+    writeln!(
+        page,
+        "![where the tool is](haptics-sheet.svg)\n![what the hand feels](haptics-push.svg)\n"
+    )?;
+    latency(&mut page, measured)?;
+    Ok(page)
+}
+
+fn shown(limit: f64) -> String {
+    if limit.is_finite() { format!("{limit:.2}") } else { "none up to 10⁵".to_owned() }
+}
+
+fn walls(page: &mut String, measured: &Measured) -> fmt::Result {
+    writeln!(page, "## How stiff a wall may be\n")?;
+    writeln!(
+        page,
+        "A flat end on a plane, held by a hand of 0.1 kg, 5 N·s/m and 0.2 N/mm: the largest stiffness, N/mm, at which it comes to\n\
+         rest. *Theory* is the spectral radius of one cycle; *encoders* tell {STEP} mm apart; *scaled* is by the largest eigenvalue of the\n\
+         contact's stiffness to 1 N/mm; *coupled* by a spring of 1 N/mm. The last column is how stiff a coupling may be at a wall of 10⁴ N/mm.\n"
+    )?;
+    writeln!(page, "![limits](haptics-walls.svg)\n")?;
+    writeln!(page, "| Hz | theory | direct | with encoders | scaled | coupled | a coupling |")?;
+    writeln!(page, "|--:|--:|--:|--:|--:|--:|--:|")?;
+    for row in &measured.walls {
+        let [direct, encoded, scaled, coupled] = row.measured.map(shown);
+        let (theory, coupling) = (shown(row.theory), shown(row.coupling));
+        let rate = row.rate;
+        writeln!(
+            page,
+            "| {rate} | {theory} | {direct} | {encoded} | {scaled} | {coupled} | {coupling} |"
+        )?;
+    }
+    writeln!(page)
+}
+
+fn shaking(page: &mut String, measured: &Measured) -> fmt::Result {
+    writeln!(page, "## What shakes\n")?;
+    writeln!(
+        page,
+        "The tool of fig. 7.3 on the tube, pressed by the hand with some 0.6 N as it goes along, 10 mm a second: the force's root mean square, what of it\n\
+         is above 30 Hz, the largest change from one cycle to the next, and the contact's largest stiffness.\n"
+    )?;
+    writeln!(
+        page,
+        "| along | tool | points | law | | N/mm³ | force, N | above 30 Hz, N | of it | step, N | N/mm |"
+    )?;
+    writeln!(page, "|---|---|--:|---|---|--:|--:|--:|--:|--:|--:|")?;
+    for (points, case, shaking) in &measured.shaking {
+        let Shaking { force, rough, step, stiffest } = shaking;
+        let Case { way, tool, law, how, stiffness } = case;
+        let (way, tool, share) = (way.name(), tool.0, 100.0 * rough / force);
+        writeln!(
+            page,
+            "| {way} | {tool} | {points} | {law} | {how} | {stiffness} | {force:.3} | {rough:.1e} | {share:.2} % | {step:.1e} | {stiffest:.1} |"
+        )?;
+    }
+    writeln!(page)
+}
+
+fn latency(page: &mut String, measured: &Measured) -> fmt::Result {
+    writeln!(page, "## How long a cycle takes\n")?;
+    writeln!(
+        page,
+        "In real time, a hand that presses a ball on a block of 100,000 points beside a loop that touches nothing, each on a core\n\
+         of its own, first in, first out; µs. *Late* is how long after its time a cycle begins.\n"
+    )?;
+    writeln!(
+        page,
+        "| Hz | s | loop | | p50 | p99 | p99.9 | max | deadlines missed | left out | cycles |"
+    )?;
+    writeln!(page, "|--:|--:|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
+    for (rate, seconds, reports) in &measured.latency {
+        for (name, report) in ["pressing", "empty"].into_iter().zip(reports) {
+            for (what, times) in [("took", &report.took), ("late", &report.late)] {
+                let at = |share: f64| times.value_at_quantile(share) as f64 / 1e3;
+                writeln!(
+                    page,
+                    "| {rate} | {seconds} | {name} | {what} | {:.1} | {:.1} | {:.1} | {:.1} | {} | {} | {} |",
+                    at(0.5),
+                    at(0.99),
+                    at(0.999),
+                    times.max() as f64 / 1e3,
+                    report.missed,
+                    report.left_out,
+                    report.cycles,
+                )?;
+            }
+        }
+    }
+    Ok(())
+}

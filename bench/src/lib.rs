@@ -1,0 +1,19 @@
+//! The laboratory: programs that measure, other methods to race against, and the pages that they write. Nothing that a
+//! user installs depends on it.
+
+pub mod certified;
+pub mod compile;
+pub mod continuity;
+pub mod convergence;
+pub mod haptics;
+pub mod made;
+pub mod mutants;
+#[cfg(feature = "peers")]
+pub mod peers;
+pub mod plot;
+pub mod postures;
+pub mod race;
+pub mod rounding;
+pub mod search;
+pub mod stress;
+pub mod work_precision;

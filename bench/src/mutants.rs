@@ -1,0 +1,213 @@
+//! Tools broken in one place each after they were compiled, and what is proved of them then.
+
+use tool_dsl::Checked;
+use tool_dsl::expr::Id;
+use tool_dsl::expr::value::{At, Evaluator};
+use tool_dsl::number::Number;
+use tool_dsl::plan::Tree;
+use tool_dsl::prove::Certificate;
+use tool_dsl::report::any_error;
+use touchoff_tests::oracle::draw::Draw;
+
+/// Points at which a broken tool is compared with the whole one.
+const POINTS: usize = 20_000;
+/// Depths that differ by less than that part of the tool's size are the same.
+const SAME: f64 = 1e-5;
+
+/// What is broken.
+pub const KINDS: [&str; 10] = [
+    "a depth's sign",
+    "a depth's constant",
+    "a depth's unit",
+    "a direction reversed",
+    "a direction turned",
+    "a region missing",
+    "a region felt as another",
+    "an inequality",
+    "a curve's constant",
+    "a curve's slope",
+];
+
+/// A broken tool.
+pub struct Mutant {
+    /// Which of [`KINDS`].
+    pub kind: usize,
+    /// Where it is broken.
+    pub place: String,
+    /// The tool.
+    pub tool: Checked,
+}
+
+/// The evidence that a mutant is broken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Caught {
+    /// An error.
+    Error,
+    /// A warning that a proof does not come to its end.
+    Open,
+    /// A warning of something that is proved.
+    Warning,
+    /// Only a comparison with the certificate of the whole tool, which no user has.
+    Compared,
+    /// Nothing.
+    Not,
+}
+
+/// A tool broken so often, each kind in turn, each in a random place.
+pub fn mutants(tool: &Checked, count: usize, seed: u64) -> Vec<Mutant> {
+    let mut draw = Draw::new(seed);
+    (0..count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut draw)).collect()
+}
+
+fn mutant(whole: &Checked, kind: usize, draw: &mut Draw) -> Option<Mutant> {
+    let mut tool = whole.clone();
+    let size = tool.extent.scale();
+    let mut pick = |count: usize| (draw.bits() % count.max(1) as u64) as usize;
+    let region = pick(tool.model.regions.len());
+    let mut place = tool.model.regions[region].name.clone();
+    let graph = &mut tool.model.graph;
+    let own = &mut tool.model.regions[region];
+    let number = |value: f64| Number::from_f64(value).expect("a finite number");
+    match kind {
+        0 => own.depth = graph.neg(own.depth),
+        1 => {
+            let shift = graph.number(number(0.01 * size));
+            own.depth = graph.add(own.depth, shift);
+        }
+        2 => {
+            let factor = graph.number(number(25.4));
+            own.depth = graph.mul(factor, own.depth);
+        }
+        3 => own.course.0 = own.course.0.map(|part| graph.neg(part)),
+        4 => {
+            // By a right angle in the half plane, by exchange in space.
+            let [x, y, z] = own.course.0;
+            own.course.0 = [z, y, graph.neg(x)];
+        }
+        5 => tool.plan.owner = leaves(&tool.plan.owner, &|owner| owner.filter(|o| *o != region)),
+        6 => {
+            let other = (region + 1 + pick(tool.model.regions.len().max(2) - 1))
+                .checked_rem(tool.model.regions.len())
+                .filter(|other| *other != region)?;
+            place = format!("{place} as {}", tool.model.regions[other].name);
+            let felt = |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
+            tool.plan.owner = leaves(&tool.plan.owner, &felt);
+        }
+        7 => {
+            let mut split = pick(tool.plan.owner.tests());
+            place = format!("split {split}");
+            tool.plan.owner = turned(&tool.plan.owner, &mut split);
+        }
+        _ => {
+            let curve = pick(tool.model.curves.len());
+            place = format!("curve {curve}");
+            let value = tool.model.curves[curve].value;
+            let more = match kind {
+                8 => graph.number(number(0.01 * size)),
+                _ => {
+                    let factor = graph.number(number(0.03));
+                    let z = graph.coord(tool_dsl::expr::Coord::Z);
+                    graph.mul(factor, z)
+                }
+            };
+            tool.model.curves[curve].value = graph.add(value, more);
+        }
+    }
+    Some(Mutant { kind, place, tool })
+}
+
+/// A tree with other owners.
+fn leaves(
+    tree: &Tree<Option<usize>>,
+    owner: &impl Fn(Option<usize>) -> Option<usize>,
+) -> Tree<Option<usize>> {
+    match tree {
+        Tree::Leaf(leaf) => Tree::Leaf(owner(*leaf)),
+        Tree::Split { curve, strict, below, above } => Tree::Split {
+            curve: *curve,
+            strict: *strict,
+            below: Box::new(leaves(below, owner)),
+            above: Box::new(leaves(above, owner)),
+        },
+    }
+}
+
+/// A tree with the sides of one split exchanged, after so many others.
+fn turned(tree: &Tree<Option<usize>>, left: &mut usize) -> Tree<Option<usize>> {
+    let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
+    let here = *left == 0;
+    *left = left.wrapping_sub(1);
+    let low = Box::new(turned(below, left));
+    let high = Box::new(turned(above, left));
+    let (below, above) = if here { (high, low) } else { (low, high) };
+    Tree::Split { curve: *curve, strict: *strict, below, above }
+}
+
+/// At a point: the depth, and the direction before it was made a unit vector.
+type Felt = (f64, [f64; 3]);
+
+fn felt(tool: &Checked, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Felt> {
+    at.set(At::point(x, y, z));
+    let owner = *tool.plan.owner.at(&|curve: usize| at.get(tool.model.curves[curve].value));
+    let region = &tool.model.regions[owner?];
+    Some((at.get(region.depth), region.course.0.map(|part| at.get(part))))
+}
+
+fn evaluator(tool: &Checked) -> Evaluator<'_> {
+    let felt = |region: &tool_dsl::model::Region| -> Vec<Id> {
+        region.course.0.into_iter().chain([region.depth]).collect()
+    };
+    let model = &tool.model;
+    let curves = model.curves.iter().map(|curve| curve.value);
+    Evaluator::new(&model.graph, model.regions.iter().flat_map(felt).chain(curves))
+}
+
+/// Whether a broken tool is another solid, has another depth or another direction anywhere.
+pub fn changes(whole: &Checked, broken: &Checked, seed: u64) -> bool {
+    let mut draw = Draw::new(seed);
+    let (mut before, mut after) = (evaluator(whole), evaluator(broken));
+    let sides = whole.extent.cell().sides;
+    let slack = SAME * whole.extent.scale();
+    (0..POINTS).any(|_| {
+        let p = sides.map(|side| draw.between(side.low, side.high));
+        match (felt(whole, &mut before, p), felt(broken, &mut after, p)) {
+            (None, None) => false,
+            (Some((a, u)), Some((b, v))) => {
+                let dot: f64 = u.iter().zip(v).map(|(u, v)| u * v).sum();
+                let long = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+                (a - b).abs() > slack || dot < 0.999 * long(u) * long(v)
+            }
+            // Beside the surface rounding decides.
+            (one, other) => one.or(other).is_some_and(|(depth, _)| depth.abs() > slack),
+        }
+    })
+}
+
+/// Returns the evidence that a tool is broken: the reports of its own certificate, or else a difference from that of the
+/// whole tool. The whole tool must have no report.
+pub fn caught(whole: &Certificate, mutant: &Checked) -> Caught {
+    let broken = Certificate::of(mutant);
+    let reports = broken.reports(mutant);
+    let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
+        (a, b) => a == b,
+    };
+    let aside = |certificate: &Certificate| -> Vec<f64> {
+        certificate
+            .regions
+            .iter()
+            .map(|region| region.aside.map_or(0.0, |aside| aside.high))
+            .collect()
+    };
+    let off = aside(whole).into_iter().zip(aside(&broken)).any(|(a, b)| b > a + 1e-6);
+    let bounds = same(whole.least(), broken.least()) && same(whole.lipschitz(), broken.lipschitz());
+    if any_error(&reports) {
+        Caught::Error
+    } else if reports.is_empty() {
+        if off || !bounds { Caught::Compared } else { Caught::Not }
+    } else if broken.undecided.is_empty() {
+        Caught::Warning
+    } else {
+        Caught::Open
+    }
+}

@@ -1,0 +1,336 @@
+//! A posture sweep beside brute force: postures drawn from what was found accessible, and from what was not.
+//!
+//! Each is rebuilt from the tool's restatement ([`stand`]) and judged by cutting up all triangles ([`free`]).
+//! Accessible has to be free; what is not has to be blocked.
+
+pub mod free;
+pub mod page;
+pub mod parts;
+pub mod stand;
+
+use free::{Part, Verdict};
+use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
+use stand::Stand;
+use std::error::Error;
+use std::num::NonZeroU16;
+use std::ops::ControlFlow;
+use std::time::Instant;
+use touchoff::certify::Facets;
+use touchoff::postures::sweep::{Sweep, Tally};
+use touchoff::postures::{Directions, Row, Rules};
+use touchoff::{Mesh, Tool};
+use touchoff_tests::oracle::draw::Draw;
+
+/// What is swept.
+pub struct Wanted<'a> {
+    /// The part.
+    pub mesh: &'a Mesh,
+    /// Tools of the library, by name.
+    pub tools: Vec<&'a str>,
+    /// Directions a hemisphere.
+    pub hemisphere: usize,
+    /// How deep what cuts may be, in the part's unit.
+    pub tolerance: f64,
+    /// Contacts have to be nicer.
+    pub niceness: f64,
+    /// How many postures of either kind are judged again.
+    pub draws: usize,
+    /// What they are drawn by.
+    pub seed: u64,
+}
+
+/// How far a tool gets.
+#[derive(Clone, Debug, Default)]
+pub struct Reach {
+    /// Its name.
+    pub tool: String,
+    /// Triangles that it reaches.
+    pub triangles: usize,
+    /// Their area, in the square of the part's unit.
+    pub area: f64,
+    /// Postures in which it does.
+    pub postures: u64,
+}
+
+/// A posture that was drawn and is not as the sweep has it.
+#[derive(Clone, Debug)]
+pub struct Odd {
+    /// Triangle, tool and direction.
+    pub at: String,
+    /// What brute force has to say.
+    pub what: String,
+}
+
+/// What was drawn of a kind.
+#[derive(Clone, Debug, Default)]
+pub struct Drawn {
+    /// How many were judged.
+    pub judged: usize,
+    /// Those that are not as the sweep has them.
+    pub wrong: Vec<Odd>,
+    /// Those that brute force leaves open.
+    pub open: Vec<Odd>,
+}
+
+/// All that was found.
+pub struct Found {
+    /// How the sweep decided.
+    pub tally: Tally,
+    /// How long it took, and brute force after it, in seconds.
+    pub seconds: [f64; 2],
+    /// All of the part, by triangles and area.
+    pub all: (usize, f64),
+    /// What is reached by any tool.
+    pub any: (usize, f64),
+    /// Tool by tool.
+    pub reach: Vec<Reach>,
+    /// Of the accessible ones.
+    pub accessible: Drawn,
+    /// Of those that are not accessible, but face their triangle.
+    pub refused: Drawn,
+    /// What was taken as rounding, in the part's unit.
+    pub rounding: f64,
+}
+
+/// A posture by numbers.
+#[derive(Clone, Copy)]
+struct Choice {
+    triangle: u32,
+    tool: usize,
+    direction: usize,
+}
+
+/// Closer than that, as parts of the tolerance, a posture that was refused is told to have been.
+const CLOSE: [f64; 7] = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// Rounding, as a part of the part's and the tool's size.
+const ROUNDING: f64 = 1e-9;
+
+/// Sweeps, and judges what was drawn again.
+///
+/// # Errors
+/// A tool that is not in the library, or that no sweep can be done with.
+pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
+    let mesh = wanted.mesh;
+    let find = |name: &&str| tools_library::find(name).ok_or_else(|| format!("no tool `{name}`"));
+    let tools: Vec<&dyn Tool> = wanted
+        .tools
+        .iter()
+        .map(|name| find(name).map(|tool| tool as &dyn Tool))
+        .collect::<Result<_, _>>()?;
+    let length = |tool: &&dyn Tool| tool.card().unit.to(mesh.unit());
+    let stands: Vec<Stand> = tools
+        .iter()
+        .zip(&wanted.tools)
+        .map(|(tool, name)| Stand::new(name, length(tool), wanted.tolerance))
+        .collect::<Result<_, _>>()?;
+    let (tolerance, niceness) = (wanted.tolerance, wanted.niceness);
+    let directions = Directions::spread(wanted.hemisphere);
+    let facets = Facets::new(mesh);
+    let rules = Rules { tolerance, niceness, allowed: Vec::new() };
+    let start = Instant::now();
+    let sweep = Sweep::new((mesh, &facets), tools, &directions, rules, NonZeroU16::MIN)?;
+    let mut rows = vec![Row::default(); mesh.triangles().len()];
+    let mut tally = Tally::default();
+    let batches: Vec<usize> = (0..sweep.batches()).collect();
+    let done = sweep.run(&batches, |batch| {
+        tally += batch.tally;
+        batch.rows.into_iter().for_each(|(id, row)| rows[id as usize] = row);
+        ControlFlow::<()>::Continue(())
+    });
+    debug_assert!(done.is_continue());
+    let swept = start.elapsed().as_secs_f64();
+    let part = Part::new(mesh);
+    let size = stands.iter().map(|stand| stand.extent()[0] + stand.extent()[1]);
+    let again = Again {
+        mesh,
+        part: &part,
+        directions: directions.list(),
+        stands: &stands,
+        tolerance,
+        niceness,
+        rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
+    };
+    let mut draw = Draw::new(wanted.seed);
+    let start = Instant::now();
+    let chosen = accessible(&rows, wanted.draws, &mut draw);
+    let accessible =
+        gather(chosen.into_par_iter().map(|choice| again.accessible(&choice)).collect());
+    let chosen = again.facing(&rows, wanted.draws, &mut draw);
+    let refused = gather(chosen.into_par_iter().map(|choice| again.refused(&choice)).collect());
+    let (all, any, reach) = coverage(mesh, &rows, &wanted.tools);
+    Ok(Found {
+        tally,
+        seconds: [swept, start.elapsed().as_secs_f64()],
+        all,
+        any,
+        reach,
+        accessible,
+        refused,
+        rounding: again.rounding,
+    })
+}
+
+fn has(set: &[u64], direction: usize) -> bool {
+    set[direction / 64] >> (direction % 64) & 1 == 1
+}
+
+/// Postures that the sweep found accessible, each as likely.
+fn accessible(rows: &[Row], count: usize, draw: &mut Draw) -> Vec<Choice> {
+    let mut ends = Vec::new();
+    let mut sum = 0u64;
+    for (triangle, row) in rows.iter().enumerate() {
+        for access in &row.access {
+            sum += access.directions.iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+            ends.push((sum, triangle as u32, access));
+        }
+    }
+    if sum == 0 {
+        return Vec::new();
+    }
+    let choice = |_| {
+        let nth = draw.bits() % sum;
+        let at = ends.partition_point(|(end, _, _)| *end <= nth);
+        let (end, triangle, access) = ends[at];
+        let members = (0..64 * access.directions.len()).filter(|k| has(&access.directions, *k));
+        let left = (end - nth - 1) as usize;
+        let direction = members.rev().nth(left)?;
+        Some(Choice { triangle, tool: access.tool.into(), direction })
+    };
+    (0..count).filter_map(choice).collect()
+}
+
+fn gather(all: Vec<Result<(), (bool, Odd)>>) -> Drawn {
+    let mut drawn = Drawn { judged: all.len(), ..Drawn::default() };
+    for (open, odd) in all.into_iter().filter_map(Result::err) {
+        if open { drawn.open.push(odd) } else { drawn.wrong.push(odd) }
+    }
+    drawn
+}
+
+/// What is needed to judge postures again.
+struct Again<'a> {
+    mesh: &'a Mesh,
+    part: &'a Part<'a>,
+    directions: &'a [[f64; 3]],
+    stands: &'a [Stand],
+    tolerance: f64,
+    niceness: f64,
+    rounding: f64,
+}
+
+impl Again<'_> {
+    fn postures(&self, choice: &Choice, more: f64) -> Vec<stand::Posture> {
+        let [a, b, c] = self.mesh.triangle(choice.triangle);
+        let place = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+        let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { return Vec::new() };
+        let axis = Vector3::from(self.directions[choice.direction]);
+        let mut all = self.stands[choice.tool].postures(place, normal, axis, more);
+        all.retain(|posture| posture.niceness > self.niceness);
+        all
+    }
+
+    fn at(&self, choice: &Choice) -> String {
+        let [x, y, z] = self.directions[choice.direction];
+        let name = touchoff_tests::oracle::Oracle::name(&self.stands[choice.tool].oracle);
+        format!(
+            "triangle {}, {name}, direction {} ({x:.3}, {y:.3}, {z:.3})",
+            choice.triangle, choice.direction
+        )
+    }
+
+    fn judge(&self, choice: &Choice, posture: &stand::Posture, more: f64) -> Verdict {
+        self.part.judge(&self.stands[choice.tool], posture, self.tolerance, more)
+    }
+
+    /// Whether one of the postures that a choice may stand for is free.
+    fn accessible(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
+        let verdicts: Vec<Verdict> = self
+            .postures(choice, 2.0)
+            .iter()
+            .map(|posture| self.judge(choice, posture, self.rounding))
+            .collect();
+        if verdicts.contains(&Verdict::Free) {
+            return Ok(());
+        }
+        let open = verdicts.contains(&Verdict::Open);
+        let what = match &verdicts[..] {
+            [] => "no contact".to_owned(),
+            all => format!("{all:?}"),
+        };
+        Err((open, Odd { at: self.at(choice), what }))
+    }
+
+    /// Postures that face a triangle and that the sweep has not found accessible.
+    fn facing(&self, rows: &[Row], count: usize, draw: &mut Draw) -> Vec<Choice> {
+        let mut chosen = Vec::new();
+        for _ in 0..100 * count {
+            if chosen.len() == count {
+                break;
+            }
+            let mut below = |most: usize| (draw.bits() % most as u64) as usize;
+            let (triangle, tool) = (below(rows.len()), below(self.stands.len()));
+            let direction = below(self.directions.len());
+            let of = rows[triangle].access.iter().find(|access| usize::from(access.tool) == tool);
+            let choice = Choice { triangle: triangle as u32, tool, direction };
+            if of.is_some_and(|access| !has(&access.directions, direction))
+                && !self.postures(&choice, -1.0).is_empty()
+            {
+                chosen.push(choice);
+            }
+        }
+        chosen
+    }
+
+    /// Whether something is in the way of all postures that a choice may stand for.
+    fn refused(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
+        for posture in self.postures(choice, -1.0) {
+            let verdict = self.judge(choice, &posture, 0.0);
+            if matches!(verdict, Verdict::Blocked(_)) {
+                continue;
+            }
+            let near = CLOSE.iter().find(|near| {
+                let closer = self.judge(choice, &posture, -*near * self.tolerance);
+                matches!(closer, Verdict::Blocked(_))
+            });
+            let what = match near {
+                Some(near) => format!("{verdict:?}, blocked if {near:e} of the tolerance nearer"),
+                None => format!("{verdict:?}, blocked by nothing near"),
+            };
+            // What is as close as the certifier's rounding was left undecided, and is no lie.
+            let open = verdict == Verdict::Open || near.is_some_and(|near| *near <= 1e-6);
+            return Err((open, Odd { at: self.at(choice), what }));
+        }
+        Ok(())
+    }
+}
+
+type Share = (usize, f64);
+
+/// All of a part, what any tool reaches, and each.
+fn coverage(mesh: &Mesh, rows: &[Row], tools: &[&str]) -> (Share, Share, Vec<Reach>) {
+    let (mut all, mut any) = ((0, 0.0), (0, 0.0));
+    let none = |tool: &&str| Reach { tool: (*tool).to_owned(), ..Reach::default() };
+    let mut reach: Vec<Reach> = tools.iter().map(none).collect();
+    for (id, row) in rows.iter().enumerate() {
+        let area = mesh.area(id as u32);
+        all = (all.0 + 1, all.1 + area);
+        let mut reached = false;
+        for access in &row.access {
+            let count: u64 =
+                access.directions.iter().map(|word| u64::from(word.count_ones())).sum();
+            if count > 0 {
+                let of = &mut reach[usize::from(access.tool)];
+                of.triangles += 1;
+                of.area += area;
+                of.postures += count;
+                reached = true;
+            }
+        }
+        if reached {
+            any = (any.0 + 1, any.1 + area);
+        }
+    }
+    (all, any, reach)
+}

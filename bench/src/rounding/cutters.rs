@@ -1,0 +1,217 @@
+//! Tools whose every coordinate is a short dyadic number, so that a power of two scales them without rounding.
+//!
+//! Tangent points lie on Pythagorean triples. The truth of a tool is its list of numbers here, in doubles and in
+//! 256 bits; the tool that is judged is compiled from text with the same numbers.
+
+use std::fmt::Write;
+use tool_dsl::source::Source;
+use touchoff::tool::{Interpreted, ToolError};
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::outline::{Flat, Outline, Segment};
+use touchoff_tests::oracle::reference::Reference;
+use touchoff_tests::oracle::restated::{Restated, Way};
+
+/// A tool at one scale.
+pub struct Cutter {
+    /// Its name and scale.
+    pub name: String,
+    /// The compiled tool.
+    pub tool: Interpreted,
+    /// Its profile in doubles.
+    pub outline: Outline,
+    /// The same in 256 bits.
+    pub reference: Reference,
+    /// Largest distance from the axis, and height.
+    pub extent: [f64; 2],
+    /// How far the circles of its arcs reach from its tip, if farther than the tool.
+    pub reach: f64,
+}
+
+/// A profile: the name, and points with the centre of the arc that ends there.
+type Drawn = (&'static str, &'static [(Flat, Option<Flat>)]);
+
+/// The profiles at scale 1; each begins at the origin.
+const PROFILES: [Drawn; 11] = [
+    ("Ball", &[([5., 5.], Some([0., 5.])), ([5., 22.], None), ([0., 22.], None)]),
+    ("Flat", &[([6., 0.], None), ([6., 26.], None), ([0., 26.], None)]),
+    (
+        "BullNose",
+        &[
+            ([4., 0.], None),
+            ([6., 2.], Some([4., 2.])),
+            ([6., 14.], None),
+            ([5.5, 14.5], None),
+            ([5.5, 40.], None),
+            ([6., 40.5], None),
+            ([6., 83.], None),
+            ([0., 83.], None),
+        ],
+    ),
+    // 7, 24, 25: the cone touches the ball at (3, 2.25).
+    (
+        "Taper",
+        &[
+            ([3., 2.25], Some([0., 3.125])),
+            ([6.5, 14.25], None),
+            ([6.5, 30.], None),
+            ([0., 30.], None),
+        ],
+    ),
+    // 3, 4, 5: the ball ends on the neck at (3, 9), a reflex corner.
+    (
+        "Lollipop",
+        &[
+            ([5., 5.], Some([0., 5.])),
+            ([3., 9.], Some([0., 5.])),
+            ([3., 40.], None),
+            ([5., 43.], None),
+            ([5., 75.], None),
+            ([0., 75.], None),
+        ],
+    ),
+    // A hollow arc.
+    (
+        "Rounding",
+        &[
+            ([3., 0.], None),
+            ([3., 0.5], None),
+            ([6., 3.5], Some([6., 0.5])),
+            ([6.5, 3.5], None),
+            ([6.5, 10.], None),
+            ([6., 10.5], None),
+            ([6., 60.], None),
+            ([0., 60.], None),
+        ],
+    ),
+    (
+        "TSlot",
+        &[
+            ([10.5, 0.], None),
+            ([10.5, 9.], None),
+            ([5., 9.], None),
+            ([5., 27.], None),
+            ([6., 28.], None),
+            ([6., 74.], None),
+            ([0., 74.], None),
+        ],
+    ),
+    // 13, 84, 85: an arc with its centre far beyond the axis.
+    (
+        "Barrel",
+        &[
+            ([4., 0.], None),
+            ([4., 26.], Some([-80., 13.])),
+            ([3.5, 26.5], None),
+            ([3.5, 50.], None),
+            ([0., 50.], None),
+        ],
+    ),
+    // An arc whose radius is 4096.00390625, a hundred times the tool's size.
+    (
+        "Bowed",
+        &[
+            ([6., 0.], None),
+            ([6., 16.], Some([-4089.99609375, 8.])),
+            ([5.5, 16.5], None),
+            ([5.5, 40.], None),
+            ([0., 40.], None),
+        ],
+    ),
+    // A point, whose depth has a kink on the axis.
+    ("Point", &[([6., 6.], None), ([6., 20.], None), ([0., 20.], None)]),
+    // A hundred times as long as it is thick.
+    ("Needle", &[([0.5, 0.5], Some([0., 0.5])), ([0.5, 64.], None), ([0., 64.], None)]),
+];
+
+/// Exponents of two by which each profile is scaled: from 1e-6 to 1e6.
+const SCALES: [i32; 5] = [-20, -10, 0, 10, 20];
+
+/// The number of tools that [`cutter`] makes.
+pub const COUNT: usize = PROFILES.len() * SCALES.len();
+
+/// The tool with a number below [`COUNT`].
+///
+/// # Errors
+/// If the compiler refuses it.
+pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
+    let (name, points) = PROFILES[number % PROFILES.len()];
+    let exponent = SCALES[number / PROFILES.len()];
+    let scale = 2f64.powi(exponent);
+    let scaled = |point: Flat| point.map(|part| part * scale);
+    let mut segments = Vec::new();
+    let mut from = [0.0, 0.0];
+    for &(to, centre) in points {
+        segments.push(Segment { from, to: scaled(to), centre: centre.map(scaled) });
+        from = scaled(to);
+    }
+    let most = |axis: usize| segments.iter().fold(0.0f64, |most, part| most.max(part.to[axis]));
+    let far = |segment: &Segment| {
+        let [x, y] = segment.centre?;
+        Some(x.hypot(y) + (segment.to[0] - x).hypot(segment.to[1] - y))
+    };
+    let reach = segments.iter().filter_map(far).fold(most(0).max(most(1)), f64::max);
+    Ok(Cutter {
+        reach,
+        name: format!("{name}·2^{exponent}"),
+        tool: Interpreted::parse(&Source::new("cutter.tool", &*text(name, &segments)))?,
+        reference: Reference::new(&restated(name, &segments)),
+        extent: [most(0), most(1)],
+        outline: Outline::new(segments),
+    })
+}
+
+/// The tool as a file has it.
+fn text(name: &str, segments: &[Segment]) -> String {
+    let mut text = format!("tool {name} {{ units mm; profile {{ start (0, 0);");
+    for (k, segment) in segments.iter().enumerate() {
+        let [d, z] = segment.to;
+        let written = match segment.centre {
+            Some([x, y]) => {
+                let bent = if segment.is_hollow() { " concave" } else { "" };
+                write!(text, " arc to ({d}, {z}) center ({x}, {y}){bent} as s{k} cutting;")
+            }
+            None => write!(text, " line to ({d}, {z}) as s{k} cutting;"),
+        };
+        written.expect("a text has room");
+    }
+    text + " } niceness cutting: 1; }"
+}
+
+/// The tool as the reference in 256 bits reads it.
+fn restated(name: &'static str, segments: &[Segment]) -> Restated {
+    let exact = |point: Flat| point.map(Big::exactly);
+    let way = |segment: &Segment| Way {
+        to: exact(segment.to),
+        centre: segment.centre.map(exact),
+        surface: "all",
+    };
+    Restated {
+        name,
+        start: exact([0.0, 0.0]),
+        ways: segments.iter().map(way).collect(),
+        cutting: Vec::new(),
+        niceness: |_, _, _| 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use touchoff_tests::oracle::draw::Draw;
+    use touchoff_tests::oracle::reference::At;
+
+    #[test]
+    fn doubles_and_256_bits_agree() {
+        let mut draw = Draw::new(1);
+        for number in 0..COUNT {
+            let cutter = cutter(number).expect("a tool");
+            let [radius, height] = cutter.extent;
+            for _ in 0..200 {
+                let (d, z) = (draw.between(0.0, 1.2 * radius), draw.between(-0.1, 1.1) * height);
+                let exact = cutter.reference.depth(&At::new([d, 0.0, z])).to_f64();
+                let off = (cutter.outline.depth([d, z]) - exact).abs();
+                assert!(off < 1e-13 * (radius + height), "{} {d} {z}: {off:e}", cutter.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,351 @@
+//! Certified depths of single triangles beside the truth in 256 bits, where rounding does the most.
+//!
+//! The doubles of a mesh and a pose are taken as exact numbers, and the pose as what it says it is: the map
+//! `p = R q + tip` from the tool's frame, so that a place of the part is `R⁻¹ (p - tip)` there. A search in doubles
+//! finds places, and the depth of the best of them in 256 bits is a lower bound of the truth ([`truth`]). So the
+//! upper bound is violated for certain if it is below that. The lower bound is that of the witness, so two things
+//! violate it: a witness that is farther from its triangle than rounding explains, and a place of the triangle next
+//! to the witness whose depth is less than the bound by more than the two are apart, since depth changes by no more
+//! than the way.
+
+pub mod cases;
+pub mod cutters;
+pub mod truth;
+
+use cases::{Case, Family};
+use cutters::Cutter;
+use nalgebra::Point3;
+use std::fmt::Write;
+use touchoff::certify::{Certifier, Facets, Witness};
+use touchoff::{Mesh, Unit};
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::draw::Draw;
+use truth::{Place, Point, Scene};
+
+/// Violations that are shown, of a family.
+const SHOWN: usize = 4;
+
+/// The largest of some figures, and the case that has it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Worst {
+    /// The figure.
+    pub figure: f64,
+    /// The case's number.
+    pub case: u64,
+}
+
+impl Worst {
+    fn see(&mut self, other: Worst) {
+        if other.figure.is_nan() || other.figure > self.figure {
+            *self = other;
+        }
+    }
+}
+
+/// The figures of a family's cases.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The family.
+    pub family: Family,
+    /// Cases that were asked about.
+    pub cases: u64,
+    /// Those with a place inside the tool.
+    pub touching: u64,
+    /// Those at which the search without the witness comes within 1e-9 of the tool's size of the lower bound.
+    pub alone: u64,
+    /// Those in which the lower bound is below a depth in 256 bits, so that it is true beyond doubt.
+    pub certain: u64,
+    /// Intervals wider than the tolerance and what is promised to be added at both ends.
+    pub wider: u64,
+    /// The largest excess of an interval's width over that, in widenings.
+    pub widest: Worst,
+    /// The largest excess of the truth over the depth that was computed, as a part of what the upper bound adds.
+    pub above: Worst,
+    /// The largest excess of the depth that was computed over the truth, as a part of what the lower bound takes.
+    pub below: Worst,
+    /// Upper bounds that are below a depth in 256 bits, or are no bounds.
+    pub exceeded: u64,
+    /// Witnesses that are off their triangle.
+    pub off: u64,
+    /// Witnesses that are not as deep as the lower bound.
+    pub shallow: u64,
+    /// Some of these three.
+    pub shown: Vec<String>,
+}
+
+impl Row {
+    /// A row without cases.
+    pub fn new(family: Family) -> Row {
+        Row {
+            family,
+            cases: 0,
+            touching: 0,
+            alone: 0,
+            certain: 0,
+            wider: 0,
+            widest: Worst::default(),
+            above: Worst::default(),
+            below: Worst::default(),
+            exceeded: 0,
+            off: 0,
+            shallow: 0,
+            shown: Vec::new(),
+        }
+    }
+
+    /// Adds the cases of another row.
+    pub fn add(&mut self, other: Row) {
+        self.cases += other.cases;
+        self.touching += other.touching;
+        self.alone += other.alone;
+        self.certain += other.certain;
+        self.wider += other.wider;
+        self.widest.see(other.widest);
+        self.above.see(other.above);
+        self.below.see(other.below);
+        self.exceeded += other.exceeded;
+        self.off += other.off;
+        self.shallow += other.shallow;
+        self.shown.extend(other.shown);
+        self.shown.truncate(SHOWN);
+    }
+
+    /// The number of wrong answers.
+    pub fn violations(&self) -> u64 {
+        self.exceeded + self.off + self.shallow
+    }
+
+    fn show(&mut self, text: String) {
+        if self.shown.len() < SHOWN {
+            self.shown.push(text);
+        }
+    }
+}
+
+/// The tools, and the seed from which cases are drawn.
+pub struct Rounding {
+    cutters: Vec<Cutter>,
+    seed: u64,
+    /// The part of what each end adds for rounding and the tolerance that is taken from it before it is judged. It is 0,
+    /// but to see that the judge objects to a bound that is too tight.
+    pub pinch: f64,
+}
+
+impl Rounding {
+    /// All tools.
+    ///
+    /// # Panics
+    /// If the compiler refuses one.
+    pub fn new(seed: u64) -> Rounding {
+        let cutter = |number| cutters::cutter(number).expect("a tool that compiles");
+        Rounding { cutters: (0..cutters::COUNT).map(cutter).collect(), seed, pinch: 0.0 }
+    }
+
+    /// Asks about a case by its number, and adds it to the rows of all families.
+    ///
+    /// # Panics
+    /// If the tool is refused.
+    pub fn ask(&self, number: u64, rows: &mut [Row]) {
+        let mut draw = Draw::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+        let kind = number as usize % Family::ALL.len();
+        let cutter = &self.cutters[draw.bits() as usize % self.cutters.len()];
+        let case = cases::case(Family::ALL[kind], cutter, &mut draw);
+        let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
+        let ids = (0..case.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+        // A mesh has some area; a sliver may have none.
+        let Ok(mesh) = Mesh::new(vertices.collect(), ids.collect(), Unit::Millimetre) else {
+            return;
+        };
+        let facets = Facets::new(&mesh);
+        let mut certifier = Certifier::new(&facets, &cutter.tool).expect("a tool with a profile");
+        let found = certifier.deepest(&case.pose, case.tolerance);
+        let scene = Scene::new(cutter, &case.pose, &case.triangles);
+        let judge = Judge { case: &case, scene: &scene, interval: found.depth, pinch: self.pinch };
+        judge.judge(found.witness, &mut draw, &mut rows[kind], number);
+    }
+
+    /// A case by its number, for people.
+    pub fn describe(&self, number: u64) -> String {
+        let mut draw = Draw::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+        let family = Family::ALL[number as usize % Family::ALL.len()];
+        let cutter = &self.cutters[draw.bits() as usize % self.cutters.len()];
+        format!("{} {:?}", cutter.name, cases::case(family, cutter, &mut draw))
+    }
+}
+
+/// An answer that is judged.
+struct Judge<'a> {
+    case: &'a Case,
+    scene: &'a Scene<'a>,
+    interval: [f64; 2],
+    pinch: f64,
+}
+
+impl Judge<'_> {
+    fn judge(&self, witness: Option<Witness>, draw: &mut Draw, row: &mut Row, number: u64) {
+        let [rounding, skew] = self.promised();
+        let widening = rounding + skew;
+        let tolerance = self.case.tolerance.max(4.0 * rounding);
+        let [mut low, mut high] = self.interval;
+        if self.pinch > 0.0 && low > 0.0 {
+            low += self.pinch * (rounding + widening);
+            high -= self.pinch * (tolerance + widening);
+        }
+        let size = self.scene.cutter.extent[0].max(self.scene.cutter.extent[1]);
+        let alone = self.scene.exact_depth(&self.scene.deepest(draw));
+        let near = &alone + &Big::exactly(1e-9 * size + widening) >= Big::exactly(low);
+        let beside = witness.map(|witness| self.beside(&witness));
+        let truth = self.truth(alone, beside.as_ref(), draw);
+        row.cases += 1;
+        row.touching += u64::from(truth > Big::zero());
+        row.alone += u64::from(near);
+        row.certain += u64::from(Big::exactly(low) <= truth);
+        let wide = high - low - tolerance - rounding - 2.0 * widening;
+        row.wider += u64::from(wide > 0.01 * widening);
+        let worst = |figure: f64| Worst { figure, case: number };
+        row.widest.see(worst(wide / widening));
+        let text = || format!("case {number}: [{low:e}, {high:e}], {} in 256 bits", truth.to_f64());
+        if !(0.0 <= low && high.is_finite()) || truth > Big::exactly(high) {
+            row.exceeded += 1;
+            row.show(format!("{}: above it", text()));
+        }
+        let Some(Beside { place, way, rounded }) = beside else {
+            if low > 0.0 {
+                row.shallow += 1;
+                row.show(format!("{}: no witness", text()));
+            }
+            return;
+        };
+        let depth = self.scene.exact_depth(&place);
+        if way > rounded + widening {
+            row.off += 1;
+            row.show(format!("{}: the witness is {way:e} off its triangle", text()));
+        } else if low > 0.0 && Big::exactly(low) > &depth + &Big::exactly(way + rounded) {
+            row.shallow += 1;
+            row.show(format!("{}: the witness is {:e} deep", text(), depth.to_f64()));
+        }
+        if low > 0.0 {
+            // The certifier takes two roundings and the skew from the depth that it computed, and adds one, the skew
+            // and the tolerance.
+            let skewed = (0.5 * (high - low - tolerance - 3.0 * rounding)).clamp(0.0, skew);
+            let [taken, added] = [2.0, 1.0].map(|times| times * rounding + skewed);
+            let off = (&truth - &Big::exactly(low + taken)).to_f64();
+            row.above.see(worst((off - tolerance) / added));
+            row.below.see(worst((-off - rounded) / taken));
+        }
+    }
+
+    /// The deepest of a place's depth and those beside the witness, in 256 bits; 0 if none is inside.
+    fn truth(&self, alone: Big, beside: Option<&Beside>, draw: &mut Draw) -> Big {
+        let mut truth = if alone.is_negative() { Big::zero() } else { alone };
+        let Some(Beside { place, way, rounded }) = beside else { return truth };
+        let step = 1e-3_f64.min(1e3 * (way + rounded) / self.scene.cutter.extent[0] + 1e-12);
+        let climbed = self.scene.climb(place, step, 60, draw).1;
+        for place in [*place, climbed] {
+            let depth = self.scene.exact_depth(&place);
+            if depth > truth {
+                truth = depth;
+            }
+        }
+        truth
+    }
+
+    /// The rounding that is promised, and the skew: 64 ε of the tool's reach and the part's size, and of each triangle
+    /// `12 ε r s/h`, or its height `h`.
+    fn promised(&self) -> [f64; 2] {
+        let corners = || self.case.triangles.iter().flatten();
+        let extent = [0, 1, 2].map(|axis| {
+            let parts = || corners().map(|corner| corner[axis]);
+            parts().fold(f64::NEG_INFINITY, f64::max) - parts().fold(f64::INFINITY, f64::min)
+        });
+        let part = extent.into_iter().fold(0.0, f64::max);
+        let skew = self.scene.triangles.iter().map(skew).fold(0.0, f64::max);
+        [64.0 * f64::EPSILON * (self.scene.cutter.reach + part), skew]
+    }
+
+    /// The place of its triangle that is about the nearest to a witness.
+    fn beside(&self, witness: &Witness) -> Beside {
+        let (tip, rotation) = (self.case.pose.tip(), self.case.pose.rotation());
+        let inside: Point = (rotation.transpose() * (witness.point - tip)).into();
+        let place = self.scene.nearest(witness.triangle as usize, inside);
+        let at = self.scene.point(&place);
+        let way = (0..3).map(|k| (inside[k] - at[k]).powi(2)).sum::<f64>().sqrt();
+        let reach = inside.iter().fold(0.0f64, |most, part| most.max(part.abs()));
+        Beside { place, way, rounded: 8.0 * f64::EPSILON * (tip.coords.amax() + reach) }
+    }
+}
+
+/// A place of a triangle next to a witness.
+struct Beside {
+    place: Place,
+    /// The distance between the two.
+    way: f64,
+    /// The distance by which rounding in the world may have moved the witness.
+    rounded: f64,
+}
+
+/// The promised bound of the error of the line in a triangle on which depth is greatest.
+fn skew(corners: &[Point; 3]) -> f64 {
+    let edge = |a: Point, b: Point| [0, 1, 2].map(|k| b[k] - a[k]);
+    let norm = |v: Point| v.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let [a, b, c] = *corners;
+    let edges = [edge(a, b), edge(b, c), edge(c, a)];
+    let longest = edges.iter().copied().map(norm).fold(0.0, f64::max);
+    let shortest = edges.iter().copied().map(norm).fold(f64::INFINITY, f64::min);
+    let ([x, y, z], [u, v, w]) = (edges[0], edges[1]);
+    let area = norm([y * w - z * v, z * u - x * w, x * v - y * u]);
+    let height = if longest > 0.0 { area / longest } else { 0.0 };
+    let far = corners.iter().copied().map(norm).fold(0.0, f64::max);
+    // Differences of corners that were rounded once tell a height to some units.
+    let height = height + 8.0 * f64::EPSILON * longest;
+    (12.0 * f64::EPSILON * far * (shortest / height)).min(height)
+}
+
+/// The rows as Markdown, and under them what was violated.
+///
+/// # Errors
+/// None that a text could have.
+pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
+    let mut page = "| family | cases | in contact | found alone | low certain | above | below | wider | widest | exceeded | off | shallow |\n\
+                    |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+        .to_owned();
+    for row in rows {
+        let share = |count: u64| 100.0 * count as f64 / row.cases.max(1) as f64;
+        writeln!(
+            page,
+            "| {:?} | {} | {} | {:.3} % | {:.3} % | {:.3} | {:.3} | {} | {:.1e} | {} | {} | {} |",
+            row.family,
+            row.cases,
+            row.touching,
+            share(row.alone),
+            share(row.certain),
+            row.above.figure,
+            row.below.figure,
+            row.wider,
+            row.widest.figure,
+            row.exceeded,
+            row.off,
+            row.shallow
+        )?;
+    }
+    let sum = |of: fn(&Row) -> u64| rows.iter().map(of).sum::<u64>();
+    writeln!(
+        page,
+        "\n{} cases, {} of them in contact, {} wider, {} violations.\n\n## Violated\n",
+        sum(|row| row.cases),
+        sum(|row| row.touching),
+        sum(|row| row.wider),
+        sum(Row::violations)
+    )?;
+    if rows.iter().all(|row| row.violations() == 0) {
+        page += "Nothing.\n";
+    }
+    for text in rows.iter().flat_map(|row| &row.shown) {
+        writeln!(page, "- {text}")?;
+    }
+    page += "\n## Cases with the largest figures\n\n| family | above | below | widest |\n|---|--:|--:|--:|\n";
+    for Row { family, above, below, widest, .. } in rows {
+        writeln!(page, "| {family:?} | {} | {} | {} |", above.case, below.case, widest.case)?;
+    }
+    Ok(page)
+}

@@ -1,0 +1,105 @@
+//! Item 12: many cycles with a running checksum: twice the same, on one thread and on two, at every SIMD level.
+
+use super::ledger::{Kind, Ledger};
+use super::scene::Given;
+use super::truth::Subject;
+use nalgebra::Point3;
+use touchoff::{Level, Part, Pose, Probe};
+use touchoff_tests::oracle::draw::Draw;
+
+const OTHER: Kind = Kind::never("another checksum");
+const CHECKSUM: Kind = Kind::told("touching", "share of cycles");
+
+/// So many cycles have a checksum of their own, whoever does them.
+const CHUNK: usize = 500;
+
+/// Every level of this machine, the best first.
+fn levels() -> Vec<(&'static str, Level)> {
+    let best = Level::new();
+    let mut levels = vec![("best", best)];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        levels.extend(best.as_avx512().map(|level| ("AVX-512", Level::Avx512(level))));
+        levels.extend(best.as_avx2().map(|level| ("AVX2", Level::Avx2(level))));
+        levels.extend(best.as_sse4_2().map(|level| ("SSE4.2", Level::Sse4_2(level))));
+        levels.extend(best.as_sse2().map(|level| ("SSE2", Level::Sse2(level))));
+    }
+    levels.push(("baseline", Level::baseline()));
+    levels
+}
+
+/// The same cycles over and over.
+pub(super) fn cycles(subject: &Subject, count: usize, draw: &mut Draw, ledger: &mut Ledger) {
+    let given = Given::about(subject, 96, 2f64.powi(-20), draw);
+    let part = given.part();
+    let seed = draw.bits();
+    let turn = |level, threads| turned(subject, &part, (level, threads), (count, seed));
+    let levels = levels();
+    let (first, touching) = turn(levels[0].1, 1);
+    let share = touching as f64 / count as f64;
+    ledger.tell(CHECKSUM, count, share, &format!("checksum {first:016x}"));
+    ledger.count(OTHER, turn(levels[0].1, 2).0 != first, || "two threads".to_owned());
+    for (name, level) in &levels[1..] {
+        ledger.count(OTHER, turn(*level, 1).0 != first, || (*name).to_owned());
+    }
+}
+
+fn mix(sum: u64, bits: u64) -> u64 {
+    (sum.rotate_left(5) ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// The checksum of all cycles, and how many touch.
+fn turned(
+    subject: &Subject,
+    part: &Part,
+    (level, threads): (Level, usize),
+    (count, seed): (usize, u64),
+) -> (u64, usize) {
+    let chunks = count.div_ceil(CHUNK);
+    let one = |thread: usize| {
+        let mut probe = Probe::new(part, subject.tool).level(level);
+        let own = (thread..chunks).step_by(threads);
+        own.map(|chunk| {
+            let cycles = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
+            let (sum, touching) = running(&mut probe, subject, cycles, seed);
+            (chunk, sum, touching)
+        })
+        .collect::<Vec<_>>()
+    };
+    let mut sums: Vec<(usize, u64, usize)> = std::thread::scope(|scope| {
+        let one = &one;
+        let running: Vec<_> = (0..threads).map(|k| scope.spawn(move || one(k))).collect();
+        let done = running.into_iter().map(|thread| thread.join().expect("no cycle panics"));
+        done.flatten().collect()
+    });
+    sums.sort_unstable();
+    let touching = sums.iter().map(|(.., touching)| touching).sum();
+    (sums.iter().fold(0, |sum, (_, chunk, _)| mix(sum, *chunk)), touching)
+}
+
+fn running(
+    probe: &mut Probe<'_>,
+    subject: &Subject,
+    cycles: std::ops::Range<usize>,
+    seed: u64,
+) -> (u64, usize) {
+    let [radius, height] = subject.oracle.extent();
+    let (mut sum, mut touching) = (0, 0);
+    for cycle in cycles {
+        let mut draw = Draw::new(seed ^ (cycle as u64).wrapping_mul(0xd134_2543_de82_ef95));
+        let tip = [0; 2].map(|_| draw.between(-0.2, 0.2) * radius);
+        let tip = Point3::new(tip[0], tip[1], draw.between(-0.1, 0.1) * height);
+        let [a, b, c] = [0; 3].map(|_| draw.between(-0.1, 0.1));
+        let norm = (1.0 + a * a + b * b + c * c).sqrt();
+        let turn = [a / norm, b / norm, c / norm, 1.0 / norm];
+        let pose = Pose::from_quaternion(tip, turn).expect("a unit quaternion");
+        let wrench = probe.wrench(&pose);
+        touching += usize::from(wrench.colliding > 0);
+        let (f, t) = (wrench.force, wrench.torque);
+        for number in [f.x, f.y, f.z, t.x, t.y, t.z, wrench.depth(), wrench.energy] {
+            sum = mix(sum, number.to_bits());
+        }
+        sum = mix(sum, wrench.colliding as u64);
+    }
+    (sum, touching)
+}

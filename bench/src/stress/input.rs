@@ -1,0 +1,209 @@
+//! Item 10: input that is none, or hardly any: typed errors, or sense.
+
+use super::ledger::{Item, Kind, Ledger, Row};
+use super::moved::pose;
+use super::scene::{Asked, Given};
+use super::truth::Subject;
+use nalgebra::{Point3, Vector3};
+use touchoff::{Cloud, Mesh, Part, Pose, Probe, Unit};
+use touchoff_tests::oracle::draw::Draw;
+
+/// Refused with these words.
+const REFUSED: Kind = Kind::told("refused", "");
+/// What should be refused and is taken, or the other way round.
+const WRONG: Kind = Kind::never("taken, or refused, wrongly");
+const SENSE: Kind = Kind::never("no sense");
+
+const MM: Unit = Unit::Millimetre;
+
+/// One point, all points the same, all points inside, for a tool.
+pub(super) fn few(subject: &Subject, poses: usize, draw: &mut Draw, ledger: &mut Ledger) {
+    let one = Given::about(subject, 1, 2f64.powi(-30), draw);
+    let same = |count: usize| Given {
+        points: vec![one.points[0]; count],
+        normals: vec![one.normals[0]; count],
+        weights: vec![0.5; count],
+        unit: one.unit,
+    };
+    let inside = inside(subject, 40, draw);
+    let (tool, truth) = (subject.tool, &*subject.truth);
+    for given in [one.clone(), same(2), same(16), same(17), same(300), inside.clone()] {
+        for k in 0..poses {
+            let pose = if k == 0 { Pose::default() } else { pose(Point3::origin(), draw) };
+            let there = given.at(&pose, 2f64.powi(-30));
+            let part = there.part();
+            Asked { tool, truth, given: &there, part: &part }.at(&pose, ledger);
+        }
+    }
+    let part = inside.part();
+    let all = Probe::new(&part, tool).contacts(&Pose::default()).len();
+    ledger.count(SENSE, all != inside.points.len(), || format!("{all} of all are felt"));
+}
+
+/// Points that are all inside by a hundredth of the tool's radius at least, if there are such.
+fn inside(subject: &Subject, count: usize, draw: &mut Draw) -> Given {
+    let mut given = Given::about(subject, count, 2f64.powi(-30), draw);
+    let [radius, height] = subject.oracle.extent();
+    let mut tries = 0;
+    for p in &mut given.points {
+        loop {
+            let [x, y] = [0; 2].map(|_| draw.between(-radius, radius));
+            let at = [x, y, draw.between(0.0, height)];
+            tries += 1;
+            assert!(tries < 1_000_000, "a tool has an inside");
+            if subject.oracle.signed_distance(at) < -1e-3 * radius {
+                *p = Point3::from(at);
+                break;
+            }
+        }
+    }
+    given
+}
+
+/// A cloud from three points of which one thing is wrong.
+fn cloud(change: impl Fn(&mut Lists)) -> Result<String, String> {
+    let mut lists = Lists {
+        points: vec![Point3::origin(); 3],
+        normals: vec![Vector3::z(); 3],
+        ids: vec![0, 1, 2],
+        weights: vec![1.0; 3],
+    };
+    change(&mut lists);
+    let Lists { points, normals, ids, weights } = lists;
+    let cloud = Cloud::new(points, normals, ids, weights, MM).map_err(|e| e.to_string())?;
+    Ok(format!("{} points", cloud.len()))
+}
+
+struct Lists {
+    points: Vec<Point3<f64>>,
+    normals: Vec<Vector3<f64>>,
+    ids: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+/// A tetrahedron's corners and one point more, with these triangles, and points spread on them.
+fn mesh(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<String, String> {
+    let corners = corners.iter().map(|p| Point3::from(*p)).collect();
+    let mesh = Mesh::new(corners, triangles.to_vec(), MM).map_err(|e| e.to_string())?;
+    let mut said = format!("{} triangles", mesh.triangles().len());
+    for cloud in [Cloud::random(&mesh, 50, 1), Cloud::blue(&mesh, 50, 1)] {
+        let cloud = cloud.map_err(|e| e.to_string())?;
+        let finite = cloud.points().iter().all(|p| p.iter().all(|c| c.is_finite()))
+            && cloud.normals().iter().all(|n| (n.norm() - 1.0).abs() < 1e-12)
+            && cloud.weights().iter().all(|w| w.is_finite() && *w >= 0.0);
+        if !finite {
+            return Ok("a cloud without sense".to_owned());
+        }
+        said += &format!(", {} points", cloud.len());
+    }
+    Ok(said)
+}
+
+fn at(tip: [f64; 3], axis: [f64; 3]) -> Result<String, String> {
+    let pose = Pose::from_axis(Point3::from(tip), Vector3::from(axis));
+    pose.map(|_| "a pose".to_owned()).map_err(|e| e.to_string())
+}
+
+fn by(quaternion: [f64; 4]) -> Result<String, String> {
+    let pose = Pose::from_quaternion(Point3::origin(), quaternion);
+    pose.map(|_| "a pose".to_owned()).map_err(|e| e.to_string())
+}
+
+/// What was asked, whether it must be refused, and what came of it.
+type Outcome = (&'static str, bool, Result<String, String>);
+
+fn outcomes() -> Vec<Outcome> {
+    let nan = f64::NAN;
+    let infinite = f64::INFINITY;
+    let tetrahedron = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let moved = |place: usize, at: f64| {
+        let mut corners = tetrahedron;
+        corners[place][1] = at;
+        corners
+    };
+    let flat = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
+    let with = |more: [u32; 3]| {
+        let mut faces = faces.to_vec();
+        faces.push(more);
+        faces
+    };
+    vec![
+        (
+            "cloud: no point",
+            true,
+            cloud(|lists| {
+                lists.points.clear();
+                lists.normals.clear();
+                lists.ids.clear();
+                lists.weights.clear();
+            }),
+        ),
+        ("cloud: a normal too few", true, cloud(|lists| lists.normals.truncate(2))),
+        ("cloud: NaN", true, cloud(|lists| lists.points[1].y = nan)),
+        ("cloud: infinite", true, cloud(|lists| lists.points[1].y = -infinite)),
+        ("cloud: 1e61", true, cloud(|lists| lists.points[1].y = 1e61)),
+        ("cloud: 1e60", false, cloud(|lists| lists.points[1].y = 1e60)),
+        ("cloud: normal 0", true, cloud(|lists| lists.normals[2] = Vector3::zeros())),
+        ("cloud: normal NaN", true, cloud(|lists| lists.normals[2].x = nan)),
+        ("cloud: normal infinite", true, cloud(|lists| lists.normals[2].x = infinite)),
+        ("cloud: normal of 1e-320", true, cloud(|lists| lists.normals[2] *= 1e-320)),
+        ("cloud: weight NaN", true, cloud(|lists| lists.weights[0] = nan)),
+        ("cloud: weight -1", true, cloud(|lists| lists.weights[0] = -1.0)),
+        ("cloud: weight infinite", true, cloud(|lists| lists.weights[0] = infinite)),
+        ("cloud: weights 0", false, cloud(|lists| lists.weights = vec![0.0; 3])),
+        ("cloud: weight 1e308", false, cloud(|lists| lists.weights = vec![1e308; 3])),
+        ("mesh: nothing", true, mesh(&[], &[])),
+        ("mesh: no triangle", true, mesh(&tetrahedron, &[])),
+        ("mesh: tetrahedron", false, mesh(&tetrahedron, &faces)),
+        ("mesh: a triangle without area", false, mesh(&tetrahedron, &with([0, 1, 1]))),
+        ("mesh: only triangles without area", true, mesh(&flat, &[[0, 1, 2], [1, 2, 3]])),
+        ("mesh: no such vertex", true, mesh(&tetrahedron, &with([0, 1, 4]))),
+        ("mesh: NaN", true, mesh(&moved(3, nan), &faces)),
+        ("mesh: infinite", true, mesh(&moved(3, infinite), &faces)),
+        ("mesh: a sliver of 1e-300", false, mesh(&moved(2, 1e-300), &faces)),
+        ("pose: NaN", true, at([nan, 0.0, 0.0], [0.0, 0.0, 1.0])),
+        ("pose: infinite", true, at([0.0, infinite, 0.0], [0.0, 0.0, 1.0])),
+        ("pose: axis 0", true, at([0.0; 3], [0.0; 3])),
+        ("pose: axis NaN", true, at([0.0; 3], [0.0, nan, 1.0])),
+        ("pose: axis 2", true, at([0.0; 3], [0.0, 0.0, 2.0])),
+        ("pose: quaternion 0", true, by([0.0; 4])),
+        ("pose: quaternion NaN", true, by([0.0, 0.0, 0.0, nan])),
+        ("pose: quaternion 1e-160", true, by([1e-160, 0.0, 0.0, 1e-160])),
+    ]
+}
+
+/// What does not depend on a tool.
+pub(super) fn refused(item: Item) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (name, wrong, outcome) in outcomes() {
+        let mut ledger = Ledger::new(item, name);
+        match &outcome {
+            Ok(said) => {
+                ledger.count(WRONG, wrong, || said.clone());
+                ledger.count(SENSE, said.contains("without sense"), || said.clone());
+            }
+            Err(said) => {
+                ledger.count(WRONG, !wrong, || said.clone());
+                ledger.tell(REFUSED, 1, 0.0, said);
+            }
+        }
+        rows.extend(ledger.rows());
+    }
+    rows.extend(huge_weights(item));
+    rows
+}
+
+/// Sums that outgrow doubles are not numbers any more; that is the arithmetic's end, and told as such.
+fn huge_weights(item: Item) -> Vec<Row> {
+    let mut ledger = Ledger::new(item, "cloud: weight 1e300, felt");
+    let points = vec![Point3::new(0.0, 0.0, 0.5); 20];
+    let ids = (0..20).collect();
+    let cloud = Cloud::new(points, vec![Vector3::z(); 20], ids, vec![1e300; 20], MM);
+    let part = Part::from_cloud(&cloud.expect("finite weights"));
+    let tool = tools_library::find("D2Ball").expect("a tool of the library");
+    let wrench = Probe::new(&part, tool).wrench(&Pose::default());
+    let finite = wrench.force.iter().chain(&wrench.torque).all(|c| c.is_finite());
+    ledger.count(SENSE, !finite, || format!("{wrench:?}"));
+    ledger.rows()
+}

@@ -1,0 +1,151 @@
+//! Tools written out as `.tool` files whose every length is multiplied by a number `s`.
+
+use std::fmt::Write;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::restated::{Point, Restated};
+
+/// A power of two as the language writes it, whose exponents go to 16.
+pub(super) fn power_of_two(k: i32) -> String {
+    let mut text = "1".to_owned();
+    let (mut left, sign) = (k.abs(), if k < 0 { "-" } else { "" });
+    while left > 0 {
+        let step = left.min(16);
+        text += &format!(
+            " * 2^{}",
+            if sign.is_empty() { step.to_string() } else { format!("(-{step})") }
+        );
+        left -= step;
+    }
+    text
+}
+
+/// A surface's name without the dots that only assemblies have.
+pub(super) fn flat(surface: &'static str) -> &'static str {
+    match surface {
+        "cutter.ball" => "cutter_ball",
+        "cutter.flute" => "cutter_flute",
+        "cutter.shank" => "cutter_shank",
+        "cutter.face" => "cutter_face",
+        "cutter.corner" => "cutter_corner",
+        "cutter.neck" => "cutter_neck",
+        "cutter.point" => "cutter_point",
+        "nut.nut" => "nut_nut",
+        "holder.body" => "holder_body",
+        "holder.flange" => "holder_flange",
+        "holder.groove" => "holder_groove",
+        plain => plain,
+    }
+}
+
+/// A restated tool with names that a file may write.
+pub(super) fn flattened(tool: &Restated) -> Restated {
+    let mut tool = tool.clone();
+    for way in &mut tool.ways {
+        way.surface = flat(way.surface);
+    }
+    tool.cutting = tool.cutting.iter().map(|surface| flat(surface)).collect();
+    tool
+}
+
+/// A profile as a file, from a restatement with [flattened] names.
+pub(super) fn profile(tool: &Restated, scale: &str) -> String {
+    let point = |[d, z]: &Point| format!("({}*s, {}*s)", d.written(), z.written());
+    let mut text = format!("tool {} {{ units mm; let s = {scale};\nprofile {{\n", tool.name);
+    let _ = writeln!(text, "start {};", point(&tool.start));
+    let mut at = tool.start.clone();
+    for way in &tool.ways {
+        let cutting = if tool.cutting.contains(&way.surface) { " cutting" } else { "" };
+        let to = point(&way.to);
+        let path = match &way.centre {
+            None => format!("line to {to}"),
+            Some(centre) => {
+                let concave = if bends_in(&at, &way.to, centre) { " concave" } else { "" };
+                format!("arc to {to} center {}{concave}", point(centre))
+            }
+        };
+        let _ = writeln!(text, "{path} as {}{cutting};", way.surface);
+        at = way.to.clone();
+    }
+    text + "} }"
+}
+
+/// Whether an arc bulges into the material: it is walked clockwise.
+fn bends_in(from: &Point, to: &Point, centre: &Point) -> bool {
+    let arm = |p: &Point| [&p[0] - &centre[0], &p[1] - &centre[1]];
+    let (a, b) = (arm(from), arm(to));
+    (&(&a[0] * &b[1]) - &(&a[1] * &b[0])) < Big::zero()
+}
+
+/// The thesis's tool and the solids, whose regions are written by hand.
+pub(super) fn by_hand(name: &str, scale: &str) -> Option<String> {
+    let text = match name {
+        "Fig73" => FIG73,
+        "Block" => BLOCK,
+        "LBracket" => BRACKET,
+        _ => return None,
+    };
+    Some(text.replace("SCALE", scale))
+}
+
+const FIG73: &str = "tool Fig73 { units mm; let s = SCALE; tip z = 20*s; spindle -z;
+curve back = z + d - 5*s;
+curve shoulder = z - d - 6*s;
+curve corner = z + d - 14*s;
+curve cone = z + d - 16*s;
+curve ball = hypot(d, z - 19*s) - 1*s;
+region I as housing where z >= 0, back <= 0 { magnitude: z; direction: (0, -1); }
+region II as housing where d <= 5*s, back >= 0, z <= max(9*s, d + 6*s) {
+    magnitude: 5*s - d; direction: (1, 0); }
+region III as housing where d >= 3*s, shoulder >= 0, z <= 11*s {
+    magnitude: 11*s - z; direction: (0, 1); }
+region IV as housing where d <= 3*s, 9*s <= z <= 11*s {
+    magnitude: 14*s - d - z; direction: (1, 1); }
+region V as spindle where d <= 3*s, 11*s <= z <= max(13*s, 14*s - d) {
+    magnitude: 3*s - d; direction: (1, 0); }
+region VI as spindle where d >= 1*s, z >= 13*s, cone <= 0 {
+    magnitude: 16*s - d - z; direction: (1, 1); }
+region VII as spindle where d <= 1*s, corner >= 0, cone <= 0 {
+    magnitude: 17*s - 2*d - z; direction: (2, 1); }
+region VIII as flute cutting where d <= 1*s, cone >= 0, z <= 19*s {
+    magnitude: 1*s - d; direction: (1, 0); }
+region IX as nose cutting where z >= 19*s, ball <= 0 {
+    magnitude: -ball; direction: away from (0, 19*s); } }";
+
+const BLOCK: &str = "solid Block { units mm; let s = SCALE;
+curve left = x + 20*s;
+curve right = 20*s - x;
+curve front = y + 15*s;
+curve back = 15*s - y;
+curve bottom = z;
+curve top = 20*s - z;
+region left where 0 <= left <= min(right, front, back, bottom, top) { depth: left; }
+region right where 0 <= right <= min(left, front, back, bottom, top) { depth: right; }
+region front where 0 <= front <= min(left, right, back, bottom, top) { depth: front; }
+region back where 0 <= back <= min(left, right, front, bottom, top) { depth: back; }
+region bottom where 0 <= bottom <= min(left, right, front, back, top) { depth: bottom; }
+region top where 0 <= top <= min(left, right, front, back, bottom) { depth: top; } }";
+
+const BRACKET: &str = "solid LBracket { units mm; let s = SCALE;
+curve bottom = z;
+curve ledge = 6*s - z;
+curve end = 20*s - x;
+curve bore = hypot(x - 10*s, y) - 3.3*s;
+curve side = 10*s - abs(y);
+curve back = x + 10*s;
+curve wall = -4*s - x;
+curve top = 24*s - z;
+curve edge = hypot(wall, ledge);
+region lying_bottom where wall <= 0, 0 <= bottom <= min(ledge, end, side, bore) { depth: bottom; }
+region lying_top where wall <= 0, 0 <= ledge <= min(bottom, end, side, bore) { depth: ledge; }
+region lying_end where wall <= 0, 0 <= end <= min(bottom, ledge, side) { depth: end; }
+region lying_side where wall <= 0, 0 <= side <= min(bottom, ledge, end) { depth: side; }
+region bore where wall <= 0, 0 <= bore <= min(bottom, ledge) {
+    depth: bore; direction: (10*s - x, -y, 0); }
+region heel_bottom where wall >= 0, ledge >= 0, 0 <= bottom <= min(back, side, edge) { depth: bottom; }
+region heel_back where wall >= 0, ledge >= 0, 0 <= back <= min(bottom, side, edge) { depth: back; }
+region heel_side where wall >= 0, ledge >= 0, 0 <= side <= min(bottom, back, edge) { depth: side; }
+region heel_edge where wall >= 0, ledge >= 0, edge <= min(bottom, back, side) { depth: edge; }
+region standing_back where ledge <= 0, 0 <= back <= min(wall, side, top) { depth: back; }
+region standing_inner where ledge <= 0, 0 <= wall <= min(back, side, top) { depth: wall; }
+region standing_side where ledge <= 0, 0 <= side <= min(back, wall, top) { depth: side; }
+region standing_top where ledge <= 0, 0 <= top <= min(back, wall, side) { depth: top; } }";

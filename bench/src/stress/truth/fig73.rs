@@ -1,0 +1,149 @@
+//! The thesis's tool with its own magnitudes (Ho 1999, eq. 7.1 to 7.3), in 256 bits.
+
+use super::{Claim, Place, Truth};
+use touchoff::Tool;
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::restated::Restated;
+
+const NAMES: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
+
+/// The truth of `Fig73`: its magnitude inside, and the distance from its solid outside.
+pub(super) struct Magnitudes {
+    solid: Reference,
+    /// Of each region of the card, its place among the thesis's.
+    places: Vec<Option<usize>>,
+}
+
+impl Magnitudes {
+    pub(super) fn new(tool: &dyn Tool, solid: &Restated) -> Magnitudes {
+        let regions = tool.card().regions.iter();
+        let place = |name: &str| NAMES.iter().position(|known| *known == name);
+        Magnitudes {
+            solid: Reference::new(solid),
+            places: regions.map(|region| place(&region.name)).collect(),
+        }
+    }
+}
+
+/// A point in the thesis's frame, whose z runs from the housing's back to the tip.
+struct Seen {
+    d: Big,
+    z: Big,
+    radial: [Big; 2],
+}
+
+impl Seen {
+    fn new([x, y, z]: &Place) -> Seen {
+        let d = (&(x * x) + &(y * y)).sqrt();
+        let radial =
+            if d == Big::zero() { [Big::exactly(1.0), Big::zero()] } else { [x / &d, y / &d] };
+        Seen { z: &Big::exactly(20.0) - z, d, radial }
+    }
+
+    /// `a + b d + c z`
+    fn sum(&self, a: f64, b: f64, c: f64) -> Big {
+        let of = |factor: f64, value: &Big| &Big::exactly(factor) * value;
+        &(&Big::exactly(a) + &of(b, &self.d)) + &of(c, &self.z)
+    }
+
+    /// The distance from the ball's centre, and the way there.
+    fn arm(&self) -> (Big, [Big; 2]) {
+        let up = self.sum(-19.0, 0.0, 1.0);
+        ((&(&self.d * &self.d) + &(&up * &up)).sqrt(), [self.d.clone(), up])
+    }
+
+    fn magnitude(&self, region: usize) -> Big {
+        match region {
+            0 => self.z.clone(),
+            1 => self.sum(5.0, -1.0, 0.0),
+            2 => self.sum(11.0, 0.0, -1.0),
+            3 => self.sum(14.0, -1.0, -1.0),
+            4 => self.sum(3.0, -1.0, 0.0),
+            5 => self.sum(16.0, -1.0, -1.0),
+            6 => self.sum(17.0, -2.0, -1.0),
+            7 => self.sum(1.0, -1.0, 0.0),
+            _ => &Big::exactly(1.0) - &self.arm().0,
+        }
+    }
+
+    /// By how much a point misses a region: what its most violated condition is above 0.
+    fn outside(&self, region: usize) -> Big {
+        let s = |a, b, c| self.sum(a, b, c);
+        let either = |a: Big, b: Big| if a < b { a } else { b };
+        let misses: Vec<Big> = match region {
+            0 => vec![-&s(0.0, 0.0, 1.0), s(-5.0, 1.0, 1.0)],
+            1 => vec![
+                s(-5.0, 1.0, 0.0),
+                s(5.0, -1.0, -1.0),
+                either(s(-9.0, 0.0, 1.0), s(-6.0, -1.0, 1.0)),
+            ],
+            2 => vec![s(3.0, -1.0, 0.0), s(6.0, 1.0, -1.0), s(-11.0, 0.0, 1.0)],
+            3 => vec![s(-3.0, 1.0, 0.0), s(9.0, 0.0, -1.0), s(-11.0, 0.0, 1.0)],
+            4 => vec![
+                s(-3.0, 1.0, 0.0),
+                s(11.0, 0.0, -1.0),
+                either(s(-13.0, 0.0, 1.0), s(-14.0, 1.0, 1.0)),
+            ],
+            5 => vec![s(1.0, -1.0, 0.0), s(13.0, 0.0, -1.0), s(-16.0, 1.0, 1.0)],
+            6 => vec![s(-1.0, 1.0, 0.0), s(14.0, -1.0, -1.0), s(-16.0, 1.0, 1.0)],
+            7 => vec![s(-1.0, 1.0, 0.0), s(16.0, -1.0, -1.0), s(-19.0, 0.0, 1.0)],
+            _ => vec![s(19.0, 0.0, -1.0), -&self.magnitude(8)],
+        };
+        misses.into_iter().fold(Big::zero(), |most, miss| if miss > most { miss } else { most })
+    }
+
+    /// Toward the surface, as the thesis has it, in the tool's frame.
+    fn direction(&self, region: usize) -> Place {
+        let root = |n: f64| Big::exactly(n).sqrt();
+        let one = || Big::exactly(1.0);
+        let [e_d, e_z] = match region {
+            0 => [Big::zero(), -&one()],
+            1 | 4 | 7 => [one(), Big::zero()],
+            2 => [Big::zero(), one()],
+            3 | 5 => [&one() / &root(2.0), &one() / &root(2.0)],
+            6 => [&Big::exactly(2.0) / &root(5.0), &one() / &root(5.0)],
+            _ => match self.arm() {
+                (length, _) if length == Big::zero() => [Big::zero(), -&one()],
+                (length, [across, up]) => [&across / &length, &up / &length],
+            },
+        };
+        [&e_d * &self.radial[0], &e_d * &self.radial[1], -&e_z]
+    }
+}
+
+impl Truth for Magnitudes {
+    fn scale(&self) -> f64 {
+        self.solid.scale()
+    }
+
+    fn depth(&self, p: &Place) -> Big {
+        let seen = Seen::new(p);
+        match (0..9).find(|region| seen.outside(*region) == Big::zero()) {
+            Some(region) => seen.magnitude(region),
+            None => -&self.solid.depth(&At::of(p.clone())).abs(),
+        }
+    }
+
+    fn owner(&self, p: &Place) -> Option<usize> {
+        let seen = Seen::new(p);
+        let owner = (0..9).find(|region| seen.outside(*region) == Big::zero())?;
+        self.places.iter().position(|place| *place == Some(owner))
+    }
+
+    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
+        let region = (*self.places.get(region)?)?;
+        let seen = Seen::new(p);
+        let d = seen.d.to_f64();
+        Some(Claim {
+            depth: seen.magnitude(region),
+            behind: seen.outside(region).to_f64(),
+            direction: seen.direction(region),
+            singular: match region {
+                0 | 2 => f64::INFINITY,
+                8 => d.min(seen.arm().0.to_f64()),
+                _ => d,
+            },
+        })
+    }
+}

@@ -1,0 +1,57 @@
+//! Tools that are profiles: depth is the distance to the nearest feature.
+
+use super::{Claim, Place, Truth};
+use touchoff::Tool;
+use touchoff_tests::accuracy;
+use touchoff_tests::oracle::Nearest;
+use touchoff_tests::oracle::reference::{At, Reference};
+use touchoff_tests::oracle::restated::Restated;
+
+/// A profile tool's truth, by its restatement.
+pub struct Profiled {
+    reference: Reference,
+    /// Of each region of the card, the owners of the reference that it is.
+    owners: Vec<Vec<usize>>,
+}
+
+impl Profiled {
+    /// The truth of a tool that is restated so.
+    pub fn new(tool: &dyn Tool, restated: &Restated) -> Profiled {
+        let owners = accuracy::owners(tool, &Nearest::new(restated));
+        Profiled { reference: Reference::new(restated), owners }
+    }
+}
+
+impl Truth for Profiled {
+    fn scale(&self) -> f64 {
+        self.reference.scale()
+    }
+
+    fn depth(&self, p: &Place) -> touchoff_tests::oracle::big::Big {
+        self.reference.depth(&At::of(p.clone()))
+    }
+
+    fn owner(&self, p: &Place) -> Option<usize> {
+        let owner = self.reference.owner(&At::of(p.clone()))?;
+        self.owners.iter().position(|owners| owners.contains(&owner))
+    }
+
+    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
+        let at = At::of(p.clone());
+        let far = |owner: &usize| self.reference.distance_to(&at, *owner);
+        let mut nearest = None;
+        for owner in self.owners.get(region)? {
+            let distance = far(owner);
+            if nearest.as_ref().is_none_or(|(least, _)| distance < *least) {
+                nearest = Some((distance, *owner));
+            }
+        }
+        let (depth, owner) = nearest?;
+        Some(Claim {
+            behind: (&depth - &self.reference.depth(&at).abs()).to_f64().max(0.0),
+            direction: self.reference.direction(&at, owner),
+            singular: self.reference.singular(&at, owner),
+            depth,
+        })
+    }
+}

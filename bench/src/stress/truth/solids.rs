@@ -1,0 +1,272 @@
+//! The block and the bracket in 256 bits: the distance to each face, and which of them a place of the solid has.
+
+use super::{Claim, Place, Truth};
+use touchoff::Tool;
+use touchoff_tests::oracle::big::Big;
+
+/// A solid's truth.
+pub(super) struct Faces {
+    shape: Shape,
+    /// Of each region of the card, its place in [`Shape::regions`].
+    places: Vec<Option<usize>>,
+}
+
+#[derive(Clone, Copy)]
+enum Shape {
+    Block,
+    Bracket,
+}
+
+/// What a region is the nearest to.
+#[derive(Clone, Copy)]
+enum Face {
+    /// The plane on which a coordinate is so large, and on which side of it the material lies: `sign * (coordinate - at)` is the depth.
+    Plane { axis: usize, at: f64, sign: f64 },
+    /// Both planes `y = ±half`.
+    Sides { half: f64 },
+    /// The wall of the hole.
+    Bore,
+    /// The inner edge.
+    Edge,
+}
+
+/// Where in the solid a region may be.
+#[derive(Clone, Copy, PartialEq)]
+enum Zone {
+    Anywhere,
+    /// The lying leg, up to the inner edge.
+    Lying,
+    /// Below and behind the inner edge.
+    Heel,
+    /// The standing leg, from the inner edge up.
+    Standing,
+}
+
+const WALL: f64 = -4.0;
+const LEDGE: f64 = 6.0;
+
+const fn plane(axis: usize, at: f64, sign: f64) -> Face {
+    Face::Plane { axis, at, sign }
+}
+
+const BLOCK: [(&str, Zone, Face); 6] = [
+    ("left", Zone::Anywhere, plane(0, -20.0, 1.0)),
+    ("right", Zone::Anywhere, plane(0, 20.0, -1.0)),
+    ("front", Zone::Anywhere, plane(1, -15.0, 1.0)),
+    ("back", Zone::Anywhere, plane(1, 15.0, -1.0)),
+    ("bottom", Zone::Anywhere, plane(2, 0.0, 1.0)),
+    ("top", Zone::Anywhere, plane(2, 20.0, -1.0)),
+];
+
+const BRACKET: [(&str, Zone, Face); 13] = [
+    ("lying_bottom", Zone::Lying, plane(2, 0.0, 1.0)),
+    ("lying_top", Zone::Lying, plane(2, LEDGE, -1.0)),
+    ("lying_end", Zone::Lying, plane(0, 20.0, -1.0)),
+    ("lying_side", Zone::Lying, Face::Sides { half: 10.0 }),
+    ("bore", Zone::Lying, Face::Bore),
+    ("heel_bottom", Zone::Heel, plane(2, 0.0, 1.0)),
+    ("heel_back", Zone::Heel, plane(0, -10.0, 1.0)),
+    ("heel_side", Zone::Heel, Face::Sides { half: 10.0 }),
+    ("heel_edge", Zone::Heel, Face::Edge),
+    ("standing_back", Zone::Standing, plane(0, -10.0, 1.0)),
+    ("standing_inner", Zone::Standing, plane(0, WALL, -1.0)),
+    ("standing_side", Zone::Standing, Face::Sides { half: 10.0 }),
+    ("standing_top", Zone::Standing, plane(2, 24.0, -1.0)),
+];
+
+impl Shape {
+    fn regions(self) -> &'static [(&'static str, Zone, Face)] {
+        match self {
+            Shape::Block => &BLOCK,
+            Shape::Bracket => &BRACKET,
+        }
+    }
+}
+
+fn length(a: &Big, b: &Big) -> Big {
+    (&(a * a) + &(b * b)).sqrt()
+}
+
+/// From the hole's axis.
+fn off_axis(p: &Place) -> [Big; 2] {
+    [&p[0] - &Big::exactly(10.0), p[1].clone()]
+}
+
+/// From the inner edge.
+fn off_edge(p: &Place) -> [Big; 2] {
+    [&p[0] - &Big::exactly(WALL), &p[2] - &Big::exactly(LEDGE)]
+}
+
+impl Face {
+    /// How far inside of it a point is; of the edge how far from it.
+    fn inward(self, p: &Place) -> Big {
+        match self {
+            Face::Plane { axis, at, sign } => &Big::exactly(sign) * &(&p[axis] - &Big::exactly(at)),
+            Face::Sides { half } => &Big::exactly(half) - &p[1].abs(),
+            Face::Bore => {
+                let [x, y] = off_axis(p);
+                &length(&x, &y) - &Big::decimal(3.3)
+            }
+            Face::Edge => {
+                let [x, z] = off_edge(p);
+                length(&x, &z)
+            }
+        }
+    }
+
+    fn direction(self, p: &Place) -> Place {
+        let zero = Big::zero;
+        match self {
+            Face::Plane { axis, sign, .. } => {
+                std::array::from_fn(|k| if k == axis { Big::exactly(-sign) } else { zero() })
+            }
+            Face::Sides { .. } => {
+                let side = if p[1].is_negative() { -1.0 } else { 1.0 };
+                [zero(), Big::exactly(side), zero()]
+            }
+            Face::Bore => {
+                let [x, y] = off_axis(p);
+                let size = length(&x, &y);
+                [-&(&x / &size), -&(&y / &size), zero()]
+            }
+            Face::Edge => {
+                let [x, z] = off_edge(p);
+                match length(&x, &z) {
+                    size if size == zero() => [zero(), zero(), Big::exactly(1.0)],
+                    size => [-&(&x / &size), zero(), -&(&z / &size)],
+                }
+            }
+        }
+    }
+
+    /// How far the nearest point is without a direction, or with another one as good.
+    fn singular(self, p: &Place) -> f64 {
+        match self {
+            Face::Plane { .. } => f64::INFINITY,
+            Face::Sides { .. } => f64::INFINITY,
+            Face::Bore | Face::Edge => {
+                let [a, b] = if matches!(self, Face::Bore) { off_axis(p) } else { off_edge(p) };
+                length(&a, &b).to_f64()
+            }
+        }
+    }
+}
+
+/// How far a point is out of a zone.
+fn out_of(zone: Zone, p: &Place) -> Big {
+    let [beyond_wall, above_ledge] = off_edge(p);
+    let most = |a: Big, b: Big| if a > b { a } else { b };
+    let signed = match zone {
+        Zone::Anywhere => Big::zero(),
+        Zone::Lying => -&beyond_wall,
+        Zone::Heel => most(beyond_wall, above_ledge),
+        Zone::Standing => most(beyond_wall, -&above_ledge),
+    };
+    most(signed, Big::zero())
+}
+
+impl Faces {
+    pub(super) fn block(tool: &dyn Tool) -> Faces {
+        Faces::new(tool, Shape::Block)
+    }
+
+    pub(super) fn bracket(tool: &dyn Tool) -> Faces {
+        Faces::new(tool, Shape::Bracket)
+    }
+
+    fn new(tool: &dyn Tool, shape: Shape) -> Faces {
+        let place = |name: &str| shape.regions().iter().position(|region| region.0 == name);
+        let places = tool.card().regions.iter().map(|region| place(&region.name)).collect();
+        Faces { shape, places }
+    }
+
+    /// The nearest face of those that the point's zone has, and how deep the point is there: below 0 outside. Zones meet in planes;
+    /// there the one counts in which the point is deeper.
+    fn nearest(&self, p: &Place) -> (usize, Big) {
+        let zones = [Zone::Anywhere, Zone::Lying, Zone::Heel, Zone::Standing];
+        let here = zones.into_iter().filter(|zone| out_of(*zone, p) == Big::zero());
+        let mut best: Option<(usize, Big)> = None;
+        for least in here.filter_map(|zone| self.nearest_in(zone, p)) {
+            if best.as_ref().is_none_or(|(_, most)| least.1 > *most) {
+                best = Some(least);
+            }
+        }
+        best.expect("every place is in a zone that has faces")
+    }
+
+    fn nearest_in(&self, here: Zone, p: &Place) -> Option<(usize, Big)> {
+        let mut best: Option<(usize, Big)> = None;
+        for (region, (_, zone, face)) in self.shape.regions().iter().enumerate() {
+            if *zone != here {
+                continue;
+            }
+            let inward = face.inward(p);
+            if best.as_ref().is_none_or(|(_, least)| inward < *least) {
+                best = Some((region, inward));
+            }
+        }
+        best
+    }
+
+    /// The distance from a point outside: to the boxes that the solid is made of, and to the hole where that is nearest.
+    fn away(&self, p: &Place) -> Big {
+        let to_box = |low: [f64; 3], high: [f64; 3]| {
+            let squares = (0..3).map(|k| {
+                let under = &Big::exactly(low[k]) - &p[k];
+                let over = &p[k] - &Big::exactly(high[k]);
+                let out = if under > over { under } else { over };
+                if out.is_negative() { Big::zero() } else { &out * &out }
+            });
+            squares.fold(Big::zero(), |sum, square| &sum + &square).sqrt()
+        };
+        match self.shape {
+            Shape::Block => to_box([-20.0, -15.0, 0.0], [20.0, 15.0, 20.0]),
+            Shape::Bracket => {
+                let lying = to_box([-10.0, -10.0, 0.0], [20.0, 10.0, LEDGE]);
+                let standing = to_box([-10.0, -10.0, 0.0], [WALL, 10.0, 24.0]);
+                let [x, y] = off_axis(p);
+                let bore = &Big::decimal(3.3) - &length(&x, &y);
+                let lying = if bore.is_negative() {
+                    lying
+                } else {
+                    // Over the hole its rim is the nearest of the lying leg.
+                    length(&bore, &lying)
+                };
+                if lying < standing { lying } else { standing }
+            }
+        }
+    }
+}
+
+impl Truth for Faces {
+    fn scale(&self) -> f64 {
+        32.0
+    }
+
+    fn depth(&self, p: &Place) -> Big {
+        let (_, inward) = self.nearest(p);
+        if inward.is_negative() { -&self.away(p) } else { inward }
+    }
+
+    fn owner(&self, p: &Place) -> Option<usize> {
+        let (region, inward) = self.nearest(p);
+        let place = || self.places.iter().position(|place| *place == Some(region));
+        if inward.is_negative() { None } else { place() }
+    }
+
+    fn claim(&self, p: &Place, region: usize) -> Option<Claim> {
+        let region = (*self.places.get(region)?)?;
+        let (_, zone, face) = self.shape.regions()[region];
+        let depth = face.inward(p);
+        // Beyond a face of the zone beside it a point is as much farther out.
+        let behind = (&depth - &self.nearest(p).1).abs();
+        let out = out_of(zone, p);
+        let behind = if out > behind { out } else { behind };
+        Some(Claim {
+            behind: behind.to_f64(),
+            direction: face.direction(p),
+            singular: face.singular(p),
+            depth,
+        })
+    }
+}

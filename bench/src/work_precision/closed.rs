@@ -1,0 +1,141 @@
+//! Patches in closed form, measured.
+
+use super::lineup::{CELLS, Kind, Lineup, Truths, kinds};
+use super::methods::Proved;
+use super::patch::Patch;
+use super::peers;
+use super::plan::Plan;
+use super::row::{Label, Row};
+use super::truth::{Tally, Truth};
+use super::{Facts, Failure, Sink};
+use rayon::prelude::*;
+use touchoff::certify::{Certifier, Facets};
+use touchoff::{CloudError, Mesh, Pose};
+use touchoff_tests::oracle::draw::Draw;
+
+/// Measures a patch at all sizes.
+///
+/// # Errors
+/// A count that no cloud has.
+pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts, Failure> {
+    let mesh = patch.mesh();
+    let facets = Facets::new(&mesh);
+    let times = patch.times();
+    let mut typical = Tally::default();
+    for (from_last, contacts) in plan.contacts.iter().rev().enumerate().rev() {
+        let size = Size {
+            patch,
+            plan,
+            mesh: &mesh,
+            count: (*contacts as f64 * times).round() as usize,
+            clouds: plan.clouds(*contacts),
+            from_last,
+        };
+        let (rows, truths) = size.measure(&facets)?;
+        rows.into_iter().for_each(&mut *sink);
+        typical.join(&truths);
+    }
+    Ok(Facts {
+        scene: patch.name().to_owned(),
+        about: patch.about(),
+        path: false,
+        typical: typical.typical(),
+        known: patch.known(),
+        unit: mesh.unit(),
+    })
+}
+
+struct Size<'a> {
+    patch: Patch,
+    plan: &'a Plan,
+    mesh: &'a Mesh,
+    count: usize,
+    clouds: usize,
+    /// Its place from the largest size.
+    from_last: usize,
+}
+
+impl Size<'_> {
+    fn seed(&self, cloud: usize) -> u64 {
+        // Other clouds for every size: the first points of a longer one are those of a shorter.
+        self.plan.seed.wrapping_mul(1 << 40) + ((self.count as u64) << 12) + cloud as u64
+    }
+
+    fn kinds(&self, cloud: usize) -> Result<Vec<Kind>, CloudError> {
+        let carry = |cloud| self.patch.exact(cloud);
+        let mut all = kinds(self.mesh, self.count, self.seed(cloud), carry)?;
+        let centroids = self.patch.centroids(self.count);
+        all.extend(centroids.map(|cloud| Kind::new(["centroids", CELLS], cloud)));
+        Ok(all)
+    }
+
+    fn placed(&self, cloud: usize, count: usize) -> (Vec<Pose>, Vec<(usize, Truth)>) {
+        let mut draw = Draw::new(!self.seed(cloud));
+        let placed = (0..count).map(|_| self.patch.place(&mut draw));
+        let (poses, truths): (Vec<Pose>, Vec<Truth>) = placed.unzip();
+        (poses, truths.into_iter().enumerate().collect())
+    }
+
+    fn check(&self, lineup: &mut Lineup<'_>, cloud: usize) -> Vec<Tally> {
+        let (poses, truths) = self.placed(cloud, self.plan.placements);
+        lineup.check(&poses, Truths { true_depths: &truths, thesis: &truths })
+    }
+
+    /// Rows of the size, and a tally of its truths.
+    fn measure(&self, facets: &Facets) -> Result<(Vec<Row>, Tally), Failure> {
+        let others = |cloud: usize| {
+            let kinds = self.kinds(cloud)?;
+            let mut lineup = Lineup::default();
+            self.add_points(&mut lineup, &kinds);
+            Ok(self.check(&mut lineup, cloud))
+        };
+        let others: Vec<Vec<Tally>> =
+            (1..self.clouds).into_par_iter().map(others).collect::<Result<_, CloudError>>()?;
+        let kinds = self.kinds(0)?;
+        let mut lineup = Lineup::default();
+        self.add_points(&mut lineup, &kinds);
+        self.add_triangles(&mut lineup, &kinds, facets)?;
+        let mut tallies = self.check(&mut lineup, 0);
+        // What asks triangles comes after what asks points, and knows no clouds.
+        for other in &others {
+            tallies.iter_mut().zip(other).for_each(|(tally, other)| tally.join(other));
+        }
+        let known = self.patch.known();
+        let (poses, truths) = self.placed(self.clouds, self.plan.timed);
+        let times = lineup.race(&poses, self.plan.seconds);
+        let deep = truths.iter().map(|(_, truth)| truth.depth).fold(0.0, f64::max);
+        let errors = tallies.iter().map(|tally| Ok(tally.errors(known, known[2] * deep)));
+        let rows = lineup.rows(self.patch.name(), &times, errors);
+        Ok((rows, tallies.swap_remove(0)))
+    }
+
+    fn add_points<'a>(&self, lineup: &mut Lineup<'a>, kinds: &'a [Kind]) {
+        lineup.add_clouds(kinds, self.patch.cutter());
+        let peers = self.patch.is_of_ball_or_flute() && self.plan.has_peers(self.from_last);
+        if peers && let Some(kind) = kinds.iter().find(|kind| kind.words == ["blue", CELLS]) {
+            peers::add_points(lineup, self.mesh, kind);
+        }
+    }
+
+    /// Once, since no cloud makes a difference.
+    fn add_triangles<'a>(
+        &self,
+        lineup: &mut Lineup<'a>,
+        kinds: &[Kind],
+        facets: &'a Facets,
+    ) -> Result<(), Failure> {
+        if self.from_last > 0 || !self.patch.is_flat() {
+            return Ok(());
+        }
+        for tolerance in &self.plan.tolerances {
+            let proved = Certifier::new(facets, self.patch.cutter().tool())?;
+            let label = Label::triangles("certified", "f32 filter + f64");
+            let label = Label { tolerance: Some(*tolerance), ..label };
+            lineup.add(label, Box::new(Proved::new(proved, *tolerance)));
+        }
+        if self.patch.is_of_ball_or_flute() {
+            peers::add_triangles(lineup, self.mesh, &kinds[0]);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,106 @@
+//! Orders of convergence: the slopes of errors over the number of points.
+
+use super::methods::Precision;
+use super::row::{Quantity, Row};
+use crate::convergence::order;
+
+/// What is fitted of a scene and a kind of cloud.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orders {
+    /// The scene.
+    pub scene: String,
+    /// How points are spread.
+    pub sampling: &'static str,
+    /// What they count for.
+    pub weights: &'static str,
+    /// Of force, torque and depth; `None` where too few errors are above what the truth is known to.
+    pub slopes: [Option<f64>; 3],
+}
+
+/// Of a smooth contact whose border is a curve on the part.
+pub fn expected(weights: &str, quantity: Quantity) -> f64 {
+    match quantity {
+        Quantity::Depth => -1.0,
+        _ if weights == super::lineup::EQUAL => -0.5,
+        _ => -1.26,
+    }
+}
+
+/// All orders that rows tell, in their order.
+pub fn orders(rows: &[Row]) -> Vec<Orders> {
+    let mut all: Vec<Orders> = Vec::new();
+    let clouds = rows.iter().filter(|row| of_a_cloud(row));
+    for row in clouds {
+        let (Some(sampling), Some(weights)) = (row.sampling, row.weights) else { continue };
+        let of = |other: &Row| {
+            of_a_cloud(other)
+                && other.scene == row.scene
+                && (other.sampling, other.weights) == (row.sampling, row.weights)
+        };
+        let has =
+            |o: &Orders| o.scene == row.scene && (o.sampling, o.weights) == (sampling, weights);
+        if !all.iter().any(has) {
+            let mine: Vec<&Row> = rows.iter().filter(|other| of(other)).collect();
+            let slopes = Quantity::ALL.map(|quantity| slope(&mine, quantity));
+            all.push(Orders { scene: row.scene.clone(), sampling, weights, slopes });
+        }
+    }
+    all
+}
+
+fn of_a_cloud(row: &Row) -> bool {
+    row.method == "cloud" && row.precision == Precision::USUAL.name()
+}
+
+fn slope(rows: &[&Row], quantity: Quantity) -> Option<f64> {
+    const FEWEST: usize = 3;
+    let point = |row: &&Row| {
+        let above = !row.floored.contains(&quantity.name());
+        let error = quantity.error(row).filter(|error| above && *error > 0.0)?;
+        Some([row.points? as f64, error])
+    };
+    let points: Vec<[f64; 2]> = rows.iter().filter_map(point).collect();
+    (points.len() >= FEWEST).then(|| order(&points)[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Plan, measure};
+    use super::*;
+
+    #[test]
+    fn a_ball_in_a_plane_converges_as_is_known() {
+        let plan = Plan {
+            contacts: vec![30, 100, 300, 1_000],
+            tolerances: vec![],
+            timed: 25,
+            ..Plan::quick(1)
+        };
+        let measured = measure(&["CF1"], None, &plan, &mut drop).expect("a patch");
+        let all = orders(&measured.rows);
+        assert_eq!(all.len(), 4);
+        for orders in &all {
+            for quantity in [Quantity::Force, Quantity::Torque] {
+                let slope = orders.slopes[quantity as usize].expect("four sizes");
+                let off = (slope - expected(orders.weights, quantity)).abs();
+                assert!(off < 0.2, "{orders:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn centroids_are_exact_where_depth_is_affine() {
+        let plan =
+            Plan { contacts: vec![10, 500], tolerances: vec![], timed: 25, ..Plan::quick(1) };
+        let measured = measure(&["CF9"], None, &plan, &mut drop).expect("a patch");
+        let force = |sampling: &str| {
+            let of = measured.rows.iter().filter(|row| row.sampling == Some(sampling));
+            let errors = of.filter_map(|row| row.err_force).collect::<Vec<f64>>();
+            assert!(errors.len() >= 2, "{sampling}");
+            errors
+        };
+        assert!(force("centroids").iter().all(|error| *error < 1e-12), "{:?}", force("centroids"));
+        // What makes them exact is not the scene: clouds err there.
+        assert!(force("blue").iter().all(|error| *error > 1e-6), "{:?}", force("blue"));
+    }
+}

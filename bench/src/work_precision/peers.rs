@@ -1,0 +1,53 @@
+//! Other methods, where the feature `peers` has them.
+
+use super::lineup::{Kind, Lineup};
+use touchoff::Mesh;
+
+#[cfg(feature = "peers")]
+mod built {
+    use super::{Kind, Lineup, Mesh};
+    use crate::peers::{brute, fidget, parry_bvh, parry_contact, shell, thesis};
+    use crate::race::contender::{Contender, Workpiece};
+    use crate::work_precision::row::Label;
+
+    fn piece(mesh: &Mesh, kind: &Kind) -> Workpiece {
+        Workpiece { mesh: mesh.clone(), cloud: kind.cloud.clone(), part: kind.part.clone() }
+    }
+
+    pub(super) fn points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
+        let piece = piece(mesh, kind);
+        let all: [(&str, Box<dyn Contender>); 7] = [
+            ("f64", Box::new(brute::Scalar::new(&piece))),
+            ("f32", Box::new(brute::Lanes::new(&piece))),
+            ("f64", Box::new(thesis::Thesis::new(&piece))),
+            ("f32 filter + f64", Box::new(parry_bvh::ParryBvh::new(&piece))),
+            ("f32", Box::new(fidget::Fidget::new(&piece))),
+            ("f64", Box::new(shell::Shell::in_space(&piece))),
+            ("f64", Box::new(shell::Shell::in_the_half_plane(&piece))),
+        ];
+        for (precision, contender) in all {
+            lineup.add_of_the_thesis(kind.label(contender.name(), precision), contender);
+        }
+    }
+
+    pub(super) fn triangles(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
+        let contact = parry_contact::ParryContact::new(&piece(mesh, kind));
+        lineup.add(Label::triangles(contact.name(), "f32"), Box::new(contact));
+    }
+}
+
+/// Those that ask points.
+pub(super) fn add_points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
+    #[cfg(feature = "peers")]
+    built::points(lineup, mesh, kind);
+    #[cfg(not(feature = "peers"))]
+    let _ = (lineup, mesh, kind);
+}
+
+/// Those that ask the part's triangles: they know the solid, not the thesis's magnitudes.
+pub(super) fn add_triangles(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
+    #[cfg(feature = "peers")]
+    built::triangles(lineup, mesh, kind);
+    #[cfg(not(feature = "peers"))]
+    let _ = (lineup, mesh, kind);
+}

@@ -1,0 +1,349 @@
+//! Force and torque of a mesh's own triangles: those that the tool reaches are quartered where that changes
+//! the sums, until what may be left is little enough.
+//!
+//! A piece of a triangle is what the tool feels at its centroid, times its area. By how much its quarters
+//! differ is its error; of pieces all inside, whose error falls as the square of their size, a third of the
+//! difference is taken off (Richardson). A piece whose centroid is outside may hide something: as much as
+//! the tool's distance allows, a tenth of which is taken for its error. These errors say where to go on, and
+//! far too much of the whole, since none is taken against another: how well a sum is known is by how much it
+//! changed since a quarter of the pieces had been asked. Of an error that falls as they grow a third of that is
+//! left, and less of one that falls faster; the rest is for errors that come and go.
+
+use nalgebra::{Point3, Vector3, Vector6};
+use rayon::prelude::*;
+use touchoff::tool::{Ask, Felt, LANES, Points};
+use touchoff::{Level, Mesh, Pose, Tool};
+
+/// Triangles of a part, each in a ball, and the tool that reaches some of them.
+pub(super) struct Refined<'a> {
+    tool: &'a dyn Tool,
+    /// The same solid, of which the distance is known.
+    near: &'a dyn Tool,
+    /// The tool's unit of length in the part's.
+    length: f64,
+    faces: Vec<Face>,
+}
+
+struct Face {
+    corners: [Point3<f64>; 3],
+    normal: Vector3<f64>,
+    centre: Point3<f64>,
+    radius: f64,
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Enough {
+    /// When errors, which are far too large, add up to no more than this share of force and torque,
+    pub(super) share: f64,
+    /// or so many pieces were asked.
+    pub(super) most: usize,
+}
+
+/// What the triangles do to the tool at a pose, in the world's frame; torque is about the tip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sums {
+    /// The force.
+    pub(super) force: Vector3<f64>,
+    /// The torque.
+    pub(super) torque: Vector3<f64>,
+    /// How much force and torque changed since a quarter of the pieces had been asked.
+    pub(super) change: [f64; 2],
+}
+
+type Corners = [Vector3<f64>; 3];
+
+/// A piece of a face, in the tool's frame and unit.
+#[derive(Clone, Copy)]
+struct Piece {
+    corners: Corners,
+    face: u32,
+    /// Force and torque in the tool's frame.
+    value: Vector6<f64>,
+    inside: bool,
+    /// How large a force it may hide.
+    hidden: f64,
+}
+
+/// A piece's quarters: what they come to, and their error.
+struct Quartered {
+    pieces: [Piece; QUARTERS],
+    value: Vector6<f64>,
+    error: [f64; 2],
+}
+
+const QUARTERS: usize = 4;
+/// Of what a piece may hide at most, its share of the error: on average it is less.
+const HIDDEN: f64 = 0.1;
+/// So many sums, the first of pieces as they come, there are at least: what changes says how well they are
+/// known.
+const ROUNDS: usize = 4;
+/// Beside the largest radius of the tool: how long a piece is that says where the tool is.
+const SHORT: f64 = 0.05;
+/// The same of an arm that makes a force a torque worth minding.
+const ARM: f64 = 0.2;
+
+/// Room for evaluations.
+#[derive(Default)]
+struct Room {
+    points: Points,
+    felt: Felt,
+    asked: usize,
+}
+
+impl<'a> Refined<'a> {
+    /// Of a mesh and a tool, and one of the same solid that has a profile, so that its distance is known.
+    pub(super) fn new(mesh: &Mesh, tool: &'a dyn Tool, near: &'a dyn Tool) -> Refined<'a> {
+        let face = |id: u32| {
+            let (corners, normal) = (mesh.triangle(id), mesh.normal(id)?);
+            let centre = Point3::from(corners.iter().map(|c| c.coords).sum::<Vector3<f64>>() / 3.0);
+            let radius =
+                corners.map(|corner| (corner - centre).norm()).into_iter().fold(0.0, f64::max);
+            Some(Face { corners, normal, centre, radius })
+        };
+        let faces = (0..mesh.triangles().len() as u32).filter_map(face).collect();
+        Refined { tool, near, length: tool.card().unit.to(mesh.unit()), faces }
+    }
+
+    /// The sums at many poses, on all cores.
+    pub(super) fn all(&self, poses: &[Pose], enough: Enough) -> Vec<Sums> {
+        poses.par_iter().map(|pose| self.sums(pose, enough)).collect()
+    }
+
+    /// The sums at a pose.
+    pub(super) fn sums(&self, pose: &Pose, enough: Enough) -> Sums {
+        let mut room = Room::default();
+        let mut active = self.reached(pose);
+        self.ask(pose, &mut active, &mut room);
+        let (mut settled, mut error) = (Vector6::zeros(), [0.0; 2]);
+        let coarse = active.iter().map(|piece| piece.value).sum::<Vector6<f64>>();
+        let mut history = vec![(room.asked, coarse)];
+        while !active.is_empty() {
+            let groups = self.quarter(pose, &active, &mut room);
+            let all = settled + groups.iter().map(|group| group.value).sum::<Vector6<f64>>();
+            history.push((room.asked, all));
+            let [force, torque] = parts(&all).map(|part| part.norm());
+            let sizes = [force, torque.max(force * ARM * self.tool.card().radius())];
+            let share = |error: &[f64; 2]| (error[0] / sizes[0]).max(error[1] / sizes[1]);
+            // Groups are large, and stay where they are.
+            let shares = groups.iter().map(|group| share(&group.error));
+            let mut shares: Vec<(f64, usize)> = shares.zip(0..).collect();
+            shares.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let open: f64 = shares.iter().map(|(share, _)| share).sum();
+            let left = enough.share - share(&error);
+            let done = history.len() >= ROUNDS && (open <= left || room.asked > enough.most);
+            // Half of what is left is for later: where there is most to gain pieces are still large.
+            let mut spare = left / 2.0;
+            active.clear();
+            for (mine, place) in shares {
+                let group = &groups[place];
+                if done || mine <= spare {
+                    spare -= mine;
+                    settled += group.value;
+                    error = [error[0] + group.error[0], error[1] + group.error[1]];
+                } else {
+                    spare = 0.0;
+                    active.extend(group.pieces.iter().filter(|piece| piece.is_open()));
+                }
+            }
+        }
+        // Whatever was asked, the last round is not its own measure.
+        let before = &history[..history.len().saturating_sub(1)];
+        let quarter = before.iter().rfind(|(asked, _)| *asked <= room.asked / 4).or(before.first());
+        let earlier = quarter.map_or(Vector6::zeros(), |(_, sums)| *sums);
+        let change = parts(&(settled - earlier)).map(|part| part.norm());
+        let [force, torque] = parts(&settled).map(|part| pose.rotation() * part);
+        Sums { force, torque, change }
+    }
+
+    /// Pieces of faces that the tool may reach, so short that their own length says no more of that.
+    fn reached(&self, pose: &Pose) -> Vec<Piece> {
+        let short = SHORT * self.tool.card().radius();
+        let mut pieces = Vec::new();
+        for (face, known) in (0..).zip(&self.faces) {
+            let far = self.near.clearance(self.inward(pose, &known.centre).into());
+            if far * self.length > known.radius {
+                continue;
+            }
+            let mut left = vec![known.corners.map(|corner| self.inward(pose, &corner))];
+            while let Some(corners) = left.pop() {
+                let (centre, radius) = ball(&corners);
+                if self.near.clearance(centre.into()) > radius {
+                    continue;
+                }
+                if radius > short {
+                    left.extend(shorter(&corners));
+                } else {
+                    pieces.push(Piece::new(corners, face));
+                }
+            }
+        }
+        pieces
+    }
+
+    fn inward(&self, pose: &Pose, point: &Point3<f64>) -> Vector3<f64> {
+        pose.rotation().tr_mul(&(point - pose.tip())) / self.length
+    }
+
+    /// The quarters of pieces, asked.
+    fn quarter(&self, pose: &Pose, pieces: &[Piece], room: &mut Room) -> Vec<Quartered> {
+        let quarters = |piece: &Piece| {
+            let [one, other] = halves(&piece.corners);
+            let [[a, b], [c, d]] = [halves(&one), halves(&other)];
+            [a, b, c, d].map(|corners| Piece::new(corners, piece.face))
+        };
+        let mut all: Vec<Piece> = pieces.iter().flat_map(quarters).collect();
+        self.ask(pose, &mut all, room);
+        let groups = pieces.iter().zip(all.chunks_exact(QUARTERS));
+        groups.map(|(whole, quarters)| Quartered::new(whole, quarters, self.length)).collect()
+    }
+
+    /// What the tool feels at pieces' centroids.
+    fn ask(&self, pose: &Pose, pieces: &mut [Piece], room: &mut Room) {
+        let Room { points, felt, asked } = room;
+        *asked += pieces.len();
+        points.clear();
+        pieces.iter().for_each(|piece| points.push(centroid(&piece.corners).into()));
+        if points.is_empty() {
+            return;
+        }
+        self.tool.evaluate(Level::new(), Ask::DIRECTION, points, self.length, felt);
+        for (at, piece) in pieces.iter_mut().enumerate() {
+            let [a, b, c] = piece.corners;
+            let area = (b - a).cross(&(c - a)).norm() / 2.0 * self.length * self.length;
+            let (centre, radius) = ball(&piece.corners);
+            if felt.inside[at / LANES] >> (at % LANES) & 1 == 0 {
+                let deep = (radius - self.near.clearance(centre.into())).max(0.0);
+                // Both directions may be opposite.
+                piece.hidden = HIDDEN * 2.0 * area * deep * self.length;
+                continue;
+            }
+            let toward = Vector3::from([0, 1, 2].map(|axis: usize| felt.direction[axis][at]));
+            let normal = pose.rotation().tr_mul(&self.faces[piece.face as usize].normal);
+            let push = (normal - toward) * (area * felt.magnitude[at]);
+            let turn = (centre * self.length).cross(&push);
+            piece.inside = true;
+            piece.value = Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z);
+        }
+    }
+}
+
+impl Piece {
+    fn new(corners: Corners, face: u32) -> Piece {
+        Piece { corners, face, value: Vector6::zeros(), inside: false, hidden: 0.0 }
+    }
+
+    /// Whether it is not outside for certain.
+    fn is_open(&self) -> bool {
+        self.inside || self.hidden > 0.0
+    }
+}
+
+impl Quartered {
+    fn new(whole: &Piece, quarters: &[Piece], length: f64) -> Quartered {
+        let pieces: [Piece; QUARTERS] = std::array::from_fn(|k| quarters[k]);
+        let sum: Vector6<f64> = pieces.iter().map(|piece| piece.value).sum();
+        let change = sum - whole.value;
+        let third = if whole.inside && pieces.iter().all(|p| p.inside) { 1.0 / 3.0 } else { 0.0 };
+        let hidden: f64 = pieces.iter().map(|piece| piece.hidden).sum();
+        let arm = centroid(&whole.corners).norm();
+        let [force, torque] = parts(&change).map(|part| part.norm());
+        let factor = if third > 0.0 { third } else { 1.0 };
+        let error = [factor * force + hidden, factor * torque + hidden * arm * length];
+        Quartered { pieces, value: sum + third * change, error }
+    }
+}
+
+/// Force and torque.
+fn parts(sums: &Vector6<f64>) -> [Vector3<f64>; 2] {
+    [0, 3].map(|row| sums.fixed_rows::<3>(row).into_owned())
+}
+
+fn centroid([a, b, c]: &Corners) -> Vector3<f64> {
+    (a + b + c) / 3.0
+}
+
+/// The ball about the centroid.
+fn ball(corners: &Corners) -> (Vector3<f64>, f64) {
+    let centre = centroid(corners);
+    let squares = corners.map(|corner| (corner - centre).norm_squared());
+    (centre, squares.into_iter().fold(0.0, f64::max).sqrt())
+}
+
+/// A triangle in shorter ones. Halves of a slender one would be as slender: quarters of it are like it. So that
+/// is cut across, where the longest edge has its middle.
+fn shorter(corners: &Corners) -> Vec<Corners> {
+    const SLENDER: f64 = 3.0;
+    let [a, b, c] = from_longest(corners);
+    let edge = b - a;
+    let wide = edge.cross(&(c - a)).norm() / edge.norm();
+    if edge.norm() < SLENDER * wide {
+        return halves(corners).to_vec();
+    }
+    let m = (a + b) / 2.0;
+    let foot = (c - a).dot(&edge) / edge.norm_squared();
+    if foot >= 0.5 {
+        let p = a + (c - a) * (0.5 / foot);
+        vec![[a, m, p], [m, b, c], [m, c, p]]
+    } else {
+        let p = b + (c - b) * (0.5 / (1.0 - foot));
+        vec![[m, b, p], [a, m, c], [m, p, c]]
+    }
+}
+
+/// Its corners, the longest edge first.
+fn from_longest(corners: &Corners) -> Corners {
+    let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).norm_squared();
+    let k = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
+    [0, 1, 2].map(|i| corners[(k + i) % 3])
+}
+
+/// Both halves, by the middle of the longest edge.
+fn halves(corners: &Corners) -> [Corners; 2] {
+    let [a, b, c] = from_longest(corners);
+    let m = (a + b) / 2.0;
+    [[a, m, c], [m, b, c]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::convergence::contact::Contact;
+    use touchoff_tests::oracle::draw::Draw;
+
+    #[test]
+    fn what_is_cut_across_is_shorter_and_as_large_as_before() {
+        let area = |[a, b, c]: &Corners| (b - a).cross(&(c - a)).norm() / 2.0;
+        let longest = |corners: &Corners| {
+            let [a, b, _] = from_longest(corners);
+            (b - a).norm()
+        };
+        for apex in [0.0, 1.0, 6.0, 9.0, 13.0] {
+            let slender = [[0.0, 0.0, 0.0], [13.0, 0.0, 0.0], [apex, 0.0, 0.02]].map(Vector3::from);
+            let pieces = shorter(&slender);
+            let whole: f64 = pieces.iter().map(area).sum();
+            assert!((whole / area(&slender) - 1.0).abs() < 1e-12, "{apex}");
+            assert!(pieces.iter().all(|piece| longest(piece) < 7.0), "{apex} {pieces:?}");
+        }
+    }
+
+    #[test]
+    fn sums_are_the_closed_forms() {
+        let enough = Enough { share: 1e-5, most: 1 << 18 };
+        for contact in [Contact::BallInPlane, Contact::SideInPlane] {
+            let mesh = contact.mesh();
+            let refined = Refined::new(&mesh, contact.tool(), contact.tool());
+            let mut draw = Draw::new(3);
+            for _ in 0..5 {
+                let placed = contact.place(&mut draw);
+                let sums = refined.sums(&placed.pose, enough);
+                let off = (sums.force - placed.force).norm();
+                assert!(off < 2e-5 * placed.force.norm(), "{contact:?} {off} {:?}", sums.change);
+                assert!(off < sums.change[0], "{contact:?} {off} {:?}", sums.change);
+                assert!(sums.change[0] < 1e-3 * placed.force.norm(), "{:?}", sums.change);
+                let off = (sums.torque - placed.torque).norm();
+                assert!(off < sums.change[1], "{contact:?} {off} {:?}", sums.change);
+            }
+        }
+    }
+}

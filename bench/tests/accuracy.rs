@@ -1,0 +1,20 @@
+//! The contract of a compiled evaluator, against 256 bits, on a few points a tool.
+//!
+//! `cargo run --release -p touchoff-bench --bin accuracy` does the same on a million.
+
+use touchoff_tests::accuracy::{measure, tools};
+
+const POINTS: usize = 6_000;
+
+#[test]
+fn every_tool_keeps_the_contract() {
+    let tools = tools();
+    // All but the thesis's own, whose magnitudes are no distances, and the two solids.
+    assert_eq!(tools.len(), tools_library::TOOLS.len() - 3);
+    let mut missed = Vec::new();
+    for (tool, restated) in tools {
+        let row = measure(tool, &restated, POINTS, 2);
+        missed.extend(row.missed().into_iter().map(|what| format!("{}: {what}", row.name)));
+    }
+    assert!(missed.is_empty(), "{missed:#?}");
+}

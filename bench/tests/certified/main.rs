@@ -1,0 +1,90 @@
+//! Certified penetrations: against brute force on some hundred poses, and where the answer is known.
+//!
+//! `cargo run --release -p touchoff-bench --bin certified` asks about 100,000 poses.
+
+mod allowances;
+mod apart;
+mod buried;
+mod closed_forms;
+mod end_in_part;
+mod fields;
+mod hard_cases;
+mod overhang;
+mod ring_of_ties;
+mod rounding;
+mod spinning;
+mod sweeps;
+mod zoomed;
+
+use nalgebra::{Point3, Vector3};
+use touchoff::certify::Facets;
+use touchoff::{Mesh, Pose, Tool, Unit};
+use touchoff_bench::certified::{Pair, poses};
+use touchoff_tests::oracle::Nearest;
+
+/// Poses of each part and tool.
+const POSES: usize = 24;
+const SEED: u64 = 2;
+
+/// A tool of the library, or one of [`overhang`].
+fn tool(name: &str) -> &'static dyn Tool {
+    tools_library::find(name).or_else(|| overhang::tool(name)).expect("a tool")
+}
+
+/// The same from its drawing's numbers.
+fn oracle(name: &str) -> Nearest {
+    overhang::oracle(name).unwrap_or_else(|| Nearest::of(name))
+}
+
+fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
+    Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
+}
+
+/// A plate 40 by 30 mm whose upper face is z = 0.
+fn plate() -> Mesh {
+    let [low, high] = [Point3::new(-20.0, -15.0, -10.0), Point3::new(20.0, 15.0, 0.0)];
+    touchoff::mesh::shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid")
+}
+
+/// What a mesh of these triangles is, each with corners of its own.
+fn soup(triangles: &[[[f64; 3]; 3]]) -> Mesh {
+    let vertices = triangles.iter().flatten().map(|corner| Point3::from(*corner)).collect();
+    let ids = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    Mesh::new(vertices, ids, Unit::Millimetre).expect("a mesh")
+}
+
+fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
+    let mut violations = Vec::new();
+    for (part, mesh) in poses::parts().expect("parts") {
+        let facets = Facets::new(&mesh);
+        for (k, name) in names.iter().enumerate() {
+            let oracle = oracle(name);
+            let (mesh, facets) = (&mesh, &facets);
+            let pair = Pair { part, mesh, facets, tool: tool(name), oracle: &oracle };
+            let row = pair.measure(each, seed + k as u64);
+            assert!(row.touching > each / 3, "{row:?}");
+            violations.extend(row.violations);
+        }
+    }
+    violations
+}
+
+#[test]
+fn brute_force_finds_nothing_outside_the_intervals() {
+    let tools = ["Fig73Exact", "BullNose", "TSlot", "BallEr16", "TaperedBall"];
+    let violations = violations(&tools, POSES, SEED);
+    assert!(violations.is_empty(), "{violations:#?}");
+}
+
+#[test]
+fn nor_where_a_profile_overhangs() {
+    let tools = [&["FaceMill", "BoringBar"], &overhang::ALL[..]].concat();
+    let violations = violations(&tools, POSES, 7);
+    assert!(violations.is_empty(), "{violations:#?}");
+}
+
+#[test]
+fn brute_force_finds_nothing_outside_on_a_neck() {
+    let violations = violations(&["Lollipop"], 4 * POSES, 2);
+    assert!(violations.is_empty(), "{violations:#?}");
+}

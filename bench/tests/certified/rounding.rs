@@ -1,0 +1,38 @@
+//! Depths of single triangles that rounding hurts, beside the truth in 256 bits: a sample of `docs/measured/rounding.md`.
+
+use touchoff_bench::rounding::cases::Family;
+use touchoff_bench::rounding::{Rounding, Row};
+
+const CASES: u64 = 33_000;
+
+fn rows(pinch: f64, cases: u64) -> Vec<Row> {
+    let mut rounding = Rounding::new(7);
+    rounding.pinch = pinch;
+    let mut rows = Family::ALL.map(Row::new).to_vec();
+    (0..cases).for_each(|number| rounding.ask(number, &mut rows));
+    rows
+}
+
+#[test]
+fn no_upper_bound_is_below_the_truth() {
+    for row in rows(0.0, CASES) {
+        assert_eq!(row.exceeded, 0, "{row:?}");
+        assert_eq!(row.wider, 0, "{row:?}");
+        assert!(row.touching > row.cases / 3 && row.cases > 2900, "{row:?}");
+    }
+}
+
+/// Where the bounds are made tighter by what they add for rounding, the judge objects in each family.
+#[test]
+fn bounds_without_their_widening_are_found_out() {
+    for row in rows(1.0, 2_200) {
+        assert!(row.exceeded > row.cases / 20, "{row:?}");
+    }
+}
+
+#[test]
+fn no_lower_bound_is_above_the_truth() {
+    for row in rows(0.0, CASES) {
+        assert_eq!(row.violations(), 0, "{row:?}");
+    }
+}

@@ -1,0 +1,38 @@
+//! Depths beside samples that zoom in, and tools inside blocks: a sample of `docs/measured/certified.md`.
+
+use super::tool;
+use touchoff::certify::Facets;
+use touchoff_bench::certified::subject::{PROFILES, Subject};
+use touchoff_bench::certified::zoomed::Zoomed;
+use touchoff_bench::certified::{buried, poses};
+
+const SAMPLES: u64 = 40_000;
+
+#[test]
+fn samples_that_zoom_in_are_within_the_interval() {
+    let (mut asked, mut reached) = (0, 0);
+    let parts = poses::parts().expect("parts");
+    // The tube's thousands of slivers need more samples than a test has.
+    for (part, mesh) in parts.iter().filter(|(part, _)| *part != "tube") {
+        let facets = Facets::new(mesh);
+        for name in PROFILES.iter().chain(&["Fig73", "UnitSphere", "Block"]) {
+            let subject = Subject::of(name);
+            let zoomed =
+                Zoomed { part, mesh, facets: &facets, tool: tool(name), subject: &subject };
+            let row = zoomed.measure(4, SAMPLES, 3);
+            assert!(row.violations.is_empty() && row.wider == 0, "{row:?}");
+            asked += row.poses;
+            reached += row.reached;
+        }
+    }
+    assert!(10 * reached > 9 * asked, "{reached} of {asked}");
+}
+
+#[test]
+fn a_tool_in_a_block_is_inside_unless_a_face_cuts_it() {
+    for name in PROFILES {
+        let row = buried::measure(tool(name), &Subject::of(name), 40, 5);
+        assert!(row.violations.is_empty(), "{row:?}");
+        assert!(row.inside[1] > 10 && row.cut[1] > 10, "{row:?}");
+    }
+}

@@ -1,0 +1,167 @@
+//! Tools broken by program in one place each: what the compiler lets pass of texts must keep the bounds
+//! that are proved of it, and what is broken after that is found out.
+
+use std::path::Path;
+use tool_dsl::interpret::Interpreter;
+use tool_dsl::prove::Certificate;
+use tool_dsl::source::Source;
+use tool_dsl::{Checked, compile};
+use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
+use touchoff_tests::library::library;
+use touchoff_tests::oracle::draw::Draw;
+
+/// Points at which bounds are tried.
+const POINTS: usize = 400;
+/// Directions in which the surface is sought.
+const WAYS: usize = 64;
+
+/// The text with each number a little larger, each comparison and each sign turned round, one at a
+/// time. Comments and the first line are left alone.
+fn broken(text: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    let start = text.find('{').map_or(0, |at| at + 1);
+    let mut put = |at: usize, length: usize, new: &str| {
+        all.push(format!("{}{new}{}", &text[..at], &text[at + length..]));
+    };
+    let bytes = text.as_bytes();
+    let mut at = start;
+    while at < bytes.len() {
+        let rest = &text[at..];
+        let word = at > 0 && (bytes[at - 1].is_ascii_alphanumeric() || bytes[at - 1] == b'_');
+        if rest.starts_with("//") {
+            at += rest.find('\n').unwrap_or(rest.len());
+        } else if let Some(quoted) = rest.strip_prefix('"') {
+            at += 2 + quoted.find('"').unwrap_or(quoted.len());
+        } else if bytes[at].is_ascii_digit() && !word {
+            let number = |c: char| !(c.is_ascii_digit() || c == '.');
+            let length = rest.find(number).unwrap_or(rest.len());
+            if let Ok(value) = rest[..length].parse::<f64>() {
+                put(at, length, &format!("{}", value * 1.07 + 0.01));
+            }
+            at += length;
+        } else {
+            for (old, new) in [("<=", ">="), (">=", "<="), (" + ", " - "), (" - ", " + ")] {
+                if rest.starts_with(old) {
+                    put(at, old.len(), new);
+                }
+            }
+            at += 1;
+        }
+    }
+    all
+}
+
+/// The distance from a point inside to the outside, from above: to the nearest point outside along
+/// some ways.
+fn distance(interpreter: &mut Interpreter<'_>, [d, z]: [f64; 2], size: f64) -> f64 {
+    let mut inside = |p: [f64; 2]| interpreter.at([p[0].abs(), 0.0, p[1]], 1.0).is_some();
+    let mut least = size;
+    for k in 0..WAYS {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / WAYS as f64).sin_cos();
+        let at = |s: f64| [d + s * cos, z + s * sin];
+        // Coarse steps as far as the least so far, then halving.
+        let steps = 40;
+        let Some(first) = (1..=steps)
+            .map(|step| least * f64::from(step) / f64::from(steps))
+            .find(|s| !inside(at(*s)))
+        else {
+            continue;
+        };
+        let (mut low, mut high) = ((first - least / f64::from(steps)).max(0.0), first);
+        for _ in 0..30 {
+            let middle = (low + high) / 2.0;
+            if inside(at(middle)) { low = middle } else { high = middle }
+        }
+        least = least.min(high);
+    }
+    least
+}
+
+/// What is wrong with the bounds that are proved of a tool, if anything.
+fn wrong(tool: &Checked, proved: &Certificate, draw: &mut Draw) -> Option<String> {
+    let cell = tool.extent.cell();
+    let size = cell.sides.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
+    let mut interpreter = Interpreter::new(tool);
+    let most = proved.lipschitz();
+    for _ in 0..POINTS {
+        let [x, _, z] = cell.sides;
+        let p = [draw.between(x.low, x.high), draw.between(z.low, z.high)];
+        let Some(felt) = interpreter.at([p[0], 0.0, p[1]], 1.0) else { continue };
+        let way = draw.direction();
+        let step = 10f64.powf(draw.between(-5.0, -1.0));
+        let q = [(p[0] + step * way[0]).abs(), p[1] + step * way[1]];
+        let there = interpreter.at([q[0], 0.0, q[1]], 1.0).map_or(0.0, |felt| felt.depth);
+        let moved = (q[0] - p[0]).hypot(q[1] - p[1]);
+        let slack = 1e-9 + proved.tolerance;
+        if let Some(most) = most
+            && (there - felt.depth).abs() > most * moved + slack
+        {
+            return Some(format!("{} to {there} over {moved} at {p:?}", felt.depth));
+        }
+        if let Some(least) = proved.least() {
+            // Between two of the ways the surface may be nearer by a little.
+            let away = distance(&mut interpreter, p, size);
+            if felt.depth < least * away * 0.99 - slack {
+                return Some(format!("{} deep and {away} from outside at {p:?}", felt.depth));
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn what_passes_keeps_its_bounds() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
+    let (mut refused, mut jumps, mut bounded, mut open) = (0, 0, 0, 0);
+    for name in ["fig_7_3.tool", "cylinder.tool", "unit_sphere.tool"] {
+        let text = std::fs::read_to_string(folder.join(name)).expect("the library has the file");
+        let mut draw = Draw::new(5);
+        for text in broken(&text) {
+            let Some(tool) = compile(&Source::new(name, &text)).into_tool() else {
+                refused += 1;
+                continue;
+            };
+            let proved = Certificate::of(&tool);
+            if let Some(found) = wrong(&tool, &proved, &mut draw) {
+                panic!("{found}\n{text}");
+            }
+            match (proved.undecided.is_empty(), proved.is_continuous()) {
+                (_, true) => bounded += 1,
+                (true, false) => jumps += 1,
+                (false, false) => open += 1,
+            }
+        }
+    }
+    println!("{refused} refused, {jumps} with jumps, {bounded} bounded, {open} open");
+    assert!(refused > 50 && bounded > 10, "{refused} {jumps} {bounded} {open}");
+}
+
+/// A sample of `docs/measured/mutants.md`, of every tool.
+#[test]
+fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
+    let (mut seen, mut compared, mut missed) = (0, Vec::new(), Vec::new());
+    for (seed, source) in library().iter().enumerate() {
+        let whole = *compile(source).into_tool().expect("the library compiles");
+        let proved = Certificate::of(&whole);
+        let reports = proved.reports(&whole);
+        assert!(reports.is_empty(), "{}: {reports:#?}", whole.model.name);
+        // Others than those of the table.
+        for mutant in mutants(&whole, 4, 1000 + seed as u64) {
+            if changes(&whole, &mutant.tool, 1) {
+                let place =
+                    format!("{}: {} at {}", whole.model.name, KINDS[mutant.kind], mutant.place);
+                match caught(&proved, &mutant.tool) {
+                    Caught::Error | Caught::Open | Caught::Warning => seen += 1,
+                    Caught::Compared => compared.push(place),
+                    Caught::Not => missed.push(place),
+                }
+            }
+        }
+    }
+    println!("{seen} seen, {} by comparing, {} not", compared.len(), missed.len());
+    assert!(
+        seen > 100 && 9 * compared.len() <= seen,
+        "{seen} seen, by comparing only {compared:#?}"
+    );
+    assert!(missed.is_empty(), "{missed:#?}");
+}

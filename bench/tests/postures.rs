@@ -1,0 +1,139 @@
+//! Sweeps beside brute force: a sample of `docs/measured/postures.md`.
+
+use std::num::NonZeroU16;
+use std::ops::ControlFlow;
+use touchoff::certify::Facets;
+use touchoff::mesh::shapes;
+use touchoff::postures::sweep::Sweep;
+use touchoff::postures::{Directions, Rules};
+use touchoff::{Mesh, Unit};
+use touchoff_bench::postures::free::{Part, Verdict};
+use touchoff_bench::postures::parts::relief;
+use touchoff_bench::postures::stand::Posture;
+use touchoff_bench::postures::stand::Stand;
+use touchoff_bench::postures::{Wanted, measure};
+
+fn sample(tools: Vec<&str>, draws: usize) {
+    let mesh = relief(20).expect("a block");
+    let wanted = Wanted {
+        mesh: &mesh,
+        tools,
+        hemisphere: 60,
+        tolerance: 0.01,
+        niceness: 0.15,
+        draws,
+        seed: 4,
+    };
+    let found = measure(&wanted).expect("a sweep");
+    let odd = |list: &[touchoff_bench::postures::Odd]| format!("{list:#?}");
+    for drawn in [&found.accessible, &found.refused] {
+        assert_eq!(drawn.judged, draws);
+        assert!(drawn.wrong.is_empty(), "{}", odd(&drawn.wrong));
+        assert!(20 * drawn.open.len() <= draws, "{}", odd(&drawn.open));
+    }
+    let tally = &found.tally;
+    assert_eq!(tally.postures(), tally.triangles * 120);
+    assert!(tally.known > 0 && tally.found > 0 && tally.acceptable > 0 && tally.facing > 0);
+    let sum: u64 = found.reach.iter().map(|reach| reach.postures).sum();
+    assert_eq!(sum, tally.acceptable);
+}
+
+#[test]
+fn what_a_sweep_finds_accessible_is_free_and_what_not_is_blocked() {
+    sample(vec!["D2Ball", "BallEr16", "TaperedBall"], 300);
+}
+
+#[test]
+fn so_it_is_with_corners_two_contacts_and_tools_in_inches() {
+    sample(vec!["BullNose", "Lollipop", "TSlot", "Dovetail", "Woodruff", "HalfInchBallCat40"], 300);
+}
+
+/// A judge that cannot refuse is none.
+#[test]
+fn brute_force_finds_what_is_in_the_way() {
+    let low = nalgebra::Point3::new(-20.0, -20.0, -30.0);
+    let high = nalgebra::Point3::new(20.0, 20.0, 0.0);
+    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    let part = Part::new(&block);
+    let stand = Stand::new("D2Ball", 1.0, 0.01).expect("a restated tool");
+    let judge = |at: [f64; 3], more: f64| {
+        let posture = Posture { tip: at.into(), axis: nalgebra::Vector3::z(), niceness: 1.0 };
+        part.judge(&stand, &posture, 0.01, more)
+    };
+    assert_eq!(judge([0.0, 0.0, 0.0], 0.0), Verdict::Free);
+    assert_eq!(judge([0.0, 0.0, -0.0099], 0.0), Verdict::Free);
+    assert!(matches!(judge([0.0, 0.0, -0.0101], 0.0), Verdict::Blocked(_)));
+    // The flute of 5 beside the wall may cut a little, the shank above it nothing.
+    assert_eq!(judge([20.999, 0.0, -4.9], 0.0), Verdict::Free);
+    assert!(matches!(judge([20.999, 0.0, -5.1], 0.0), Verdict::Blocked(_)));
+    assert_eq!(judge([21.0001, 0.0, -5.1], 0.0), Verdict::Free);
+    assert!(matches!(judge([21.0001, 0.0, -5.1], -0.001), Verdict::Blocked(_)));
+    // A part far larger than the tool has it inside.
+    let high = nalgebra::Point3::new(20.0, 20.0, 50.0);
+    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    let posture = Posture {
+        tip: nalgebra::Point3::new(0.0, 0.0, -5.0),
+        axis: nalgebra::Vector3::z(),
+        niceness: 1.0,
+    };
+    let verdict = Part::new(&block).judge(&stand, &posture, 0.01, 0.0);
+    assert_eq!(verdict, Verdict::Blocked(f64::INFINITY));
+}
+
+/// From the middle of a plate's top a ball is free to lean until its flute would touch: all of the half sphere
+/// above, but for what the holder or a shank that is wider than the ball keeps away.
+#[test]
+fn a_plate_is_reached_from_all_above_it() {
+    let plate = shapes::plane(0.5, 1, Unit::Millimetre).expect("a plate");
+    let facets = Facets::new(&plate);
+    let directions = Directions::spread(400);
+    let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
+    let tool = tools_library::find("D2Ball").expect("a tool");
+    let sweep = Sweep::new((&plate, &facets), vec![tool], &directions, rules, NonZeroU16::MIN)
+        .expect("a sweep");
+    let mut solid = Vec::new();
+    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
+        solid.extend(
+            batch.rows.iter().map(|(_, row)| directions.solid_angle(&row.access[0].directions)),
+        );
+        ControlFlow::Continue(())
+    });
+    assert_eq!(solid.len(), 2);
+    for angle in solid {
+        assert!((angle - std::f64::consts::TAU).abs() < 0.03, "{angle}");
+    }
+}
+
+/// A plate in the middle of a hollow block: the tool as it is fits in, so that it need not stick out farther, however
+/// far the holder is taken to go on above.
+#[test]
+fn no_stick_out_is_more_than_that_of_the_tool() {
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        shapes::cuboid(low.into(), high.into(), Unit::Millimetre).expect("a block")
+    };
+    let plate = block([-1.0, -1.0, -2.0], [1.0, 1.0, 0.0]);
+    let [outer, hollow] = [80.0, 60.0].map(|half| block([-half; 3], [half; 3]));
+    let vertices = [plate.vertices(), outer.vertices(), hollow.vertices()].concat();
+    let moved = |corners: &[u32; 3], after: u32| corners.map(|corner| corner + after);
+    let outside = outer.triangles().iter().map(|corners| moved(corners, 8));
+    // The void's triangles face inward.
+    let inside = hollow.triangles().iter().map(|corners| {
+        let [a, b, c] = moved(corners, 16);
+        [b, a, c]
+    });
+    let triangles = plate.triangles().iter().copied().chain(outside).chain(inside).collect();
+    let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
+    let facets = Facets::new(&mesh);
+    let directions = Directions::spread(200);
+    let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
+    let tool = tools_library::find("BallEr16").expect("a tool");
+    let sweep = Sweep::new((&mesh, &facets), vec![tool], &directions, rules, NonZeroU16::MIN)
+        .expect("a sweep");
+    let mut needed = Vec::new();
+    let _: ControlFlow<()> = sweep.run(&[0], |batch| {
+        needed.extend(batch.rows.iter().filter_map(|(_, row)| row.access[0].stickout));
+        ControlFlow::Continue(())
+    });
+    assert!(needed.len() > 2 && needed.iter().all(|needed| *needed <= 30.0), "{needed:?}");
+    assert!(needed.contains(&30.0), "nothing asks for all of it: {needed:?}");
+}

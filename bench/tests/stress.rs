@@ -1,0 +1,53 @@
+//! A sample of every item of the stress list, for every tool: no bar is missed.
+//!
+//! `cargo run --release -p touchoff-bench --bin stress` does the whole of it.
+
+use touchoff_bench::stress::judge::{DEPTH, Judge, SIDES};
+use touchoff_bench::stress::ledger::{Item, Ledger};
+use touchoff_bench::stress::truth::subjects;
+use touchoff_bench::stress::{Amount, measure};
+
+#[test]
+fn no_bar_is_missed() {
+    let rows = measure(Amount::sample(7), |_| true, |_| true);
+    let missed: Vec<String> =
+        rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect();
+    assert!(missed.is_empty(), "{missed:#?}");
+    let cases = |item: Item| rows.iter().filter(move |row| row.item == item).map(|row| row.cases);
+    for item in Item::all() {
+        assert!(cases(item).sum::<usize>() > 0, "{item:?}");
+    }
+    // Degenerate profiles are no tools of the library, and not every tool has a meeting that a sample finds.
+    for item in Item::all().filter(|item| ![3, 9].contains(&item.0)) {
+        for tool in tools_library::TOOLS {
+            let name = &tool.card().name;
+            let own = rows.iter().filter(|row| row.item == item && row.tool == *name);
+            assert!(own.map(|row| row.cases).sum::<usize>() > 0, "{item:?} of {name}");
+        }
+    }
+}
+
+/// A page is the same however it is made.
+#[test]
+fn a_seed_gives_the_same_rows() {
+    let rows = || {
+        let rows = measure(Amount::sample(3), |item| item.0 < 5, |name| name == "Fig73Exact");
+        rows.iter().map(|row| format!("{row:?}")).collect::<Vec<_>>()
+    };
+    assert_eq!(rows(), rows());
+}
+
+/// A tool that is another is found out.
+#[test]
+fn a_wrong_tool_misses() {
+    let subjects = subjects();
+    let of = |name: &str| subjects.iter().find(|s| s.name() == name).expect("in the library");
+    let (ball, other) = (of("D2Ball"), of("Fig73Exact"));
+    let mut ledger = Ledger::new(Item(1), "D2Ball");
+    let points: Vec<[f64; 3]> =
+        (0..200).map(|k| [0.4 * f64::from(k % 5), 0.0, 0.1 * f64::from(k)]).collect();
+    Judge::new(ball.tool, &*other.truth).points(&points, &mut ledger);
+    let missed: Vec<&str> =
+        ledger.rows().iter().filter(|row| row.missed()).map(|row| row.kind.what).collect();
+    assert!(missed.contains(&DEPTH.what) && missed.contains(&SIDES.what), "{missed:?}");
+}

@@ -1,0 +1,40 @@
+//! The texts of the library's tools.
+
+use std::path::{Path, PathBuf};
+use tool_dsl::Checked;
+use tool_dsl::source::Source;
+use touchoff::tool::Interpreted;
+
+/// The folder of the library's `.tool` files.
+pub fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools")
+}
+
+/// Reads every tool of the library, in the order of file names.
+///
+/// # Panics
+/// If the library's folder cannot be read.
+pub fn library() -> Vec<Source> {
+    let files = std::fs::read_dir(folder()).expect("the library's folder");
+    let mut files: Vec<PathBuf> = files.filter_map(|file| Some(file.ok()?.path())).collect();
+    files.retain(|path| path.extension().is_some_and(|end| end == "tool"));
+    files.sort();
+    let read = |path| Source::read(path).expect("the library has the file");
+    files.into_iter().map(read).collect()
+}
+
+/// Compiles a tool of the library from its text, for the interpreter and for proofs.
+///
+/// # Panics
+/// If the library has no tool of that name.
+pub fn read(name: &str) -> (Interpreted, Checked) {
+    for source in library() {
+        let compiled =
+            tool_dsl::compile(&source).into_tool().expect("a tool of the library has no error");
+        if compiled.model.name == name {
+            let interpreted = Interpreted::parse(&source).expect("it has none");
+            return (interpreted, *compiled);
+        }
+    }
+    panic!("the library has no {name}")
+}
