@@ -6,7 +6,7 @@ use syn::visit::{self, Visit};
 use tool_dsl::expr::value::{At, Evaluator};
 use tool_dsl::plan::Tree;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile, emit};
+use tool_dsl::{CheckedTool, compile, emit};
 use touchoff_tests::library::{folder, library};
 use touchoff_tests::oracle::draw::Draw;
 
@@ -102,7 +102,7 @@ pub fn parts(source: &Source) -> Parts {
     }
 }
 
-fn splits(tool: &Checked) -> [f64; 2] {
+fn splits(tool: &CheckedTool) -> [f64; 2] {
     let mut tree = Walked::new(tool);
     let mut draw = Draw::new(4);
     let (radius, low, high) = (tool.extent.radius, tool.extent.low, tool.extent.high);
@@ -125,12 +125,12 @@ fn splits(tool: &Checked) -> [f64; 2] {
 
 /// The tree of owners, walked as the nested code does.
 struct Walked<'t> {
-    tool: &'t Checked,
+    tool: &'t CheckedTool,
     curves: Evaluator<'t>,
 }
 
 impl<'t> Walked<'t> {
-    fn new(tool: &'t Checked) -> Walked<'t> {
+    fn new(tool: &'t CheckedTool) -> Walked<'t> {
         let curves = tool.model.curves.iter().map(|curve| curve.value);
         Walked { tool, curves: Evaluator::new(&tool.model.graph, curves) }
     }

@@ -1,10 +1,9 @@
 //! Tools broken in one place each after they were compiled, and what is proved of them then.
 
-use tool_dsl::Checked;
 use tool_dsl::expr::Id;
 use tool_dsl::expr::value::{At, Evaluator};
 use tool_dsl::number::Number;
-use tool_dsl::plan::Tree;
+use tool_dsl::plan::{PlannedTool, Tree};
 use tool_dsl::prove::Certificate;
 use tool_dsl::report::any_error;
 use touchoff_tests::oracle::draw::Draw;
@@ -35,7 +34,7 @@ pub struct Mutant {
     /// Where it is broken.
     pub place: String,
     /// The tool.
-    pub tool: Checked,
+    pub tool: PlannedTool,
 }
 
 /// The evidence that a mutant is broken.
@@ -54,12 +53,12 @@ pub enum Caught {
 }
 
 /// A tool broken so often, each kind in turn, each in a random place.
-pub fn mutants(tool: &Checked, count: usize, seed: u64) -> Vec<Mutant> {
+pub fn mutants(tool: &PlannedTool, count: usize, seed: u64) -> Vec<Mutant> {
     let mut draw = Draw::new(seed);
     (0..count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut draw)).collect()
 }
 
-fn mutant(whole: &Checked, kind: usize, draw: &mut Draw) -> Option<Mutant> {
+fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Draw) -> Option<Mutant> {
     let mut tool = whole.clone();
     let size = tool.extent.scale();
     let mut pick = |count: usize| (draw.bits() % count.max(1) as u64) as usize;
@@ -146,14 +145,14 @@ fn turned(tree: &Tree<Option<usize>>, left: &mut usize) -> Tree<Option<usize>> {
 /// At a point: the depth, and the direction before it was made a unit vector.
 type Felt = (f64, [f64; 3]);
 
-fn felt(tool: &Checked, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Felt> {
+fn felt(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Felt> {
     at.set(At::point(x, y, z));
     let owner = *tool.plan.owner.at(&|curve: usize| at.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
     Some((at.get(region.depth), region.course.0.map(|part| at.get(part))))
 }
 
-fn evaluator(tool: &Checked) -> Evaluator<'_> {
+fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {
     let felt = |region: &tool_dsl::model::Region| -> Vec<Id> {
         region.course.0.into_iter().chain([region.depth]).collect()
     };
@@ -163,7 +162,7 @@ fn evaluator(tool: &Checked) -> Evaluator<'_> {
 }
 
 /// Whether a broken tool is another solid, has another depth or another direction anywhere.
-pub fn changes(whole: &Checked, broken: &Checked, seed: u64) -> bool {
+pub fn changes(whole: &PlannedTool, broken: &PlannedTool, seed: u64) -> bool {
     let mut draw = Draw::new(seed);
     let (mut before, mut after) = (evaluator(whole), evaluator(broken));
     let sides = whole.extent.cell().sides;
@@ -185,7 +184,7 @@ pub fn changes(whole: &Checked, broken: &Checked, seed: u64) -> bool {
 
 /// Returns the evidence that a tool is broken: the reports of its own certificate, or else a difference from that of the
 /// whole tool. The whole tool must have no report.
-pub fn caught(whole: &Certificate, mutant: &Checked) -> Caught {
+pub fn caught(whole: &Certificate, mutant: &PlannedTool) -> Caught {
     let broken = Certificate::of(mutant);
     let reports = broken.reports(mutant);
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {

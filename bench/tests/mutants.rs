@@ -5,7 +5,7 @@ use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile};
+use tool_dsl::{CheckedTool, compile};
 use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::draw::Draw;
@@ -78,7 +78,7 @@ fn distance(interpreter: &mut Interpreter<'_>, [d, z]: [f64; 2], size: f64) -> f
 }
 
 /// What is wrong with the bounds that are proved of a tool, if anything.
-fn wrong(tool: &Checked, proved: &Certificate, draw: &mut Draw) -> Option<String> {
+fn wrong(tool: &CheckedTool, proved: &Certificate, draw: &mut Draw) -> Option<String> {
     let cell = tool.extent.cell();
     let size = cell.sides.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
     let mut interpreter = Interpreter::new(tool);

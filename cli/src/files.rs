@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use tool_dsl::report::escaped;
-use tool_dsl::{Checked, compile_with, emit};
+use tool_dsl::{CheckedTool, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
 use touchoff::{Escaped, Tool, Unit};
@@ -125,7 +125,7 @@ impl Found {
 }
 
 /// A file's tool; what there is to say of the file is said.
-pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<Checked>, Failure> {
+pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<CheckedTool>, Failure> {
     let source = given.source(file)?;
     let compiled = compile_with(&source, &given.sources());
     for report in compiled.reports() {

@@ -11,7 +11,7 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use tool_dsl::prove::Certificate;
 use tool_dsl::report::escaped;
-use tool_dsl::{Checked, compile_with, emit};
+use tool_dsl::{CheckedTool, compile_with, emit};
 
 /// Writes the stages of files into a folder, each file's into one of its own.
 pub(crate) fn write(folder: &Path, files: &[PathBuf], given: &Given) -> Result<(), Failure> {
@@ -94,7 +94,7 @@ fn stages(
 
 /// The functions of a tool's Rust: how many lines each has, and a digest of them. All of it would be
 /// some hundred thousand lines for a library.
-fn functions(tool: &Checked) -> String {
+fn functions(tool: &CheckedTool) -> String {
     let mut text = String::new();
     let rust = emit::rust(tool);
     let mut name = "declarations";

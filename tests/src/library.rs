@@ -1,7 +1,7 @@
 //! The texts of the library's tools.
 
 use std::path::{Path, PathBuf};
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
 
@@ -27,7 +27,7 @@ pub fn library() -> Vec<Source> {
 ///
 /// # Panics
 /// If the library has no tool of that name.
-pub fn read(name: &str) -> (Interpreted, Checked) {
+pub fn read(name: &str) -> (Interpreted, CheckedTool) {
     for source in library() {
         let compiled =
             tool_dsl::compile(&source).into_tool().expect("a tool of the library has no error");

@@ -5,7 +5,7 @@ use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile};
+use tool_dsl::{CheckedTool, compile};
 use touchoff::Level;
 use touchoff::tool::{Ask, Felt, Points};
 use touchoff_tests::accuracy::{owners, tools};
@@ -15,12 +15,12 @@ use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::draw::Draw;
 use touchoff_tests::oracle::reference::{At, Reference};
 
-fn checked(source: &Source) -> Box<Checked> {
+fn checked(source: &Source) -> Box<CheckedTool> {
     let compiled = compile(source);
     compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
 }
 
-fn of_library(name: &str) -> Box<Checked> {
+fn of_library(name: &str) -> Box<CheckedTool> {
     let sources = library();
     checked(
         sources
@@ -30,7 +30,7 @@ fn of_library(name: &str) -> Box<Checked> {
     )
 }
 
-fn text(text: &str) -> Box<Checked> {
+fn text(text: &str) -> Box<CheckedTool> {
     checked(&Source::new("test.tool", text))
 }
 
@@ -40,7 +40,7 @@ fn bounds(proved: &Certificate) -> (f64, f64) {
 }
 
 /// The turn between two regions in degrees, and the least depth at which they meet.
-fn border(tool: &Checked, proved: &Certificate, names: [&str; 2]) -> ([f64; 2], f64) {
+fn border(tool: &CheckedTool, proved: &Certificate, names: [&str; 2]) -> ([f64; 2], f64) {
     let region = |name: &str| tool.model.regions.iter().position(|region| region.name == name);
     let pair = (region(names[0]).expect("a region"), region(names[1]));
     let mut found = proved.borders.iter().filter(|b| b.between == pair && b.is_joined());
@@ -205,7 +205,7 @@ const ENOUGH: usize = 300;
 
 #[test]
 fn rounding_stays_below_its_bound_and_within_ten_times() {
-    let all: Vec<Box<Checked>> = library().iter().map(checked).collect();
+    let all: Vec<Box<CheckedTool>> = library().iter().map(checked).collect();
     let mut loosest = (0.0, String::new());
     for (compiled, restated) in tools() {
         let name = &compiled.card().name;

@@ -4,19 +4,19 @@
 use std::path::Path;
 use tool_dsl::draw::{Lettering, svg};
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile, emit};
+use tool_dsl::{CheckedTool, compile, emit};
 
-fn tool(name: &str, text: &str) -> Box<Checked> {
+fn tool(name: &str, text: &str) -> Box<CheckedTool> {
     let compiled = compile(&Source::new(name, text));
     compiled.outcome.unwrap_or_else(|refusal| panic!("{name}: {refusal:?}")).tool
 }
 
-fn library(file: &str) -> Box<Checked> {
+fn library(file: &str) -> Box<CheckedTool> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
     tool(file, &std::fs::read_to_string(path).expect("the library has the file"))
 }
 
-fn profile(segments: &str) -> Box<Checked> {
+fn profile(segments: &str) -> Box<CheckedTool> {
     tool(
         "profile",
         &format!("tool T \"a <profile> & more\" {{ units mm; profile {{ {segments} }} }}"),
@@ -24,7 +24,7 @@ fn profile(segments: &str) -> Box<Checked> {
 }
 
 /// The texts of a drawing, in the order of drawing.
-fn drawn(tool: &Checked, lettering: Lettering) -> String {
+fn drawn(tool: &CheckedTool, lettering: Lettering) -> String {
     svg(tool, lettering).expect("a tool with an axis")
 }
 
@@ -39,7 +39,7 @@ fn texts(svg: &str) -> Vec<String> {
     texts
 }
 
-fn holds(tool: &Checked) {
+fn holds(tool: &CheckedTool) {
     let name = &tool.model.name;
     let drawing = drawn(tool, Lettering::Strokes);
     assert_eq!(drawing, drawn(tool, Lettering::Strokes), "{name}: other bytes");

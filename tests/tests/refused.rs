@@ -46,7 +46,7 @@ fn the_envelope_reaches_the_end() {
          region b where d <= 1, 40 <= z <= 40.00003 { depth: min(1 - d, 40.00003 - z); direction: (1, 0); }",
     );
     let tool = tool.into_tool().expect("a cylinder in two");
-    assert!(tool.envelope.iter().any(|slab| slab.high >= 40.00003));
+    assert!(tool.envelope().iter().any(|slab| slab.high >= 40.00003));
 }
 
 #[test]

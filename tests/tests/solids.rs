@@ -4,7 +4,7 @@ use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::report::any_error;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile, compile_with};
+use tool_dsl::{CheckedTool, compile, compile_with};
 use tools_library::{Block, LBracket};
 use touchoff::Unit;
 use touchoff::tool::{Evaluators, Shape};
@@ -148,7 +148,7 @@ fn solid(items: &str) -> tool_dsl::Compiled {
     compile(&Source::new("t.tool", format!("solid S {{ units mm; {items} }}")))
 }
 
-fn taken(items: &str) -> Checked {
+fn taken(items: &str) -> CheckedTool {
     let compiled = solid(items);
     assert!(!any_error(compiled.reports()), "{:?}", compiled.reports());
     *compiled.into_tool().expect("no error, so a solid")

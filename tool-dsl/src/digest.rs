@@ -1,8 +1,7 @@
 //! A tool's meaning as one number, by which its versions are told apart.
 
-use crate::Checked;
+use crate::checked::CheckedTool;
 use crate::expr::{Id, Node};
-use crate::interpret::roots;
 use crate::plan::Tree;
 use siphasher::sip::SipHasher24;
 use std::collections::HashMap;
@@ -15,16 +14,16 @@ use std::fmt::{Debug, Write};
 /// gives another.
 ///
 /// It is SipHash-2-4, without a key, of the tool as text.
-pub fn digest(tool: &Checked) -> u64 {
+pub fn digest(tool: &CheckedTool) -> u64 {
     SipHasher24::new().hash(meaning(tool).as_bytes())
 }
 
 /// All that code is made of. Expressions are told by their places among those that are needed, so that it
 /// does not matter what else the file defines.
-fn meaning(tool: &Checked) -> String {
+fn meaning(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut needed: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
-    needed.extend(model.regions.iter().flat_map(|region| roots(&region.outputs)));
+    needed.extend(model.regions.iter().flat_map(|region| region.outputs.roots()));
     leaves(&tool.plan.outside, &mut needed);
     let needed = model.graph.needed(needed);
     let places: HashMap<Id, usize> =
@@ -37,11 +36,11 @@ fn meaning(tool: &Checked) -> String {
         let _ = writeln!(text, "{what:?}");
     };
     line(&(model.domain, model.unit, tool.extent.cell().sides));
-    line(&(&tool.envelope, tool.bounds));
+    line(&(&tool.envelope(), tool.bounds()));
     model.outline().for_each(|piece| line(&piece));
     model.surfaces.iter().for_each(|surface| line(&(&surface.name, surface.cutting)));
     for region in &model.regions {
-        let outputs: Vec<usize> = roots(&region.outputs).into_iter().map(place).collect();
+        let outputs: Vec<usize> = region.outputs.roots().into_iter().map(place).collect();
         line(&(&region.name, region.surface, outputs));
     }
     model.curves.iter().for_each(|curve| line(&place(curve.value)));

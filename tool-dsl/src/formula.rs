@@ -1,7 +1,19 @@
 //! Which points a region has: "and" and "or" over the sides of splitting curves.
 
-/// The place of a curve in [`crate::model::Model::curves`].
+use crate::expr::Id;
+use crate::expr::interval::Interval;
+
+/// The place of a curve in a list of them.
 pub type CurveIndex = usize;
+
+/// A splitting curve, the zeros of an expression.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// The file's name for it, if it has one.
+    pub name: Option<String>,
+    /// Zero on the curve.
+    pub value: Id,
+}
 
 /// A condition on the signs of curves. Both sides of an atom are closed: `below` is `c ≤ 0`, its
 /// opposite `c ≥ 0`, but for strict atoms.
@@ -137,6 +149,21 @@ impl Formula {
             _ => {}
         }
     }
+}
+
+/// The signs of the numbers in an interval.
+pub(crate) fn possible(value: Interval) -> Signs {
+    let mut signs = 0;
+    if value.low < 0.0 {
+        signs |= NEGATIVE;
+    }
+    if value.low <= 0.0 && value.high >= 0.0 {
+        signs |= ZERO;
+    }
+    if value.high > 0.0 {
+        signs |= POSITIVE;
+    }
+    signs
 }
 
 /// The signs that an atom allows.

@@ -6,10 +6,10 @@
 
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
-use crate::formula::{CurveIndex, Formula};
+use crate::formula::{Curve, CurveIndex, Formula};
+use crate::geometry::outline::Segment;
 use crate::number::Number;
 use crate::regionalise::Partition;
-use crate::regionalise::outline::Segment;
 use crate::source::Span;
 
 /// A unit of length that a file may state.
@@ -213,15 +213,6 @@ pub enum DirectionSource {
     Oblique,
 }
 
-/// A splitting curve, the zeros of an expression.
-#[derive(Clone, Debug)]
-pub struct Curve {
-    /// The file's name for it, if it has one.
-    pub name: Option<String>,
-    /// Zero on the curve.
-    pub value: Id,
-}
-
 /// A surface of the tool.
 #[derive(Clone, Debug)]
 pub struct Surface {
@@ -277,4 +268,14 @@ pub struct Outputs {
     pub direction: [Id; 3],
     /// Niceness, never below 0.
     pub niceness: Id,
+}
+
+impl Outputs {
+    /// The expressions in the order of a tape's outputs behind the owner.
+    pub(crate) fn roots(&self) -> Vec<Id> {
+        let mut roots = vec![self.depth, self.magnitude, self.niceness];
+        roots.extend(self.direction);
+        roots.extend(self.gradient);
+        roots
+    }
 }

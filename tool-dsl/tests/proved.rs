@@ -2,9 +2,9 @@
 
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile};
+use tool_dsl::{CheckedTool, compile};
 
-fn tool(text: &str) -> Option<Box<Checked>> {
+fn tool(text: &str) -> Option<Box<CheckedTool>> {
     compile(&Source::new("t.tool", text)).into_tool()
 }
 

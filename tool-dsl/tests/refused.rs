@@ -364,7 +364,7 @@ fn a_proof_that_ends_early_takes_nothing_back() {
     let tool = compiled.tool().expect("a tool");
     let certificate = tool_dsl::prove::Certificate::of(tool);
     assert!(certificate.boxes < 35_000, "{}", certificate.boxes);
-    assert_eq!((certificate.lipschitz(), tool.bounds.lipschitz), (None, Some(1.0)));
+    assert_eq!((certificate.lipschitz(), tool.bounds().lipschitz), (None, Some(1.0)));
     let reports = certificate.reports(tool);
     let help = reports.iter().filter_map(|report| report.help.as_deref()).next();
     assert!(help.is_some_and(|help| help.contains("by construction")), "{help:?}");

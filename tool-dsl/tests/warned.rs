@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tool_dsl::prove::Certificate;
 use tool_dsl::report::Severity;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, Compiled, compile};
+use tool_dsl::{CheckedTool, Compiled, compile};
 
 /// A pin of 3 mm radius: its side is nearest everywhere, but for its ends.
 fn pin(side: &str) -> String {
@@ -29,7 +29,7 @@ fn compiled(text: &str) -> Compiled {
 }
 
 #[track_caller]
-fn tool(text: &str) -> Box<Checked> {
+fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compiled(text);
     let reports = format!("{:#?}", compiled.reports());
     compiled.into_tool().unwrap_or_else(|| panic!("{text}\n{reports}"))

@@ -2,7 +2,7 @@
 
 use super::asked::Asked;
 use super::{Answer, Climb, Effort, Find, Question, neighbours};
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::prove::Certificate;
 use touchoff::tool::Felt;
 use touchoff_tests::accuracy::{Judge, inside};
@@ -149,7 +149,7 @@ pub struct Bars {
 
 impl Bars {
     /// What the card and the certificate say.
-    pub fn new(asked: &Asked<'_>, checked: &Checked) -> Bars {
+    pub fn new(asked: &Asked<'_>, checked: &CheckedTool) -> Bars {
         let certificate = Certificate::of(checked);
         let lipschitz = asked.tool.card().depth.lipschitz;
         let regions = &certificate.regions;

@@ -2,7 +2,7 @@
 
 use super::niceness;
 use serde::Serialize;
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::expr::interval::{Cell, Interval};
 use tool_dsl::prove::{Border, Certificate, RegionFacts};
 
@@ -70,7 +70,7 @@ struct ProvedNot<'t> {
 }
 
 impl<'t> Proved<'t> {
-    pub(super) fn of(tool: &'t Checked, certificate: &'t Certificate) -> Proved<'t> {
+    pub(super) fn of(tool: &'t CheckedTool, certificate: &'t Certificate) -> Proved<'t> {
         let model = &tool.model;
         let ends = |value: Interval| [value.low, value.high];
         let turned = |value: Interval| ends(value).map(f64::to_degrees);

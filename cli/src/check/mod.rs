@@ -14,7 +14,7 @@ use tool_dsl::domain::Domain;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
 use tool_dsl::report::{self, Severity};
-use tool_dsl::{Checked, compile_with};
+use tool_dsl::{CheckedTool, compile_with};
 
 /// The exit status where nothing is wrong but something is warned of; wrong files give 1, wrong options 2.
 const WARNED: u8 = 3;
@@ -70,7 +70,7 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
     }
 }
 
-fn described(tool: &Checked, warnings: usize) -> String {
+fn described(tool: &CheckedTool, warnings: usize) -> String {
     let model = &tool.model;
     let unit = model.unit.word();
     let cutting: Vec<&str> =

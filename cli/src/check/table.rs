@@ -2,7 +2,7 @@
 
 use super::niceness;
 use std::io::Write;
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Border, Certificate, RegionFacts};
 use tool_dsl::report::figure;
@@ -10,7 +10,7 @@ use tool_dsl::report::figure;
 /// Writes it.
 pub(crate) fn write(
     out: &mut impl Write,
-    tool: &Checked,
+    tool: &CheckedTool,
     certificate: &Certificate,
 ) -> std::io::Result<()> {
     let model = &tool.model;
@@ -61,7 +61,7 @@ pub(crate) fn write(
 }
 
 /// Borders between regions, each pair once, and jumps beside the outside.
-fn borders(tool: &Checked, certificate: &Certificate) -> Vec<(Border, String)> {
+fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String)> {
     let mut borders: Vec<(Border, String)> = Vec::new();
     let shown = certificate
         .borders
@@ -82,7 +82,7 @@ fn none_or(jump: Interval) -> String {
 }
 
 /// Where a region's direction leads.
-fn direction(tool: &Checked, facts: &RegionFacts) -> String {
+fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
     let mut said = match facts.aside {
         None => "not known anywhere".to_owned(),
         Some(Interval { low: 0.0, high: 0.0 }) => "straight down the depth".to_owned(),
@@ -98,7 +98,7 @@ fn direction(tool: &Checked, facts: &RegionFacts) -> String {
 }
 
 /// What a tool's depth is to the distance to its surface.
-fn verdict(tool: &Checked, certificate: &Certificate) -> String {
+fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
     let proved = |bound: Option<f64>| bound.map(figure);
     let boxes = certificate.boxes;
     let slack = match certificate.slack {
@@ -120,10 +120,10 @@ fn verdict(tool: &Checked, certificate: &Certificate) -> String {
             "by construction: depth is the distance to the surface; not proved in {boxes} boxes"
         ),
         // Regions by hand may be decided in fewer boxes.
-        _ if tool.bounds.lipschitz.is_some() => format!(
+        _ if tool.bounds().lipschitz.is_some() => format!(
             "proved while compiling: depth is at most {} times the distance to the surface; not proved \
              once more in {boxes} boxes",
-            proved(tool.bounds.lipschitz).unwrap_or_default()
+            proved(tool.bounds().lipschitz).unwrap_or_default()
         ),
         _ => format!(
             "not proved in {boxes} boxes: that depth goes on without jumps; depth bounds no distance"
@@ -135,7 +135,7 @@ fn kind(facts: &RegionFacts) -> &'static str {
     if facts.distance { "a distance" } else { "no distance" }
 }
 
-fn pair(tool: &Checked, border: &Border) -> String {
+fn pair(tool: &CheckedTool, border: &Border) -> String {
     let regions = &tool.model.regions;
     let (own, other) = border.between;
     let other = other.map_or("outside", |other| regions[other].name.as_str());

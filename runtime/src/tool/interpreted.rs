@@ -13,7 +13,7 @@ use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Value, Walk};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
-use tool_dsl::{Accepted, Checked, compile_with, digest, model, report};
+use tool_dsl::{Accepted, CheckedTool, compile_with, digest, model, report};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
@@ -82,7 +82,7 @@ impl Interpreted {
     }
 }
 
-fn card(tool: &Checked) -> Card {
+fn card(tool: &CheckedTool) -> Card {
     let model = &tool.model;
     Card {
         name: Cow::Owned(model.name.clone()),
@@ -102,14 +102,14 @@ fn card(tool: &Checked) -> Card {
             .iter()
             .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: r.surface })
             .collect(),
-        envelope: tool.envelope.iter().map(|s| Slab::new(s.low, s.high, s.radius)).collect(),
+        envelope: tool.envelope().iter().map(|s| Slab::new(s.low, s.high, s.radius)).collect(),
         shape: match model.domain {
             Domain::HalfPlane => Shape::Revolved,
             Domain::Space => Shape::Solid { across: across(&tool.extent) },
         },
         outline: model.outline().map(piece).collect(),
         depth: {
-            let Bounds { least, lipschitz, rounding } = tool.bounds;
+            let Bounds { least, lipschitz, rounding } = tool.bounds();
             Depth { least, lipschitz, rounding: rounding[0], rounding_single: rounding[1] }
         },
         digest: digest(tool),

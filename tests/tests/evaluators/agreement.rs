@@ -3,7 +3,7 @@
 
 use super::LENGTHS;
 use super::points::{scale, shown};
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
 use touchoff::tool::{Ask, Evaluators, Felt, Interpreted, Points, Tool};
@@ -22,7 +22,7 @@ const CORNER: f64 = 1.0;
 pub(crate) fn of<T: Evaluators>(
     tool: T,
     oracle: &dyn Oracle,
-    checked: &Checked,
+    checked: &CheckedTool,
     tape: &Interpreted,
     points: &[[f64; 3]],
 ) {

@@ -12,7 +12,7 @@ mod points;
 
 use std::path::Path;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile};
+use tool_dsl::{CheckedTool, compile};
 use touchoff::tool::Interpreted;
 use touchoff_tests::oracle::{self, Nearest, restated};
 
@@ -26,7 +26,7 @@ fn text(file: &str) -> Source {
 }
 
 /// The tool of a text, checked for the reference interpreter.
-fn checked(source: &Source) -> Checked {
+fn checked(source: &Source) -> CheckedTool {
     let compiled = compile(source);
     assert_eq!(compiled.reports(), [], "a tool of the library has nothing to report");
     *compiled.into_tool().expect("no report, so a tool")

@@ -2,7 +2,7 @@
 
 use crate::{mounts, same, tool};
 
-fn names(tool: &tool_dsl::Checked) -> Vec<&str> {
+fn names(tool: &tool_dsl::CheckedTool) -> Vec<&str> {
     tool.model.regions.iter().map(|region| region.name.as_str()).collect()
 }
 
@@ -67,7 +67,7 @@ fn an_inch_cutter_in_a_metric_nut() {
     let mut order: Vec<&str> = joined.model.surfaces.iter().map(|s| s.name.as_str()).collect();
     order.sort_unstable();
     assert_eq!(order, ["cutter.face", "cutter.flute", "cutter.shank", "nut.nut"]);
-    let regions = |tool: &tool_dsl::Checked| -> Vec<String> {
+    let regions = |tool: &tool_dsl::CheckedTool| -> Vec<String> {
         names(tool)
             .iter()
             .map(|name| name.replace("cutter.", "").replace("nut.nut", "nut"))
@@ -254,7 +254,7 @@ fn mounted_files_mount_files() {
          niceness cutter.flute: 0.75;",
     ));
     same(&joined, &flat, 0.0);
-    let surfaces = |tool: &tool_dsl::Checked| -> Vec<String> {
+    let surfaces = |tool: &tool_dsl::CheckedTool| -> Vec<String> {
         tool.model.surfaces.iter().map(|s| s.name.clone()).collect()
     };
     assert_eq!(

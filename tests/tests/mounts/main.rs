@@ -9,7 +9,7 @@ mod refused;
 use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, Compiled, compile};
+use tool_dsl::{CheckedTool, Compiled, compile};
 use touchoff_tests::oracle::draw::Draw;
 
 /// A text that lies among the tools beside these tests.
@@ -25,7 +25,7 @@ fn said(compiled: &Compiled) -> String {
 }
 
 /// The tool of a text that is good.
-fn tool(text: &str) -> Box<Checked> {
+fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compile(&source(text));
     let said = said(&compiled);
     assert_eq!(said, "", "{text}");
@@ -37,8 +37,8 @@ fn mounts(items: &str) -> String {
 }
 
 /// Both are the same solid with the same regions, felt the same to a part of the tool's size.
-fn same(a: &Checked, b: &Checked, part: f64) {
-    let regions = |tool: &Checked| -> Vec<(usize, bool)> {
+fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
+    let regions = |tool: &CheckedTool| -> Vec<(usize, bool)> {
         let cuts = |surface: usize| tool.model.surfaces[surface].cutting;
         tool.model.regions.iter().map(|r| (r.surface, cuts(r.surface))).collect()
     };

@@ -1,7 +1,7 @@
 //! One compiled profile against brute force.
 
 use super::outline::{Feature, Outline, P2, add, len, sub, unit};
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Felt, Interpreter};
 use touchoff::Level;
 use touchoff::tool::{Ask, Felt as Lists, Interpreted, Points, Tool};
@@ -72,7 +72,7 @@ pub(crate) fn points(outline: &Outline, count: usize, draw: &mut Draw) -> Vec<P2
 /// Compares the reference and the planned tape with brute force at so many points.
 pub(crate) fn compare(
     outline: &Outline,
-    (tool, planned): (&Checked, &Interpreted),
+    (tool, planned): (&CheckedTool, &Interpreted),
     count: usize,
     draw: &mut Draw,
 ) -> Result<Tally, Flaw> {
@@ -138,7 +138,7 @@ pub(crate) fn feature(outline: &Outline, name: &str) -> Option<Feature> {
 
 fn judge(
     outline: &Outline,
-    tool: &Checked,
+    tool: &CheckedTool,
     p: P2,
     got: Option<Felt>,
     clearance: f64,

@@ -2,7 +2,7 @@
 
 use super::outline::{Outline, P2, Piece, add, len, sub, unit};
 use super::{said, tool, warned};
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Felt, Interpreter};
 use tool_dsl::source::Source;
 use touchoff::Level;
@@ -97,7 +97,7 @@ fn each_region_feels_what_the_table_says() {
     }
 }
 
-fn judge(tool: &Checked, planned: &Interpreted, outline: &Outline, p: P2) {
+fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let [d, z] = outline.turned(p);
     let point = [d, 0.0, z];
     let (mut list, mut lists) = (Points::default(), touchoff::tool::Felt::default());

@@ -13,10 +13,10 @@ mod valid;
 
 use std::ffi::OsStr;
 use tool_dsl::source::Source;
-use tool_dsl::{Checked, compile};
+use tool_dsl::{CheckedTool, compile};
 
 /// The tool of a text, or what is said of it.
-fn tool(text: &str) -> Result<Box<Checked>, String> {
+fn tool(text: &str) -> Result<Box<CheckedTool>, String> {
     let source = Source::new("t.tool", text);
     let compiled = compile(&source);
     let said: Vec<String> =
@@ -28,7 +28,7 @@ fn tool(text: &str) -> Result<Box<Checked>, String> {
 }
 
 /// The tool of a text, whatever is warned of.
-fn warned(text: &str) -> Option<Box<Checked>> {
+fn warned(text: &str) -> Option<Box<CheckedTool>> {
     compile(&Source::new("t.tool", text)).into_tool()
 }
 

@@ -5,14 +5,14 @@ use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
 use super::rounded::{lowered, rounded, size};
 use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
-use tool_dsl::Checked;
+use tool_dsl::CheckedTool;
 use tool_dsl::interpret::{Felt, Interpreter};
 use touchoff_tests::oracle::draw::Draw;
 
 /// A smoothed tool beside the same one by nearest features.
 struct Pair {
-    smooth: Box<Checked>,
-    nearest: Box<Checked>,
+    smooth: Box<CheckedTool>,
+    nearest: Box<CheckedTool>,
     /// The rounded profile, in the file's frame.
     rounded: Vec<Piece>,
     /// The tip's z, if the spindle lies toward smaller z; then the tip is at 0 otherwise.
@@ -113,7 +113,7 @@ impl Pair {
             };
             inside += 1;
             assert_eq!(felt.depth, plain.depth, "at {p:?}");
-            let surface = |tool: &Checked, region: usize| {
+            let surface = |tool: &CheckedTool, region: usize| {
                 tool.model.surfaces[tool.model.regions[region].surface].name.clone()
             };
             assert_eq!(surface(&self.smooth, felt.region), surface(&self.nearest, plain.region));

@@ -3,8 +3,8 @@
 use super::{Extent, Prover, inward};
 use crate::expr::interval::Interval;
 use crate::expr::polynomial::Polynomial;
+use crate::geometry::outline;
 use crate::model::Model;
-use crate::regionalise::outline;
 
 /// The most slabs of an envelope.
 const SLABS: usize = 24;

@@ -6,11 +6,11 @@ mod envelope;
 pub use envelope::{Slab, across, envelope};
 
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval};
-use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::elimination::Linear;
+use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval, halves};
+use crate::formula::{ANY, CurveIndex, Formula, Signs, possible};
+use crate::geometry::outline;
 use crate::model::{Model, Region};
-use crate::plan::linear::Linear;
-use crate::regionalise::outline;
 use crate::report::Report;
 
 /// The power of two of the farthest reach of a solid.
@@ -133,47 +133,6 @@ impl<'m> Prover<'m> {
     }
 }
 
-/// The signs of the numbers in an interval.
-pub(crate) fn possible(value: Interval) -> Signs {
-    let mut signs = 0;
-    if value.low < 0.0 {
-        signs |= NEGATIVE;
-    }
-    if value.low <= 0.0 && value.high >= 0.0 {
-        signs |= ZERO;
-    }
-    if value.high > 0.0 {
-        signs |= POSITIVE;
-    }
-    signs
-}
-
-/// A box cut in two across its longest side; a side that spans magnitudes is cut between them.
-pub(crate) fn halves(cell: Cell) -> [Cell; 2] {
-    let length = |axis: usize| cell.sides[axis].high - cell.sides[axis].low;
-    let longer = |most, axis| if length(axis) > length(most) { axis } else { most };
-    let axis = [0, 1].into_iter().fold(2, longer);
-    let side = cell.sides[axis];
-    let middle = middle(side);
-    [
-        cell.with(axis, Interval::new(side.low, middle)),
-        cell.with(axis, Interval::new(middle, side.high)),
-    ]
-}
-
-fn middle(side: Interval) -> f64 {
-    let (low, high) = (side.low, side.high);
-    if low < 0.0 && high > 0.0 && (high > 1e6 || low < -1e6) {
-        0.0
-    } else if low >= 0.0 && high > 1e3 * (low + 1.0) {
-        ((low + 1.0) * high).sqrt()
-    } else if high <= 0.0 && low < 1e3 * (high - 1.0) {
-        -((1.0 - high) * -low).sqrt()
-    } else {
-        low / 2.0 + high / 2.0
-    }
-}
-
 /// How far the solid reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
@@ -215,6 +174,34 @@ impl Extent {
     fn steps(&self) -> f64 {
         10f64.powf(5.0 - self.scale().log10().floor())
     }
+}
+
+/// Points spread evenly over the extent's box and what lies `around` it, by the additive
+/// recurrences R2 in the half plane and R3 in space (Roberts 2018).
+pub(crate) fn spread(
+    domain: Domain,
+    extent: &Extent,
+    count: usize,
+    around: f64,
+) -> impl Iterator<Item = [f64; 3]> {
+    // The real roots of x³ = x + 1 and x⁴ = x + 1.
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    const IN_SPACE: f64 = 1.220_744_084_605_759_5;
+    let cell = extent.cell();
+    let step = |root: f64, power: i32| 1.0 / root.powi(power);
+    let (low_end, steps) = match domain {
+        // There is nothing beyond the axis.
+        Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
+        Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
+    };
+    let ends = [low_end, low_end, around].map(|below| [below, below + around]);
+    (1..=count).map(move |k| {
+        [0, 1, 2].map(|axis| {
+            let (side, [below, both]) = (cell.sides[axis], ends[axis]);
+            let (width, part) = (side.high - side.low, (0.5 + steps[axis] * k as f64).fract());
+            side.low - below * width + part * width * (1.0 + both)
+        })
+    })
 }
 
 /// The reach of the solid, proved; an error if no bound is found.

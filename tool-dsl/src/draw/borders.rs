@@ -6,7 +6,7 @@ use super::map::{Edge, edges};
 use super::section::Piece;
 use super::stroke::{Stroke, fitted, round};
 use crate::formula::CurveIndex;
-use crate::regionalise::outline::{Point, minus, norm};
+use crate::geometry::outline::{Point, minus, norm};
 use std::collections::BTreeMap;
 
 /// What is on a side of a border.

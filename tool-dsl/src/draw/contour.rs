@@ -4,8 +4,8 @@
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use super::view::is_outline;
+use crate::geometry::outline::{Point, cross, dot, minus, norm};
 use crate::model::{Model, Unit};
-use crate::regionalise::outline::{Point, cross, dot, minus, norm};
 
 /// Lengths are equal that differ by less than this part of the tool's size.
 const EQUAL: f64 = 1e-7;

@@ -5,8 +5,8 @@ use crate::expr::interval::{Cell, Encloser, Interval};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::model::Model;
-use crate::regionalise::outline::{Point, dot, minus, norm};
 
 /// A curve that can be asked for its value at a point and its signs in a box.
 enum Asked<'m> {

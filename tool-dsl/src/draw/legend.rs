@@ -6,7 +6,7 @@ use super::lettering::width;
 use super::marks::head;
 use super::regions::Marks;
 use super::sheet::{Anchor, INK, Look, Sheet, lines};
-use crate::regionalise::outline::Point;
+use crate::geometry::outline::Point;
 
 /// The height of capitals, and of a line.
 const SIZE: f64 = 7.5;

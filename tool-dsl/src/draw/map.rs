@@ -3,7 +3,7 @@
 use super::borders::{Nearness, Side};
 use super::section::Piece;
 use crate::formula::CurveIndex;
-use crate::regionalise::outline::{Point, cross, minus, norm};
+use crate::geometry::outline::{Point, cross, minus, norm};
 use std::collections::HashMap;
 
 /// A piece of a border, from one welded corner to another.

@@ -3,8 +3,8 @@
 use super::shape::{Frame, Shape};
 use super::view::View;
 use crate::expr::value::{At, Evaluator};
+use crate::geometry::outline::{Point, cross, minus, norm};
 use crate::model::Model;
-use crate::regionalise::outline::{Point, cross, minus, norm};
 
 /// An arrow on the sheet, from its tail to its head.
 pub(super) type Arrow = [Point; 2];

@@ -27,7 +27,7 @@ mod sheet;
 mod stroke;
 mod view;
 
-use crate::Checked;
+use crate::checked::CheckedTool;
 use crate::domain::Domain;
 use crate::model::Model;
 use borders::{Border, Nearness, Side};
@@ -50,7 +50,7 @@ struct Picture<'m> {
 }
 
 /// Draws a tool as SVG; a solid has no axis, so no section shows it whole. The drawing says what it is of, so it needs no caption; it lies on white.
-pub fn svg(tool: &Checked, lettering: Lettering) -> Option<String> {
+pub fn svg(tool: &CheckedTool, lettering: Lettering) -> Option<String> {
     if tool.model.domain == Domain::Space {
         return None;
     }
@@ -68,7 +68,7 @@ pub fn svg(tool: &Checked, lettering: Lettering) -> Option<String> {
 }
 
 impl<'m> Picture<'m> {
-    fn new(tool: &'m Checked) -> Picture<'m> {
+    fn new(tool: &'m CheckedTool) -> Picture<'m> {
         let (model, extent) = (&tool.model, &tool.extent);
         let height = extent.high - extent.low;
         // What one unit of the sheet is at least, in the tool's.
@@ -104,7 +104,7 @@ impl<'m> Picture<'m> {
 }
 
 /// Name, description and unit, above everything.
-fn title(tool: &Checked, sheet: &mut Sheet) {
+fn title(tool: &CheckedTool, sheet: &mut Sheet) {
     let model = &tool.model;
     let [low, high] = sheet.frame();
     let room = (high[0] - low[0]).max(400.0);
@@ -131,7 +131,7 @@ mod tests {
     use crate::compile;
     use crate::source::Source;
 
-    fn tool(text: &str) -> Box<Checked> {
+    fn tool(text: &str) -> Box<CheckedTool> {
         let compiled = compile(&Source::new("test.tool", text));
         compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
     }

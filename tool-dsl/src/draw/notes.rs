@@ -9,7 +9,7 @@ use super::marks::head;
 use super::regions::Marks;
 use super::sheet::{Anchor, Look, Sheet, THIN, lines};
 use super::view::is_outline;
-use crate::regionalise::outline::{Point, minus, norm};
+use crate::geometry::outline::{Point, minus, norm};
 
 /// The height of capitals.
 const SIZE: f64 = 7.5;

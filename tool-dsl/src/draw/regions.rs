@@ -9,7 +9,7 @@ use super::shape::{Frame, Shape};
 use super::sheet::{Anchor, INK, Look, Sheet, data, lines};
 use super::stroke::Stroke;
 use super::view::{is_outline, mirrored};
-use crate::regionalise::outline::Point;
+use crate::geometry::outline::Point;
 
 /// What was marked, for those who note and explain it.
 pub(super) struct Marks {

@@ -8,8 +8,8 @@
 
 use super::curves::Curves;
 use crate::formula::{CurveIndex, NEGATIVE, ZERO};
+use crate::geometry::outline::{Point, cross, minus, norm};
 use crate::plan::Tree;
-use crate::regionalise::outline::{Point, cross, minus, norm};
 use std::collections::HashSet;
 
 /// The plan's tree of owners.

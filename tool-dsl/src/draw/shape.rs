@@ -3,7 +3,7 @@
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use super::view::View;
-use crate::regionalise::outline::{Point, dot, minus, norm};
+use crate::geometry::outline::{Point, dot, minus, norm};
 
 /// How far the chords are from the curves by which room is measured.
 const FLAT: f64 = 0.3;

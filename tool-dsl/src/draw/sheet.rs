@@ -2,7 +2,7 @@
 
 use super::lettering::{scale, strokes, width};
 use super::stroke::Stroke;
-use crate::regionalise::outline::Point;
+use crate::geometry::outline::Point;
 use std::fmt::Write;
 
 /// Which end of a line of text is at its place.

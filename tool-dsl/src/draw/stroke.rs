@@ -1,6 +1,6 @@
 //! Lines and arcs, the strokes that everything is drawn with.
 
-use crate::regionalise::outline::{Point, cross, dot, minus, norm};
+use crate::geometry::outline::{Point, cross, dot, minus, norm};
 use std::f64::consts::PI;
 
 /// A line, or an arc of less than half a circle.

@@ -4,7 +4,7 @@
 
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
-use crate::regionalise::outline::Point;
+use crate::geometry::outline::Point;
 
 /// The most room that the section takes on the sheet: its whole width, its height.
 const ROOM: [f64; 2] = [330.0, 500.0];

@@ -2,8 +2,8 @@
 
 use super::tokens::Tokens;
 use crate::expr::{Coord, Graph, Id, Node};
+use crate::formula::Curve;
 use crate::formula::CurveIndex;
-use crate::model::Curve;
 use crate::number::Number;
 use crate::plan::Tree;
 use proc_macro2::TokenStream;

@@ -1,12 +1,12 @@
 //! The tree of splits as a graph, in Graphviz's DOT.
 
 use super::code::Writer;
-use crate::Checked;
+use crate::checked::CheckedTool;
 use crate::plan::Tree;
 use std::fmt::Write;
 
 /// The owners' tree: a box for each test, whose left way holds, and a leaf for each region.
-pub fn dot(tool: &Checked) -> String {
+pub fn dot(tool: &CheckedTool) -> String {
     let mut graph = Dot { tool, text: String::new(), nodes: 0 };
     graph.tree(&tool.plan.owner);
     let name = &tool.model.name;
@@ -14,7 +14,7 @@ pub fn dot(tool: &Checked) -> String {
 }
 
 struct Dot<'t> {
-    tool: &'t Checked,
+    tool: &'t CheckedTool,
     text: String,
     nodes: usize,
 }

@@ -7,7 +7,7 @@
 use super::code::{Form, Writer};
 use super::tokens::Tokens;
 use super::{OUTPUTS, Output};
-use crate::Checked;
+use crate::checked::CheckedTool;
 use crate::expr::Id;
 use crate::plan::Tree;
 use proc_macro2::TokenStream;
@@ -15,7 +15,7 @@ use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The function.
-pub(super) fn felt(tool: &Checked) -> TokenStream {
+pub(super) fn felt(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let tree = &tool.plan.owner;
     let mut owners = BTreeSet::new();
@@ -71,7 +71,7 @@ fn regions(tree: &Tree<Option<usize>>, owners: &mut BTreeSet<usize>) {
 
 /// What is felt in one region.
 struct Section<'a> {
-    tool: &'a Checked,
+    tool: &'a CheckedTool,
     writer: &'a Writer<'a>,
     region: usize,
 }

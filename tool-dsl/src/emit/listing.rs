@@ -1,7 +1,7 @@
 //! A tool between its text and its Rust, as text: what a reviewer compares after a change of the compiler.
 
 use super::code::Writer;
-use crate::Checked;
+use crate::checked::CheckedTool;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::report::figure;
@@ -30,7 +30,7 @@ fn unplaced(text: &str) -> String {
 }
 
 /// What a file says, resolved: frame, curves, surfaces; and how far the solid reaches.
-pub fn model(tool: &Checked) -> String {
+pub fn model(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut text = String::new();
     // Writing to a String does not fail.
@@ -41,7 +41,7 @@ pub fn model(tool: &Checked) -> String {
     for side in tool.extent.cell().sides {
         let _ = writeln!(text, "reach {:?} to {:?}", side.low, side.high);
     }
-    for slab in &tool.envelope {
+    for slab in tool.envelope() {
         let _ = writeln!(text, "slab {:?} to {:?} within {:?}", slab.low, slab.high, slab.radius);
     }
     for surface in &model.surfaces {
@@ -56,7 +56,7 @@ pub fn model(tool: &Checked) -> String {
 }
 
 /// The regions: where they are, and what is felt there.
-pub fn regions(tool: &Checked) -> String {
+pub fn regions(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut text = String::new();
     for region in &model.regions {
@@ -94,6 +94,6 @@ fn condition(formula: &Formula) -> String {
     }
 }
 
-fn expression(tool: &Checked, id: Id) -> String {
+fn expression(tool: &CheckedTool, id: Id) -> String {
     Writer::written(&tool.model.graph, &tool.model.curves, id)
 }

@@ -10,8 +10,8 @@ mod tokens;
 pub use dot::dot;
 pub use listing::{model, regions, tree};
 
-use crate::Checked;
 use crate::bound::across;
+use crate::checked::CheckedTool;
 use crate::digest;
 use crate::domain::Domain;
 use crate::draw::{self, Lettering};
@@ -27,18 +27,18 @@ use tokens::{Tokens, literal};
 
 /// The type and its evaluators. Its documentation has the tool's drawing, which only rustdoc is
 /// shown: an editor that shows documentation as text is spared it.
-pub fn emit(tool: &Checked) -> TokenStream {
+pub fn emit(tool: &CheckedTool) -> TokenStream {
     code(tool, &quote! {})
 }
 
 /// The same with the tool's drawing on the type's page, for rustdoc.
-pub fn documented(tool: &Checked) -> TokenStream {
+pub fn documented(tool: &CheckedTool) -> TokenStream {
     // One line within a block, so that nothing in it is read as Markdown.
     let drawing = draw::svg(tool, Lettering::Page).map(|svg| format!("<div>{svg}</div>"));
     code(tool, &drawing.map(|drawing| quote! { #[doc = ""] #[doc = #drawing] }).unwrap_or_default())
 }
 
-fn code(tool: &Checked, drawing: &TokenStream) -> TokenStream {
+fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     let name = Ident::new(&tool.model.name, Span::call_site());
     let docs = documentation(tool);
     let card = card(tool);
@@ -105,7 +105,7 @@ pub fn skeleton(name: &str) -> TokenStream {
     }
 }
 
-fn documentation(tool: &Checked) -> String {
+fn documentation(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut text = format!(
         "{}\n\nUnit: {}. {}.\n\n\
@@ -124,7 +124,7 @@ fn documentation(tool: &Checked) -> String {
 }
 
 /// How far a tool reaches along its axis and about it, or a solid along x, y and z.
-fn reach(tool: &Checked) -> String {
+fn reach(tool: &CheckedTool) -> String {
     let extent = &tool.extent;
     let tidy = |v: f64| figure(if v.abs() < 1e-9 * extent.scale() { 0.0 } else { v });
     match tool.model.domain {
@@ -142,7 +142,7 @@ fn reach(tool: &Checked) -> String {
     }
 }
 
-fn card(tool: &Checked) -> TokenStream {
+fn card(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let name = &model.name;
     let title = model.title.as_deref().unwrap_or("");
@@ -155,7 +155,7 @@ fn card(tool: &Checked) -> TokenStream {
         let (name, surface) = (&region.name, region.surface);
         quote! { Region::new(#name, #surface) }
     });
-    let slabs = tool.envelope.iter().map(|slab| {
+    let slabs = tool.envelope().iter().map(|slab| {
         let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
         quote! { Slab::new(#low, #high, #radius) }
     });
@@ -177,14 +177,15 @@ fn card(tool: &Checked) -> TokenStream {
         }
     });
     let digest = Literal::u64_suffixed(digest(tool));
-    let [rounding, single] = tool.bounds.rounding.map(literal);
-    let [least, lipschitz] = [tool.bounds.least, tool.bounds.lipschitz].map(|bound| match bound {
-        Some(bound) => {
-            let bound = literal(bound);
-            quote! { Some(#bound) }
-        }
-        None => quote! { None },
-    });
+    let [rounding, single] = tool.bounds().rounding.map(literal);
+    let [least, lipschitz] =
+        [tool.bounds().least, tool.bounds().lipschitz].map(|bound| match bound {
+            Some(bound) => {
+                let bound = literal(bound);
+                quote! { Some(#bound) }
+            }
+            None => quote! { None },
+        });
     let shape = match model.domain {
         Domain::HalfPlane => quote! { Shape::Revolved },
         Domain::Space => {
@@ -242,7 +243,7 @@ impl Output {
 }
 
 /// The evaluators of one point.
-fn scalar(tool: &Checked) -> TokenStream {
+fn scalar(tool: &CheckedTool) -> TokenStream {
     let mut all =
         of_tests(tool, ("contains", &quote! { bool }), &tool.plan.inside, &|code, inside| {
             code.word(if *inside { "true" } else { "false" });
@@ -285,7 +286,7 @@ fn function(name: &str, length: bool, result: &TokenStream, body: &TokenStream) 
 }
 
 /// The body of a function whose leaves are one or three expressions.
-fn body(tool: &Checked, tree: &Tree<Vec<Id>>) -> TokenStream {
+fn body(tool: &CheckedTool, tree: &Tree<Vec<Id>>) -> TokenStream {
     let model = &tool.model;
     let mut roots = Vec::new();
     leaves(tree, &mut roots);
@@ -325,7 +326,7 @@ fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
 
 /// A function of a tree that needs nothing but its tests.
 fn of_tests<L>(
-    tool: &Checked,
+    tool: &CheckedTool,
     (name, result): (&str, &TokenStream),
     tree: &Tree<L>,
     leaf: &impl Fn(&mut Tokens, &L),
@@ -339,7 +340,7 @@ fn of_tests<L>(
 }
 
 /// The code as a person reads it, without the drawing in its documentation.
-pub fn rust(tool: &Checked) -> String {
+pub fn rust(tool: &CheckedTool) -> String {
     let tokens = code(tool, &quote! {});
     match syn::parse2(tokens.clone()) {
         Ok(file) => prettyplease::unparse(&file),

@@ -304,3 +304,29 @@ impl<'g> Encloser<'g> {
         }
     }
 }
+
+/// A box cut in two across its longest side; a side that spans magnitudes is cut between them.
+pub(crate) fn halves(cell: Cell) -> [Cell; 2] {
+    let length = |axis: usize| cell.sides[axis].high - cell.sides[axis].low;
+    let longer = |most, axis| if length(axis) > length(most) { axis } else { most };
+    let axis = [0, 1].into_iter().fold(2, longer);
+    let side = cell.sides[axis];
+    let middle = middle(side);
+    [
+        cell.with(axis, Interval::new(side.low, middle)),
+        cell.with(axis, Interval::new(middle, side.high)),
+    ]
+}
+
+fn middle(side: Interval) -> f64 {
+    let (low, high) = (side.low, side.high);
+    if low < 0.0 && high > 0.0 && (high > 1e6 || low < -1e6) {
+        0.0
+    } else if low >= 0.0 && high > 1e3 * (low + 1.0) {
+        ((low + 1.0) * high).sqrt()
+    } else if high <= 0.0 && low < 1e3 * (high - 1.0) {
+        -((1.0 - high) * -low).sqrt()
+    } else {
+        low / 2.0 + high / 2.0
+    }
+}

@@ -14,11 +14,10 @@ mod walk;
 pub use tape::{BLOCK, Lanes, Tape};
 pub use walk::{Registers, Scratch, Value, Walk};
 
-use crate::Checked;
+use crate::checked::CheckedTool;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Coord, Id, Node};
 use crate::formula::CurveIndex;
-use crate::model::Outputs;
 
 /// What is felt at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,18 +39,18 @@ pub struct Felt {
 /// Evaluates a tool point by point.
 #[derive(Clone, Debug)]
 pub struct Interpreter<'t> {
-    tool: &'t Checked,
+    tool: &'t CheckedTool,
     evaluator: Evaluator<'t>,
 }
 
 impl<'t> Interpreter<'t> {
     /// An interpreter of a tool.
-    pub fn new(tool: &'t Checked) -> Interpreter<'t> {
+    pub fn new(tool: &'t CheckedTool) -> Interpreter<'t> {
         let model = &tool.model;
         let roots = model
             .regions
             .iter()
-            .flat_map(|region| roots(&region.outputs))
+            .flat_map(|region| region.outputs.roots())
             .chain(model.curves.iter().map(|curve| curve.value));
         Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots) }
     }
@@ -74,14 +73,6 @@ impl<'t> Interpreter<'t> {
             niceness: get(outputs.niceness),
         })
     }
-}
-
-/// The expressions that evaluators compute, in the order of a tape's outputs behind the owner.
-pub(crate) fn roots(outputs: &Outputs) -> Vec<Id> {
-    let mut roots = vec![outputs.depth, outputs.magnitude, outputs.niceness];
-    roots.extend(outputs.direction);
-    roots.extend(outputs.gradient);
-    roots
 }
 
 /// How many numbers the plan can give for a point: owner (-1 outside), depth, magnitude, niceness,

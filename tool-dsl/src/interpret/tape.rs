@@ -1,7 +1,7 @@
 //! The plan for blocks of points.
 
-use super::{OUTPUTS, Operation, Slot, roots};
-use crate::Checked;
+use super::{OUTPUTS, Operation, Slot};
+use crate::checked::CheckedTool;
 use crate::expr::value::{max, min, quotient};
 use crate::expr::{Coord, Id};
 use crate::formula::CurveIndex;
@@ -24,10 +24,10 @@ pub struct Tape {
 
 impl Tape {
     /// The tape of what is felt in a region: depth, magnitude, niceness, direction, gradient.
-    pub fn felt(tool: &Checked, region: usize) -> Tape {
+    pub fn felt(tool: &CheckedTool, region: usize) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
         let mut outputs = Vec::with_capacity(OUTPUTS - 1);
-        for root in roots(&tool.model.regions[region].outputs) {
+        for root in tool.model.regions[region].outputs.roots() {
             let slot = writer.expression(root);
             outputs.push((slot, writer.operations.len()));
         }
@@ -35,7 +35,7 @@ impl Tape {
     }
 
     /// The tape of the distance from points outside to the tool, its only output.
-    pub fn outside(tool: &Checked) -> Tape {
+    pub fn outside(tool: &CheckedTool) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
         let slot = writer.tree(&tool.plan.outside);
         Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
@@ -145,7 +145,7 @@ pub(super) fn perform(
 }
 
 struct TapeWriter<'t> {
-    tool: &'t Checked,
+    tool: &'t CheckedTool,
     operations: Vec<Operation>,
     slots: HashMap<Id, Slot>,
 }

@@ -1,8 +1,8 @@
 //! The plan for one point after another.
 
 use super::tape::{perform as block, whole};
-use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot, roots};
-use crate::Checked;
+use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot};
+use crate::checked::CheckedTool;
 use crate::expr::{Coord, Id};
 use crate::plan::Tree;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -122,7 +122,7 @@ pub struct Registers {
 
 impl Walk {
     /// The walk of a tool.
-    pub fn new(tool: &Checked) -> Walk {
+    pub fn new(tool: &CheckedTool) -> Walk {
         let graph = &tool.model.graph;
         let slot = |id: &Id| id.index() as Slot;
         let list = |id: Id| graph.needed([id]).iter().map(slot).collect::<List>();
@@ -136,7 +136,7 @@ impl Walk {
                 .regions
                 .iter()
                 .map(|region| {
-                    let roots = roots(&region.outputs);
+                    let roots = region.outputs.roots();
                     std::array::from_fn(|part| list(roots[part]))
                 })
                 .collect(),

@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::{Look, norm};
 use crate::bound::Extent;
 use crate::expr::Id;
-use crate::regionalise::outline::{Point, Segment, stations};
+use crate::geometry::outline::{Point, Segment, stations};
 use crate::report::{Report, figure};
 use crate::source::Span;
 

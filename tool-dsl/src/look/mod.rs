@@ -5,13 +5,14 @@ mod fault;
 mod laws;
 
 use crate::bound::Extent;
+use crate::bound::spread;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
-use crate::formula::{CurveIndex, Formula};
-use crate::model::{Curve, Frame, Model, Region};
-use crate::plan::spread;
+use crate::formula::{Curve, CurveIndex, Formula};
+use crate::model::{Model, Region};
 use crate::report::{Report, any_error, figure};
+use crate::resolve::{never_wins, off_tip};
 use crate::source::Span;
 use fault::Fault;
 
@@ -46,23 +47,6 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
         }
     }
     reports
-}
-
-/// A tool that ends at a z which is not its tip; its other end may be.
-pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Report {
-    let size = other - end;
-    let said = frame.tip.to_f64();
-    let message = format!(
-        "the tool ends at z = {} and its tip is said to be at {}",
-        figure(frame.to_file(end)),
-        figure(said)
-    );
-    let report = Report::error(frame.tip_span, message);
-    if other.abs() <= 1e-6 * size {
-        let way = if frame.down { '+' } else { '-' };
-        return report.help(format!("its other end is there: write `spindle {way}z;`"));
-    }
-    report.help(format!("write `tip z = {};`", figure(frame.to_file(end))))
 }
 
 /// Everything that is found, each kind once a region.
@@ -422,17 +406,6 @@ pub(crate) fn deep_on_the_surface(region: &Region, depth: f64, place: &str) -> R
         format!("`depth` of {} is {} at {place}, on the surface", region.name, figure(depth));
     Report::error(region.said.depth, message)
         .help("is a region missing beside it? A depth is 0 on the surface")
-}
-
-/// A region of which nothing is left by one listed before it, or several.
-pub(crate) fn never_wins(name: &str, span: Span, (first, at): (&str, Span), more: usize) -> Report {
-    let by = match more {
-        0 => format!("{first}, listed before it, covers it"),
-        _ => format!("{first} and {more} more, listed before it, cover it"),
-    };
-    Report::error(span, format!("region {name} never wins a point: {by}"))
-        .and(at, "this one")
-        .help("drop it, or bound that one by the curve that divides them")
 }
 
 /// Whether a formula holds with room to spare, measured by each curve's largest values.

@@ -3,9 +3,9 @@
 use super::Tree;
 use super::section::{Owners, Planner};
 use crate::formula::CurveIndex;
-use crate::regionalise::cut::{Cut, Cutter, NEAR, Piece};
-use crate::regionalise::outline::{Point, minus};
-use crate::regionalise::shape::Shape;
+use crate::geometry::cut::{Cut, Cutter, NEAR, Piece};
+use crate::geometry::outline::{Point, minus};
+use crate::geometry::shape::Shape;
 use std::rc::Rc;
 
 /// Where pieces meet, and whose they are.

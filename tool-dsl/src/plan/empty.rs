@@ -1,9 +1,10 @@
 //! Proofs that no point has given signs: by elimination where curves are linear, else by boxes that
 //! cover the domain.
 
-use super::linear::Linear;
-use crate::bound::{Prover, halves};
+use crate::bound::Prover;
 use crate::domain::Domain;
+use crate::elimination::Linear;
+use crate::expr::interval::halves;
 use crate::formula::{ANY, Signs};
 use crate::model::Model;
 

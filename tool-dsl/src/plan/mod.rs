@@ -8,20 +8,16 @@
 //! samples of the domain, cheap curves first, `bsp` before all.
 
 mod corners;
-mod eliminate;
 mod empty;
-mod forms;
-pub(crate) mod linear;
 mod samples;
 mod section;
 mod signs;
 mod zeros;
 
 use crate::bound::Extent;
-use crate::domain::Domain;
 use crate::expr::{Coord, Id};
-use crate::formula::CurveIndex;
-use crate::model::{Curve, Model};
+use crate::formula::{Curve, CurveIndex};
+use crate::model::Model;
 use crate::number::Number;
 use crate::report::Report;
 use signs::by_signs;
@@ -129,8 +125,24 @@ pub struct Plan {
     pub outside: Tree<Id>,
 }
 
+/// A tool with the order of its splits.
+#[derive(Clone, Debug)]
+pub struct PlannedTool {
+    /// The tool, with the curves that its plan adds behind those of the file.
+    pub model: Model,
+    /// How far the solid reaches.
+    pub extent: Extent,
+    /// The order of splits.
+    pub plan: Plan,
+}
+
 /// Plans a tool's splits.
-pub fn plan(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
+pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Report> {
+    let plan = trees(&mut model, &extent)?;
+    Ok(PlannedTool { model, extent, plan })
+}
+
+fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
     let (owner, outside) = match &model.section {
         Some(section) => {
             let (owner, outside) = section::trees(model, section)?;
@@ -210,34 +222,6 @@ fn beside(model: &mut Model, extent: &Extent) -> Id {
     graph.sqrt(square).unwrap_or(zero)
 }
 
-/// Points spread evenly over the extent's box and what lies `around` it, by the additive
-/// recurrences R2 in the half plane and R3 in space (Roberts 2018).
-pub(crate) fn spread(
-    domain: Domain,
-    extent: &Extent,
-    count: usize,
-    around: f64,
-) -> impl Iterator<Item = [f64; 3]> {
-    // The real roots of x³ = x + 1 and x⁴ = x + 1.
-    const PLASTIC: f64 = 1.324_717_957_244_746;
-    const IN_SPACE: f64 = 1.220_744_084_605_759_5;
-    let cell = extent.cell();
-    let step = |root: f64, power: i32| 1.0 / root.powi(power);
-    let (low_end, steps) = match domain {
-        // There is nothing beyond the axis.
-        Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
-        Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
-    };
-    let ends = [low_end, low_end, around].map(|below| [below, below + around]);
-    (1..=count).map(move |k| {
-        [0, 1, 2].map(|axis| {
-            let (side, [below, both]) = (cell.sides[axis], ends[axis]);
-            let (width, part) = (side.high - side.low, (0.5 + steps[axis] * k as f64).fract());
-            side.low - below * width + part * width * (1.0 + both)
-        })
-    })
-}
-
 /// That a tree outgrew its bound.
 fn too_large(model: &Model) -> Report {
     let message = format!("the regions need more than {LARGEST} tests to tell apart");
@@ -252,7 +236,7 @@ fn costs(model: &Model) -> Vec<f64> {
         Node::Sqrt(_) | Node::Div(..) | Node::Quotient(..) => 8.0,
         _ => 1.0,
     };
-    let curve = |curve: &crate::model::Curve| {
+    let curve = |curve: &Curve| {
         model.graph.needed([curve.value]).into_iter().map(|id| cost(model.graph.node(id))).sum()
     };
     model.curves.iter().map(curve).collect()

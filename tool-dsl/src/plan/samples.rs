@@ -3,8 +3,8 @@
 use super::bits;
 use super::section::PRICE;
 use crate::formula::CurveIndex;
-use crate::regionalise::outline::Point;
-use crate::regionalise::shape::Shape;
+use crate::geometry::outline::Point;
+use crate::geometry::shape::Shape;
 
 /// Additions that a side where several owners are left will cost at least.
 const TEST: f64 = 8.0;

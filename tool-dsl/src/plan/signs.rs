@@ -1,8 +1,8 @@
 //! The plan of regions by hand: only their conditions are known, and splits decide them by signs.
 
 use super::empty::Void;
-use super::{LARGEST, Tree, bits, costs, spread, too_large};
-use crate::bound::Extent;
+use super::{LARGEST, Tree, bits, costs, too_large};
+use crate::bound::{Extent, spread};
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;

@@ -1,8 +1,9 @@
 //! The domain as boxes: each with the regions that it can have points of, by the tests of the tree
 //! that is emitted.
 
-use crate::bound::{halves, possible};
+use crate::expr::interval::halves;
 use crate::expr::interval::{Cell, Encloser};
+use crate::formula::possible;
 use crate::formula::{ANY, CurveIndex, NEGATIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::Tree;

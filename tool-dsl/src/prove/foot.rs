@@ -9,15 +9,15 @@
 
 use super::cover::{Claim, Cover};
 use super::root::{Forms, Rooted};
-use crate::Checked;
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{CurveIndex, one_side};
+use crate::geometry::outline::{Place, Segment, unit_between};
 use crate::model::Model;
 use crate::number::Number;
+use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
-use crate::regionalise::outline::{Place, Segment, unit_between};
 use std::collections::HashMap;
 
 /// Depths that are farther than this part of the tool's size from the distances to their pieces are taken for none. Nearer
@@ -48,7 +48,7 @@ pub(super) struct Feet<'m> {
 impl<'m> Feet<'m> {
     /// Returns the pieces of a profile each of whose regions' depths is the distance from its own piece's line, circle or
     /// corner.
-    pub(super) fn of(tool: &'m Checked, forms: &mut Forms<'_>, size: f64) -> Option<Feet<'m>> {
+    pub(super) fn of(tool: &'m PlannedTool, forms: &mut Forms<'_>, size: f64) -> Option<Feet<'m>> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
         let (features, whole) = (section.inner.features(), tool.extent.cell());

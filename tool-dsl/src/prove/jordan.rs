@@ -17,7 +17,7 @@
 //! farther than `ρ / sin(β/2)`, with the outside angle `β` of a corner next to it. Twice that covers how arcs bend, since
 //! facing normals, far ends of neighbours and diameters are all longer than four times that. So the surface of the solid is no farther than `4 s / sin(β/2)` from that place.
 
-use crate::regionalise::outline::{Point, Segment, cross, dot, minus, norm};
+use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm};
 
 /// How narrow the passages of a profile are, and how sharp its corners.
 pub(super) struct Profile {

@@ -7,20 +7,20 @@
 use super::rounding::Errors;
 use super::witness::Witness;
 use super::{Certificate, RegionFacts};
-use crate::Checked;
 use crate::bound::Extent;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::model::{Model, Outputs};
+use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
 const COORDINATES: [Coord; 3] = [Coord::X, Coord::Y, Coord::Z];
 
 /// A solid of revolution as a tool of a half plane.
 pub(super) struct Meridian {
-    pub(super) tool: Checked,
+    pub(super) tool: PlannedTool,
     axis: usize,
     /// The axes across it: along the first lies the half plane.
     across: [usize; 2],
@@ -28,7 +28,7 @@ pub(super) struct Meridian {
 
 impl Meridian {
     /// Returns the half plane of a solid, if it is one of revolution as far as that shows.
-    pub(super) fn of(tool: &Checked) -> Option<Meridian> {
+    pub(super) fn of(tool: &PlannedTool) -> Option<Meridian> {
         if tool.model.domain != Domain::Space {
             return None;
         }
@@ -52,13 +52,12 @@ impl Meridian {
         let radius = reach[0].min(reach[1]);
         let cell = Cell::half_plane(Interval::new(0.0, radius), sides[axis]);
         let extent = Extent::of(cell, radius);
-        let (plan, bounds) = (tool.plan.clone(), tool.bounds);
-        let tool = Checked { model, extent, envelope: Vec::new(), plan, bounds };
+        let tool = PlannedTool { model, extent, plan: tool.plan.clone() };
         Some(Meridian { tool, axis, across })
     }
 
     /// The certificate of the solid, of which this is the half plane, from that of the half plane.
-    pub(super) fn turned(&self, proved: Certificate, tool: &Checked) -> Certificate {
+    pub(super) fn turned(&self, proved: Certificate, tool: &PlannedTool) -> Certificate {
         let (model, whole) = (&tool.model, tool.extent.cell());
         let depths = model.regions.iter().map(|region| region.depth);
         let mut errors = Errors::new(&model.graph, model.domain, depths);

@@ -26,10 +26,10 @@ mod tangent;
 mod touch;
 mod witness;
 
-use crate::Checked;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
 use crate::model::{DirectionSource, Region};
+use crate::plan::PlannedTool;
 use crate::report::Report;
 use meridian::Meridian;
 
@@ -194,15 +194,12 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    pub(crate) const NONE: Bounds =
-        Bounds { least: None, lipschitz: None, rounding: [f64::INFINITY; 2] };
-
     /// What is proved of a tool in little time, and what is wrong with it by that.
     ///
     /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves once
     /// more; regions by hand are looked at in a few thousand boxes, but not for their owners, which the
     /// plan proves as it is made. So are those of a profile for which a direction is written.
-    pub(crate) fn of(tool: &Checked) -> (Bounds, Vec<Report>) {
+    pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Report>) {
         let rounding = rounding::over(tool);
         let written = |region: &Region| region.source == DirectionSource::Written;
         let exact = Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding };
@@ -222,7 +219,7 @@ impl Bounds {
 }
 
 /// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if that is asked for.
-fn proved(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
+fn proved(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
     match Meridian::of(tool) {
         Some(meridian) => meridian.turned(survey::survey(&meridian.tool, boxes, alone), tool),
         None => survey::survey(tool, boxes, alone),
@@ -231,7 +228,7 @@ fn proved(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
 
 impl Certificate {
     /// Proves what can be proved about a tool.
-    pub fn of(tool: &Checked) -> Certificate {
+    pub fn of(tool: &PlannedTool) -> Certificate {
         proved(tool, MANY, true)
     }
 

@@ -10,7 +10,7 @@
 
 use super::cover::Cover;
 use super::slope::{Slope, Slopes};
-use crate::bound::halves;
+use crate::expr::interval::halves;
 use crate::expr::interval::{Cell, Interval};
 use crate::model::Region;
 use std::cmp::Ordering;

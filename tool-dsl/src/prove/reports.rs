@@ -1,23 +1,23 @@
 //! Reports of a certificate: errors and warnings that are proved, and a warning of proofs that stay open.
 
-use super::{Border, Certificate};
-use crate::Checked;
+use super::{Border, Bounds, Certificate};
 use crate::look::deep_on_the_surface;
 use crate::model::{DirectionSource, Model, Region};
+use crate::plan::PlannedTool;
 use crate::report::{Report, figure};
 use crate::source::Span;
 use std::f64::consts::PI;
 
 impl Certificate {
     /// Returns all reports: errors with a counterexample, warnings with a point or a box.
-    pub fn reports(&self, tool: &Checked) -> Vec<Report> {
+    pub fn reports(&self, tool: &PlannedTool) -> Vec<Report> {
         let mut reports = self.certain(tool);
         reports.extend(self.undecided(tool));
         reports
     }
 
     /// Returns the reports of single points, which more boxes would not change.
-    pub(super) fn certain(&self, tool: &Checked) -> Vec<Report> {
+    pub(super) fn certain(&self, tool: &PlannedTool) -> Vec<Report> {
         let model = &tool.model;
         let mut reports: Vec<Report> = Vec::new();
         // One report for each pair, and one for each region beside the outside.
@@ -51,7 +51,7 @@ impl Certificate {
     }
 
     /// Returns the reports of proofs that stay open, and might not in more boxes.
-    fn undecided(&self, tool: &Checked) -> Vec<Report> {
+    fn undecided(&self, tool: &PlannedTool) -> Vec<Report> {
         let model = &tool.model;
         let mut reports = Vec::new();
         if model.is_exact() && self.is_continuous() && !self.is_exact() {
@@ -75,7 +75,7 @@ impl Certificate {
                         model.shown(first.cell.middle())
                     ),
                 )
-                .help(match tool.bounds.lipschitz {
+                .help(match Bounds::of(tool).0.lipschitz {
                     _ if model.is_exact() => "a profile's depth is the distance to its surface by construction, which \
                                               is not proved for this tool"
                         .to_owned(),

@@ -18,10 +18,10 @@
 //! with `γ(m) = m / (1 - m u)`, which is no less than `((1 + u)^m - 1) / u`. What is rounded is as large as the true value
 //! and what was brought.
 
-use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, EVERYTHING, Interval, ZERO};
 use crate::expr::{Coord, Graph, Id, Node};
+use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
 /// The unit roundoff of `f64` and of `f32`.
@@ -41,7 +41,7 @@ struct Rounded {
 
 /// How far rounding can take any region's computed depth, of `f64` and of `f32`, from its true value, over
 /// the whole of a tool's box.
-pub(super) fn over(tool: &Checked) -> [f64; 2] {
+pub(super) fn over(tool: &PlannedTool) -> [f64; 2] {
     let model = &tool.model;
     let depths = || model.regions.iter().map(|region| region.depth);
     let mut errors = Errors::new(&model.graph, model.domain, depths());

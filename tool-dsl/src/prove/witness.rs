@@ -2,13 +2,13 @@
 
 use super::parting::Pair;
 use super::{Seen, TOLERANCE};
-use crate::Checked;
+use crate::bound::spread;
 use crate::domain::Domain;
 use crate::expr::interval::Cell;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::CurveIndex;
-use crate::plan::spread;
-use crate::regionalise::outline::{Segment, stations};
+use crate::geometry::outline::{Segment, stations};
+use crate::plan::PlannedTool;
 
 /// Points at which shares are counted.
 const SPREAD: usize = 10_000;
@@ -18,13 +18,13 @@ pub(super) const BESIDE: f64 = 1e-4;
 
 /// Asks of points what is felt there.
 pub(super) struct Witness<'t> {
-    tool: &'t Checked,
+    tool: &'t PlannedTool,
     values: Evaluator<'t>,
     size: f64,
 }
 
 impl<'t> Witness<'t> {
-    pub(super) fn new(tool: &'t Checked, size: f64) -> Witness<'t> {
+    pub(super) fn new(tool: &'t PlannedTool, size: f64) -> Witness<'t> {
         let model = &tool.model;
         let depths = model.regions.iter().map(|region| region.depth);
         let asked = depths.chain(model.curves.iter().map(|curve| curve.value));

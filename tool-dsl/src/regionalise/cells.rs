@@ -1,8 +1,8 @@
 //! The partition as polygons, for what wants to see it: the planner and drawings.
 
-use super::outline::{Point, cross, minus, norm};
 use super::section::{Feature, Section, Stop};
 use super::slices::Slice;
+use crate::geometry::outline::{Point, cross, minus, norm};
 use std::mem::take;
 
 /// A polygon of one owner, convex but for the bulge of its curved edges. Edge `k` runs from vertex

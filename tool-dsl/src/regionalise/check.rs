@@ -1,7 +1,7 @@
 //! What is wrong with a profile, before anything is derived of it.
 
-use super::crossing::meeting;
-use super::outline::{Point, Segment, TANGENT, along, cross, dot, minus, norm, reach};
+use crate::geometry::crossing::meeting;
+use crate::geometry::outline::{Point, Segment, TANGENT, along, cross, dot, minus, norm, reach};
 use crate::report::{Report, enough};
 
 /// What is wrong with a profile that runs from the axis to the axis: its sense, crossings.

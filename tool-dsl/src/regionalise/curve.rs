@@ -1,8 +1,8 @@
 //! The borders of cells: what they mean at a point, and the expressions that tell their sides.
 
-use super::outline::{self, Circle, Place, Point, dot, minus};
 use super::section::{Feature, Seat, Section};
 use crate::expr::{Coord, Graph, Id};
+use crate::geometry::outline::{self, Circle, Place, Point, dot, minus};
 use crate::number::Number;
 
 /// A condition on expressions.

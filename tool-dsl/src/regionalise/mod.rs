@@ -8,21 +8,17 @@
 
 pub(crate) mod cells;
 pub(crate) mod check;
-mod crossing;
 mod curve;
-pub(crate) mod cut;
 mod nearer;
-pub(crate) mod outline;
 pub(crate) mod overlay;
 mod section;
-pub(crate) mod shape;
 mod slices;
 pub(crate) mod smooth;
 
 use crate::expr::{Graph, Id};
+use crate::geometry::outline::{Point, Segment, turn};
 use curve::Border;
 pub(crate) use curve::{Test, course};
-use outline::{Point, Segment, turn};
 pub(crate) use section::Feature;
 use section::{Section, Stop};
 use slices::Slice;

@@ -1,10 +1,10 @@
 //! Which of two features is nearer, told without square roots as far as may be.
 
 use super::curve::Test;
-use super::outline::{self, Circle, Place, minus};
 use super::section::{Feature, Section};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::{Coord, Graph, Id};
+use crate::geometry::outline::{self, Circle, Place, minus};
 use crate::number::Number;
 
 /// What a feature is to a comparison of distances.

@@ -1,13 +1,13 @@
 //! A partition divided once more, by conditions.
 
 use super::cells::Cell;
-use super::cut::{Cut, Cutter, Edge, Piece};
-use super::outline::{Point, Segment, minus, norm, reach};
-use super::shape::Shape;
 use crate::expr::Graph;
 use crate::expr::polynomial::Polynomials;
+use crate::formula::Curve;
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
-use crate::model::Curve;
+use crate::geometry::cut::{Cut, Cutter, Edge, Piece};
+use crate::geometry::outline::{Point, Segment, minus, norm, reach};
+use crate::geometry::shape::Shape;
 
 /// A cell as a piece whose curved edges know their curve.
 pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], size: f64) -> Piece {

@@ -1,7 +1,7 @@
 //! One side of an outline, as features that points of it can be nearest to, and how far a ball that
 //! leaves one feature grows before it touches another.
 
-use super::outline::{Point, Segment, cross, dot, minus, norm, reach, turn};
+use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm, reach, turn};
 use std::f64::consts::PI;
 
 /// What a point can be nearest to.

@@ -6,8 +6,8 @@
 //! closed form. The envelope is followed along the feature; where the stop changes lies a vertex of
 //! the partition, and between two vertices a slice of the cell.
 
-use super::outline::{Point, minus, norm};
 use super::section::{Section, Stop};
+use crate::geometry::outline::{Point, minus, norm};
 
 /// A part of a cell: the seats between two parameters, and what ends their normals.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@
 //! an arc ends it touches one segment at `w` and the other nearer to the corner. Normals of the rounded outline turn
 //! steadily, so a direction that follows them does not jump along the surface.
 
-use super::outline::{Circle, Place, Segment, cross, dot, doubles, minus, turn};
+use crate::geometry::outline::{Circle, Place, Segment, cross, dot, doubles, minus, turn};
 use crate::number::Number;
 use crate::report::figure;
 use std::f64::consts::PI;

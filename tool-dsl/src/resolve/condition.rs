@@ -2,8 +2,8 @@
 
 use crate::expr::polynomial::Polynomials;
 use crate::expr::{Graph, Id, Node};
+use crate::formula::Curve;
 use crate::formula::{CurveIndex, Formula};
-use crate::model::Curve;
 use std::collections::BTreeMap;
 
 /// How many times one condition may be taken apart at `min`, `max` and `abs`.

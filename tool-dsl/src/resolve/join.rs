@@ -1,7 +1,7 @@
 //! One outline put on another: what is left of each, and the ring between them.
 
+use crate::geometry::outline::{Circle, Place, Segment, doubles};
 use crate::number::Number;
-use crate::regionalise::outline::{Circle, Place, Segment, doubles};
 
 /// Lengths below this part of the tool's size are rounding.
 const ROUNDING: f64 = 1e-12;

@@ -17,9 +17,12 @@ mod profile;
 mod region;
 mod scope;
 
+pub(crate) use mount::off_tip;
+pub(crate) use over::never_wins;
+
 use crate::domain::Domain;
+use crate::geometry::outline::Segment;
 use crate::model::{Model, Surface, Unit};
-use crate::regionalise::outline::Segment;
 use crate::report::{Report, Reported, enough, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};

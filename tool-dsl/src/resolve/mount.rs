@@ -8,11 +8,10 @@ use super::region::{Niceness, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
-use crate::look;
+use crate::geometry::outline::{Segment, reach};
 use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::check::check;
-use crate::regionalise::outline::{Segment, reach};
 use crate::report::{Report, Reported, figure};
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
@@ -284,7 +283,7 @@ impl Mounting<'_> {
         let mut part = match shape(tree, self.reports) {
             Some(Shape::Profile(profile)) => {
                 let (outline, surfaces) = profile::outline(profile, lowering, self.reports)?;
-                self.reports.extend(off_tip(&outline, &lowering.frame));
+                self.reports.extend(not_at_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
                 Part { outline, surfaces, niceness, scopes: Vec::new() }
             }
@@ -323,10 +322,10 @@ fn curves(tree: &Tool) -> Vec<Definition> {
 }
 
 /// A solid that does not end at its tip.
-fn off_tip(outline: &[Segment], frame: &Frame) -> Option<Report> {
+fn not_at_tip(outline: &[Segment], frame: &Frame) -> Option<Report> {
     let [[_, end], [radius, high]] = reach(outline);
     let off = end.abs() > OFF_TIP * radius.max(high - end);
-    off.then(|| look::off_tip(frame, [end, high]))
+    off.then(|| off_tip(frame, [end, high]))
 }
 
 impl Part {
@@ -426,4 +425,21 @@ impl Part {
         let mut kept = left.iter().map(Option::is_some);
         self.niceness.retain(|_| kept.next().unwrap_or_default());
     }
+}
+
+/// A tool that ends at a z which is not its tip; its other end may be.
+pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Report {
+    let size = other - end;
+    let said = frame.tip.to_f64();
+    let message = format!(
+        "the tool ends at z = {} and its tip is said to be at {}",
+        figure(frame.to_file(end)),
+        figure(said)
+    );
+    let report = Report::error(frame.tip_span, message);
+    if other.abs() <= 1e-6 * size {
+        let way = if frame.down { '+' } else { '-' };
+        return report.help(format!("its other end is there: write `spindle {way}z;`"));
+    }
+    report.help(format!("write `tip z = {};`", figure(frame.to_file(end))))
 }

@@ -10,9 +10,8 @@ use super::region::{Bare, Felt, inside, mention, noted};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;
-use crate::look;
+use crate::geometry::outline::Segment;
 use crate::model::{DirectionSource, Region, Surface};
-use crate::regionalise::outline::Segment;
 use crate::regionalise::overlay::{self, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Undivided};
@@ -254,7 +253,7 @@ impl Conditions<'_> {
                 true => Report::error(b.span, message)
                     .and(a.span, "the other one")
                     .help("bound one of them by the curve that divides them"),
-                false => look::never_wins(&b.word, b.span, (&a.word, a.span), 0),
+                false => never_wins(&b.word, b.span, (&a.word, a.span), 0),
             });
         }
         for (k, kind) in self.kinds.iter().enumerate() {
@@ -325,4 +324,15 @@ impl Conditions<'_> {
             }
         }
     }
+}
+
+/// A region of which nothing is left by one listed before it, or several.
+pub(crate) fn never_wins(name: &str, span: Span, (first, at): (&str, Span), more: usize) -> Report {
+    let by = match more {
+        0 => format!("{first}, listed before it, covers it"),
+        _ => format!("{first} and {more} more, listed before it, cover it"),
+    };
+    Report::error(span, format!("region {name} never wins a point: {by}"))
+        .and(at, "this one")
+        .help("drop it, or bound that one by the curve that divides them")
 }

@@ -1,10 +1,10 @@
 //! A `profile` to its outline: points, circles and surfaces, in the tool's frame.
 
 use super::lower::Lowering;
+use crate::geometry::outline::{Circle, Place, Segment, doubles, minus, norm};
 use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
-use crate::regionalise::outline::{Circle, Place, Segment, doubles, minus, norm};
 use crate::report::{Report, Reported, enough, figure, without_error};
 use crate::source::Span;
 use crate::syntax::tree::{Arc, Expr, Piece, Profile, Round, Tuple};

@@ -16,11 +16,11 @@ use super::rounding::Errors;
 use super::slope::Slopes;
 use super::witness::{BESIDE, Witness};
 use super::{Border, Certificate, FEW, RegionFacts, SMALL, Seen, TOLERANCE, Undecided};
-use crate::Checked;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
 use crate::number;
+use crate::plan::PlannedTool;
 use certain::Certain;
 use std::collections::BTreeMap;
 
@@ -51,7 +51,7 @@ const VAGUE: f64 = 0.1;
 
 /// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if
 /// that is asked for.
-pub(super) fn survey(tool: &Checked, boxes: usize, alone: bool) -> Certificate {
+pub(super) fn survey(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
     let boxes = boxes.min(WORK / tool.model.regions.len().max(1));
     let hasty = [(TRIES[0].0, 3)];
     for (finest, thirds) in if boxes > FEW { &TRIES[..] } else { &hasty } {
@@ -95,7 +95,7 @@ impl Grain {
 }
 
 struct Survey<'t> {
-    tool: &'t Checked,
+    tool: &'t PlannedTool,
     cover: Cover<'t>,
     slopes: Slopes<'t>,
     witness: Witness<'t>,
@@ -134,7 +134,7 @@ struct Survey<'t> {
 }
 
 impl<'t> Survey<'t> {
-    fn new(tool: &'t Checked, finest: f64, alone: bool) -> Survey<'t> {
+    fn new(tool: &'t PlannedTool, finest: f64, alone: bool) -> Survey<'t> {
         let model = &tool.model;
         let felt = model.regions.iter().flat_map(|region| {
             let felt = [region.depth, region.magnitude, region.niceness];

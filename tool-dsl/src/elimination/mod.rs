@@ -2,14 +2,17 @@
 //! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
 //! sees where borders meet in a corner. What it says is shown with the 256 bits of constants.
 
-use super::eliminate::{Condition, Exact, ROUNDING, in_own_unit, scaled, without};
-use super::forms::{Form, Variable, Variables, compares_roots};
+mod forms;
+mod fourier_motzkin;
+
 use crate::expr::Id;
 use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
 use crate::expr::polynomial::monomial_of;
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::number::Number;
+use forms::{Form, Variable, Variables, compares_roots};
+use fourier_motzkin::{Condition, Exact, ROUNDING, in_own_unit, scaled, without};
 use std::rc::Rc;
 
 /// The most combinations of choices.

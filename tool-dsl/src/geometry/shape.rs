@@ -6,7 +6,7 @@ use crate::expr::value::{At, Evaluator};
 use crate::expr::{Graph, Id};
 
 /// What is closer to a curve than this part of the section's size lies on it.
-pub(super) const ON: f64 = 1e-10;
+pub(crate) const ON: f64 = 1e-10;
 /// Rounding of a polynomial's value, in parts of the sum of its terms' sizes.
 const ROUNDING: f64 = 2e-14;
 
@@ -19,9 +19,9 @@ pub(crate) enum Shape<'g> {
 }
 
 /// A curve's value at a point, its gradient, and the size of its terms.
-pub(super) struct Value {
-    pub(super) value: f64,
-    pub(super) gradient: Point,
+pub(crate) struct Value {
+    pub(crate) value: f64,
+    pub(crate) gradient: Point,
     terms: f64,
 }
 
@@ -53,11 +53,11 @@ impl<'g> Shape<'g> {
         Shape::Conic { middle, factors }
     }
 
-    pub(super) fn is_line(&self) -> bool {
+    pub(crate) fn is_line(&self) -> bool {
         matches!(self, Shape::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
     }
 
-    pub(super) fn at(&self, p: Point) -> Value {
+    pub(crate) fn at(&self, p: Point) -> Value {
         match self {
             Shape::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
@@ -126,13 +126,13 @@ impl<'g> Shape<'g> {
 
     /// `v0 + slope t + bend t²`, the value on the way from one point to another: of a conic exactly,
     /// of others about.
-    pub(super) fn course(&self, a: Point, b: Point) -> [f64; 3] {
+    pub(crate) fn course(&self, a: Point, b: Point) -> [f64; 3] {
         let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
         [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
     }
 
     /// How far from one point to another on the other side the curve is crossed, as a part.
-    pub(super) fn zero_between(&self, a: Point, b: Point) -> f64 {
+    pub(crate) fn zero_between(&self, a: Point, b: Point) -> f64 {
         if matches!(self, Shape::Conic { .. }) {
             let [v0, slope, bend] = self.course(a, b);
             let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
@@ -156,7 +156,7 @@ impl<'g> Shape<'g> {
     }
 }
 
-pub(super) fn between(a: Point, b: Point, t: f64) -> Point {
+pub(crate) fn between(a: Point, b: Point, t: f64) -> Point {
     [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
 }
 

@@ -12,7 +12,7 @@ pub(crate) type Place = [Number; 2];
 pub(crate) type Point = [f64; 2];
 
 /// Two directions closer than this are tangent.
-pub(super) const TANGENT: f64 = 1e-9;
+pub(crate) const TANGENT: f64 = 1e-9;
 
 /// The circle of an arc.
 #[derive(Clone, Debug)]

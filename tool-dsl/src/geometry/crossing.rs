@@ -3,7 +3,7 @@
 use super::outline::{Point, Segment, cross, dot, doubles, minus, norm};
 
 /// Where two segments meet, but for the end that neighbours share.
-pub(super) fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
+pub(crate) fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
     let candidates = match (&a.circle, &b.circle) {
         (None, None) => line_line(a, b),
         (None, Some(_)) => line_circle(a, b),

@@ -1,0 +1,7 @@
+//! Geometry of the half plane that several passes share: a profile's segments, where two of them cross, polygons that
+//! curves cut, and curves as functions of a point.
+
+pub(crate) mod crossing;
+pub(crate) mod cut;
+pub(crate) mod outline;
+pub(crate) mod shape;
