@@ -37,6 +37,7 @@ struct Readme;
 extern crate self as touchoff;
 
 mod atomic_file;
+mod bvh;
 pub mod certify;
 pub mod cloud;
 mod cores;
@@ -50,7 +51,6 @@ mod part;
 mod pose;
 #[cfg(feature = "postures")]
 pub mod postures;
-pub mod precision;
 mod probe;
 pub mod program;
 mod saved;
@@ -70,6 +70,7 @@ pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, FARTHEST_TIP, Pose, PoseError};
+pub use probe::precision;
 pub use probe::{
     BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Stiffness,
     Summary, Weights, Wrench, summary,

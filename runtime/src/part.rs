@@ -1,12 +1,12 @@
 //! The workpiece, ready to be felt.
 
-use crate::Unit;
 use crate::cloud::{Cloud, CloudError, Cover, check_place, unit_normal};
 use crate::mesh::{Mesh, Shape, ShapeError, Survey};
 use crate::pose::Pose;
-use crate::probe::Probe;
-use crate::tool::Tool;
+use crate::probe::{BudgetError, Graded, Law, Probe};
+use crate::tool::{Senses, Tool};
 use crate::tree::Tree;
+use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
@@ -171,5 +171,27 @@ impl Part {
     /// What the mesh is like: closed, oriented, how large. `None` for a part made of points.
     pub fn survey(&self) -> Option<&Survey> {
         self.survey.as_ref()
+    }
+}
+
+impl<'a, T: Senses + ?Sized> Probe<'a, T> {
+    /// A probe with the thesis's law, area weights and the tip for a compliance centre.
+    pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
+        Probe::of(part.tree(), part.unit(), tool)
+    }
+}
+
+impl<'a, T: Senses + ?Sized> Graded<'a, T> {
+    /// A tool beside a part, with a budget of nodes a query, and a law.
+    ///
+    /// # Errors
+    /// A budget that is not enough for the coarsest level wherever the tool is.
+    pub fn new(
+        part: &'a Part,
+        tool: &'a T,
+        budget: usize,
+        law: Law,
+    ) -> Result<Graded<'a, T>, BudgetError> {
+        Graded::of(part.levels().iter().rev(), part.unit(), (tool, budget, law))
     }
 }

@@ -6,8 +6,10 @@
 //! `u = k/n`, `n̂ = (cos φ, sin φ, 0)`, and `δ(u) = δ₀ (1 + 0.9 sin 130u)` is how deep the ball
 //! enters: one δ₀ serves every number of points, so that collisions grow in proportion to it.
 
+use crate::mesh::Mesh;
 use crate::mesh::shapes;
-use crate::{Mesh, Pose, Unit};
+use crate::pose::Pose;
+use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::PI;
 

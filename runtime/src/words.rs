@@ -20,12 +20,12 @@ macro_rules! words {
         }
 
         impl std::str::FromStr for $type {
-            type Err = crate::UnknownWord;
+            type Err = crate::words::UnknownWord;
 
             fn from_str(word: &str) -> Result<$type, Self::Err> {
                 match word {
                     $($word => Ok($type::$variant),)*
-                    _ => Err(crate::UnknownWord { word: word.to_owned(), known: $known }),
+                    _ => Err(crate::words::UnknownWord { word: word.to_owned(), known: $known }),
                 }
             }
         }

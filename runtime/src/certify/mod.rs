@@ -37,10 +37,10 @@ pub use part::Facets;
 #[cfg(feature = "postures")]
 pub(crate) use part::Location;
 
+use crate::bvh::Sight;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tool::{Card, Tool};
-use crate::tree::Sight;
 use apart::Apart;
 use body::Body;
 use body::field::Field;

@@ -1,5 +1,6 @@
 //! The search of a part's triangles, and what it keeps from question to question.
 
+use crate::bvh::{Sight, View};
 use crate::certify::answer::Witness;
 use crate::certify::body::Body;
 use crate::certify::body::field::Scratch;
@@ -13,7 +14,6 @@ use crate::certify::triangle::course::{Best, Found, Goal, Search};
 use crate::certify::triangle::facet::{Facet, nearest};
 use crate::pose::Pose;
 use crate::tool::LANES;
-use crate::tree::{Sight, View};
 use fearless_simd::Level;
 use nalgebra::Vector3;
 

@@ -17,8 +17,8 @@ mod thin;
 
 pub use error::CloudError;
 
-use crate::Unit;
 use crate::mesh::{Mesh, Points, area_and_normal, coordinate_holds};
+use crate::unit::Unit;
 use crate::words::words;
 use cells::Cells;
 use diagram::Sites;

@@ -1,6 +1,6 @@
 //! Which points are near a place: boxes about boxes, sixteen wide.
 
-use crate::tree::{Bounds, Item, WIDTH, order};
+use crate::bvh::{Bounds, Item, WIDTH, order};
 use nalgebra::Point3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -1,6 +1,7 @@
 //! What a hand holds.
 
-use crate::{Motion, MotionError, Pose, PoseError};
+use crate::motion::{Motion, MotionError};
+use crate::pose::{Pose, PoseError};
 use nalgebra::Vector3;
 
 /// A force in N and a torque in N·mm about the tool's compliance centre, in the world's frame.

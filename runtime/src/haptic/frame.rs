@@ -1,7 +1,7 @@
 //! Poses compared about a tool's compliance centre, in millimetres and radians.
 
 use super::device::Axes;
-use crate::{Pose, PoseError};
+use crate::pose::{Pose, PoseError};
 use nalgebra::{Point3, Rotation3, Vector3, Vector6};
 
 /// What poses are compared about.
@@ -61,7 +61,7 @@ pub(super) fn halves(both: &Vector6<f64>) -> [Vector3<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Pose;
+    use crate::pose::Pose;
 
     #[test]
     fn a_pose_moved_by_the_difference_is_the_other() {

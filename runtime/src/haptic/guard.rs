@@ -2,7 +2,7 @@
 
 use super::DeviceError;
 use super::frame::{Frame, halves};
-use crate::Pose;
+use crate::pose::Pose;
 
 /// How fast a hand may be: what moves faster between two cycles is no hand's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,8 @@
 use super::frame::{Frame, halves, join};
 use super::setting::{self, SettingError};
 use super::{Device, DeviceError, Limits, Push};
-use crate::{Pose, PoseError, Unit};
+use crate::pose::{Pose, PoseError};
+use crate::unit::Unit;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3, Vector6};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -1,7 +1,7 @@
 //! A session in time: so many cycles a second, in a thread of its own.
 
 use super::{Device, Faults, Session, State};
-use crate::precision::Precision;
+use crate::probe::precision::Precision;
 use crate::tool::Senses;
 use hdrhistogram::Histogram;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -6,9 +6,11 @@ use super::guard::{Fastest, Faults, Guard, Taken};
 use super::passivity::{Energy, Passivity};
 use super::setting::{self, SettingError};
 use super::{Axes, Device, Limits, Push};
-use crate::precision::{Filtered, Precision};
+use crate::pose::Pose;
+use crate::probe::precision::{Filtered, Precision};
+use crate::probe::{Law, Probe, Stiffness, Wrench};
 use crate::tool::Senses;
-use crate::{Law, Pose, Probe, Stiffness, Tool, Wrench};
+use crate::tool::Tool;
 use nalgebra::{Matrix6, Vector6};
 use std::time::Duration;
 

@@ -8,7 +8,8 @@
 use super::frame::{Frame, join};
 use super::setting;
 use super::{Axes, Device, DeviceError, Limits, Push};
-use crate::{Pose, Unit};
+use crate::pose::Pose;
+use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 use std::io::{self, Read};
 use std::os::unix::net::UnixStream;

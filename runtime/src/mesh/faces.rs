@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::words::Place;
 use super::{Mesh, MeshError, weld};
-use crate::Unit;
+use crate::unit::Unit;
 
 /// How much of a polygon's area the triangles of its fan may face the other way: what rounding
 /// leaves beside corners that are nearly in line, no more.

@@ -20,7 +20,8 @@ use std::path::Path;
 
 use nalgebra::{Point3, Vector3};
 
-use crate::{Unit, input};
+use crate::input;
+use crate::unit::Unit;
 
 pub use obj::ObjError;
 pub use ply::{PlyError, Points};

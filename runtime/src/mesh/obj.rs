@@ -7,7 +7,7 @@ use super::faces::Faces;
 use super::stray::{Stray, stray};
 use super::words::{Place, Words, number, shown};
 use super::{LARGEST_COORDINATE, Mesh, MeshError, coordinate_holds};
-use crate::Unit;
+use crate::unit::Unit;
 
 /// Why an OBJ file could not be read. Lines count from 1.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,8 @@ use std::io;
 use std::path::Path;
 
 use super::{Mesh, ObjError, PlyError, Points, StlError, ply};
-use crate::{Unit, input};
+use crate::input;
+use crate::unit::Unit;
 
 /// What a file holds of a part.
 #[derive(Clone, Debug, PartialEq)]

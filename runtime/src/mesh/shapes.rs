@@ -11,7 +11,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::stl::{HEADER, RECORD};
 use super::{Mesh, MeshError, area_and_normal};
-use crate::Unit;
+use crate::unit::Unit;
 
 /// The most triangles a shape may be made of: 2^25, some gigabytes of mesh and more than any
 /// part needs.

@@ -84,8 +84,8 @@ mod tests {
     /// A tube with one coordinate far off, and where it is said to be.
     #[test]
     fn names_where_it_stands() {
-        use crate::Unit;
         use crate::mesh::{Mesh, ObjError, Place, PlyError, StlError, shapes};
+        use crate::unit::Unit;
         let unit = Unit::Millimetre;
         let bar = shapes::tube(1.0, 2.0, 9.0, 12, 3, unit).expect("a tube");
         let mut ascii = Vec::new();

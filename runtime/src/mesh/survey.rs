@@ -4,7 +4,7 @@
 use std::fmt;
 
 use super::{Mesh, Sum, area_and_normal};
-use crate::Unit;
+use crate::unit::Unit;
 
 /// What [`Mesh::survey`] found.
 ///

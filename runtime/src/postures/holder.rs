@@ -1,8 +1,8 @@
 //! How far a tool has to stick out of its holder.
 
+use crate::bvh::WIDTH;
 use crate::certify::Facets;
 use crate::tool::{Card, Piece};
-use crate::tree::WIDTH;
 use nalgebra::{Point3, Vector3};
 
 /// A holder seen from below: what it covers, from its nose upward. Lengths are in the part's unit.

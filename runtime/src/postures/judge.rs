@@ -2,8 +2,10 @@
 
 use super::Record;
 use crate::certify::{AllowanceError, Certifier, Clear, Facets, Uncertified};
+use crate::escape::Escaped;
+use crate::pose::Pose;
 use crate::tool::Shape;
-use crate::{Escaped, Pose, Tool};
+use crate::tool::Tool;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

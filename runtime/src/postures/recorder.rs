@@ -2,8 +2,13 @@
 
 use super::{Judge, JudgeError, MapError, PostureMap, Record, ToolStamp};
 use crate::certify::Facets;
+use crate::escape::Escaped;
 use crate::haptic::{Samples, State};
-use crate::{Escaped, Part, Pose, Probe, Tool, Unit};
+use crate::part::Part;
+use crate::pose::Pose;
+use crate::probe::Probe;
+use crate::tool::Tool;
+use crate::unit::Unit;
 use std::time::{Duration, Instant};
 
 /// Takes the poses of a running loop, and records those that are nice and proved acceptable.

@@ -1,6 +1,6 @@
 //! What is known of a triangle.
 
-use crate::{Pose, PoseError};
+use crate::pose::{Pose, PoseError};
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,10 @@
 //! A tool as it stands at a place of a part: where its tip is, and how nice that is.
 
 use super::contact::Sites;
+use crate::tool::Tool;
 use crate::tool::{Ask, Felt, Points};
-use crate::{Level, Tool, Unit};
+use crate::unit::Unit;
+use fearless_simd::Level;
 use nalgebra::{Point3, Vector3};
 
 /// Where a part is touched.

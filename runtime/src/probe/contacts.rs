@@ -2,7 +2,7 @@
 
 use super::{Beside, Weights};
 use crate::pose::Pose;
-use crate::precision::Precision;
+use crate::probe::precision::Precision;
 use crate::tool::Card;
 use nalgebra::{Point3, Vector3};
 
@@ -49,7 +49,7 @@ pub(super) fn list<P: Precision>(
         };
         let region = felt.region[at].into() as usize;
         contacts.push(Contact {
-            point: pose.tip() + beside.view.relative(tree, index),
+            point: pose.tip() + tree.relative_to_tip(&beside.view, index),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,

@@ -1,9 +1,10 @@
 //! Feeling a part as finely as a budget allows.
 
 use super::{Law, Probe, Wrench};
-use crate::part::Part;
 use crate::pose::Pose;
 use crate::tool::{Senses, Tool};
+use crate::tree::Tree;
+use crate::unit::Unit;
 use nalgebra::Vector3;
 
 /// Over so many queries a change of level is spread: a thirtieth of a second at 1 kHz.
@@ -62,23 +63,17 @@ pub struct BudgetError {
 }
 
 impl<'a, T: Senses + ?Sized> Graded<'a, T> {
-    /// A tool beside a part, with a budget of nodes a query, and a law.
-    ///
-    /// # Errors
-    /// A budget that is not enough for the coarsest level wherever the tool is.
-    pub fn new(
-        part: &'a Part,
-        tool: &'a T,
-        budget: usize,
-        law: Law,
+    /// Asks trees, the coarsest first, whose lengths are in that unit.
+    pub(crate) fn of(
+        trees: impl DoubleEndedIterator<Item = &'a Tree> + Clone,
+        unit: Unit,
+        (tool, budget, law): (&'a T, usize, Law),
     ) -> Result<Graded<'a, T>, BudgetError> {
-        let trees = part.levels().iter().rev();
-        let probes: Vec<_> =
-            trees.map(|tree| Probe::of(tree, part.unit(), tool).law(law)).collect();
-        let needed = part.levels().last().map_or(0, |tree| tree.nodes());
+        let needed = trees.clone().next().map_or(0, Tree::nodes);
         if budget < needed {
             return Err(BudgetError { budget, needed });
         }
+        let probes = trees.map(|tree| Probe::of(tree, unit, tool).law(law)).collect();
         Ok(Graded { probes, budget, last: None })
     }
 

@@ -11,6 +11,7 @@ mod graded;
 mod law;
 mod once;
 mod posture;
+pub mod precision;
 mod stiffness;
 mod wrench;
 
@@ -22,14 +23,14 @@ pub use posture::{Deepest, Posture};
 pub use stiffness::Stiffness;
 pub use wrench::{Rounding, Wrench};
 
-use crate::Unit;
-use crate::part::Part;
+use crate::bvh::{Sight, View, WIDTH};
 use crate::pose::Pose;
-use crate::precision::{Filtered, Precision};
 use crate::tool::{Ask, Felt, Senses, Tool, Wanted, reserve};
-use crate::tree::{Search, Sight, Tree, View, WIDTH};
+use crate::tree::{Search, Tree};
+use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
+use precision::{Filtered, Precision};
 
 /// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
 /// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
@@ -98,11 +99,6 @@ impl Wanted for Everything {
 }
 
 impl<'a, T: Senses + ?Sized> Probe<'a, T> {
-    /// A probe with the thesis's law, area weights and the tip for a compliance centre.
-    pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
-        Probe::of(part.tree(), part.unit(), tool)
-    }
-
     /// Of a part's points in their tree, whose lengths are in that unit.
     pub(crate) fn of(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T> {
         Probe::exactly(tree, unit, tool)

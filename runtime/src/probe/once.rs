@@ -3,7 +3,7 @@
 
 use super::{Beside, Wrench, wrench};
 use crate::pose::Pose;
-use crate::precision::{Double, Filtered, Precision, Single};
+use crate::probe::precision::{Double, Filtered, Precision, Single};
 
 /// What is done with a tree and with what was felt. Nobody else has it, so that there are no other precisions.
 pub trait Once: Send + Sync + Sized + 'static {

@@ -2,7 +2,7 @@
 
 use super::Beside;
 use crate::pose::Pose;
-use crate::precision::Precision;
+use crate::probe::precision::Precision;
 use crate::tool::Card;
 use nalgebra::Point3;
 
@@ -52,7 +52,7 @@ pub(super) fn at<P: Precision>(
 ) -> Deepest {
     let place = beside.search.candidates.indices()[candidate] as usize;
     let tree = beside.tree;
-    let point = pose.tip() + beside.view.relative(tree, place);
+    let point = pose.tip() + tree.relative_to_tip(&beside.view, place);
     Deepest { depth: depth * beside.length, point, triangle: tree.triangle(place) }
 }
 

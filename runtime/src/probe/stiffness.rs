@@ -2,7 +2,7 @@
 
 use super::{Beside, Everything, Law, Probe, Weights, Wrench};
 use crate::pose::Pose;
-use crate::precision::Precision;
+use crate::probe::precision::Precision;
 use crate::tool::{Senses, Tool};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 

@@ -2,7 +2,7 @@
 
 use super::{Beside, Deepest, Law, Weights, posture};
 use crate::pose::Pose;
-use crate::precision::Precision;
+use crate::probe::precision::Precision;
 use crate::tool::{LANES, Number};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
 use nalgebra::Vector3;

@@ -12,7 +12,7 @@
 
 use super::words::{is_prose, pass_over, refuse_motions};
 use super::{Fault, Located, Stop, Tape, axis_pose, lines, number, shown};
-use crate::Unit;
+use crate::unit::Unit;
 use std::collections::BTreeMap;
 use std::mem;
 

@@ -10,7 +10,7 @@
 //! other programs need none.
 
 use super::{Fault, Located, PLAIN_NUMBER, Stop, axis_pose, lines, number, shown};
-use crate::Pose;
+use crate::pose::Pose;
 use nalgebra::Point3;
 
 const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
@@ -138,7 +138,7 @@ fn with_separators(fault: Fault, row: &str) -> Fault {
 mod tests {
     use super::super::tests::{fan, refusal, shared};
     use super::END;
-    use crate::Pose;
+    use crate::pose::Pose;
     use crate::program::{Program, Stop};
     use nalgebra::{Point3, Vector3};
     use std::path::Path;

@@ -1,8 +1,8 @@
 //! The cutter that a program says it is for, beside the tool that is at hand.
 
 use super::{Cutter, Program, ProgramError};
-use crate::Unit;
 use crate::tool::Card;
+use crate::unit::Unit;
 
 /// Lengths of cutters are written with few digits: they may differ by this part of the diameter.
 const ROUNDED: f64 = 1e-3;

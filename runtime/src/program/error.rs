@@ -2,7 +2,8 @@
 
 use std::io;
 
-use crate::{PoseError, Unit};
+use crate::pose::PoseError;
+use crate::unit::Unit;
 
 /// Why a program could not be taken. The message names the file, the line, the reason and the
 /// remedy.

@@ -25,8 +25,9 @@ pub use write::{Cutter, Heading, WriteError, apt_word};
 use std::path::Path;
 
 use crate::input;
+use crate::pose::Pose;
 use crate::tool::{Card, Shape};
-use crate::{Pose, Unit};
+use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 
 /// A 5-axis program: the positions it names, in its order.

@@ -6,8 +6,9 @@
 
 use super::Program;
 use super::csv::{END, HEAD};
+use crate::pose::Pose;
 use crate::tool::{Card, Piece};
-use crate::{Pose, Unit};
+use crate::unit::Unit;
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
 

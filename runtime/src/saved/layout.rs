@@ -1,10 +1,12 @@
 //! What stands where in a saved part: its records, and what lies after them.
 
+use crate::bvh::{Boxes, WIDTH};
 use crate::cloud::Cover;
 use crate::cores;
 use crate::mesh::Survey;
-use crate::tree::{Boxes, Leaf, Skin, Tree, WIDTH};
-use crate::{Part, Unit};
+use crate::part::Part;
+use crate::tree::{Leaf, Skin, Tree};
+use crate::unit::Unit;
 use bytemuck::{Pod, Zeroable};
 use std::fmt;
 use std::mem::size_of;

@@ -19,7 +19,9 @@ mod read;
 
 pub use error::SavedError;
 
-use crate::{AtomicFile, Part, input};
+use crate::atomic_file::AtomicFile;
+use crate::input;
+use crate::part::Part;
 use layout::ALIGN;
 use std::io::{self, Write};
 use std::path::Path;

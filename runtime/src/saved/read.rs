@@ -6,9 +6,10 @@ use super::layout::{
     ALIGN, List, MAGIC, Section, Start, Stem, Surveyed, VERSION, checksums, header_checksum, lists,
     unit,
 };
-use crate::Part;
+use crate::bvh::{Frame, WIDTH};
 use crate::cloud::Cover;
-use crate::tree::{Frame, Tree, WIDTH};
+use crate::part::Part;
+use crate::tree::Tree;
 use bytemuck::Pod;
 use nalgebra::Point3;
 use std::io::{self, Cursor, Read};

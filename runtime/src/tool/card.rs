@@ -1,6 +1,6 @@
 //! Who a tool is, or a solid: to the runtime a solid is a tool without an axis.
 
-use crate::Unit;
+use crate::unit::Unit;
 use std::borrow::Cow;
 
 /// A tool's name, parts and reach.

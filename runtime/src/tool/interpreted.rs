@@ -4,7 +4,7 @@ use super::{
     Ask, Card, Circle, Depth, Dual, Enclosed, Enclosure, Felt, LANES, Lane, Maybe, Piece, Points,
     Region, Senses, Shape, Slab, Slopes, Surface, Tool, Wanted,
 };
-use crate::Unit;
+use crate::unit::Unit;
 use fearless_simd::{Level, Simd, dispatch};
 use std::borrow::Cow;
 use std::path::Path;

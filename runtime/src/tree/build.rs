@@ -1,62 +1,8 @@
 //! From a cloud to its tree.
 
-use super::{Boxes, Frame, Leaf, Skin, Tree, WIDTH};
+use super::{Leaf, Skin, Tree};
+use crate::bvh::{Bounds, Frame, Item, WIDTH, levels, order, outward};
 use crate::cloud::Cloud;
-use crate::cores;
-use nalgebra::Point3;
-
-/// So many items are put in order by one core.
-const ALONE: usize = 1 << 12;
-
-/// Something on its way to a leaf, by its place in the frame.
-#[derive(Clone, Copy)]
-pub(crate) struct Item {
-    pub(crate) at: [f64; 3],
-    pub(crate) index: u32,
-}
-
-/// A box by its ends.
-#[derive(Clone, Copy)]
-pub(crate) struct Bounds {
-    pub(super) low: [f64; 3],
-    pub(super) high: [f64; 3],
-}
-
-impl Bounds {
-    pub(crate) fn of(places: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
-        let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-        for place in places {
-            for (axis, part) in place.into_iter().enumerate() {
-                bounds.low[axis] = bounds.low[axis].min(part);
-                bounds.high[axis] = bounds.high[axis].max(part);
-            }
-        }
-        bounds
-    }
-
-    /// About boxes.
-    pub(crate) fn around(boxes: &[Bounds]) -> Bounds {
-        Bounds::of(boxes.iter().flat_map(|bounds| [bounds.low, bounds.high]))
-    }
-
-    /// The squared distance of a place; 0 inside.
-    pub(crate) fn away(&self, at: [f64; 3]) -> f64 {
-        let mut squared = 0.0;
-        for (axis, at) in at.into_iter().enumerate() {
-            let out = (self.low[axis] - at).max(at - self.high[axis]).max(0.0);
-            squared += out * out;
-        }
-        squared
-    }
-
-    pub(crate) fn middle(&self, axis: usize) -> f64 {
-        self.low[axis] / 2.0 + self.high[axis] / 2.0
-    }
-
-    pub(super) fn size(&self) -> f64 {
-        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
-    }
-}
 
 pub(super) fn build(cloud: &Cloud) -> Tree {
     let places = || cloud.points().iter().map(|p| [p.x, p.y, p.z]);
@@ -80,66 +26,6 @@ pub(super) fn build(cloud: &Cloud) -> Tree {
         triangles: items.iter().map(|item| cloud.triangles()[item.index as usize]).collect(),
         cover: cloud.cover(),
         gone: 0,
-    }
-}
-
-impl Frame {
-    /// The frame of what has these places.
-    pub(crate) fn around(places: impl IntoIterator<Item = [f64; 3]>) -> Frame {
-        let whole = Bounds::of(places);
-        let scale = power_of_two(whole.size());
-        let origin = Point3::from([0, 1, 2].map(|axis| whole.middle(axis)));
-        // A box about boxes is a little larger than what is in them.
-        let size = outward(whole.size() / scale * (1.0 + 1e-6));
-        Frame { origin, scale, size }
-    }
-
-    /// A place as the frame has it.
-    pub(crate) fn inside(&self, place: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| (place[axis] - self.origin[axis]) / self.scale)
-    }
-}
-
-/// From the root's children down to those boxes, side by side.
-pub(crate) fn levels(mut boxes: Vec<Bounds>) -> Vec<Vec<Boxes>> {
-    let mut levels = Vec::new();
-    loop {
-        let level: Vec<Boxes> = boxes.chunks(WIDTH).map(side_by_side).collect();
-        boxes = level.iter().map(around).collect();
-        levels.push(level);
-        if boxes.len() == 1 {
-            break;
-        }
-    }
-    levels.reverse();
-    levels
-}
-
-/// The power of two next to a size; 1 for a single point.
-fn power_of_two(size: f64) -> f64 {
-    if size > 0.0 { 2f64.powi((size.log2().ceil() as i32).clamp(-1000, 1000)) } else { 1.0 }
-}
-
-/// Kd order: across the longest side, the left part a power of two of full leaves.
-pub(crate) fn order(items: &mut [Item]) {
-    if items.len() <= WIDTH {
-        return;
-    }
-    let leaves = items.len().div_ceil(WIDTH);
-    let left = WIDTH * (leaves.next_power_of_two() / 2);
-    let bounds = Bounds::of(items.iter().map(|item| item.at));
-    let size = |axis: usize| bounds.high[axis] - bounds.low[axis];
-    let axis = (0..3).fold(0, |best, axis| if size(axis) > size(best) { axis } else { best });
-    // Equal coordinates are told apart by the index, so the order is the cloud's alone.
-    items.select_nth_unstable_by(left, |a, b| {
-        a.at[axis].total_cmp(&b.at[axis]).then(a.index.cmp(&b.index))
-    });
-    let (low, high) = items.split_at_mut(left);
-    if low.len() < ALONE {
-        order(low);
-        order(high);
-    } else {
-        cores::both(|| order(low), || order(high));
     }
 }
 
@@ -178,46 +64,4 @@ fn skin(items: &[Item], cloud: &Cloud, largest: f64) -> Skin {
         }
     }
     skin
-}
-
-fn side_by_side(bounds: &[Bounds]) -> Boxes {
-    let mut boxes = Boxes { centre: [[f32::NAN; WIDTH]; 3], half: [[0.0; WIDTH]; 3] };
-    for (lane, bounds) in bounds.iter().enumerate() {
-        boxes.put(lane, bounds);
-    }
-    boxes
-}
-
-impl Boxes {
-    /// Puts a box, or none if it has no inside, at its place.
-    pub(super) fn put(&mut self, lane: usize, bounds: &Bounds) {
-        for axis in 0..3 {
-            let [low, high] = [bounds.low[axis], bounds.high[axis]];
-            let centre = if low <= high { bounds.middle(axis) as f32 } else { f32::NAN };
-            let reach = (high - f64::from(centre)).max(f64::from(centre) - low);
-            self.centre[axis][lane] = centre;
-            self.half[axis][lane] = if centre.is_nan() { 0.0 } else { outward(reach) };
-        }
-    }
-}
-
-/// The box about boxes as they are stored.
-pub(super) fn around(boxes: &Boxes) -> Bounds {
-    let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-    for axis in 0..3 {
-        for (centre, half) in boxes.centre[axis].iter().zip(boxes.half[axis]) {
-            if !centre.is_nan() {
-                let (centre, half) = (f64::from(*centre), f64::from(half));
-                bounds.low[axis] = bounds.low[axis].min(centre - half);
-                bounds.high[axis] = bounds.high[axis].max(centre + half);
-            }
-        }
-    }
-    bounds
-}
-
-/// The nearest `f32` that is no smaller.
-pub(super) fn outward(value: f64) -> f32 {
-    let near = value as f32;
-    if f64::from(near) < value { near.next_up() } else { near }
 }

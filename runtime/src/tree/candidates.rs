@@ -1,7 +1,7 @@
 //! Points that may be inside, carried to the tool's frame.
 
-use super::walk::{LANE, Triple, seen};
-use super::{Rough, Skin, View, WIDTH};
+use super::Skin;
+use crate::bvh::{LANE, Rough, Triple, View, WIDTH, seen};
 use crate::tool::{LANES, Number, Points, reserve};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,

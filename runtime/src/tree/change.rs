@@ -1,7 +1,8 @@
 //! Points that go or move, without a new tree: leaves keep their points, boxes are fitted anew.
 
-use super::build::{around, lay, leaf_bounds, outward};
-use super::{Bounds, Item, Tree, WIDTH};
+use super::Tree;
+use super::build::{lay, leaf_bounds};
+use crate::bvh::{Bounds, Item, WIDTH, around, outward};
 use nalgebra::{Point3, Vector3};
 
 impl Tree {

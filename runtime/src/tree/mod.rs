@@ -15,33 +15,17 @@
 mod build;
 mod candidates;
 mod change;
-mod rough;
 mod sift;
-mod view;
 mod walk;
 
-pub(crate) use build::{Bounds, Item, levels, order};
 use candidates::Candidates;
 pub(crate) use candidates::Carried;
-pub(crate) use rough::Rough;
 pub(crate) use sift::Search;
-pub(crate) use view::{Sight, View};
-pub(crate) use walk::{extent, load, seen};
 
+use crate::bvh::{Boxes, Frame, Rough, View, WIDTH};
 use crate::cloud::{Cloud, Cover};
 use bytemuck::{Pod, Zeroable};
-use nalgebra::Point3;
-
-/// Children of a node, points of a leaf.
-pub(crate) const WIDTH: usize = 16;
-
-/// 16 boxes by centre and half extent; what is not there has NaN for a centre.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Boxes {
-    pub(crate) centre: [[f32; WIDTH]; 3],
-    pub(crate) half: [[f32; WIDTH]; 3],
-}
+use nalgebra::{Point3, Vector3};
 
 /// 16 points by their offset from the centre of the leaf's box; what is not there is NaN.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -56,17 +40,6 @@ pub(crate) struct Leaf {
 pub(crate) struct Skin {
     pub(crate) normal: [[f32; WIDTH]; 3],
     pub(crate) weight: [f32; WIDTH],
-}
-
-/// Where boxes are: what their numbers mean.
-#[derive(Clone, Debug)]
-pub(crate) struct Frame {
-    /// The middle of the part.
-    pub(crate) origin: Point3<f64>,
-    /// The unit of length; a power of two, if the part is in the unit that it came in.
-    pub(crate) scale: f64,
-    /// The largest extent of the whole.
-    pub(crate) size: f32,
 }
 
 /// A cloud in its tree.
@@ -166,5 +139,12 @@ impl Tree {
     /// The triangle that a point lies on.
     pub fn triangle(&self, index: usize) -> u32 {
         self.triangles[index]
+    }
+
+    /// A point from the tip in the part's frame, by its place in the tree.
+    pub(crate) fn relative_to_tip<R: Rough>(&self, view: &View<R>, index: usize) -> Vector3<f64> {
+        let [centre, offset] = self.stored(index);
+        let base = view.leaf_from_tip(centre);
+        Vector3::from_fn(|axis, _| base[axis] + view.scale * offset[axis])
     }
 }

@@ -1,9 +1,9 @@
 //! Which points of the leaves may be inside a tool.
 
 use super::candidates::Carried;
-use super::rough::Sixteen;
-use super::walk::{Nodes, Seen, Triple, Walker, load, seen, within};
-use super::{Candidates, Leaf, Rough, Skin, Tree, WIDTH};
+use super::walk::{Nodes, Seen, Walker, within};
+use super::{Candidates, Leaf, Skin, Tree};
+use crate::bvh::{Rough, Sixteen, Triple, WIDTH, load, seen};
 use crate::tool::reserve;
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 

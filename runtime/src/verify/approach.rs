@@ -2,10 +2,10 @@
 //! gouges nothing.
 
 use super::{Finding, Kind, Verifier, VerifyError};
-use crate::Pose;
 use crate::certify::Certifier;
 use crate::mesh;
 use crate::motion::Motion;
+use crate::pose::Pose;
 use crate::program::Stop;
 use crate::tool::Piece;
 use nalgebra::Point3;

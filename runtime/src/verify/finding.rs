@@ -3,7 +3,8 @@
 use super::Approach;
 use crate::certify::{AllowanceError, Uncertified, Witness};
 use crate::motion::MotionError;
-use crate::{Pose, ProgramError};
+use crate::pose::Pose;
+use crate::program::ProgramError;
 
 /// Why a program could not be checked.
 #[derive(Debug, thiserror::Error)]

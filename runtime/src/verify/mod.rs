@@ -20,10 +20,10 @@ mod finding;
 pub use approach::Approach;
 pub use finding::{Finding, Kind, Report, VerifyError};
 
-use crate::Pose;
 use crate::certify::{Along, Certifier, Facets, Sweep};
 use crate::cores;
 use crate::motion::{Motion, MotionError};
+use crate::pose::Pose;
 use crate::program::{Program, Stop};
 use crate::tool::{Card, Shape, Tool};
 

@@ -384,8 +384,8 @@ const STEPS: u32 = 256;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Tool;
     use crate::certify::body::owners::Owners;
+    use crate::tool::Tool;
     use crate::tool::{Card, Circle, Piece};
     use std::borrow::Cow;
 

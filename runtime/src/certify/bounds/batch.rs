@@ -1,10 +1,10 @@
 //! Eight triangles in the tool's frame, side by side in `f64`.
 
+use crate::bvh::View;
 use crate::certify::bounds::hull::Hull;
 use crate::certify::part::{Face, Facets};
 use crate::pose::Pose;
 use crate::tool::{LANES, on_vectors};
-use crate::tree::View;
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 /// A coordinate of each.

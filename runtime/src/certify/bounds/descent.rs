@@ -1,10 +1,10 @@
 //! The way down a tree of triangles, the deepest first.
 
+use crate::bvh::{Boxes, View, WIDTH, extent, load, seen};
 use crate::certify::bounds::nearest::Space;
 use crate::certify::part::Ring;
 use crate::certify::part::{Corners, Facets};
 use crate::tool::{LANES, on_vectors};
-use crate::tree::{Boxes, View, WIDTH, extent, load, seen};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
 
 /// A node of the tree, a leaf or a triangle, and how deep the tool can be in it.

@@ -1,5 +1,6 @@
 //! How deep a tool is at most in boxes and triangles, side by side.
 
+use crate::bvh::{Boxes, View};
 use crate::certify::body::feature::{Feature, Place};
 use crate::certify::body::owners::Owners;
 use crate::certify::body::section::{self, Section};
@@ -10,7 +11,6 @@ use crate::certify::bounds::nearest::{
 };
 use crate::certify::part::Ring;
 use crate::tool::Card;
-use crate::tree::{Boxes, View};
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
 /// A tool's slabs, for bounds.

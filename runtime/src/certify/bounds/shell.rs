@@ -1,12 +1,12 @@
 //! How near a tool is to boxes and triangles, 16 at a time, in `f32`.
 
+use crate::bvh::{Boxes, View};
 use crate::certify::body::feature::Feature;
 use crate::certify::body::owners::Owners;
 use crate::certify::body::section::Section;
 use crate::certify::bounds::descent::{Bounds, BoxBounds, Rings, rings};
 use crate::certify::bounds::nearest::{Near, Space, across, least, most};
 use crate::tool::Card;
-use crate::tree::{Boxes, View};
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 /// What holds a tool: for each slab a cylinder, and a ball where its side is one about the axis.

@@ -2,9 +2,10 @@
 
 use super::flat::Plane;
 use super::flats::Flats;
+use crate::bvh::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
+use crate::mesh::Mesh;
 use crate::mesh::{self, inverted};
-use crate::tree::{Bounds, Boxes, Frame, Item, WIDTH, levels, order};
-use crate::{Mesh, Unit};
+use crate::unit::Unit;
 use nalgebra::Point3;
 
 /// The triangles of a part, arranged for being asked how deep a tool is in them: a 16-wide tree of boxes

@@ -4,8 +4,8 @@
 //! a node's triangles have along a normal can.
 
 use super::Facets;
+use crate::bvh::{View, WIDTH};
 use crate::certify::space::{Point, dot};
-use crate::tree::{View, WIDTH};
 
 /// Between which heights along a normal the corners of a node's triangles lie, in the tree's frame.
 #[derive(Clone, Copy, Debug)]

@@ -4,9 +4,9 @@
 //! closely enough to tell. The rectangle that a flat face is within is: what bounds it bounds all its
 //! triangles.
 
-use crate::Mesh;
+use crate::bvh::WIDTH;
 use crate::certify::space::{Point, cross, dot, minus, norm};
-use crate::tree::WIDTH;
+use crate::mesh::Mesh;
 
 /// Fewer triangles are no face.
 const FEW: usize = 8;

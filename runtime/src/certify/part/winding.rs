@@ -1,7 +1,7 @@
 //! Where a point is: the winding number of a part's surface about it, by what a ray crosses.
 
 use super::Facets;
-use crate::tree::WIDTH;
+use crate::bvh::WIDTH;
 use nalgebra::{Point3, Vector3};
 use robust::{Coord3D, orient3d};
 
@@ -177,8 +177,8 @@ fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Cross
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Unit;
     use crate::mesh::shapes;
+    use crate::unit::Unit;
 
     /// Points in the planes of a block's faces, on lines through its corners and edges, and on its surface.
     #[test]

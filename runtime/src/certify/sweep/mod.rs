@@ -8,6 +8,7 @@ mod moving;
 pub(crate) mod stretch;
 mod task;
 
+use crate::bvh::{View, WIDTH};
 use crate::certify::body::Body;
 use crate::certify::body::field::Scratch;
 use crate::certify::body::owners::Owners;
@@ -21,7 +22,6 @@ use crate::certify::triangle::facet::Facet;
 use crate::certify::triangle::piece::{Part, Piece};
 use crate::certify::work::MARGIN;
 use crate::tool::LANES;
-use crate::tree::{View, WIDTH};
 use moving::{Moving, of_leaf};
 use task::Place;
 pub(crate) use task::Task;

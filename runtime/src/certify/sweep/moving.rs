@@ -1,10 +1,10 @@
 //! Boxes and triangles on their way past a hull, 16 at a time in `f32`.
 
+use crate::bvh::{Boxes, View};
 use crate::certify::bounds::descent::{BoxBounds, Node, Seen, Shift, above, rings};
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::nearest::Space;
 use crate::tool::on_vectors;
-use crate::tree::{Boxes, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
 
 /// A hull past which boxes move.

@@ -16,7 +16,7 @@ use super::faces::Faces;
 use super::stray::{Stray, stray};
 use super::words::shown;
 use super::{Mesh, coordinate_holds};
-use crate::Unit;
+use crate::unit::Unit;
 
 pub use self::error::PlyError;
 pub(super) use self::header::begins;

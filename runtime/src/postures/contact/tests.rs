@@ -1,7 +1,9 @@
 //! Where tools touch: what is known of each in closed form, and that no place beside the contact is cut.
 
 use super::*;
-use crate::{Level, Tool, Unit};
+use crate::Level;
+use crate::tool::Tool;
+use crate::unit::Unit;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,9 +1,11 @@
 //! Stick-out: closed forms, and against places of triangles one by one.
 
 use super::*;
+use crate::mesh::Mesh;
 use crate::mesh::shapes;
 use crate::tool::Surface;
-use crate::{Mesh, Tool, Unit};
+use crate::tool::Tool;
+use crate::unit::Unit;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,7 +1,7 @@
 //! Maps as others read them. Every number is written so that it reads back as the same double.
 
 use super::{Identity, MapError, PartStamp, PostureMap};
-use crate::Mesh;
+use crate::mesh::Mesh;
 use crate::postures::{Access, Record, Row, Rules};
 use serde::Serialize;
 use std::io::{self, Write};

@@ -1,8 +1,11 @@
 //! To what a map belongs.
 
+use crate::escape::Escaped;
+use crate::mesh::Mesh;
 use crate::postures::{Access, Directions, Record, Rules, RulesError};
 use crate::tool::Card;
-use crate::{Escaped, Mesh, Tool, Unit};
+use crate::tool::Tool;
+use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher24;
 use std::collections::BTreeSet;

@@ -3,7 +3,7 @@
 use super::coding::{decode, encode};
 use super::snapshot::{Draft, Header, copy};
 use super::{FACTS, IDENTITY, Identity, MapError, NEWEST, PostureMap, ROWS, VERSION, as_damage};
-use crate::AtomicFile;
+use crate::atomic_file::AtomicFile;
 use redb::{Builder, Database, ReadableDatabase, StorageBackend as _};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};

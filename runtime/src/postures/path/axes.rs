@@ -2,10 +2,11 @@
 
 use super::Leader;
 use super::slice::Place;
+use crate::mesh::Mesh;
+use crate::pose::Pose;
 use crate::postures::Directions;
 use crate::postures::directions::has;
 use crate::postures::touching::Spot;
-use crate::{Mesh, Pose};
 use nalgebra::Vector3;
 
 /// A posture of a path.

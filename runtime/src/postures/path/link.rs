@@ -1,7 +1,8 @@
 //! Ways off the surface, around the part, and back.
 
 use super::Leader;
-use crate::{Mesh, Pose};
+use crate::mesh::Mesh;
+use crate::pose::Pose;
 use nalgebra::{Point3, Unit, Vector3};
 use std::f64::consts::FRAC_PI_3;
 

@@ -1,6 +1,6 @@
 //! The lines in which planes cut a mesh, in order.
 
-use crate::Mesh;
+use crate::mesh::Mesh;
 use crate::postures::touching::Spot;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
@@ -158,7 +158,8 @@ fn along(mesh: &Mesh, line: &[Piece], step: f64) -> Vec<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Unit, mesh::shapes};
+    use crate::mesh::shapes;
+    use crate::unit::Unit;
     use std::f64::consts::TAU;
 
     #[test]

@@ -13,7 +13,8 @@ pub use tally::Tally;
 
 use super::{Directions, JudgeError, Row, Rules, RulesError};
 use crate::certify::Facets;
-use crate::{Mesh, Tool};
+use crate::mesh::Mesh;
+use crate::tool::Tool;
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

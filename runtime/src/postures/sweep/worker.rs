@@ -2,13 +2,13 @@
 
 use super::tally::Decided;
 use super::{Batch, Sweep, SweepError, Tally};
-use crate::Tool;
 use crate::certify::{Containment, Location, Touch};
 use crate::pose::Pose;
 use crate::postures::holder::Holder;
 use crate::postures::map::merge;
 use crate::postures::touching::{Posture, Spot, Touching};
 use crate::postures::{Access, Judge, Record, Row};
+use crate::tool::Tool;
 use nalgebra::{Point3, Vector3};
 
 /// Of each direction the places that were last in the way are kept, the last first.

@@ -1,6 +1,6 @@
 use super::super::tests::{flank, refusal, shared};
-use crate::Unit;
 use crate::program::Program;
+use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 

@@ -2,10 +2,13 @@ mod refused;
 
 use super::layout::{List, lists};
 use super::*;
+use crate::cloud::{Cloud, Cover};
 use crate::mesh::shapes;
+use crate::pose::Pose;
+use crate::probe::Probe;
 use crate::scenes::{self, Path as Course};
 use crate::tree::Tree;
-use crate::{Cloud, Cover, Pose, Probe, Unit};
+use crate::unit::Unit;
 use nalgebra::Point3;
 use std::fs::{self, File};
 

@@ -5,9 +5,10 @@ mod refused;
 
 use super::open::write_facts;
 use super::*;
+use crate::mesh::Mesh;
 use crate::mesh::shapes;
 use crate::postures::Rules;
-use crate::{Mesh, Unit};
+use crate::unit::Unit;
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -1,8 +1,9 @@
 //! How exactly a tool feels: in which formats points are ruled out, and those that are left felt.
 
-use crate::probe::Once;
+use super::Once;
+use crate::bvh::Rough;
 use crate::tool::Depth;
-use crate::tree::{Carried, Rough};
+use crate::tree::Carried;
 
 /// How exactly a tool feels a part; a type, given to [`Probe::precision`](crate::Probe::precision).
 ///

@@ -1,12 +1,11 @@
 //! A part as a tool sees it: what is the same at every pose, and what changes.
 
-use super::{Frame, Rough, Tree};
+use super::{Frame, Rough};
 use crate::pose::Pose;
 use crate::tool::{Card, Shape};
-use nalgebra::Vector3;
 
 /// The most slabs; the compiler makes no more than 24.
-pub(super) const SLABS: usize = 32;
+pub(crate) const SLABS: usize = 32;
 
 /// What a tool and a part are to each other, wherever the tool is, in a format that is rough. Lengths are
 /// the tool's unit.
@@ -16,7 +15,7 @@ pub(crate) struct Sight<R = f32> {
     /// The tree's unit in the part's, and in the tool's.
     scale: f64,
     pub(crate) unit: f64,
-    pub(super) reach: Reach<R>,
+    pub(crate) reach: Reach<R>,
     /// Whether the format holds what is seen; if not, no point is ruled out.
     pub(crate) fits: bool,
     /// How far the format can take a place, in the tool's unit.
@@ -27,13 +26,13 @@ pub(crate) struct Sight<R = f32> {
 }
 
 /// What a tool reaches, widened by the margin.
-pub(super) struct Reach<R> {
+pub(crate) struct Reach<R> {
     /// Low end, high end and squared radius of each slab.
-    pub(super) slabs: [[R; 3]; SLABS],
+    pub(crate) slabs: [[R; 3]; SLABS],
     /// A bit for each slab that there is.
-    pub(super) all: u32,
+    pub(crate) all: u32,
     /// Low and high end along x and y, if it has no axis.
-    pub(super) across: Option<[[R; 2]; 2]>,
+    pub(crate) across: Option<[[R; 2]; 2]>,
 }
 
 impl<R: Rough> Sight<R> {
@@ -140,7 +139,7 @@ pub struct View<R = f32> {
     pub(crate) origin: [R; 3],
     /// The cloud's origin from the tip, and the tree's unit, in the part's frame and unit.
     from_tip: [f64; 3],
-    pub(super) scale: f64,
+    pub(crate) scale: f64,
     /// From the part's frame and unit to the tool's.
     pub(crate) carry: [[f64; 3]; 3],
 }
@@ -148,7 +147,7 @@ pub struct View<R = f32> {
 impl<R: Rough> View<R> {
     /// The centre of a leaf, given in the tree's unit, from the tip in the part's frame.
     #[inline(always)]
-    pub(super) fn leaf_from_tip(&self, centre: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn leaf_from_tip(&self, centre: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.from_tip[axis] + self.scale * centre[axis])
     }
 
@@ -161,7 +160,7 @@ impl<R: Rough> View<R> {
 
     /// A leaf's centre, given from the tip in the part's frame, in the tool's frame and unit.
     #[inline(always)]
-    pub(super) fn carried(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn carried(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         self.carry.map(|row| x * row[0] + y * row[1] + z * row[2])
     }
 
@@ -171,12 +170,5 @@ impl<R: Rough> View<R> {
         let [a, b, c] = &self.rows;
         let along = |row: &[R; 3], from: R| x * row[0] + y * row[1] + z * row[2] + from;
         [along(a, self.origin[0]), along(b, self.origin[1]), along(c, self.origin[2])]
-    }
-
-    /// A point from the tip in the part's frame, by its place in the tree.
-    pub(crate) fn relative(&self, tree: &Tree, index: usize) -> Vector3<f64> {
-        let [centre, offset] = tree.stored(index);
-        let base = self.leaf_from_tip(centre);
-        Vector3::from_fn(|axis, _| base[axis] + self.scale * offset[axis])
     }
 }
