@@ -6,8 +6,8 @@ pub mod compile;
 pub mod continuity;
 pub mod convergence;
 pub mod haptics;
-pub mod made;
 pub mod mutants;
+pub mod page;
 #[cfg(feature = "peers")]
 pub mod peers;
 pub mod plot;

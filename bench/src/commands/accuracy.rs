@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 use touchoff_tests::accuracy::{Row, measure, tools};
 
 fn main() -> Result<(), Box<dyn Error>> {

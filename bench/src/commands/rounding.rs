@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 use touchoff_bench::rounding::cases::Family;
 use touchoff_bench::rounding::{Rounding, Row, table};
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use touchoff::scenes::{Path, tube};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff::{Cloud, Part, Pose, Probe};
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 use touchoff_tests::library::library;
 
 /// Poses of a row; each is asked for once, so that nothing is learnt.

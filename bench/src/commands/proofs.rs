@@ -6,7 +6,7 @@ use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::report::figure;
 use touchoff_bench::compile::sources;
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let command = "cargo run --release -p touchoff-bench --bin proofs > docs/measured/proofs.md";

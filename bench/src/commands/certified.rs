@@ -14,7 +14,7 @@ use touchoff::{Mesh, Unit};
 use touchoff_bench::certified::subject::{FIELDS, PROFILES, Subject};
 use touchoff_bench::certified::zoomed::{self, Zoomed};
 use touchoff_bench::certified::{Pair, Row, buried, poses, table};
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 use touchoff_tests::oracle::Nearest;
 
 const TOOLS: [&str; 6] = ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];

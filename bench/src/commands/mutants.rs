@@ -3,8 +3,8 @@
 use std::error::Error;
 use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
-use touchoff_bench::made::made;
 use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
+use touchoff_bench::page::made;
 use touchoff_tests::library::library;
 
 /// How often each tool is broken.

@@ -9,7 +9,7 @@ use touchoff::Mesh;
 use touchoff::certify::Facets;
 use touchoff_bench::certified::sweeps::{Row, table};
 use touchoff_bench::certified::{Pair, poses};
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 use touchoff_tests::oracle::Nearest;
 
 /// The last is in inches.

@@ -5,7 +5,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::process::Command;
 use touchoff_bench::compile::{Parts, Times, parts, sources, times};
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 
 /// Times each tool is compiled, optimised and not.
 const COUNTS: [usize; 2] = [7, 3];

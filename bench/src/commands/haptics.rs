@@ -8,7 +8,7 @@ use touchoff::{Law, Part};
 use touchoff_bench::haptics::latency;
 use touchoff_bench::haptics::page::{Measured, page, plots};
 use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
-use touchoff_bench::made::made;
+use touchoff_bench::page::made;
 use touchoff_tests::haptics::{energy, sheet, wall};
 
 fn main() -> Result<(), Box<dyn Error>> {
