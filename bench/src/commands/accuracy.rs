@@ -1,57 +1,48 @@
-//! The table of `docs/measured/accuracy.md`: `accuracy [POINTS]`, a million points a tool if it is not said.
+//! The page `accuracy.md`: compiled tools beside 256 bits.
 
+use clap::Args;
 use std::error::Error;
 use std::fmt::Write;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
-use touchoff_bench::page::made;
+use touchoff_bench::page::Page;
+use touchoff_bench::parallel;
 use touchoff_tests::accuracy::{Row, measure, tools};
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let count = match std::env::args().nth(1) {
-        Some(text) => text.parse()?,
-        None => 1_000_000,
-    };
-    let start = Instant::now();
-    let rows = rows(count);
-    println!("{}", page(&rows, count)?);
-    eprintln!("{} tools in {:.0} s", rows.len(), start.elapsed().as_secs_f64());
-    Ok(())
+/// Compares compiled tools with 256 bits: depth, side, owner and direction.
+#[derive(Args)]
+pub(crate) struct Accuracy {
+    /// Points of each tool.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    points: usize,
 }
 
-/// A row a tool, on all cores.
-fn rows(count: usize) -> Vec<Row> {
-    let (tools, next) = (tools(), AtomicUsize::new(0));
-    let rows = Mutex::new(Vec::new());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((tool, restated)) = tools.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let row = measure(*tool, restated, count, 1);
-                    eprintln!("{}: {:?}", row.name, row.missed());
-                    rows.lock().unwrap_or_else(PoisonError::into_inner).push(row);
-                }
-            });
-        }
-    });
-    let mut rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
-    rows.sort_by(|a, b| a.name.cmp(&b.name));
-    rows
+impl Accuracy {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let tools = tools();
+        let mut rows = parallel::rows(tools.len(), |k| {
+            let (tool, restated) = &tools[k];
+            let row = measure(*tool, restated, self.points, 1);
+            eprintln!("{}: {:?}", row.name, row.missed());
+            row
+        });
+        rows.sort_by(|a, b| a.name.cmp(&b.name));
+        let missed: Vec<String> = rows
+            .iter()
+            .flat_map(|row| row.missed().into_iter().map(|what| format!("{}: {what}", row.name)))
+            .collect();
+        Ok(Some(Page {
+            name: "accuracy",
+            title: "Rounding of the compiled tools".to_owned(),
+            covers: &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"],
+            body: body(&rows, &missed, self.points)?,
+            figures: Vec::new(),
+            missed,
+        }))
+    }
 }
 
-fn page(rows: &[Row], count: usize) -> Result<String, std::fmt::Error> {
-    let command = format!(
-        "cargo run --release -p touchoff-bench --bin accuracy -- {count} > docs/measured/accuracy.md"
-    );
-    let head = made(&command, &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"]);
+fn body(rows: &[Row], missed: &[String], count: usize) -> Result<String, std::fmt::Error> {
     let mut page = format!(
-        "# Rounding of the compiled tools
-
-{head}
-
-Compiled evaluators against 256 bits: for each tool {count} points, half of them within 1e-6 of the surface or of a splitting
+        "Compiled evaluators against 256 bits: for each tool {count} points, half of them within 1e-6 of the surface or of a splitting
 curve (as many within 1e-15 as within 1e-6 of it), the others anywhere in its box; besides these every vertex and centre with
 its neighbours of one ulp, and the axis at d = 0, -0, 5e-324 and 2^-540. Both forms of the code are asked, for one point and
 for lanes. The reference knows each profile from a restatement of its own and takes the nearest feature by trying those that
@@ -89,10 +80,11 @@ distances.
         )?;
     }
     page += "\n## Missed\n\n";
-    let missed: Vec<String> = rows
-        .iter()
-        .flat_map(|row| row.missed().into_iter().map(|what| format!("- {}: {what}", row.name)))
-        .collect();
-    page += &if missed.is_empty() { "Nothing.".to_owned() } else { missed.join("\n") };
+    if missed.is_empty() {
+        page += "Nothing.\n";
+    }
+    for line in missed {
+        writeln!(page, "- {line}")?;
+    }
     Ok(page)
 }

@@ -1,63 +1,82 @@
-//! How much more accurately a part's exact points are felt than points of its triangles:
-//!
-//! ```sh
-//! cargo run --release -p touchoff-bench --bin cad -- NAME POINTS.ply MESH.ply FINE.ply
-//! ```
-//!
-//! The three files are written by `scripts/cad_points.py`: points, triangles, and as a reference many more points of another
-//! seed. Prints rows of the table in `docs/measured/cad.md`.
+//! Rows of `cad.md`: a part's exact points beside points of its triangles.
 
+use clap::Args;
 use nalgebra::{Point3, Unit as Direction, Vector3};
 use std::error::Error;
+use std::path::{Path, PathBuf};
 use tools_library::Ball;
 use touchoff::mesh::Shape;
 use touchoff::{Cloud, Law, Mesh, Part, Pose, Probe, Unit, Wrench};
+use touchoff_bench::page::Page;
 use touchoff_tests::oracle::draw::Draw;
 
 const UNIT: Unit = Unit::Millimetre;
 const POSES: usize = 2_000;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let files: Vec<String> = std::env::args().skip(1).collect();
-    let [name, points, mesh, fine] = files.as_slice() else {
-        return Err("write NAME POINTS.ply MESH.ply FINE.ply".into());
-    };
-    let (points, fine) = (cloud(points)?, cloud(fine)?);
-    let mesh = mesh_of(mesh)?;
-    let even = Cloud::blue(&mesh, points.len(), 1)?;
-    let equal = equally(&points)?;
-    let [reference, exact, unweighed, triangles] =
-        [&fine, &points, &equal, &even].map(Part::from_cloud);
-    println!("| {name}: pressed in by | method | force, rms | depth, rms mm | depth, at most mm |");
-    println!("|---|---|--:|--:|--:|");
-    for depth in [0.5, 0.1, 0.02] {
-        let poses = poses(&fine, depth);
-        let wanted = felt(&reference, &poses);
-        let rows = [
-            ("exact points", &exact),
-            ("exact points, equal weights", &unweighed),
-            ("points of its triangles", &triangles),
-        ];
-        for (method, part) in rows {
-            let [force, typical, most] = errors(&felt(part, &poses), &wanted);
-            println!("| {depth} mm | {method} | {force:.2e} | {typical:.5} | {most:.5} |");
-        }
-    }
-    println!("\n{} points, {} in the reference, {POSES} poses a row.", points.len(), fine.len());
-    Ok(())
+/// Prints rows of the table in `cad.md`: how much more accurately exact points of a part are felt than points of its triangles.
+///
+/// The files are written by `scripts/cad_points.py`, in mm.
+#[derive(Args)]
+pub(crate) struct Cad {
+    /// Name of the part in the table.
+    name: String,
+    /// Exact points.
+    #[arg(value_name = "POINTS.ply")]
+    points: PathBuf,
+    /// Triangles of the same part.
+    #[arg(value_name = "MESH.ply")]
+    mesh: PathBuf,
+    /// Many more exact points of another seed: the reference.
+    #[arg(value_name = "FINE.ply")]
+    fine: PathBuf,
 }
 
-fn cloud(file: &str) -> Result<Cloud, Box<dyn Error>> {
+impl Cad {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let (points, fine) = (cloud(&self.points)?, cloud(&self.fine)?);
+        let mesh = mesh_of(&self.mesh)?;
+        let name = &self.name;
+        let even = Cloud::blue(&mesh, points.len(), 1)?;
+        let equal = equally(&points)?;
+        let [reference, exact, unweighed, triangles] =
+            [&fine, &points, &equal, &even].map(Part::from_cloud);
+        println!(
+            "| {name}: pressed in by | method | force, rms | depth, rms mm | depth, at most mm |"
+        );
+        println!("|---|---|--:|--:|--:|");
+        for depth in [0.5, 0.1, 0.02] {
+            let poses = poses(&fine, depth);
+            let wanted = felt(&reference, &poses);
+            let rows = [
+                ("exact points", &exact),
+                ("exact points, equal weights", &unweighed),
+                ("points of its triangles", &triangles),
+            ];
+            for (method, part) in rows {
+                let [force, typical, most] = errors(&felt(part, &poses), &wanted);
+                println!("| {depth} mm | {method} | {force:.2e} | {typical:.5} | {most:.5} |");
+            }
+        }
+        println!(
+            "\n{} points, {} in the reference, {POSES} poses a row.",
+            points.len(),
+            fine.len()
+        );
+        Ok(None)
+    }
+}
+
+fn cloud(file: &Path) -> Result<Cloud, Box<dyn Error>> {
     match Shape::read(file, UNIT)? {
         Shape::Points(points) => Ok(Cloud::from_points(points, UNIT)?),
-        Shape::Mesh(_) => Err(format!("{file} has triangles").into()),
+        Shape::Mesh(_) => Err(format!("{} has triangles", file.display()).into()),
     }
 }
 
-fn mesh_of(file: &str) -> Result<Mesh, Box<dyn Error>> {
+fn mesh_of(file: &Path) -> Result<Mesh, Box<dyn Error>> {
     match Shape::read(file, UNIT)? {
         Shape::Mesh(mesh) => Ok(mesh),
-        Shape::Points(_) => Err(format!("{file} has no triangles").into()),
+        Shape::Points(_) => Err(format!("{} has no triangles", file.display()).into()),
     }
 }
 
@@ -88,7 +107,7 @@ fn felt(part: &Part, poses: &[Pose]) -> Vec<Wrench> {
     Probe::new(part, &Ball).law(Law::Gradient).map(poses, Probe::wrench)
 }
 
-/// Of forces relative to the typical one, of depths.
+/// Returns the errors: of forces relative to the typical one, of depths as a root mean square and at most.
 fn errors(found: &[Wrench], wanted: &[Wrench]) -> [f64; 3] {
     let count = found.len() as f64;
     let rms = |squares: f64| (squares / count).sqrt();

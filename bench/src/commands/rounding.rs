@@ -1,57 +1,50 @@
-//! The table of `docs/measured/rounding.md`: `rounding [--cases N] [--seed S] [--only CASE] [--threads T]`, 10,000,000
-//! cases on all cores if it is not said. `--only` shows a single case.
+//! The page `rounding.md`: certified depths beside 256 bits, where rounding does the most.
 
+use clap::Args;
 use std::error::Error;
-use std::sync::Mutex;
-use std::sync::PoisonError;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::num::NonZeroUsize;
 use std::time::Instant;
-use touchoff_bench::page::made;
+use touchoff_bench::page::Page;
+use touchoff_bench::parallel;
 use touchoff_bench::rounding::cases::Family;
-use touchoff_bench::rounding::{Rounding, Row, table};
+use touchoff_bench::rounding::{Rounding as Cases, Row, table};
 
 /// Cases that a thread takes at once.
 const CHUNK: u64 = 2000;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let (mut count, mut seed, mut only) = (10_000_000, 1, None);
-    let mut threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut arguments = std::env::args().skip(1);
-    while let Some(name) = arguments.next() {
-        let value = arguments.next().ok_or_else(|| format!("`{name}` needs a value"))?;
-        match name.as_str() {
-            "--cases" => count = value.parse()?,
-            "--seed" => seed = value.parse()?,
-            "--only" => only = Some(value.parse()?),
-            "--threads" => threads = value.parse()?,
-            _ => {
-                return Err(format!(
-                    "`{name}` is no option: use --cases, --seed, --only or --threads"
-                )
-                .into());
-            }
+/// Compares certified depths with 256 bits, where rounding does the most.
+#[derive(Args)]
+pub(crate) struct Rounding {
+    /// Cases of all families together.
+    #[arg(long, value_name = "N", default_value_t = 10_000_000)]
+    cases: u64,
+    /// Seed of the cases.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Prints this case alone, by its number, and makes no page.
+    #[arg(long, value_name = "CASE")]
+    only: Option<u64>,
+    /// Threads that share the cases [default: as many as there are cores].
+    #[arg(long, value_name = "T")]
+    threads: Option<NonZeroUsize>,
+}
+
+impl Rounding {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let start = Instant::now();
+        let cases = Cases::new(self.seed);
+        eprintln!("tools: {:.1} s", start.elapsed().as_secs_f64());
+        if let Some(number) = self.only {
+            let mut rows = Family::ALL.map(Row::new).to_vec();
+            cases.ask(number, &mut rows);
+            rows.retain(|row| row.cases > 0);
+            println!("{}\n{}", cases.describe(number), table(&rows)?);
+            return Ok(None);
         }
-    }
-    let start = Instant::now();
-    let rounding = Rounding::new(seed);
-    eprintln!("tools: {:.1} s", start.elapsed().as_secs_f64());
-    if let Some(number) = only {
-        let mut rows = Family::ALL.map(Row::new).to_vec();
-        rounding.ask(number, &mut rows);
-        rows.retain(|row| row.cases > 0);
-        println!("{}\n{}", rounding.describe(number), table(&rows)?);
-        return Ok(());
-    }
-    let rows = rows(&rounding, count, threads);
-    let command = format!(
-        "cargo run --release -p touchoff-bench --bin rounding -- --cases {count} --seed {seed} > docs/measured/rounding.md"
-    );
-    let head = made(&command, &["runtime/src/certify"]);
-    println!(
-        "# Certified depth against 256 bits
-
-{head}
-
+        let threads = self.threads.map_or(0, NonZeroUsize::get);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let rows = pool.install(|| rows(&cases, self.cases))?;
+        let about = "\
 Each case is a triangle, or a few, a tool and a pose, drawn where rounding does the most: eleven profiles at five scales from 1e-6 to 1e6 mm, tolerances 0 and
 1e-9 of the tool's size. The doubles of the mesh and the pose are exact numbers, and a place `p` of the part is `R⁻¹ (p - tip)` in the tool's frame, as `Pose` says.
 A search in doubles finds places; the depth of the best of them in 256 bits is less than the true greatest depth or equal. The upper end is
@@ -66,40 +59,44 @@ widenings at most. `--only` and its number show a case.
 
 All rotations that the public interface of `Pose` makes are orthonormal to 4 ε: axes and quaternions are normalised if their norm is within 1e-3 of 1, and
 composed rotations are corrected. *Drift* has some composed of up to 24 others.
-"
-    );
-    print!("{}", table(&rows)?);
-    eprintln!("{} s", start.elapsed().as_secs());
-    let violations: u64 = rows.iter().map(Row::violations).sum();
-    if violations > 0 {
-        return Err(format!("{violations} violations").into());
+
+";
+        Ok(Some(Page {
+            name: "rounding",
+            title: "Certified depth against 256 bits".to_owned(),
+            covers: &["runtime/src/certify"],
+            body: about.to_owned() + &table(&rows)?,
+            figures: Vec::new(),
+            missed: rows.iter().filter(|row| row.violations() > 0).map(broken).collect(),
+        }))
     }
-    Ok(())
 }
 
-/// The rows of all families.
-fn rows(rounding: &Rounding, count: u64, threads: usize) -> Vec<Row> {
-    let (next, rows) = (AtomicU64::new(0), Mutex::new(Family::ALL.map(Row::new)));
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                loop {
-                    let from = next.fetch_add(CHUNK, Ordering::Relaxed);
-                    if from >= count {
-                        break;
-                    }
-                    let mut own = Family::ALL.map(Row::new);
-                    for number in from..(from + CHUNK).min(count) {
-                        rounding.ask(number, &mut own);
-                    }
-                    let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
-                    for (row, own) in rows.iter_mut().zip(own) {
-                        own.shown.iter().for_each(|text| eprintln!("{text}"));
-                        row.add(own);
-                    }
-                }
-            });
+/// Returns the violations of a family, in words.
+fn broken(row: &Row) -> String {
+    let Row { family, exceeded, off, shallow, .. } = row;
+    format!(
+        "{family:?}: {exceeded} upper ends exceeded, {off} witnesses off their triangles, {shallow} shallow"
+    )
+}
+
+/// Returns the rows of all families.
+fn rows(cases: &Cases, count: u64) -> Result<Vec<Row>, std::num::TryFromIntError> {
+    let chunks = usize::try_from(count.div_ceil(CHUNK))?;
+    let own = parallel::rows(chunks, |k| {
+        let from = k as u64 * CHUNK;
+        let mut own = Family::ALL.map(Row::new);
+        for number in from..(from + CHUNK).min(count) {
+            cases.ask(number, &mut own);
         }
+        own.iter().flat_map(|row| &row.shown).for_each(|text| eprintln!("{text}"));
+        own
     });
-    rows.into_inner().unwrap_or_else(PoisonError::into_inner).to_vec()
+    let mut rows = Family::ALL.map(Row::new).to_vec();
+    for own in own {
+        for (row, own) in rows.iter_mut().zip(own) {
+            row.add(own);
+        }
+    }
+    Ok(rows)
 }

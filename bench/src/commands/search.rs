@@ -1,59 +1,57 @@
-//! The page `docs/measured/search.md`: `search [--seed N] [--tool NAME] [--steps N] [--found FILE]`. What was found at points goes to the
-//! file, beside what it has of other tools and questions and where it has no worse.
+//! The page `search.md`: climbs toward the worst points and poses.
 
-use rayon::prelude::*;
+use clap::Args;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use touchoff_bench::page::Page;
+use touchoff_bench::parallel;
 use touchoff_bench::search::Effort;
 use touchoff_bench::search::found::{Line, lines};
 use touchoff_bench::search::page::{missed, page};
 use touchoff_bench::search::tool::{Hunted, hunt, names};
 
-/// Steps of each climb.
-const STEPS: usize = 1000;
+/// Climbs toward the worst points of each tool and the worst poses of each question.
+#[derive(Args)]
+pub(crate) struct Search {
+    /// Seed of the climbs.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Steps of each climb.
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    steps: usize,
+    /// Searches this tool alone [default: all of the library].
+    #[arg(long, value_name = "NAME", value_parser = super::tool)]
+    tool: Option<String>,
+    /// Keeps the worst points in this file, beside those that it has of other tools and questions and where it has no worse.
+    #[arg(long, value_name = "FILE")]
+    found: Option<PathBuf>,
+}
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let (mut seed, mut steps, mut found) = (1, STEPS, None::<PathBuf>);
-    let mut tools = names();
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or_else(|| format!("what is `{word}`?"));
-        match word.as_str() {
-            "--seed" => seed = value()?.parse()?,
-            "--steps" => steps = value()?.parse()?,
-            "--found" => found = Some(value()?.into()),
-            "--tool" => {
-                let name = value()?;
-                tools.retain(|tool| *tool == name);
-            }
-            _ => return Err(format!("`{word}` is not known").into()),
-        }
-    }
-    let start = Instant::now();
-    let hunted = all(&tools, Effort::of(steps), seed);
-    println!(
-        "# Looking for the worst
-
-```sh
-cargo run --release -p touchoff-bench --bin search -- --seed {seed} --steps {steps} > docs/measured/search.md
-```
-
-Random points seldom meet the worst ones. Here they are climbed for: from the hardest of the points of
+impl Search {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let tools = self.tool.clone().map_or_else(names, |tool| vec![tool]);
+        let steps = self.steps;
+        let hunted = all(&tools, Effort::of(steps), self.seed);
+        let about = format!(
+            "Random points seldom meet the worst ones. Here they are climbed for: from the hardest of the points of
 [accuracy.md](accuracy.md) and from pairs of neighbours on every border, by steps that shrink to single bits, {steps} a climb. What is
 found is judged against 256 bits as there. *Jumps* are those between two points that are neighbours, one double apart in one
 coordinate; *of its bound* is a share of what is promised; *64 ε sizes* is what certified answers are widened by, and below 0 what was left of it.
 
-{}",
-        page(&hunted)?
-    );
-    eprintln!("{} tools in {:.0} s", hunted.len(), start.elapsed().as_secs_f64());
-    if let Some(file) = found {
-        keep(&file, hunted.iter().flat_map(lines).collect())?;
-    }
-    match missed(&hunted).len() {
-        0 => Ok(()),
-        count => Err(format!("{count} bars were missed").into()),
+"
+        );
+        if let Some(file) = &self.found {
+            keep(file, hunted.iter().flat_map(lines).collect())?;
+        }
+        Ok(Some(Page {
+            name: "search",
+            title: "Looking for the worst".to_owned(),
+            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+            body: about + &page(&hunted)?,
+            figures: Vec::new(),
+            missed: missed(&hunted),
+        }))
     }
 }
 
@@ -74,14 +72,13 @@ fn keep(file: &Path, found: Vec<Line>) -> std::io::Result<()> {
     std::fs::write(file, lines.join("\n") + "\n")
 }
 
-/// What is found of each tool, on all cores.
+/// Returns what is found of each tool.
 fn all(tools: &[String], effort: Effort, seed: u64) -> Vec<Hunted> {
-    let hunted = tools.par_iter().with_max_len(1).map(|tool| {
-        let start = Instant::now();
+    parallel::rows(tools.len(), |k| {
+        let (tool, start) = (&tools[k], Instant::now());
         let found = hunt(tool, effort, seed);
         eprintln!("{tool}: {:.1} s", start.elapsed().as_secs_f64());
         missed(std::slice::from_ref(&found)).iter().for_each(|line| eprintln!("{line}"));
         found
-    });
-    hunted.collect()
+    })
 }

@@ -1,48 +1,52 @@
-//! The page `docs/measured/stress.md`: `stress [--seed S] [--tool NAME] [--item N] [--quick]`.
+//! The page `stress.md`: every tool at points, poses and scenes that are hard.
 
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use std::error::Error;
-use std::time::Instant;
+use touchoff_bench::page::Page;
+use touchoff_bench::stress::ledger::ITEMS;
 use touchoff_bench::stress::{Amount, measure, page};
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let (mut quick, mut seed, mut item, mut tool) = (false, 1, None, None);
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or_else(|| format!("what is `{word}`?"));
-        match word.as_str() {
-            "--quick" => quick = true,
-            "--seed" => seed = value()?.parse()?,
-            "--item" => item = Some(value()?.parse::<usize>()?),
-            "--tool" => tool = Some(value()?),
-            _ => return Err(format!("`{word}` is not known").into()),
-        }
-    }
-    let start = Instant::now();
-    let amount = if quick { Amount::sample(seed) } else { Amount::full(seed) };
-    let rows = measure(
-        amount,
-        |one| item.is_none_or(|wanted| one.0 == wanted),
-        |name| tool.as_deref().is_none_or(|wanted| name == wanted),
-    );
-    let quickly = if quick { " --quick" } else { "" };
-    println!(
-        "# Under stress
+/// Compares every tool with 256 bits at points, poses and scenes that are hard.
+#[derive(Args)]
+pub(crate) struct Stress {
+    /// Measures a sample.
+    #[arg(long)]
+    quick: bool,
+    /// Seed of points, poses and scenes.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Measures this item of the list alone, by its number [default: all].
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=ITEMS.len() as u64))]
+    item: Option<usize>,
+    /// Measures this tool alone [default: all of the library].
+    #[arg(long, value_name = "NAME", value_parser = super::tool)]
+    tool: Option<String>,
+}
 
-```sh
-cargo run --release -p touchoff-bench --bin stress -- --seed {seed}{quickly} > docs/measured/stress.md
-```
-
+impl Stress {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let amount = if self.quick { Amount::sample(self.seed) } else { Amount::full(self.seed) };
+        let rows = measure(
+            amount,
+            |one| self.item.is_none_or(|wanted| one.0 == wanted),
+            |name| self.tool.as_deref().is_none_or(|wanted| name == wanted),
+        );
+        let about = "\
 Every tool of the library at points, poses and scenes that are hard, against 256 bits. *The contract* is that of `accuracy.md`: with S the next
 power of two above the tool's largest coordinate, ε = 2^-52 and ulp(S) = ε S, a depth is within 1 ulp(S), the side and the owner are right
 beyond 2 ulp(S), ||u| - 1| ≤ 4 ε, u is within 8 ε max(1, S/ρ), ρ the distance to the nearest place where it does not exist; nothing is
 NaN, infinite or below 0, and both forms of the code have the same bits. Of `Fig73` the depth is its own magnitude. Places are given to
 the last bit, in the tool's frame or as *point of tip, axes* (the rotation's columns). The same seed gives the same page.
-"
-    );
-    print!("{}", page::page(&rows)?);
-    for row in rows.iter().filter(|row| row.missed()) {
-        eprintln!("missed: {}", row.shown());
+
+";
+        Ok(Some(Page {
+            name: "stress",
+            title: "Under stress".to_owned(),
+            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+            body: about.to_owned() + &page::page(&rows)?,
+            figures: Vec::new(),
+            missed: rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect(),
+        }))
     }
-    eprintln!("{:.0} s", start.elapsed().as_secs_f64());
-    Ok(())
 }
