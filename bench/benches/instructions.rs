@@ -2,7 +2,7 @@
 //!
 //! ```sh
 //! cargo install gungraun-runner --version 0.20.0
-//! cargo bench -p touchoff-tests --features instructions --bench instructions
+//! cargo bench -p touchoff-bench --features instructions --bench instructions
 //! ```
 //!
 //! Needs valgrind, whose processor has AVX2 and no AVX-512: its counts are those of a machine

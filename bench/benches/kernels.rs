@@ -1,7 +1,7 @@
 //! What single calls take: an evaluator of tools by lanes and one by one, and the whole query.
 //!
 //! ```sh
-//! cargo bench -p touchoff-tests --features kernels --bench kernels
+//! cargo bench -p touchoff-bench --features kernels --bench kernels
 //! ```
 //!
 //! Points are 65,536 and poses 10,000, in order, so that no branch is learnt.

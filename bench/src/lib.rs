@@ -1,13 +1,14 @@
-//! The laboratory: programs that measure, other methods to race against, and the pages that they write. Nothing that a
-//! user installs depends on it.
+//! The laboratory: the measurements behind the commands of the program, other methods to race against, and the pages that
+//! are written. Nothing that a user installs depends on it.
 
 pub mod certified;
 pub mod compile;
 pub mod continuity;
 pub mod convergence;
 pub mod haptics;
-pub mod made;
 pub mod mutants;
+pub mod page;
+pub mod parallel;
 #[cfg(feature = "peers")]
 pub mod peers;
 pub mod plot;

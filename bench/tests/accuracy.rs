@@ -1,6 +1,6 @@
 //! The contract of a compiled evaluator, against 256 bits, on a few points a tool.
 //!
-//! `cargo run --release -p touchoff-bench --bin accuracy` does the same on a million.
+//! `cargo run --release -p touchoff-bench -- accuracy` does the same on a million.
 
 use touchoff_tests::accuracy::{measure, tools};
 

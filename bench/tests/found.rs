@@ -1,5 +1,5 @@
 //! The worst that was ever found of each tool, asked again: `tests/found.tsv`, written by
-//! `cargo run --release -p touchoff-bench --bin search -- --found tests/tests/found.tsv`, which keeps what is worse; and a small search in every build.
+//! `cargo run --release -p touchoff-bench -- search --found bench/tests/found.tsv`, which keeps what is worse; and a small search in every build.
 
 use touchoff_bench::search::asked::Asked;
 use touchoff_bench::search::found::{Line, lines};

@@ -1,6 +1,6 @@
 //! A sample of every item of the stress list, for every tool: no bar is missed.
 //!
-//! `cargo run --release -p touchoff-bench --bin stress` does the whole of it.
+//! `cargo run --release -p touchoff-bench -- stress` does the whole of it.
 
 use touchoff_bench::stress::judge::{DEPTH, Judge, SIDES};
 use touchoff_bench::stress::ledger::{Item, Ledger};

@@ -32,7 +32,7 @@ impl Measured {
             let work = row.work[1];
             if work.share.abs() > WORK {
                 missed.push(format!(
-                    "- {}, {}: the gradient's law does {:.1e} of the stored energy, known to {:.1e}",
+                    "{}, {}: the gradient's law does {:.1e} of the stored energy, known to {:.1e}",
                     row.tool,
                     row.kind.name(),
                     work.share,
@@ -48,8 +48,7 @@ impl Measured {
                 } else {
                     ""
                 };
-                let row =
-                    format!("- {:?}: {:.2} ε, {:.1e} rad{why}", row.turn, row.apart, row.angle);
+                let row = format!("{:?}: {:.2} ε, {:.1e} rad{why}", row.turn, row.apart, row.angle);
                 missed.push(row);
             }
         }
@@ -71,7 +70,12 @@ pub fn page(measured: &Measured) -> Result<String, Error> {
     turns(&mut page, &measured.drift)?;
     writeln!(page, "\n## Missed\n")?;
     let missed = measured.missed();
-    page += &if missed.is_empty() { "Nothing.\n".to_owned() } else { missed.join("\n") + "\n" };
+    if missed.is_empty() {
+        page += "Nothing.\n";
+    }
+    for line in missed {
+        writeln!(page, "- {line}")?;
+    }
     Ok(page)
 }
 

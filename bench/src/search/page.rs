@@ -37,7 +37,12 @@ pub fn page(tools: &[Hunted]) -> Result<String, Error> {
     places(&mut page, tools)?;
     writeln!(page, "\n## Missed\n")?;
     let missed = missed(tools);
-    page += &if missed.is_empty() { "Nothing.\n".to_owned() } else { missed.join("\n") + "\n" };
+    if missed.is_empty() {
+        page += "Nothing.\n";
+    }
+    for line in missed {
+        writeln!(page, "- {line}")?;
+    }
     Ok(page)
 }
 
@@ -46,7 +51,7 @@ pub fn missed(tools: &[Hunted]) -> Vec<String> {
     let line = |tool: &Hunted, answer: &Answer| {
         let bar = answer.bar.unwrap_or(f64::NAN);
         let (name, error) = (answer.question.name(), answer.find.error);
-        format!("- {}, {name}: {error:?} > {bar:?}, {}", tool.name, answer.find.at)
+        format!("{}, {name}: {error:?} > {bar:?}, {}", tool.name, answer.find.at)
     };
     let mut missed: Vec<String> = tools
         .iter()
@@ -55,7 +60,7 @@ pub fn missed(tools: &[Hunted]) -> Vec<String> {
     for tool in tools {
         missed.extend(tool.unlike.iter().take(1).map(|find| {
             format!(
-                "- {}: forms differ at {} points, first {}",
+                "{}: forms differ at {} points, first {}",
                 tool.name,
                 tool.unlike.len(),
                 find.at

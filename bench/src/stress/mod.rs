@@ -25,9 +25,8 @@ mod tangent;
 mod text;
 pub mod truth;
 
+use crate::parallel;
 use ledger::{Item, Ledger, Row};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use touchoff_tests::oracle::draw::Draw;
 use truth::{Subject, subjects};
 
@@ -107,27 +106,11 @@ pub fn measure(
 ) -> Vec<Row> {
     let subjects: Vec<Subject> = subjects().into_iter().filter(|s| tool(s.name())).collect();
     let items = Item::all().filter(|one| item(*one));
-    let tasks: Vec<(Item, &Subject)> =
+    let mut tasks: Vec<(Item, &Subject)> =
         items.flat_map(|item| subjects.iter().map(move |subject| (item, subject))).collect();
-    let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((item, subject)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let own = one(amount, *item, subject);
-                    rows.lock().unwrap_or_else(PoisonError::into_inner).push((
-                        *item,
-                        subject.name(),
-                        own,
-                    ));
-                }
-            });
-        }
-    });
-    let mut rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
-    rows.sort_by_key(|(item, name, _)| (*item, *name));
-    let mut rows: Vec<Row> = rows.into_iter().flat_map(|(.., rows)| rows).collect();
+    tasks.sort_by_key(|(item, subject)| (*item, subject.name()));
+    let rows = parallel::rows(tasks.len(), |k| one(amount, tasks[k].0, tasks[k].1));
+    let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
     if item(Item(9)) {
         rows.extend(degenerate::degenerate(
             Item(9),

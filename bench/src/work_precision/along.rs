@@ -236,6 +236,6 @@ mod tests {
             assert!(row.missed == 0.0 && row.err_force.is_none() && row.err_depth.is_none());
         }
         assert!(measured.scenes.iter().any(|facts| facts.scene == "inside" && facts.path));
-        assert!(super::super::page(&measured, &plan, "touchoff bench").is_ok());
+        assert!(super::super::page(&measured, &plan).is_ok());
     }
 }

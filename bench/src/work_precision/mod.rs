@@ -25,7 +25,7 @@ mod row;
 mod table;
 mod truth;
 
-pub use page::{files, page, write};
+pub use page::page;
 pub use plan::Plan;
 pub use row::{LAW, Label, Quantity, Row};
 pub use table::{head, line};

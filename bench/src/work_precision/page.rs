@@ -6,50 +6,11 @@ use super::plots::{ahead, plot};
 use super::row::{Label, Quantity, Row};
 use super::table::{cells, error, micros, setting};
 use super::{Facts, Measured, Plan};
+use crate::page::Page;
 use std::fmt::{Error, Write};
-use std::path::{Path, PathBuf};
-use touchoff::AtomicFile;
 
-/// What all files' names begin with.
+/// The beginning of all files' names.
 const NAME: &str = "work-precision";
-
-/// Writes the page, its diagrams and its rows into a folder, which is made.
-///
-/// # Errors
-/// Where they cannot be written.
-pub fn write(
-    folder: &Path,
-    measured: &Measured,
-    plan: &Plan,
-    command: &str,
-) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    let text = page(measured, plan, command).map_err(std::io::Error::other)?;
-    AtomicFile::write(folder.join(format!("{NAME}.md")), text)?;
-    let lines: String = measured.rows.iter().map(|row| row.json() + "\n").collect();
-    AtomicFile::write(folder.join(format!("{NAME}.jsonl")), lines)?;
-    for facts in &measured.scenes {
-        let rows = of(measured, &facts.scene);
-        for quantity in Quantity::ALL {
-            let plot = plot(&rows, &facts.scene, quantity);
-            if !plot.is_empty() {
-                AtomicFile::write(folder.join(file(&facts.scene, quantity)), plot.svg())?;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// The files that [`write()`] may write of these scenes.
-pub fn files<'a>(
-    folder: &'a Path,
-    scenes: impl IntoIterator<Item = &'a str>,
-) -> impl Iterator<Item = PathBuf> {
-    let each =
-        scenes.into_iter().flat_map(|scene| Quantity::ALL.map(|quantity| file(scene, quantity)));
-    let pages = ["md", "jsonl"].map(|ending| format!("{NAME}.{ending}"));
-    pages.into_iter().chain(each).map(|name| folder.join(name))
-}
 
 fn file(scene: &str, quantity: Quantity) -> String {
     format!("{NAME}-{scene}-{}.svg", quantity.name())
@@ -59,33 +20,50 @@ fn of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
     measured.rows.iter().filter(|row| row.scene == scene).collect()
 }
 
-/// The page.
+/// The page with its diagrams and rows.
 ///
 /// # Errors
 /// None that a text could have.
-pub fn page(measured: &Measured, plan: &Plan, command: &str) -> Result<String, Error> {
-    let mut page = String::new();
-    head(&mut page, measured, plan, command)?;
+pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
+    let mut body = String::new();
+    head(&mut body, measured, plan)?;
     for facts in &measured.scenes {
-        scene(&mut page, facts, &of(measured, &facts.scene))?;
+        scene(&mut body, facts, &of(measured, &facts.scene))?;
     }
-    converging(&mut page, measured)?;
-    choices(&mut page, measured)?;
-    Ok(page)
+    converging(&mut body, measured)?;
+    choices(&mut body, measured)?;
+    Ok(Page {
+        name: NAME,
+        title: "Run time against error".to_owned(),
+        covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+        body,
+        figures: figures(measured),
+        missed: Vec::new(),
+    })
 }
 
-fn head(page: &mut String, measured: &Measured, plan: &Plan, command: &str) -> Result<(), Error> {
+/// The rows, an object a line, and the diagrams that have points.
+fn figures(measured: &Measured) -> Vec<(String, String)> {
+    let lines: String = measured.rows.iter().map(|row| row.json() + "\n").collect();
+    let mut figures = vec![(format!("{NAME}.jsonl"), lines)];
+    for facts in &measured.scenes {
+        let rows = of(measured, &facts.scene);
+        for quantity in Quantity::ALL {
+            let plot = plot(&rows, &facts.scene, quantity);
+            if !plot.is_empty() {
+                figures.push((file(&facts.scene, quantity), plot.svg()));
+            }
+        }
+    }
+    figures
+}
+
+fn head(page: &mut String, measured: &Measured, plan: &Plan) -> Result<(), Error> {
     let pinned = if measured.pinned { "kept on one core" } else { "not kept on one core" };
-    let sample = if plan.quick { "\nThis is the sample, `--quick`.\n" } else { "" };
+    let sample = if plan.quick { "This is the sample, `--quick`.\n\n" } else { "" };
     writeln!(
         page,
-        "# Run time against error
-
-```sh
-{command}
-```
-{sample}
-Methods are asked in one process, the thread {pinned}, in turns of 25 poses, those of one size against each other; half of the turns are timed query by
+        "{sample}Methods are asked in one process, the thread {pinned}, in turns of 25 poses, those of one size against each other; half of the turns are timed query by
 query, with the clock's own 20 ns in them. No pose is asked twice of a method, but where a path has fewer than 2,000 in contact and is gone along
 again. Only poses in true contact count: errors are root mean squares over them, by the root mean square of the true force, torque about the tip, and
 depth, under the thesis's law. On patches the truth is a closed form, on paths depth is proved to 1e-9 mm (`Certifier::deepest`) and force and torque

@@ -1,6 +1,6 @@
 //! Certified penetrations: against brute force on some hundred poses, and where the answer is known.
 //!
-//! `cargo run --release -p touchoff-bench --bin certified` asks about 100,000 poses.
+//! `cargo run --release -p touchoff-bench -- certified` asks about 100,000 poses.
 
 mod allowances;
 mod apart;

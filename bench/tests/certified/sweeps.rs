@@ -201,7 +201,7 @@ fn it_comes_from_far_away_and_goes_as_far() {
     assert_eq!(sweep(&plate(), "HalfInchBallCat40", &aside, 0.0), Sweep::Clear);
 }
 
-/// `cargo run --release -p touchoff-bench --bin sweeps` asks about 10,000 that are proved.
+/// `cargo run --release -p touchoff-bench -- sweeps` asks about 10,000 that are proved.
 #[test]
 fn no_sample_of_a_proved_motion_is_deeper() {
     for (part, mesh) in poses::parts().expect("parts") {

@@ -1,67 +1,58 @@
-//! The page `docs/measured/haptics.md` and its plots: `haptics [--quick] [--latency SECONDS] [--to FOLDER]`.
+//! The page `haptics.md` and its plots: the haptic loop.
 
+use clap::Args;
 use std::error::Error;
-use std::path::{Path, PathBuf};
 use touchoff::haptic::{Energy, Rendering};
 use touchoff::scenes::tube;
 use touchoff::{Law, Part};
 use touchoff_bench::haptics::latency;
 use touchoff_bench::haptics::page::{Measured, page, plots};
 use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
-use touchoff_bench::made::made;
+use touchoff_bench::page::Page;
 use touchoff_tests::haptics::{energy, sheet, wall};
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let (mut quick, mut seconds) = (false, 10.0);
-    let mut to = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measured");
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or_else(|| format!("what is `{word}`?"));
-        match word.as_str() {
-            "--quick" => quick = true,
-            "--latency" => seconds = value()?.parse()?,
-            "--to" => to = PathBuf::from(value()?),
-            _ => return Err(format!("`{word}` is not known").into()),
-        }
-    }
-    let rates: &[f64] = match quick {
-        true => &[1000.0],
-        false => &[250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 40_000.0],
-    };
-    let measured = Measured {
-        walls: rates.iter().map(|rate| wall::row(*rate)).collect(),
-        shaking: shaken(quick)?,
-        sheet: pressed(),
-        tapping: tapped(),
-        latency: {
-            // Five times as fast for a tenth of the time.
-            let rates: &[f64] = if quick { &[1.0] } else { &[1.0, 5.0] };
-            let run = |times: &f64| {
-                let seconds = if *times > 1.0 { seconds / 10.0 } else { seconds };
-                (1000.0 * times, seconds, latency::both(1000.0 * times, seconds))
-            };
-            rates.iter().map(run).collect()
-        },
-    };
-    std::fs::create_dir_all(&to)?;
-    let quickly = if quick { " --quick" } else { "" };
-    let command = format!(
-        "cargo run --release -p touchoff-bench --bin haptics --{quickly} --latency {seconds}"
-    );
-    let head = made(&command, &["runtime/src"]);
-    let text = format!(
-        "# The haptic loop
+/// Measures the haptic loop: walls, shaking, energy, a thin sheet and latencies.
+#[derive(Args)]
+pub(crate) struct Haptics {
+    /// Measures a sample.
+    #[arg(long)]
+    quick: bool,
+    /// Time over which the latency of a loop is measured, s; a tenth of it at higher rates.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = super::not_negative)]
+    latency: f64,
+}
 
-{head}
-
-{}",
-        page(&measured)?
-    );
-    std::fs::write(to.join("haptics.md"), text)?;
-    for (name, plot) in plots(&measured) {
-        std::fs::write(to.join(name), plot)?;
+impl Haptics {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let rates: &[f64] = match self.quick {
+            true => &[1000.0],
+            false => &[250.0, 500.0, 1000.0, 2000.0, 5000.0, 10_000.0, 40_000.0],
+        };
+        let measured = Measured {
+            walls: rates.iter().map(|rate| wall::row(*rate)).collect(),
+            shaking: shaken(self.quick)?,
+            sheet: pressed(),
+            tapping: tapped(),
+            latency: {
+                // Five times as fast for a tenth of the time.
+                let rates: &[f64] = if self.quick { &[1.0] } else { &[1.0, 5.0] };
+                let run = |times: &f64| {
+                    let seconds = if *times > 1.0 { self.latency / 10.0 } else { self.latency };
+                    (1000.0 * times, seconds, latency::both(1000.0 * times, seconds))
+                };
+                rates.iter().map(run).collect()
+            },
+        };
+        let figures = plots(&measured).into_iter();
+        Ok(Some(Page {
+            name: "haptics",
+            title: "The haptic loop".to_owned(),
+            covers: &["runtime/src"],
+            body: page(&measured)?,
+            figures: figures.map(|(name, plot)| (name.to_owned(), plot)).collect(),
+            missed: Vec::new(),
+        }))
     }
-    Ok(())
 }
 
 type Shaken = (usize, Case<'static>, Shaking);

@@ -1,6 +1,6 @@
-//! What was to be reached beside what was.
+//! Goals beside what was reached.
 
-use crate::{Row, select};
+use super::{Row, select};
 use std::fmt::Write;
 
 /// A goal: its words, what was measured, and the most that it allows.
@@ -12,7 +12,7 @@ struct Goal {
 }
 
 /// The goals as a table; what the rows do not tell is left out.
-pub(crate) fn table(rows: &[Row]) -> Result<String, String> {
+pub(super) fn table(rows: &[Row]) -> Result<String, String> {
     let mut text = String::from("| goal | measured | allowed | |\n|---|--:|--:|---|\n");
     for goal in goals(rows)? {
         let Some(found) = goal.found else { continue };

@@ -1,32 +1,48 @@
-//! The table of `docs/measured/compile.md`. With `--times` only the times of the build that it is, a line a tool.
+//! The page `compile.md`: the size of each tool's code, and the time that compiling it takes.
 
+use clap::Args;
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::fmt::Write;
 use std::process::Command;
 use touchoff_bench::compile::{Parts, Times, parts, sources, times};
-use touchoff_bench::made::made;
+use touchoff_bench::page::Page;
 
 /// Times each tool is compiled, optimised and not.
 const COUNTS: [usize; 2] = [7, 3];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    if std::env::args().any(|argument| argument == "--times") {
-        for source in sources() {
-            let took = times(&source, COUNTS[1]);
-            println!("{}\t{}\t{}\t{}", file(&source.name), took.best, took.median, took.worst);
+/// Measures the code of each tool and the time that compiling it takes, optimised and not.
+#[derive(Args)]
+pub(crate) struct Compile {
+    /// Prints only the times of this build, in seconds, a line a tool: best, median and worst.
+    #[arg(long)]
+    times: bool,
+}
+
+impl Compile {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        if self.times {
+            for source in sources() {
+                let took = times(&source, COUNTS[1]);
+                println!("{}\t{}\t{}\t{}", file(&source.name), took.best, took.median, took.worst);
+            }
+            return Ok(None);
         }
-        return Ok(());
+        let unoptimised = unoptimised()?;
+        let mut rows = String::new();
+        for source in sources() {
+            let took = times(&source, COUNTS[0]);
+            let slow = unoptimised.get(file(&source.name)).copied().unwrap_or_default();
+            rows += &row(&parts(&source), took, slow);
+        }
+        Ok(Some(Page {
+            name: "compile",
+            title: "What compiling a tool costs, and what comes of it".to_owned(),
+            covers: &["tool-dsl/src", "tools-library/tools"],
+            body: body(&rows),
+            figures: Vec::new(),
+            missed: Vec::new(),
+        }))
     }
-    let unoptimised = unoptimised()?;
-    let mut rows = String::new();
-    for source in sources() {
-        let took = times(&source, COUNTS[0]);
-        let slow = unoptimised.get(file(&source.name)).copied().unwrap_or_default();
-        rows += &row(&parts(&source), took, slow);
-    }
-    println!("{}", page(&rows)?);
-    Ok(())
 }
 
 /// The name of a tool's file: the folder may be another in a build that was kept.
@@ -38,8 +54,8 @@ fn file(name: &str) -> &str {
 fn unoptimised() -> Result<BTreeMap<String, Times>, Box<dyn Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
-        .args(["run", "--quiet", "--profile", "user", "-p", "touchoff-tests"])
-        .args(["--bin", "compile", "--", "--times"])
+        .args(["run", "--quiet", "--profile", "user", "-p", "touchoff-bench"])
+        .args(["--", "compile", "--times"])
         .stderr(std::process::Stdio::inherit())
         .output()?;
     let mut all = BTreeMap::new();
@@ -71,24 +87,17 @@ fn row(parts: &Parts, took: Times, slow: Times) -> String {
     row + "\n"
 }
 
-fn page(rows: &str) -> Result<String, std::fmt::Error> {
-    let command = "cargo run --release -p touchoff-bench --bin compile > docs/measured/compile.md";
-    let head = made(command, &["tool-dsl/src", "tools-library/tools"]);
-    let mut page = format!("# What compiling a tool costs, and what comes of it\n\n{head}\n\n");
-    writeln!(
-        page,
+fn body(rows: &str) -> String {
+    let [often, seldom] = COUNTS;
+    format!(
         "**Tests** are those of the tree of owners; **met** is how many of them one point meets on average, within 2 % of the largest
 radius from the surface and anywhere in the tool's box. **Feel** are the operations of the code for lanes: arithmetic, square
 roots, comparisons, selects; a block of points executes those on its way and of its regions. **Times** are from a text to its tokens, in ms: best, median and worst
-of {} in a release build, of {} in one where nothing is optimised, as when a user's `cargo build` expands a macro (profile
+of {often} in a release build, of {seldom} in one where nothing is optimised, as when a user's `cargo build` expands a macro (profile
 `user`). `Assembly30` is a cutter, its nut, a holder and a spindle nose. Goals for it: 50 ms and 300 ms.
-",
-        COUNTS[0], COUNTS[1]
-    )?;
-    page += "
+
 | tool | segments | regions | curves | tests | met near | met in box | feel | release: best | median | worst | debug: best | median | worst |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
-";
-    page += rows;
-    Ok(page)
+{rows}"
+    )
 }

@@ -1,50 +1,58 @@
-//! The plots of `docs/performance/`, and beside them `goals.md`, of what the benches wrote: `performance ROWS.json...`.
+//! The plots of `docs/performance/`, and beside them `goals.md`, of rows that the benches wrote:
 //!
 //! ```sh
 //! cargo bench -p touchoff-bench --features peers --bench peers -- --json > peers.json
 //! cargo bench -p touchoff-bench --features peers --bench scaling -- --json > scaling.json
-//! cargo run --release -p touchoff-bench --bin performance -- peers.json scaling.json
+//! cargo run --release -p touchoff-bench -- performance peers.json scaling.json
 //! ```
-//!
-//! A plot for which the files have no rows is left as it was.
 
 mod goals;
 
+use clap::Args;
 use serde_json::Value;
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use touchoff_bench::page::Page;
 use touchoff_bench::plot::{Axis, Fit, Mark, Plot, Series};
 
-/// How many points the clouds have whose errors are drawn against time.
+/// Points of the clouds whose errors are drawn against time.
 const COMPARED: f64 = 20_000.0;
 /// The cycle of a haptic device, µs.
 const CYCLE: f64 = 1e3;
-/// Of a fitted line, which is bent on logarithmic axes.
+/// Samples of a fitted line, which is bent on logarithmic axes.
 const SAMPLES: u32 = 60;
 /// The colours of what is no method or scene.
 const GREY: usize = 9;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let files: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
-    if files.is_empty() {
-        return Err("name the files that `peers -- --json` and `scaling -- --json` wrote".into());
-    }
-    let mut rows = Vec::new();
-    for file in &files {
-        rows.extend(read(file)?);
-    }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/performance");
-    std::fs::create_dir_all(&folder)?;
-    std::fs::write(folder.join("goals.md"), goals::table(&rows)?)?;
-    for (name, plot) in plots(&rows)? {
-        if plot.is_empty() {
-            eprintln!("{name}.svg: no rows for it");
-            continue;
+/// Draws the plots of `docs/performance`, and writes its `goals.md`, whatever `--to` says.
+///
+/// A plot for which the files have no rows is left as it was.
+#[derive(Args)]
+pub(crate) struct Performance {
+    /// Files of rows, an object a line, that the benches `peers`, `scaling` and `ablation` write with `--json`.
+    #[arg(required = true, value_name = "ROWS.json")]
+    files: Vec<PathBuf>,
+}
+
+impl Performance {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let mut rows = Vec::new();
+        for file in &self.files {
+            rows.extend(read(file)?);
         }
-        std::fs::write(folder.join(format!("{name}.svg")), plot.svg())?;
-        eprintln!("{name}.svg: {} points left out", plot.left_out());
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/performance");
+        std::fs::create_dir_all(&folder)?;
+        std::fs::write(folder.join("goals.md"), goals::table(&rows)?)?;
+        for (name, plot) in plots(&rows)? {
+            if plot.is_empty() {
+                eprintln!("{name}.svg: no rows for it");
+                continue;
+            }
+            std::fs::write(folder.join(format!("{name}.svg")), plot.svg())?;
+            eprintln!("{name}.svg: {} points left out", plot.left_out());
+        }
+        Ok(None)
     }
-    Ok(())
 }
 
 fn plots(rows: &[Row]) -> Result<Vec<(String, Plot)>, String> {

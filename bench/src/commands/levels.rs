@@ -1,58 +1,69 @@
-//! What a budget of nodes costs and what it misses; what changing a part on line costs, and how much slower it is felt after; how long
-//! a saved part takes to open:
-//!
-//! ```sh
-//! cargo run --release -p touchoff-bench --bin levels > docs/measured/levels.md
-//! ```
+//! The page `levels.md`: what a budget of nodes costs and what it misses; what changing a part on line costs, and how much
+//! slower it is felt after; how long a saved part takes to open.
 
+use clap::Args;
 use nalgebra::{Point3, Vector3};
 use std::error::Error;
+use std::fmt::Write;
 use std::time::Instant;
 use tools_library::Fig73;
 use touchoff::scenes::{Path, tube};
 use touchoff::{Cloud, Graded, Law, Part, Pose, Probe, Wrench};
+use touchoff_bench::page::Page;
 
 const POSES: usize = 10_000;
 const POINTS: usize = 1_000_000;
 const PATHS: [Path; 3] = [Path::Outside, Path::Inside, Path::Hold];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let mesh = tube();
-    let start = Instant::now();
-    let part = Part::detailed(&mesh, POINTS, 1)?;
-    let built = start.elapsed().as_secs_f64();
-    println!("# Levels of detail, parts that change, saved parts\n");
-    println!(
-        "`cargo run --release -p touchoff-bench --bin levels`, the tool of fig. 7.3 along the tube, {POSES} poses a path, one core.\n"
-    );
-    println!("## A budget of nodes\n");
-    println!(
-        "{POINTS} points and their coarser levels, made in {built:.1} s. The force's error is against the finest level, rms over the path, by the typical force; `unseen` is the bound of what lies between the points. What the force is off by has the way over to a new level in it: 32 of these poses.\n"
-    );
-    println!(
-        "| path | budget | nodes, most | levels | µs, average | µs, p99 | force off by | depth off by, at most, mm | unseen, worst, mm |"
-    );
-    println!("|---|--:|--:|---|--:|--:|--:|--:|--:|");
-    for path in PATHS {
-        let poses: Vec<Pose> = (0..POSES).map(|k| path.pose(k, POSES)).collect();
-        let mut probe = Probe::new(&part, &Fig73).law(Law::Gradient);
-        let wanted: Vec<Wrench> = poses.iter().map(|pose| probe.wrench(pose)).collect();
-        for budget in [100, 300, 1_000, 3_000, 100_000] {
-            budgeted(&part, path, budget, (&poses, &wanted))?;
+/// Measures levels of detail under a budget of nodes, parts that change, and parts that are saved.
+#[derive(Args)]
+pub(crate) struct Levels {}
+
+impl Levels {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let mesh = tube();
+        let (part, built) = timed(|| Part::detailed(&mesh, POINTS, 1));
+        let part = part?;
+        let mut body = format!(
+            "The tool of fig. 7.3 along the tube, {POSES} poses a path, one core.
+
+## A budget of nodes
+
+{POINTS} points and their coarser levels, made in {built:.1} s. The force's error is against the finest level, rms over the path, by the typical force; `unseen` is the bound of what lies between the points. What the force is off by has the way over to a new level in it: 32 of these poses.
+
+| path | budget | nodes, most | levels | µs, average | µs, p99 | force off by | depth off by, at most, mm | unseen, worst, mm |
+|---|--:|--:|---|--:|--:|--:|--:|--:|
+"
+        );
+        for path in PATHS {
+            eprintln!("{}", path.name());
+            let poses: Vec<Pose> = (0..POSES).map(|k| path.pose(k, POSES)).collect();
+            let mut probe = Probe::new(&part, &Fig73).law(Law::Gradient);
+            let wanted: Vec<Wrench> = poses.iter().map(|pose| probe.wrench(pose)).collect();
+            for budget in [100, 300, 1_000, 3_000, 100_000] {
+                body += &budgeted(&part, path, budget, (&poses, &wanted))?;
+            }
         }
+        body += "\n## Changes\n\n| points | what | takes | for comparison |\n|--:|---|--:|---|\n";
+        for points in [20_000, 200_000, POINTS] {
+            eprintln!("changes of {points} points");
+            changes(&mut body, points)?;
+        }
+        body += "\n## Saved parts\n\n";
+        body += &saved(&part)?;
+        Ok(Some(Page {
+            name: "levels",
+            title: "Levels of detail, parts that change, saved parts".to_owned(),
+            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+            body,
+            figures: Vec::new(),
+            missed: Vec::new(),
+        }))
     }
-    println!("\n## Changes\n");
-    println!("| points | what | takes | for comparison |");
-    println!("|--:|---|--:|---|");
-    for points in [20_000, 200_000, POINTS] {
-        changes(points)?;
-    }
-    println!("\n## Saved parts\n");
-    saved(&part)
 }
 
-/// How long a part takes to save and to open, its file in the system's cache.
-fn saved(part: &Part) -> Result<(), Box<dyn Error>> {
+/// Measures the times of saving and opening a part, its file in the system's cache.
+fn saved(part: &Part) -> Result<String, Box<dyn Error>> {
     const OPENED: usize = 51;
     let file = std::env::temp_dir().join(format!("levels-{}.touchoff", std::process::id()));
     let (done, seconds) = timed(|| part.save(&file));
@@ -66,14 +77,13 @@ fn saved(part: &Part) -> Result<(), Box<dyn Error>> {
     }
     times.sort_unstable_by(f64::total_cmp);
     std::fs::remove_file(&file)?;
-    println!(
+    Ok(format!(
         "{POINTS} points and their coarser levels, {:.1} MB: saved in {:.0} ms; opened {OPENED} times, every checksum compared, in {:.2} ms (median), {:.2} ms at most.",
         bytes as f64 / 1e6,
         1e3 * seconds,
         times[OPENED / 2],
         times[OPENED - 1],
-    );
-    Ok(())
+    ))
 }
 
 fn budgeted(
@@ -81,7 +91,7 @@ fn budgeted(
     path: Path,
     budget: usize,
     (poses, wanted): (&[Pose], &[Wrench]),
-) -> Result<(), Box<dyn Error>> {
+) -> Result<String, Box<dyn Error>> {
     let mut graded = Graded::new(part, &Fig73, budget, Law::Gradient)?;
     for pose in poses.iter().take(500) {
         graded.wrench(pose);
@@ -106,16 +116,15 @@ fn budgeted(
         .filter(|(_, count)| *count > 0)
         .map(|(level, count)| format!("{level}: {:.0} %", 100.0 * count as f64 / POSES as f64))
         .collect();
-    println!(
-        "| {} | {budget} | {most} | {} | {average:.2} | {:.2} | {off:.1e} | {depth:.4} | {unseen:.3} |",
+    Ok(format!(
+        "| {} | {budget} | {most} | {} | {average:.2} | {:.2} | {off:.1e} | {depth:.4} | {unseen:.3} |\n",
         path.name(),
         levels.join(", "),
         times[POSES * 99 / 100] as f64 / 1e3,
-    );
-    Ok(())
+    ))
 }
 
-fn changes(points: usize) -> Result<(), Box<dyn Error>> {
+fn changes(page: &mut String, points: usize) -> Result<(), Box<dyn Error>> {
     let cloud = Cloud::random(&tube(), points, 1)?.weighed(&tube());
     let (part, built) = timed(|| Part::from_cloud(&cloud));
     let built = format!("the tree anew: {:.2} ms", 1e3 * built);
@@ -123,10 +132,11 @@ fn changes(points: usize) -> Result<(), Box<dyn Error>> {
     let poses: Vec<Pose> = (0..1_000).map(|k| Path::Hold.pose(k, 1_000)).collect();
     let mut cut = part.clone();
     let (taken, seconds) = timed(|| poses.iter().map(|pose| cut.cut(&Fig73, pose)).sum::<usize>());
-    println!(
+    writeln!(
+        page,
         "| {points} | cut along 1,000 poses, {taken} points gone | {:.1} µs a pose | {built} |",
         1e3 * seconds,
-    );
+    )?;
     let kept: Vec<usize> = (0..cloud.len()).filter(|i| !cut.tree().point(*i).x.is_nan()).collect();
     let tree = cut.tree();
     let fresh = Part::from_cloud(&Cloud::new(
@@ -136,26 +146,33 @@ fn changes(points: usize) -> Result<(), Box<dyn Error>> {
         kept.iter().map(|i| tree.weight(*i)).collect(),
         cut.unit(),
     )?);
-    println!(
+    writeln!(
+        page,
         "| {points} | felt after the cut | {} | {} of a new tree |",
         query(&cut),
         query(&fresh)
-    );
+    )?;
     for bend in [0.001, 0.01] {
         let to = |p: Point3<f64>, n: Vector3<f64>| (bent(&p, bend), n);
         let mut moved = part.clone();
         let (done, seconds) = timed(|| moved.displace(to));
         done?;
-        println!(
+        writeln!(
+            page,
             "| {points} | bent by {:.1} mm at the top | {:.2} ms | {built} |",
             bend * 13.116f64.powi(2),
             1e3 * seconds,
-        );
+        )?;
         let places = cloud.points().iter().map(|p| bent(p, bend)).collect();
         let (normals, ids) = (cloud.normals().to_vec(), cloud.triangles().to_vec());
         let weights = cloud.weights().to_vec();
         let fresh = Part::from_cloud(&Cloud::new(places, normals, ids, weights, cloud.unit())?);
-        println!("| {points} | felt after | {} | {} of a new tree |", query(&moved), query(&fresh));
+        writeln!(
+            page,
+            "| {points} | felt after | {} | {} of a new tree |",
+            query(&moved),
+            query(&fresh)
+        )?;
     }
     Ok(())
 }
@@ -170,7 +187,7 @@ fn timed<R>(make: impl FnOnce() -> R) -> (R, f64) {
     (made, start.elapsed().as_secs_f64())
 }
 
-/// What a query along the outside takes: the best of five passes.
+/// Measures the time of a query along the outside: the best of five passes.
 fn query(part: &Part) -> String {
     let poses: Vec<Pose> = (0..POSES).map(|k| Path::Outside.pose(k, POSES)).collect();
     let mut probe = Probe::new(part, &Fig73);

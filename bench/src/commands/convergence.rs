@@ -1,72 +1,72 @@
-//! The page `docs/measured/convergence.md` and its plots: `convergence [--quick] [--seed S] [--parts FOLDER]
-//! [--to FOLDER]`. The folder's parts are measured where it is there.
+//! The page `convergence.md` and its plots: errors by the number of points.
 
+use clap::Args;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 use touchoff_bench::convergence::bounds::{self, Place};
 use touchoff_bench::convergence::contact::Contact;
 use touchoff_bench::convergence::errors::{self, Often};
 use touchoff_bench::convergence::page::{Measured, page};
 use touchoff_bench::convergence::{Pattern, cover, missed, plots};
+use touchoff_bench::page::Page;
 
 /// Points in contact, about.
 const CONTACTS: [f64; 9] = [20.0, 38.0, 76.0, 152.0, 305.0, 611.0, 1220.0, 2450.0, 5000.0];
-/// How many have more clouds than the rest.
+/// Points in contact up to which there are more clouds.
 const CHEAP: f64 = 1000.0;
 /// Placements of a tool on each cloud.
 const PLACEMENTS: usize = 16;
 /// Points of clouds whose covering radius is measured.
 const POINTS: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let (mut quick, mut seed) = (false, 1);
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut parts = root.join("../shared/data/parts");
-    let mut to = root.join("docs/measured");
-    let mut words = std::env::args().skip(1);
-    while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or_else(|| format!("what is `{word}`?"));
-        match word.as_str() {
-            "--quick" => quick = true,
-            "--seed" => seed = value()?.parse()?,
-            "--parts" => parts = PathBuf::from(value()?),
-            "--to" => to = PathBuf::from(value()?),
-            _ => return Err(format!("`{word}` is not known").into()),
-        }
-    }
-    let start = Instant::now();
-    let measured = measure(quick, seed, &parts)?;
-    let quickly = if quick { " --quick" } else { "" };
-    let text = format!(
-        "# How what is felt nears the surface
+/// Measures errors by the number of points, contacts that are missed, and covering radii.
+#[derive(Args)]
+pub(crate) struct Convergence {
+    /// Measures a sample.
+    #[arg(long)]
+    quick: bool,
+    /// Seed of the clouds and placements.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Folder of more parts, of which those are taken that are there [default: `../shared/data/parts`, beside the repository].
+    #[arg(long, value_name = "FOLDER")]
+    parts: Option<PathBuf>,
+}
 
-```sh
-cargo run --release -p touchoff-bench --bin convergence --{quickly} --seed {seed}
-```
-
+impl Convergence {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let measured = measure(self.quick, self.seed, &super::parts(self.parts.as_deref()))?;
+        let about = "\
 Clouds are `Cloud::random`, each point by itself, and `Cloud::blue`, spread evenly. The prototype is one that was made before
 this project; its figures are what was expected.
 
-{}",
-        page(&measured)?
-    );
-    std::fs::create_dir_all(&to)?;
-    std::fs::write(to.join("convergence.md"), text)?;
-    if let Some(table) = measured.tables.iter().find(|table| table.contact == plots::DRAWN) {
-        std::fs::write(to.join("convergence.svg"), plots::errors(table).svg())?;
+";
+        let drawn = measured.tables.iter().find(|table| table.contact == plots::DRAWN);
+        let errors = drawn.map(|table| ("convergence.svg", plots::errors(table).svg()));
+        let shares = ("convergence-missed.svg", plots::missed(&measured.missed).svg());
+        let figures = errors.into_iter().chain([shares]);
+        Ok(Some(Page {
+            name: "convergence",
+            title: "How what is felt nears the surface".to_owned(),
+            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+            body: about.to_owned() + &page(&measured)?,
+            figures: figures.map(|(name, plot)| (name.to_owned(), plot)).collect(),
+            missed: measured.bounds.iter().filter_map(broken).collect(),
+        }))
     }
-    let missed = plots::missed(&measured.missed);
-    std::fs::write(to.join("convergence-missed.svg"), missed.svg())?;
-    eprintln!("{} s", start.elapsed().as_secs());
-    let broken = |row: &&bounds::Row| {
-        let flat = row.place == Place::Plane && row.beyond_flat > 0;
-        flat || row.beyond > 0 || row.too_deep > 0
-    };
-    match measured.bounds.iter().filter(broken).count() {
-        0 => Ok(()),
-        count => Err(format!("{count} promises were not kept").into()),
-    }
+}
+
+/// Returns the promises of the covering radius that a row does not keep, in words.
+fn broken(row: &bounds::Row) -> Option<String> {
+    let bounds::Row { place, pattern, beyond_flat, beyond, too_deep, .. } = row;
+    let flat = if *place == Place::Plane { *beyond_flat } else { 0 };
+    (flat + beyond + too_deep > 0).then(|| {
+        format!(
+            "{}, {}: {flat} balls beyond the flat bound and {beyond} beyond ε not felt, {too_deep} depths above what was found and ε",
+            place.name(),
+            pattern.name()
+        )
+    })
 }
 
 fn measure(quick: bool, seed: u64, folder: &Path) -> Result<Measured, Box<dyn Error>> {

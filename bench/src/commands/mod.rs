@@ -1,0 +1,65 @@
+//! The commands, by the pages that they make.
+
+mod accuracy;
+mod cad;
+mod certified;
+mod compile;
+mod continuity;
+mod convergence;
+mod haptics;
+mod interpreter;
+mod levels;
+mod mutants;
+mod performance;
+mod postures;
+mod proofs;
+mod rounding;
+mod search;
+mod stress;
+mod sweeps;
+mod work_precision;
+mod zoomed;
+
+pub(crate) use accuracy::Accuracy;
+pub(crate) use cad::Cad;
+pub(crate) use certified::Certified;
+pub(crate) use compile::Compile;
+pub(crate) use continuity::Continuity;
+pub(crate) use convergence::Convergence;
+pub(crate) use haptics::Haptics;
+pub(crate) use interpreter::Interpreter;
+pub(crate) use levels::Levels;
+pub(crate) use mutants::Mutants;
+pub(crate) use performance::Performance;
+pub(crate) use postures::Postures;
+pub(crate) use proofs::Proofs;
+pub(crate) use rounding::Rounding;
+pub(crate) use search::Search;
+pub(crate) use stress::Stress;
+pub(crate) use sweeps::Sweeps;
+pub(crate) use work_precision::WorkPrecision;
+pub(crate) use zoomed::Zoomed;
+
+use std::path::{Path, PathBuf};
+
+/// Returns the folder of parts that an option names, or the one beside the repository.
+fn parts(folder: Option<&Path>) -> PathBuf {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
+    folder.map_or_else(beside, Path::to_owned)
+}
+
+/// Parses a number of 0 or more.
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("write a number of 0 or more".to_owned()),
+    }
+}
+
+/// Parses the name of a tool of the library.
+fn tool(text: &str) -> Result<String, String> {
+    match tools_library::find(text) {
+        Some(_) => Ok(text.to_owned()),
+        None => Err("the library has no such tool".to_owned()),
+    }
+}

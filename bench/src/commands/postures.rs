@@ -1,0 +1,88 @@
+//! The page `postures.md`: postures of a sweep beside brute force.
+
+use clap::Args;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use touchoff::mesh::Shape;
+use touchoff::{Mesh, Unit};
+use touchoff_bench::page::Page;
+use touchoff_bench::postures::page::page;
+use touchoff_bench::postures::parts::relief;
+use touchoff_bench::postures::{Odd, Wanted, measure};
+
+/// Into how many squares a side the part is cut that is made here.
+const SQUARES: u32 = 64;
+
+/// Judges postures of a sweep again by brute force.
+#[derive(Args)]
+pub(crate) struct Postures {
+    /// A mesh in STL, PLY or OBJ [default: a relief that is made here].
+    #[arg(long, value_name = "FILE", requires = "unit")]
+    part: Option<PathBuf>,
+    /// The part's unit: `mm`, `inch` or `m`.
+    #[arg(long, requires = "part")]
+    unit: Option<Unit>,
+    /// Tools of the library by name, separated by commas.
+    #[arg(
+        long,
+        value_name = "A,B,…",
+        value_delimiter = ',',
+        default_value = "D2Ball,BallEr16,TaperedBall",
+        value_parser = super::tool
+    )]
+    tools: Vec<String>,
+    /// Directions of a hemisphere.
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    directions: usize,
+    /// Allowed depth of what cuts, in the part's unit.
+    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = super::not_negative)]
+    tolerance: f64,
+    /// Niceness that contacts have to exceed.
+    #[arg(long, value_name = "N", default_value_t = 0.5, value_parser = super::not_negative)]
+    niceness: f64,
+    /// Postures of either kind that are judged again.
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    draws: usize,
+    /// Seed by which they are drawn.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+}
+
+impl Postures {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let (name, mesh) = match (&self.part, self.unit) {
+            (Some(file), Some(unit)) => {
+                let name = file.file_name().unwrap_or(file.as_os_str());
+                (name.to_string_lossy().into_owned(), read(file, unit)?)
+            }
+            _ => ("A relief that is made here".to_owned(), relief(SQUARES)?),
+        };
+        let wanted = Wanted {
+            mesh: &mesh,
+            tools: self.tools.iter().map(String::as_str).collect(),
+            hemisphere: self.directions,
+            tolerance: self.tolerance,
+            niceness: self.niceness,
+            draws: self.draws,
+            seed: self.seed,
+        };
+        let found = measure(&wanted)?;
+        let about = "Postures of a sweep are drawn, rebuilt from the tools' restatements, and judged by cutting up all of the part's triangles.\n\n";
+        let wrong = found.accessible.wrong.iter().chain(&found.refused.wrong);
+        Ok(Some(Page {
+            name: "postures",
+            title: "Postures beside brute force".to_owned(),
+            covers: &["runtime/src/postures", "runtime/src/certify", "tools-library/tools"],
+            body: about.to_owned() + &page(&name, &wanted, &found)?,
+            figures: Vec::new(),
+            missed: wrong.map(|Odd { at, what }| format!("{at}: {what}")).collect(),
+        }))
+    }
+}
+
+fn read(file: &Path, unit: Unit) -> Result<Mesh, Box<dyn Error>> {
+    match Shape::read(file, unit)? {
+        Shape::Mesh(mesh) => Ok(mesh),
+        Shape::Points(_) => Err(format!("{} has no triangles", file.display()).into()),
+    }
+}

@@ -1,0 +1,62 @@
+//! The page `proofs.md`: bounds that are proved of every tool.
+
+use clap::Args;
+use std::error::Error;
+use std::fmt::Write;
+use std::time::Instant;
+use tool_dsl::compile;
+use tool_dsl::prove::Certificate;
+use tool_dsl::report::figure;
+use touchoff_bench::compile::sources;
+use touchoff_bench::page::Page;
+
+/// Proves bounds of every tool of the library, and times the proofs.
+#[derive(Args)]
+pub(crate) struct Proofs {}
+
+impl Proofs {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let mut body = "\
+`c · distance ≤ depth ≤ L · distance`, and depth is L-Lipschitz; how, is in `docs/proofs.md`. **Joins** are borders of two
+regions on which depths agree exactly, by an identity; **corners** are pairs of regions that meet in a point only or on a border that is
+smooth but for rounding, where they agree to the tolerance. **Slack** is how far depth may be off its bounds, in the file's unit. **Open** are
+boxes where the proof did not come to an end. Times are those of the proof alone.
+
+| tool | regions | c | L | slack | a distance | joins | corners | jumps | open | boxes | ms |
+|---|--:|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|
+"
+        .to_owned();
+        for source in sources() {
+            let tool = compile(&source).into_tool().ok_or("a tool of the library has an error")?;
+            let start = Instant::now();
+            let proved = Certificate::of(&tool);
+            let took = 1e3 * start.elapsed().as_secs_f64();
+            let inner = || proved.borders.iter().filter(|border| border.between.1.is_some());
+            let count = |is: &dyn Fn(f64) -> bool| inner().filter(|b| is(b.jump.high)).count();
+            let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), figure);
+            writeln!(
+                body,
+                "| {} | {} | {} | {} | {:.0e} | {} | {} | {} | {} | {} | {} | {took:.1} |",
+                tool.model.name,
+                tool.model.regions.len(),
+                bound(proved.least()),
+                bound(proved.lipschitz()),
+                proved.slack,
+                if proved.is_exact() { "yes" } else { "no" },
+                count(&|jump| jump == 0.0),
+                count(&|jump| jump > 0.0 && jump <= proved.tolerance),
+                count(&|jump| jump > proved.tolerance),
+                proved.undecided.len(),
+                proved.boxes,
+            )?;
+        }
+        Ok(Some(Page {
+            name: "proofs",
+            title: "What is proved about the library".to_owned(),
+            covers: &["tool-dsl/src", "tools-library/tools"],
+            body,
+            figures: Vec::new(),
+            missed: Vec::new(),
+        }))
+    }
+}

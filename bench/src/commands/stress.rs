@@ -1,0 +1,52 @@
+//! The page `stress.md`: every tool at points, poses and scenes that are hard.
+
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+use std::error::Error;
+use touchoff_bench::page::Page;
+use touchoff_bench::stress::ledger::ITEMS;
+use touchoff_bench::stress::{Amount, measure, page};
+
+/// Compares every tool with 256 bits at points, poses and scenes that are hard.
+#[derive(Args)]
+pub(crate) struct Stress {
+    /// Measures a sample.
+    #[arg(long)]
+    quick: bool,
+    /// Seed of points, poses and scenes.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Measures this item of the list alone, by its number [default: all].
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=ITEMS.len() as u64))]
+    item: Option<usize>,
+    /// Measures this tool alone [default: all of the library].
+    #[arg(long, value_name = "NAME", value_parser = super::tool)]
+    tool: Option<String>,
+}
+
+impl Stress {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let amount = if self.quick { Amount::sample(self.seed) } else { Amount::full(self.seed) };
+        let rows = measure(
+            amount,
+            |one| self.item.is_none_or(|wanted| one.0 == wanted),
+            |name| self.tool.as_deref().is_none_or(|wanted| name == wanted),
+        );
+        let about = "\
+Every tool of the library at points, poses and scenes that are hard, against 256 bits. *The contract* is that of `accuracy.md`: with S the next
+power of two above the tool's largest coordinate, ε = 2^-52 and ulp(S) = ε S, a depth is within 1 ulp(S), the side and the owner are right
+beyond 2 ulp(S), ||u| - 1| ≤ 4 ε, u is within 8 ε max(1, S/ρ), ρ the distance to the nearest place where it does not exist; nothing is
+NaN, infinite or below 0, and both forms of the code have the same bits. Of `Fig73` the depth is its own magnitude. Places are given to
+the last bit, in the tool's frame or as *point of tip, axes* (the rotation's columns). The same seed gives the same page.
+
+";
+        Ok(Some(Page {
+            name: "stress",
+            title: "Under stress".to_owned(),
+            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
+            body: about.to_owned() + &page::page(&rows)?,
+            figures: Vec::new(),
+            missed: rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect(),
+        }))
+    }
+}

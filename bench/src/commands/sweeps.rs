@@ -1,0 +1,91 @@
+//! The page `sweeps.md`: certified sweeps beside samples.
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use std::error::Error;
+use touchoff::Mesh;
+use touchoff::certify::Facets;
+use touchoff_bench::certified::sweeps::{Row, table};
+use touchoff_bench::certified::{Pair, poses};
+use touchoff_bench::page::Page;
+use touchoff_bench::parallel;
+use touchoff_tests::oracle::Nearest;
+
+/// The last is in inches.
+const TOOLS: [&str; 10] = [
+    "Fig73Exact",
+    "BullNose",
+    "TSlot",
+    "BallEr16",
+    "TaperedBall",
+    "Lollipop",
+    "Barrel",
+    "CornerRounding",
+    "Dovetail",
+    "HalfInchBallCat40",
+];
+
+/// Compares certified sweeps with samples of the motions.
+#[derive(Args)]
+pub(crate) struct Sweeps {
+    /// Motions that are proved, of all parts and tools together.
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    motions: usize,
+    /// Seed of the motions.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Measures this tool alone, by as many motions as it has among all [default: all].
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(TOOLS))]
+    tool: Option<String>,
+}
+
+impl Sweeps {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        let parts = poses::parts()?;
+        let each = self.motions / (parts.len() * TOOLS.len());
+        let rows = self.rows(&parts, each);
+        let about = format!(
+            "For each tool and part motions are drawn until {each} are proved: slides, swings about the tip and about a place of the part by up to 150°,
+plunges, straight ways, none at all, rapid moves and any between two poses. Most are moved to where they pass the part by 1e-7 to 0.5 mm,
+some as much too near. Tolerances are 0, 1e-6 and 1e-3 in turn. Those that are proved are sampled at 66 times and 30 more beside the
+closest, and from the best six a search climbs in time and place. All lengths are in the part's unit. *Near* is closer than 0.001; *over* is by how
+much a sample is deeper than the tolerance and rounding, less than 0 where none is.
+
+"
+        );
+        Ok(Some(Page {
+            name: "sweeps",
+            title: "Certified sweeps beside samples".to_owned(),
+            covers: &["runtime/src/certify", "runtime/src/motion.rs"],
+            body: about + &table(&rows)?,
+            figures: Vec::new(),
+            missed: rows.into_iter().flat_map(|row| row.violations).collect(),
+        }))
+    }
+
+    /// Returns a row for each part and tool.
+    fn rows(&self, parts: &[(&str, Mesh)], each: usize) -> Vec<Row> {
+        let facets: Vec<Facets> = parts.iter().map(|(_, mesh)| Facets::new(mesh)).collect();
+        let wanted = |name: &str| self.tool.as_deref().is_none_or(|only| only == name);
+        let asked = (0..parts.len() * TOOLS.len()).filter(|k| wanted(TOOLS[k % TOOLS.len()]));
+        let asked: Vec<usize> = asked.collect();
+        parallel::rows(asked.len(), |at| {
+            let k = asked[at];
+            let ((part, mesh), name) = (&parts[k / TOOLS.len()], TOOLS[k % TOOLS.len()]);
+            let tool = tools_library::find(name).expect("a tool of the library");
+            let oracle = Nearest::of(name);
+            let facets = &facets[k / TOOLS.len()];
+            let row = Pair { part, mesh, facets, tool, oracle: &oracle }
+                .sweeps(each, self.seed + k as u64);
+            eprintln!(
+                "{name} in {part}: {} of {} proved, {} undecided, {} violations",
+                row.proved,
+                row.motions,
+                row.undecided.len(),
+                row.violations.len()
+            );
+            row.violations.iter().for_each(|violation| eprintln!("{violation}"));
+            row
+        })
+    }
+}

@@ -1,0 +1,119 @@
+//! The program that measures. A command makes a page of figures in `docs/measured`, with its drawings beside it:
+//!
+//! ```sh
+//! cargo run --release -p touchoff-bench -- NAME [options]
+//! ```
+
+mod commands;
+
+use clap::{Parser, Subcommand};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+use touchoff_bench::page::Page;
+
+/// Measures Touchoff, and writes pages of figures.
+#[derive(Parser)]
+#[command(after_help = "\
+Exit status:
+  0  done
+  1  failed, or a bar or a contract was not kept: the page is written all the same
+  2  wrong options")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Folder for the page and its drawings, which replace those that are there [default: `docs/measured` of the repository].
+    #[arg(long, global = true, value_name = "DIR")]
+    to: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Accuracy(commands::Accuracy),
+    Cad(commands::Cad),
+    Certified(commands::Certified),
+    Compile(commands::Compile),
+    Continuity(commands::Continuity),
+    Convergence(commands::Convergence),
+    Haptics(commands::Haptics),
+    Interpreter(commands::Interpreter),
+    Levels(commands::Levels),
+    Mutants(commands::Mutants),
+    Performance(commands::Performance),
+    Postures(commands::Postures),
+    Proofs(commands::Proofs),
+    Rounding(commands::Rounding),
+    Search(commands::Search),
+    Stress(commands::Stress),
+    Sweeps(commands::Sweeps),
+    WorkPrecision(commands::WorkPrecision),
+    Zoomed(commands::Zoomed),
+}
+
+impl Command {
+    /// Measures, and returns the page if the command makes one.
+    fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        match self {
+            Command::Accuracy(command) => command.run(),
+            Command::Cad(command) => command.run(),
+            Command::Certified(command) => command.run(),
+            Command::Compile(command) => command.run(),
+            Command::Continuity(command) => command.run(),
+            Command::Convergence(command) => command.run(),
+            Command::Haptics(command) => command.run(),
+            Command::Interpreter(command) => command.run(),
+            Command::Levels(command) => command.run(),
+            Command::Mutants(command) => command.run(),
+            Command::Performance(command) => command.run(),
+            Command::Postures(command) => command.run(),
+            Command::Proofs(command) => command.run(),
+            Command::Rounding(command) => command.run(),
+            Command::Search(command) => command.run(),
+            Command::Stress(command) => command.run(),
+            Command::Sweeps(command) => command.run(),
+            Command::WorkPrecision(command) => command.run(),
+            Command::Zoomed(command) => command.run(),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match measure(&Arguments::parse()) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn measure(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = arguments.to.clone().unwrap_or_else(|| root.join("docs/measured"));
+    // A folder that cannot be made is known before hours are spent.
+    let named = |error| format!("{}: {error}", folder.display());
+    std::fs::create_dir_all(&folder).map_err(named)?;
+    let start = Instant::now();
+    let Some(page) = arguments.command.run()? else { return Ok(ExitCode::SUCCESS) };
+    page.write(&folder, &command()).map_err(named)?;
+    eprintln!("{} in {:.0} s", page.path(&folder).display(), start.elapsed().as_secs_f64());
+    for line in &page.missed {
+        eprintln!("missed: {line}");
+    }
+    Ok(if page.missed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Returns the command that makes the same page, without the folder that it goes to.
+fn command() -> String {
+    let mut command = vec!["cargo run --release -p touchoff-bench --".to_owned()];
+    let mut words = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--to" => drop(words.next()),
+            _ if word.starts_with("--to=") => (),
+            _ => command.push(word),
+        }
+    }
+    command.join(" ")
+}

@@ -1,0 +1,90 @@
+//! Pages of figures: a head line of commit, command, machine and covered paths, and the text and files below it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use touchoff::AtomicFile;
+
+/// A page of figures, and the files that belong to it.
+#[derive(Clone, Debug, Default)]
+pub struct Page {
+    /// The stem of its file's name in `docs/measured`.
+    pub name: &'static str,
+    /// The title.
+    pub title: String,
+    /// The paths of the repository whose code the figures vouch for.
+    pub covers: &'static [&'static str],
+    /// The Markdown below the head line.
+    pub body: String,
+    /// Drawings and files of rows: names and contents.
+    pub figures: Vec<(String, String)>,
+    /// The bars and contracts that were not kept, in words.
+    pub missed: Vec<String>,
+}
+
+impl Page {
+    /// Returns where the page lies in a folder.
+    pub fn path(&self, folder: &Path) -> PathBuf {
+        folder.join(format!("{}.md", self.name))
+    }
+
+    /// Writes the page and its figures into a folder, which is made; `command` is what made them.
+    ///
+    /// # Errors
+    /// If the folder or a file cannot be written.
+    pub fn write(&self, folder: &Path, command: &str) -> io::Result<()> {
+        std::fs::create_dir_all(folder)?;
+        let (title, head, body) = (&self.title, made(command, self.covers), self.body.trim());
+        AtomicFile::write(self.path(folder), format!("# {title}\n\n{head}\n\n{body}\n"))?;
+        for (name, content) in &self.figures {
+            AtomicFile::write(folder.join(name), content)?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns the head line of a page: by which `command` its figures were made, at which commit, on which machine, and
+/// which paths of the repository they depend on. A commit ends with `-dirty` where files differ from it.
+fn made(command: &str, covers: &[&str]) -> String {
+    let git = Command::new("git").args(["describe", "--always", "--dirty", "--exclude=*"]).output();
+    let commit = git.ok().and_then(|output| String::from_utf8(output.stdout).ok());
+    let commit = commit.unwrap_or_default();
+    let cpus = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpus.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let model = model.map_or("an unknown processor", |(_, model)| model);
+    let cores = std::thread::available_parallelism().map_or(0, usize::from);
+    let covers = covers.iter().map(|path| format!("`{path}`")).collect::<Vec<_>>().join(", ");
+    format!(
+        "*Made at commit {} by `{command}` on {cores} cores of {model}; covers {covers}.*",
+        commit.trim()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_has_title_head_line_and_body_and_its_figures_beside_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let page = Page {
+            name: "sums",
+            title: "Sums".to_owned(),
+            covers: &["runtime/src", "tool-dsl/src"],
+            body: "\nAll of them.\n\n".to_owned(),
+            figures: vec![("sums.svg".to_owned(), "<svg/>".to_owned())],
+            missed: Vec::new(),
+        };
+        page.write(folder.path(), "sum --all").expect("a writable folder");
+        let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("a file");
+        let text = read("sums.md");
+        let lines: Vec<&str> = text.split('\n').collect();
+        let [title, "", head, "", body, ""] = lines[..] else { panic!("{text}") };
+        assert_eq!((title, body, read("sums.svg").as_str()), ("# Sums", "All of them.", "<svg/>"));
+        assert!(
+            head.starts_with("*Made at commit ") && head.contains(" by `sum --all` on "),
+            "{head}"
+        );
+        assert!(head.ends_with("; covers `runtime/src`, `tool-dsl/src`.*"), "{head}");
+    }
+}
