@@ -2,8 +2,9 @@
 
 use crate::checked::{self, CheckedTool};
 use crate::report::{self, Refusal, Report, Reported, Severity, any_error, without_error};
+use crate::resolve;
 use crate::source::{Source, Sources, Span};
-use crate::{resolve, syntax};
+use crate::syntax;
 use std::collections::BTreeSet;
 
 /// What came of compiling a text: a tool, or the errors for which there is none.
