@@ -1,7 +1,7 @@
 //! Looking for the worst: an optimiser that hunts for the points and poses at which a contract is nearest to being broken.
 //!
 //! `climb` is the optimiser, [`asked`] a tool whose forms are compared wherever it was asked. [`evaluator`] hunts for errors of single
-//! points and [`borders`] for jumps between neighbours, both judged as in [`accuracy`](super::accuracy); [`wrenches`] for jumps of the
+//! points and [`borders`] for jumps between neighbours, both judged as in [`touchoff_tests::accuracy`]; [`wrenches`] for jumps of the
 //! wrench, [`clouds`] for depths beyond `Probe::error` and `Probe::depth_bound`, [`certified`] for depths beyond a proved interval.
 
 pub mod asked;

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 /// Over so many queries a change of level is spread: a thirtieth of a second at 1 kHz.
 const FADE: u32 = 32;
 
-/// A tool beside a part that has [levels](Part::detailed), felt within a budget: no query looks at more
+/// A tool beside a part that has [levels](crate::Part::detailed), felt within a budget: no query looks at more
 /// nodes of the trees, of sixteen boxes or points each, than that. So what a query may cost is known
 /// before it is asked; and as nodes are counted, not time, the same queries have the same answers.
 ///
