@@ -81,8 +81,14 @@ impl Survey<'_> {
         self.least = self.least.min(least);
         let unjoined = all.iter().filter(|met| met.by.joint == Joint::None && met.seen.is_none());
         let pairs: Vec<Pair> = unjoined.map(|met| met.pair).collect();
-        let jump = pairs.into_iter().map(|pair| self.jump(pair).high).fold(0.0, f64::max);
-        self.jumps = up(self.jumps, jump);
+        let mut most = 0.0f64;
+        for pair in pairs {
+            let jump = self.jump(pair).high;
+            let widest = self.widest.entry(pair).or_insert(0.0);
+            *widest = widest.max(jump);
+            most = most.max(jump);
+        }
+        self.jumps = up(self.jumps, most);
         for met in &all {
             let off = self.steps.entry((met.pair, met.by.curve)).or_insert(0.0);
             *off = met.by.off.max(*off);

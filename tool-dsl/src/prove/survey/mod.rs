@@ -30,7 +30,7 @@ const FINE_OF_SPACE: f64 = 1.0 / 7.0;
 /// Tries of a proof: boxes where nothing explains a border are divided to this part of the tool's size, and no more boxes are
 /// looked at than these thirds of what it may take. Tools of which no borders touch need few; where curves touch it takes so many
 /// more boxes as the root of their size is smaller. How far depths may differ in such boxes adds to the slack.
-const TRIES: [(f64, usize); 3] = [(1e-12, 1), (1e-10, 3), (1e-12, 9)];
+const TRIES: [(f64, usize); 3] = [(1e-12, 1), (1e-10, 3), (1e-8, 9)];
 /// The same of the last try, which comes to an end.
 const COARSEST: f64 = 1e-7;
 /// Feet may be beyond the ends of pieces by this part of the tool's size, and by so many times the half diagonal of a box
@@ -123,8 +123,10 @@ struct Survey<'t> {
     descents: Vec<descent::Descent>,
     /// How far points of such boxes are from the outside at most, where nothing else is known of how depth falls.
     near: f64,
-    /// The sum, over boxes where several regions meet that no curve joins, of how far depths differ there.
+    /// The sum, over boxes where several regions meet that no curve joins, of the largest difference of two depths there.
     jumps: f64,
+    /// The largest difference of the depths of each pair of regions in such boxes.
+    widest: BTreeMap<Pair, f64>,
     /// The largest difference of depths on each border where the profile is all but smooth.
     steps: BTreeMap<(Pair, CurveIndex), f64>,
     undecided: Vec<Undecided>,
@@ -175,6 +177,7 @@ impl<'t> Survey<'t> {
             descents: Vec::new(),
             near: 0.0,
             jumps: 0.0,
+            widest: BTreeMap::new(),
             steps: BTreeMap::new(),
             undecided: Vec::new(),
             alone,
@@ -363,11 +366,8 @@ impl<'t> Survey<'t> {
     fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
         let (least, short) = self.least();
-        // A straight way crosses a conic twice at most.
-        let crossed = 2.0 * self.steps.values().copied().fold(0.0, up);
-        let off = self.feet.as_ref().map_or(0.0, |feet| unless_rounding(feet.off, self.size));
-        let slack = [crossed, 2.0 * self.beyond, off, up(0.0, least.max(0.0) * short)];
-        let slack = slack.into_iter().fold(self.jumps, up);
+        let slack = [self.crossed(), 2.0 * self.beyond, up(0.0, least.max(0.0) * short)];
+        let slack = slack.into_iter().fold(0.0, up);
         let slack = up(slack, self.off_profile(slack));
         let mut ranges = Ranges {
             cover: &mut self.cover,
@@ -410,6 +410,20 @@ impl<'t> Survey<'t> {
             tolerance: TOLERANCE * self.size,
             boxes: self.boxes,
         }
+    }
+
+    /// Returns how much depth may gain by jumps on a straight way, and by being no exact distance.
+    ///
+    /// Let all depths be distances from lines, circles or points, less than `off` apart from these. On a way of length `t` each of
+    /// these distances less `t` does not grow, wherever its own region is. So when the way comes back to a region it has not
+    /// gained since it left it, and only the jumps between regions count that remain when such loops are cut out: each pair once.
+    /// Other depths may be steep outside of their regions, so that each jump counts; a straight way crosses a conic twice.
+    fn crossed(&self) -> f64 {
+        let steps = self.steps.values().copied().fold(0.0, up);
+        let Some(feet) = &self.feet else { return up(self.jumps, 2.0 * steps) };
+        let off = unless_rounding(feet.off, self.size);
+        let pairs = (self.widest.len() + self.steps.len()) as f64;
+        self.widest.values().copied().fold(up(steps, up(off, 2.0 * pairs * off)), up)
     }
 
     /// Returns how far the solid's surface may be from the nearest place of its profile, given the slack of depth.
