@@ -25,7 +25,7 @@ const TOOLS: [&str; 10] = [
 ];
 
 /// Poses and ways of each part and tool.
-const POSES: usize = 6;
+const POSES: usize = 7;
 const WAYS: usize = 5;
 /// Times of a way.
 const TIMES: u32 = 12;
