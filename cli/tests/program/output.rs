@@ -242,9 +242,6 @@ fn an_output_that_is_an_input_is_refused() {
     fs::hard_link(&part, &to_part).expect("a link");
     fs::hard_link(&tool, &to_tool).expect("a link");
     fs::hard_link(&part, &to_saved).expect("a link");
-    let folder = bench.folder.path().display().to_string();
-    let rows = bench.write("work-precision.jsonl", "0,0,1,0,0,1\n");
-    let bench_of = ["bench", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &rows];
     let mounting =
         bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
     let kept = content(bench.folder.path());
@@ -252,7 +249,7 @@ fn an_output_that_is_an_input_is_refused() {
     let haptic =
         ["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--seconds", "0.1"];
     let leads = ["path", &map, "--part", &part, "--tool"];
-    let commands: [&[&str]; 13] = [
+    let commands: [&[&str]; 12] = [
         &["draw", &mounting, "-o", &drawn],
         &["map", &map, "--to", &to_map],
         &["map", &map, "--part", &part, "--to", &to_part],
@@ -265,7 +262,6 @@ fn an_output_that_is_an_input_is_refused() {
         &[&haptic[..], &["--device", "path", &path, "--record", &path]].concat(),
         &[&haptic[..], &["--postures", &map, "--record", &to_map]].concat(),
         &["expand", "--stages", &stages, &staged],
-        &[&bench_of[..], &["--out", &folder]].concat(),
     ];
     for command in commands {
         let output = touchoff(command);
@@ -275,18 +271,6 @@ fn an_output_that_is_an_input_is_refused() {
         assert!(output.stdout.is_empty() && content(bench.folder.path()) == kept, "{command:?}");
     }
     assert_eq!(fs::read_to_string(&staged).expect("a file"), GOOD);
-}
-
-#[cfg(target_os = "linux")]
-#[test]
-fn a_page_that_cannot_be_written_is_told_before_it_is_measured() {
-    let bench = Bench::new();
-    let file = bench.write("file", "");
-    for folder in ["/proc/page", &file] {
-        let output = touchoff(&["bench", "--quick", "--out", folder]);
-        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-        assert!(output.stdout.is_empty() && stderr(&output).contains(&format!("`{folder}")));
-    }
 }
 
 #[test]
