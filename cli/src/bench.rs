@@ -27,7 +27,7 @@ const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 /// Poses that a path is thinned to.
 const POSES: usize = 1_000;
 
-/// What is measured.
+/// A part, a tool, and the poses that are asked.
 struct Case<'t> {
     mesh: Mesh,
     tool: &'t dyn Tool,
@@ -91,12 +91,10 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
     let [low, high] = card.reach();
     let size = (high - low).max(2.0 * card.radius()) * card.unit.to(case.mesh.unit());
     let facets = Facets::new(&case.mesh);
-    let certifier = Certifier::new(&facets, case.tool);
-    let certified = match certifier {
-        Ok(mut certifier) => TOLERANCES
-            .map(|part| certified(&case, &mut certifier, part * size))
-            .into_iter()
-            .collect::<Vec<_>>(),
+    let certified = match Certifier::new(&facets, case.tool) {
+        Ok(mut certifier) => {
+            Vec::from(TOLERANCES.map(|part| certified(&case, &mut certifier, part * size)))
+        }
         Err(refused) => {
             say!("{refused}; depths are judged by the reference cloud");
             Vec::new()
@@ -119,9 +117,8 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
 
 /// The tube and the tool of the thesis's figures.
 fn built_in() -> Case<'static> {
-    let tool = tools_library::find("Fig73Exact").unwrap_or(tools_library::TOOLS[0]);
     let poses = (0..POSES).map(|k| Path::Outside.pose(k, POSES)).collect();
-    Case { mesh: tube(), tool, poses }
+    Case { mesh: tube(), tool: &tools_library::Fig73Exact, poses }
 }
 
 fn own<'t>(part: &File, unit: Unit, tool: &'t dyn Tool, path: &File) -> Result<Case<'t>, Failure> {

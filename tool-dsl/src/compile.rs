@@ -7,7 +7,7 @@ use crate::source::{Source, Sources, Span};
 use crate::syntax;
 use std::collections::BTreeSet;
 
-/// What came of compiling a text: a tool, or the errors for which there is none.
+/// The result of compiling a text: a tool, or the errors for which there is none.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     /// The tool and its warnings, or why it is refused.
@@ -23,7 +23,7 @@ pub struct Compiled {
 pub struct Accepted {
     /// The tool.
     pub tool: Box<CheckedTool>,
-    /// What is worth knowing of it, in the order of the text.
+    /// Warnings about it, in the order of the text.
     pub warnings: Vec<Report>,
 }
 
@@ -128,7 +128,7 @@ fn compiled(
     checked::check(model, reports)
 }
 
-/// Whether a report only says that what a broken item would have said is missing.
+/// Returns whether a report only says that what a broken item would have said is missing.
 fn follows(report: &Report, broken: &BTreeSet<&str>) -> bool {
     let has = |word: &str| broken.contains(word);
     let message = &report.message;

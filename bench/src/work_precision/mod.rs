@@ -28,7 +28,6 @@ mod truth;
 pub use page::page;
 pub use plan::Plan;
 pub use row::{LAW, Label, Quantity, Row};
-pub use table::{head, line};
 
 use crate::race::clock::pin;
 use along::Along;

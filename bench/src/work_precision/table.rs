@@ -1,39 +1,8 @@
-//! Rows for people.
+//! The cells of a row, as text.
 
 use super::row::Row;
 
-/// What stands over the lines.
-pub fn head() -> String {
-    format!(
-        "{:<9} {:<14} {:>8} {:<9} {:<6} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>7}",
-        "scene",
-        "method",
-        "points",
-        "sampling",
-        "weights",
-        "precision",
-        "p50 µs",
-        "p99 µs",
-        "force",
-        "torque",
-        "depth",
-        "worst mm",
-        "missed"
-    )
-}
-
-/// A row as a line.
-pub fn line(row: &Row) -> String {
-    let [method, setting, sampling, weights, precision, rest @ ..] = cells(row);
-    let [p50, p99, force, torque, depth, worst, missed] = rest;
-    format!(
-        "{:<9} {method:<14} {setting:>8} {sampling:<9} {weights:<6}  {precision:<16} {p50:>9} {p99:>9} {force:>8} \
-         {torque:>8} {depth:>8} {worst:>8} {missed:>6}%",
-        row.scene
-    )
-}
-
-/// What a row says behind its scene: method, setting, sampling, weights, precision, times, errors, and how many
+/// The cells behind the scene: method, setting, sampling, weights, precision, times, errors, and how many
 /// contacts in a hundred were missed.
 pub(super) fn cells(row: &Row) -> [String; 12] {
     [

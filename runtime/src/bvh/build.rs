@@ -4,7 +4,7 @@ use super::{Boxes, Frame, WIDTH};
 use crate::cores;
 use nalgebra::Point3;
 
-/// So many items are put in order by one core.
+/// Fewer items are put in order by one core.
 const ALONE: usize = 1 << 12;
 
 /// Something on its way to a leaf, by its place in the frame.

@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 /// Sixteen points or boxes, coordinate by coordinate.
 pub(crate) type Triple<S, R = f32> = [<R as Rough>::Sixteen<S>; 3];
 
-// What runs on vectors is written in functions that are always inlined: a closure, as `array::map`
+// Vector code stands in functions that are always inlined: a closure, as `array::map`
 // takes one, would be compiled without the vector instructions of its surroundings.
 
 #[inline(always)]
@@ -33,7 +33,7 @@ pub(crate) fn seen<R: Rough, S: Simd>(
     ]
 }
 
-/// How far boxes with these half extents reach along a row.
+/// Returns the reach of boxes with these half extents along a row.
 #[inline(always)]
 pub(crate) fn extent<R: Rough, S: Simd>(half: &Triple<S, R>, row: [R; 3]) -> R::Sixteen<S> {
     dot::<R, S>(half, [row[0].size(), row[1].size(), row[2].size()])

@@ -28,7 +28,7 @@ pub(crate) struct Boxes {
     pub(crate) half: [[f32; WIDTH]; 3],
 }
 
-/// Where boxes are: what their numbers mean.
+/// The origin and the unit of length that boxes are stored in.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame {
     /// The middle of the part.

@@ -130,7 +130,7 @@ pub struct Plan {
 pub struct PlannedTool {
     /// The tool, with the curves that its plan adds behind those of the file.
     pub model: Model,
-    /// How far the solid reaches.
+    /// The reach of the solid.
     pub extent: Extent,
     /// The order of splits.
     pub plan: Plan,
