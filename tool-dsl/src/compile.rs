@@ -1,7 +1,7 @@
 //! From a text to a checked tool, and what is reported on the way.
 
 use crate::checked::{self, CheckedTool};
-use crate::report::{self, Refusal, Report, Reported, Severity, any_error, without_error};
+use crate::report::{self, Missing, Refusal, Report, Reported, Severity, any_error, without_error};
 use crate::resolve;
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
@@ -131,11 +131,36 @@ fn compiled(
 /// Returns whether a report only says that what a broken item would have said is missing.
 fn follows(report: &Report, broken: &BTreeSet<&str>) -> bool {
     let has = |word: &str| broken.contains(word);
-    let message = &report.message;
-    let missing_name = message.starts_with("unknown") && message.split('`').nth(1).is_some_and(has);
-    missing_name
-        || message.contains("is never used")
-        || message.ends_with("has no region")
-        || (message.starts_with("no unit") && has("units"))
-        || (message.starts_with("unknown surface") && has("region"))
+    match &report.missing {
+        None => false,
+        Some(Missing::Name(word) | Missing::Definition(word)) => has(word),
+        Some(Missing::Surface(word)) => has(word) || has("region"),
+        Some(Missing::Use | Missing::Region) => true,
+        Some(Missing::Unit) => has("units"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reports are told by what is missing, however they are worded.
+    #[test]
+    fn words_decide_nothing() {
+        let at = Span { start: 0, end: 0 };
+        let broken = BTreeSet::from(["flute", "units"]);
+        let follows = |message: &str, missing: Option<Missing>| {
+            let report = Report { missing, ..Report::error(at, message) };
+            follows(&report, &broken)
+        };
+        let flute = || "flute".to_owned();
+        for message in ["unknown name `flute`", "there is no flute"] {
+            assert!(!follows(message, None));
+            assert!(follows(message, Some(Missing::Name(flute()))));
+            assert!(follows(message, Some(Missing::Surface(flute()))));
+            assert!(!follows(message, Some(Missing::Definition("shank".to_owned()))));
+            assert!(!follows(message, Some(Missing::Surface("shank".to_owned()))));
+            assert!(follows(message, Some(Missing::Unit)) && follows(message, Some(Missing::Use)));
+        }
+    }
 }

@@ -16,6 +16,23 @@ pub enum Severity {
     Error,
 }
 
+/// Something that a text does not have. Whether a report only follows from another one is decided by it, not by its words.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Missing {
+    /// The definition of a name.
+    Name(String),
+    /// A function, a curve or a unit of that name.
+    Definition(String),
+    /// A surface of that name.
+    Surface(String),
+    /// A use of what is defined.
+    Use,
+    /// A region, or a profile.
+    Region,
+    /// The unit of length.
+    Unit,
+}
+
 /// One thing to say.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Report {
@@ -29,6 +46,8 @@ pub struct Report {
     pub second: Option<(Span, String)>,
     /// The remedy.
     pub help: Option<String>,
+    /// What is missing, if the report is about that.
+    pub(crate) missing: Option<Missing>,
 }
 
 impl Report {
@@ -40,12 +59,19 @@ impl Report {
             span,
             second: None,
             help: None,
+            missing: None,
         }
     }
 
     /// A warning at a place.
     pub fn warning(span: Span, message: impl Into<String>) -> Report {
         Report { severity: Severity::Warning, ..Report::error(span, message) }
+    }
+
+    /// With what is missing.
+    #[must_use]
+    pub(crate) fn missing(self, missing: Missing) -> Report {
+        Report { missing: Some(missing), ..self }
     }
 
     /// An error that only follows from another one, which is reported; this one is not shown.

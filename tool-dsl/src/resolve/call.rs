@@ -2,7 +2,7 @@
 
 use super::dimension::Dimension;
 use super::lower::{Lowered, Lowering, May};
-use crate::report::{Report, nearest};
+use crate::report::{Missing, Report, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{Expr, Name};
 
@@ -24,7 +24,8 @@ impl Lowering {
             "min" | "max" | "hypot" => 2..=usize::MAX,
             "sqrt" | "abs" | "sin" | "cos" | "tan" => 1..=1,
             _ => {
-                let report = Report::error(name.span, format!("unknown function `{word}`"));
+                let report = Report::error(name.span, format!("unknown function `{word}`"))
+                    .missing(Missing::Definition(word.to_owned()));
                 return Err(match nearest(word, FUNCTIONS) {
                     Some(meant) => report.help(format!("did you mean `{meant}`?")),
                     None => report.help(format!("functions are {}", FUNCTIONS.join(", "))),

@@ -6,7 +6,7 @@ use crate::domain::Domain;
 use crate::expr::Graph;
 use crate::model::Unit;
 use crate::number::Number;
-use crate::report::{Report, figure, nearest};
+use crate::report::{Missing, Report, figure, nearest};
 use crate::syntax::tree::{Definition, Expr, Item, Name, Tool};
 
 /// A value for a `param`, evaluated where it is given.
@@ -25,7 +25,7 @@ pub(super) fn from_outside<'t>(
     reports: &mut Vec<Report>,
 ) -> Vec<Given<'t>> {
     given(settings, &mut Lowering::new(domain, unit), reports, |report| {
-        if report.message.starts_with("unknown name") {
+        if matches!(report.missing, Some(Missing::Name(_))) {
             return report.help("what is given is a constant: numbers with their units, `pi`");
         }
         report

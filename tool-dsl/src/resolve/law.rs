@@ -2,7 +2,7 @@
 
 use super::mount::Along;
 use crate::model::Surface;
-use crate::report::{Report, enough, nearest};
+use crate::report::{Missing, Report, enough, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{Law, Quantity};
 use std::collections::BTreeMap;
@@ -71,7 +71,8 @@ impl<'t> Laws<'t> {
                 }
                 match surface {
                     None => {
-                        let report = Report::error(span, format!("unknown surface `{word}`"));
+                        let report = Report::error(span, format!("unknown surface `{word}`"))
+                            .missing(Missing::Surface(word.to_owned()));
                         let known = surfaces.iter().map(|s| s.name.as_str());
                         // Of a part's surface the part may have been forgotten.
                         let of_part = format!(".{word}");

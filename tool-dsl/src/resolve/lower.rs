@@ -6,7 +6,7 @@ use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::{Number, RANGE};
-use crate::report::{Report, Reported, nearest};
+use crate::report::{Missing, Report, Reported, nearest};
 use crate::source::Span;
 use crate::syntax::TALLEST;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
@@ -186,6 +186,7 @@ impl Lowering {
                 return Ok((self.graph.number(radians), Dimension::Angle));
             }
             "in" | "inches" | "zoll" => Report::error(unit.span, format!("unknown unit `{word}`"))
+                .missing(Missing::Definition(word.to_owned()))
                 .help("write `inch`, as in `0.25inch`"),
             _ if COORDINATES.contains(&word) || self.values.contains_key(word) || word == "pi" => {
                 let number = value.to_f64();
@@ -203,7 +204,8 @@ impl Lowering {
                 return Err(report.help(format!("write `{number}*{written}`{times}")));
             }
             _ => {
-                let report = Report::error(unit.span, format!("unknown unit `{word}`"));
+                let report = Report::error(unit.span, format!("unknown unit `{word}`"))
+                    .missing(Missing::Definition(word.to_owned()));
                 match UNITS.iter().find(|unit| unit.eq_ignore_ascii_case(word)) {
                     Some(meant) => report.help(format!("did you mean `{meant}`?")),
                     None => report
@@ -256,7 +258,8 @@ impl Lowering {
                     .and(*definition, "defined here")
                     .help("move the definition up"));
             }
-            let report = Report::error(span, format!("unknown name `{word}`"));
+            let report = Report::error(span, format!("unknown name `{word}`"))
+                .missing(Missing::Name(word.to_owned()));
             let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
             let known = self.values.keys().map(String::as_str).chain(coordinates);
             let known = known.chain(["pi", "depth"]);

@@ -23,7 +23,7 @@ pub(crate) use over::never_wins;
 use crate::domain::Domain;
 use crate::geometry::outline::Segment;
 use crate::model::{Model, Surface, Unit};
-use crate::report::{Report, Reported, enough, nearest};
+use crate::report::{Missing, Report, Reported, enough, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
@@ -115,6 +115,7 @@ pub fn resolve(
         if !value.used {
             reports.push(
                 Report::warning(value.span, format!("`{word}` is never used"))
+                    .missing(Missing::Use)
                     .help("drop it, or is another name misspelt?"),
             );
         }
@@ -264,6 +265,7 @@ fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Ite
 fn unit(tool: &Tool) -> Result<Unit, Report> {
     let missing = |span: Span| {
         Report::error(span, "no unit: a tool says its unit of length first")
+            .missing(Missing::Unit)
             .help("say `units mm;`, `units inch;` or `units m;`")
     };
     let Some(Item::Units(name)) = tool.items.first() else {
@@ -283,7 +285,8 @@ fn unit(tool: &Tool) -> Result<Unit, Report> {
             .help("drop one; a single number may carry another unit, as in `0.25inch`"));
     }
     Unit::from_word(&name.word).ok_or_else(|| {
-        let report = Report::error(name.span, format!("unknown unit `{}`", name.word));
+        let report = Report::error(name.span, format!("unknown unit `{}`", name.word))
+            .missing(Missing::Definition(name.word.clone()));
         let meant = match name.word.as_str() {
             "in" | "inches" | "IN" => Some("inch"),
             "millimetre" | "millimeter" | "MM" => Some("mm"),
@@ -397,7 +400,8 @@ fn curve_of(
         if let Some(reported) = lowering.broken.get(&name.word) {
             return Err(Report::follow_up(name.span, *reported));
         }
-        let report = Report::error(name.span, format!("unknown curve `{}`", name.word));
+        let report = Report::error(name.span, format!("unknown curve `{}`", name.word))
+            .missing(Missing::Definition(name.word.clone()));
         return Err(match nearest(&name.word, lowering.values.keys().map(String::as_str)) {
             Some(meant) => report.help(format!("did you mean `{meant}`?")),
             None => report.help(format!("define it above: `curve {} = …;`", name.word)),

@@ -15,7 +15,7 @@ use crate::model::{DirectionSource, Region, Surface};
 use crate::regionalise::overlay::{self, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Undivided};
-use crate::report::{Report, any_error, enough, nearest};
+use crate::report::{Missing, Report, any_error, enough, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Expr, Quantity};
 
@@ -125,7 +125,8 @@ fn written(
             let found = surfaces.iter().position(|surface| surface.name == wanted.word);
             found.map(Some).ok_or_else(|| {
                 let report =
-                    Report::error(wanted.span, format!("unknown surface `{}`", wanted.word));
+                    Report::error(wanted.span, format!("unknown surface `{}`", wanted.word))
+                        .missing(Missing::Surface(wanted.word.clone()));
                 match nearest(&wanted.word, surfaces.iter().map(|s| s.name.as_str())) {
                     Some(meant) => report.help(format!("did you mean `{meant}`?")),
                     None => report.help("name a surface of the profile"),

@@ -9,7 +9,7 @@ use super::outputs;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{DirectionSource, Region, Said, Surface};
-use crate::report::{Report, enough};
+use crate::report::{Missing, Report, enough};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
 
@@ -32,6 +32,7 @@ pub(super) fn regions(
     if written.is_empty() {
         reports.push(
             Report::error(tool.name.span, format!("`{}` has no region", tool.name.word))
+                .missing(Missing::Region)
                 .help("write its outline, `profile { … }`, or `region NAME where … { depth: …; }`"),
         );
     }
