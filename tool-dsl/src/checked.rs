@@ -9,7 +9,7 @@ use crate::prove::Bounds;
 use crate::report::{Report, Reported, without_error};
 use std::ops::Deref;
 
-/// A tool in which no error was found, with everything that is emitted about it. Only [`compile`](crate::compile) makes one.
+/// A tool in which no error was found, with everything that is emitted about it. Only [`compile`](crate::compile()) makes one.
 ///
 /// It dereferences to the [`PlannedTool`] that was checked, of which it gives no mutable access.
 #[derive(Clone, Debug)]

@@ -1,8 +1,66 @@
-//! A tool whose every name, dimension and rule is settled: what the compiler reasons about.
+//! The intermediate representation: a tool or a solid whose names, dimensions and rules are settled.
 //!
-//! All expressions are in the tool's frame (tip at the origin, +z toward the spindle; a solid's is
-//! its file's) and the file's unit. A point belongs to the first region whose formula holds;
-//! elsewhere it is outside.
+//! Each pass takes the result of the one before by value, and none changes it:
+//!
+//! ```text
+//! Source ──syntax──▶ Ast ──resolve──▶ Model ──bound, look, plan──▶ PlannedTool ──prove──▶ CheckedTool
+//! ```
+//!
+//! A [`Model`] has no text in it. Spans are kept for reports alone; no pass after `resolve` reads a source.
+//!
+//! # What a model means
+//!
+//! All statements are about real arithmetic. Expressions mean what [`crate::expr`] says: functions of a point in the
+//! tool's frame and the file's unit of length.
+//!
+//! - **Domain.** The points of a `tool` are those of its half plane `y = 0, x ≥ 0`, where `x` is the distance `d` from the
+//!   axis; space is swept from it by rotation. The points of a `solid` are those of space. Conditions, depths,
+//!   magnitudes, nicenesses and courses of a tool read `D`, `Q` and `Z` only. [`Outputs`] alone are functions of space in
+//!   both, and alone read [`Coord::Length`](crate::expr::Coord::Length).
+//! - **Sides.** A [`Curve`] `c` divides the domain by its sign. An atom is `c ≤ 0` or `c ≥ 0`, both closed, so a curve
+//!   belongs to both of its sides; a strict atom is `c < 0` or `c > 0`. A [`Formula`] is "and" and "or" over atoms. Where
+//!   a curve is undefined, no atom of it holds.
+//! - **Ownership.** A point belongs to the first of [`Model::regions`] whose [`Region::inside`] holds. The solid is the
+//!   set of the points that belong to a region.
+//! - **Depth.** [`Outputs::depth`] of the owner is `max(0, depth)`. With a `Section` it is the distance to the solid's
+//!   surface; of regions by hand it is what the file says, and `prove` bounds it by the distance.
+//! - **Direction.** [`Outputs::direction`] is a unit vector. Where the course has no length, and on the axis of a tool
+//!   where the radial unit vector does not exist, it is a fixed one: `+x` stands for the radial direction.
+//! - **Magnitude.** If the file gives none, it is the depth in the part's unit; else it is the file's own number and does
+//!   not change with the unit. [`Outputs::gradient`] is its gradient by the position in the part's unit.
+//! - **Niceness** is a number without a unit, `max(0, niceness)`.
+//! - **Outside.** With a section, `Section::outside` has a distance for each part of the outside up to 64 sizes; farther
+//!   out, and without a section, `plan` takes the distance to a box or a cylinder about the solid, a lower bound.
+//!
+//! # What each pass establishes
+//!
+//! A pass relies on everything that stands above it. *By type* means that no other value can be written.
+//!
+//! | pass | establishes | by |
+//! |---|---|---|
+//! | `syntax::parse` | items in the order of the text; at most 300 operations lie between a value and a coordinate; lists and texts are bounded | the grammar, `syntax::limits`, `syntax::refuse` |
+//! | `resolve` | each name has one definition above its use, or in a file that is mounted; no definition depends on itself | `lower::Lowering`, `scope`, `cycle` |
+//! | | sums, minima and comparisons have operands of one dimension; a depth and a course are lengths, a niceness has no dimension | `dimension::Dimension::alike` |
+//! | | lengths are in one unit, `z` in the tool's frame: the tip is 0, the spindle is toward `+z` | `lower` for expressions, `Frame::to_tool` for constants |
+//! | | indices of curves and surfaces are in range; `regions` is not empty | by construction: the lists only grow |
+//! | | each region has a depth, a direction, a niceness and a magnitude | `region::regions`, `law::Laws` |
+//! | | an outline runs counter-clockwise from the axis to the axis, on the left of no other piece and off the axis between its ends | `regionalise::check` in doubles; proved later, by `prove::jordan` |
+//! | | the cells of `inner` and `outer` cover their sides, and each feature is the nearest in its cell | by the algorithm of `regionalise::slices`, in doubles; asked at points by `plan::section`, proved later by `prove` |
+//! | `checked` (`finite`) | constants that code needs are finite doubles | `checked::finite` |
+//! | `bound` | [`Extent`](crate::bound::Extent): the solid lies in a box and a cylinder; it is bounded, and it has points. [`Slab`](crate::bound::Slab): its largest radius between two heights | interval branch and bound; a section's pieces in closed form |
+//! | `look` | nothing. It refutes: owners that overlap, regions that own nothing, depths below 0 or above 0 on the surface, undefined values, a tip elsewhere, each with the point | samples |
+//! | `plan` | `Plan::owner` gives each point the owner that the list gives it | `plan::empty` proves which sides need no test; a section's cells are cut exactly; tests that are left out cannot hold in real arithmetic |
+//! | | `Plan::inside` holds where `owner` is some region | by construction: it is the same tree with other leaves |
+//! | | `Plan::outside` is the distance, or a lower bound of it, wherever `inside` does not hold | as for `owner` |
+//! | | trees have at most 20,000 tests | `plan::LARGEST` |
+//! | `prove` | [`Bounds`](crate::prove::Bounds) of the depth by the distance: of a section 1 and 1 by construction, which `touchoff check` proves; of regions by hand what a few thousand boxes prove | `docs/proofs.md` |
+//! | | no depth jumps at a point that was found | enclosures of both depths there |
+//!
+//! `plan` adds curves behind those of the file, to a model that it was given whole: `0..n` mean what they meant before.
+//!
+//! What a [`CheckedTool`](crate::CheckedTool) promises its readers: emission, interpretation and drawing cannot fail; no
+//! error was found; and where something is only believed (a proof that did not come to an end), its bounds say so by being
+//! absent. `checked` alone can build one, and gives no mutable access to it.
 
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};

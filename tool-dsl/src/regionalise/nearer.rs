@@ -35,7 +35,7 @@ impl Section<'_> {
     /// a corner is nearer than a line where `A ≤ l²`, a concave arc where `A ≤ (l + r)²`, a convex
     /// one where `l ≥ r` or `(r - l)² ≤ A` (measured from where the two meet, if they do:
     /// [`from_their_corner`]), an arc is nearer than a corner where
-    /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as [`Section::arcs`] says.
+    /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as `arcs` says.
     pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
         Some(match (self.kind(this), self.kind(other)) {
             (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
