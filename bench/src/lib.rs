@@ -3,8 +3,6 @@
 
 pub mod certified;
 pub mod compile;
-pub mod continuity;
-pub mod convergence;
 pub mod haptics;
 pub mod mutants;
 pub mod page;
@@ -15,6 +13,5 @@ pub mod plot;
 pub mod postures;
 pub mod race;
 pub mod rounding;
-pub mod search;
 pub mod stress;
 pub mod work_precision;

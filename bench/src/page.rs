@@ -11,13 +11,22 @@ pub struct Page {
     /// The stem of its file's name in `docs/measured`.
     pub name: &'static str,
     /// The title.
-    pub title: String,
+    pub title: &'static str,
     /// The paths of the repository whose code the figures vouch for.
     pub covers: &'static [&'static str],
-    /// The Markdown below the head line.
-    pub body: String,
-    /// Drawings and files of rows: names and contents.
+    /// The sections below the head line, in order.
+    pub sections: Vec<Section>,
+    /// Drawings: names and contents.
     pub figures: Vec<(String, String)>,
+}
+
+/// A section of a page.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// The heading; empty for text that stands under the page's title.
+    pub title: &'static str,
+    /// The Markdown below the heading.
+    pub body: String,
     /// The bars and contracts that were not kept, in words.
     pub missed: Vec<String>,
 }
@@ -28,14 +37,25 @@ impl Page {
         folder.join(format!("{}.md", self.name))
     }
 
+    /// Returns the bars and contracts that were not kept.
+    pub fn missed(&self) -> impl Iterator<Item = &String> {
+        self.sections.iter().flat_map(|section| &section.missed)
+    }
+
     /// Writes the page and its figures into a folder, which is made; `command` is what made them.
     ///
     /// # Errors
     /// If the folder or a file cannot be written.
     pub fn write(&self, folder: &Path, command: &str) -> io::Result<()> {
         std::fs::create_dir_all(folder)?;
-        let (title, head, body) = (&self.title, made(command, self.covers), self.body.trim());
-        AtomicFile::write(self.path(folder), format!("# {title}\n\n{head}\n\n{body}\n"))?;
+        let mut text = format!("# {}\n\n{}\n", self.title, made(command, self.covers));
+        for Section { title, body, .. } in &self.sections {
+            if !title.is_empty() {
+                text += &format!("\n## {title}\n");
+            }
+            text += &format!("\n{}\n", body.trim());
+        }
+        AtomicFile::write(self.path(folder), text)?;
         for (name, content) in &self.figures {
             AtomicFile::write(folder.join(name), content)?;
         }
@@ -65,21 +85,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_has_title_head_line_and_body_and_its_figures_beside_it() {
+    fn a_page_has_title_head_line_and_sections_and_its_figures_beside_it() {
         let folder = tempfile::tempdir().expect("a folder");
+        let sections = [("", "\nAll of them.\n\n"), ("Proofs", "By hand.")];
+        let section = |(title, body): (&'static str, &str)| Section {
+            title,
+            body: body.to_owned(),
+            missed: Vec::new(),
+        };
         let page = Page {
             name: "sums",
-            title: "Sums".to_owned(),
+            title: "Sums",
             covers: &["runtime/src", "tool-dsl/src"],
-            body: "\nAll of them.\n\n".to_owned(),
+            sections: sections.map(section).into(),
             figures: vec![("sums.svg".to_owned(), "<svg/>".to_owned())],
-            missed: Vec::new(),
         };
         page.write(folder.path(), "sum --all").expect("a writable folder");
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("a file");
         let text = read("sums.md");
         let lines: Vec<&str> = text.split('\n').collect();
-        let [title, "", head, "", body, ""] = lines[..] else { panic!("{text}") };
+        let [title, "", head, "", body, "", "## Proofs", "", "By hand.", ""] = lines[..] else {
+            panic!("{text}")
+        };
         assert_eq!((title, body, read("sums.svg").as_str()), ("# Sums", "All of them.", "<svg/>"));
         assert!(
             head.starts_with("*Made at commit ") && head.contains(" by `sum --all` on "),

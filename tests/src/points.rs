@@ -6,8 +6,11 @@ use crate::oracle::{Nearest, Oracle};
 /// Points beside each place of a border that is looked for.
 const BESIDE: usize = 16;
 
-/// Half of `count` points anywhere in a box a tenth larger than the tool, half within 1e-6 of the surface or of a splitting curve; and
-/// every vertex, every centre and the axis.
+/// Points that a search by climbing found to have the largest errors: a tool's name and the coordinates.
+const HARD: &str = include_str!("hard_points.tsv");
+
+/// Returns `count` points, half of them anywhere in a box a tenth larger than the tool, half within 1e-6 of the surface or of a splitting
+/// curve; and every vertex, every centre, the axis, and the points with the largest errors that are known.
 pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
     let mut draw = Draw::new(seed);
     let mut points = Vec::new();
@@ -15,7 +18,22 @@ pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
     beside_borders(oracle, count.div_ceil(2 * BESIDE), &mut draw, &mut points);
     at_corners(oracle, &mut draw, &mut points);
     on_the_axis(oracle, &mut points);
+    points.extend(hard(oracle.name()));
     points
+}
+
+/// Returns the points with the largest known errors of a tool.
+///
+/// # Panics
+/// If a line of the list is not a name and three numbers.
+fn hard(tool: &str) -> impl Iterator<Item = [f64; 3]> {
+    let coordinate = |word: &str| word.parse().expect("a coordinate");
+    let line = move |line: &str| {
+        let words: Vec<&str> = line.split('\t').collect();
+        let [name, x, y, z] = words[..] else { panic!("no name and three numbers: {line}") };
+        (name == tool).then(|| [x, y, z].map(coordinate))
+    };
+    HARD.lines().filter_map(line)
 }
 
 fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {

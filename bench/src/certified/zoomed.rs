@@ -345,7 +345,7 @@ pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::E
         100.0 * reached as f64 / poses.max(1) as f64,
         sum(|row| row.wider as u64)
     )?;
-    page += "## Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
+    page += "### Inside the material\n\nBlocks of which one face is 1e-7 to 0.1 of the tool's size beyond its extent, or cuts it by as much; of fields 0.01 to 0.1.\n\n\
              | tool | inside | verdict inside | cut | verdict touching | violations |\n|---|--:|--:|--:|--:|--:|\n";
     for buried::Row { tool, inside, cut, violations } in blocks {
         let [[a, b], [c, d]] = [inside, cut];

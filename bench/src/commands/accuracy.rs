@@ -3,7 +3,7 @@
 use clap::Args;
 use std::error::Error;
 use std::fmt::Write;
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 use touchoff_bench::parallel;
 use touchoff_tests::accuracy::{Row, measure, tools};
 
@@ -31,11 +31,10 @@ impl Accuracy {
             .collect();
         Ok(Some(Page {
             name: "accuracy",
-            title: "Rounding of the compiled tools".to_owned(),
+            title: "Rounding of the compiled tools",
             covers: &["tool-dsl/src", "tools-library/tools", "runtime/src/tool"],
-            body: body(&rows, &missed, self.points)?,
+            sections: vec![Section { title: "", body: body(&rows, &missed, self.points)?, missed }],
             figures: Vec::new(),
-            missed,
         }))
     }
 }

@@ -1,16 +1,17 @@
-//! The page `compile.md`: the size of each tool's code, and the time that compiling it takes.
+//! The page `compile.md`: the size of each tool's code, the time that compiling it takes, and what a tool costs that is not compiled.
 
+use super::interpreter;
 use clap::Args;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::process::Command;
 use touchoff_bench::compile::{Parts, Times, parts, sources, times};
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 
 /// Times each tool is compiled, optimised and not.
 const COUNTS: [usize; 2] = [7, 3];
 
-/// Measures the code of each tool and the time that compiling it takes, optimised and not.
+/// Measures the code of each tool, the time that compiling it takes, optimised and not, and what it costs to load it instead.
 #[derive(Args)]
 pub(crate) struct Compile {
     /// Prints only the times of this build, in seconds, a line a tool: best, median and worst.
@@ -36,11 +37,13 @@ impl Compile {
         }
         Ok(Some(Page {
             name: "compile",
-            title: "What compiling a tool costs, and what comes of it".to_owned(),
-            covers: &["tool-dsl/src", "tools-library/tools"],
-            body: body(&rows),
+            title: "What compiling a tool costs, and what loading it costs",
+            covers: &["tool-dsl/src", "tools-library/tools", "runtime/src"],
+            sections: vec![
+                Section { title: "Compiled", body: body(&rows), missed: Vec::new() },
+                interpreter::section()?,
+            ],
             figures: Vec::new(),
-            missed: Vec::new(),
         }))
     }
 }

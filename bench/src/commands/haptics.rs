@@ -8,7 +8,7 @@ use touchoff::{Law, Part};
 use touchoff_bench::haptics::latency;
 use touchoff_bench::haptics::page::{Measured, page, plots};
 use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 use touchoff_tests::haptics::{energy, sheet, wall};
 
 /// Measures the haptic loop: walls, shaking, energy, a thin sheet and latencies.
@@ -46,11 +46,10 @@ impl Haptics {
         let figures = plots(&measured).into_iter();
         Ok(Some(Page {
             name: "haptics",
-            title: "The haptic loop".to_owned(),
+            title: "The haptic loop",
             covers: &["runtime/src"],
-            body: page(&measured)?,
+            sections: vec![Section { title: "", body: page(&measured)?, missed: Vec::new() }],
             figures: figures.map(|(name, plot)| (name.to_owned(), plot)).collect(),
-            missed: Vec::new(),
         }))
     }
 }

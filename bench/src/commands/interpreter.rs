@@ -1,33 +1,22 @@
-//! The page `interpreter.md`: a tool that is loaded at run time beside the same tool compiled, by the same queries,
-//! interleaved pose by pose in one process.
+//! A tool that is loaded at run time beside the same tool compiled, by the same queries, interleaved pose by pose in one process.
 
-use clap::Args;
 use std::error::Error;
 use std::fmt::Write;
-use std::path::Path as File;
 use std::time::Instant;
 use touchoff::scenes::{Path, tube};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff::{Cloud, Part, Pose, Probe};
-use touchoff_bench::page::Page;
+use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
 /// Poses of a row; each is asked for once, so that nothing is learnt.
 const POSES: usize = 4_000;
 
-/// Compares tools that are loaded at run time with the same tools compiled.
-#[derive(Args)]
-pub(crate) struct Interpreter {
-    /// Files of tools, `ball.tool` [default: the whole library].
-    #[arg(value_name = "FILE.tool")]
-    only: Vec<String>,
-}
-
-impl Interpreter {
-    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
-        let cloud = Cloud::random(&tube(), 20_000, 1)?;
-        let part = Part::from_cloud(&cloud);
-        let mut body = format!(
+/// Returns the section of all tools of the library.
+pub(super) fn section() -> Result<Section, Box<dyn Error>> {
+    let cloud = Cloud::random(&tube(), 20_000, 1)?;
+    let part = Part::from_cloud(&cloud);
+    let mut body = format!(
             "Wrenches at {POSES} poses along the tube of 20,000 points, each pose asked once of both, interleaved; median ns a query.
 The forces are equal to the bit.
 
@@ -35,40 +24,27 @@ The forces are equal to the bit.
 |---|---|---|---|---|---|
 "
         );
-        let mut ratios = Vec::new();
-        let mut sources = library();
-        sources.retain(|source| {
-            let only = &self.only;
-            only.is_empty() || only.iter().any(|name| File::new(&source.name).ends_with(name))
-        });
-        for source in sources {
-            let Ok(loaded) = Interpreted::parse(&source) else { continue };
-            let Some(compiled) = tools_library::find(&loaded.card().name) else { continue };
-            let name = &loaded.card().name;
-            eprintln!("{name}");
-            for path in [Path::Outside, Path::Inside] {
-                let (contacts, [fast, slow]) = measure(&part, [compiled, &loaded], path);
-                let ratio = slow / fast;
-                ratios.push(ratio);
-                writeln!(
-                    body,
-                    "| {name} | {} | {contacts:.1} | {fast:.0} | {slow:.0} | {ratio:.1} |",
-                    path.name()
-                )?;
-            }
+    let mut ratios = Vec::new();
+    for source in library() {
+        let Ok(loaded) = Interpreted::parse(&source) else { continue };
+        let Some(compiled) = tools_library::find(&loaded.card().name) else { continue };
+        let name = &loaded.card().name;
+        eprintln!("{name}");
+        for path in [Path::Outside, Path::Inside] {
+            let (contacts, [fast, slow]) = measure(&part, [compiled, &loaded], path);
+            let ratio = slow / fast;
+            ratios.push(ratio);
+            writeln!(
+                body,
+                "| {name} | {} | {contacts:.1} | {fast:.0} | {slow:.0} | {ratio:.1} |",
+                path.name()
+            )?;
         }
-        ratios.sort_by(f64::total_cmp);
-        let worst = ratios.last().ok_or("no file of the library has such a name")?;
-        writeln!(body, "\nMedian ratio {:.1}, worst {worst:.1}.", ratios[ratios.len() / 2])?;
-        Ok(Some(Page {
-            name: "interpreter",
-            title: "What a tool costs that is loaded at run time".to_owned(),
-            covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
-            body,
-            figures: Vec::new(),
-            missed: Vec::new(),
-        }))
     }
+    ratios.sort_by(f64::total_cmp);
+    let worst = ratios.last().ok_or("the library has no tool")?;
+    writeln!(body, "\nMedian ratio {:.1}, worst {worst:.1}.", ratios[ratios.len() / 2])?;
+    Ok(Section { title: "Loaded at run time", body, missed: Vec::new() })
 }
 
 /// Contacts on average, and the median time of each of two tools.

@@ -1,44 +1,28 @@
 //! The commands, by the pages that they make.
 
 mod accuracy;
-mod cad;
 mod certified;
 mod compile;
-mod continuity;
-mod convergence;
 mod haptics;
 mod interpreter;
-mod levels;
 mod mutants;
-mod performance;
 mod postures;
 mod proofs;
-mod rounding;
-mod search;
 mod stress;
 mod sweeps;
+mod triangles;
 mod work_precision;
-mod zoomed;
 
 pub(crate) use accuracy::Accuracy;
-pub(crate) use cad::Cad;
 pub(crate) use certified::Certified;
 pub(crate) use compile::Compile;
-pub(crate) use continuity::Continuity;
-pub(crate) use convergence::Convergence;
 pub(crate) use haptics::Haptics;
-pub(crate) use interpreter::Interpreter;
-pub(crate) use levels::Levels;
-pub(crate) use mutants::Mutants;
-pub(crate) use performance::Performance;
 pub(crate) use postures::Postures;
 pub(crate) use proofs::Proofs;
-pub(crate) use rounding::Rounding;
-pub(crate) use search::Search;
 pub(crate) use stress::Stress;
 pub(crate) use sweeps::Sweeps;
+pub(crate) use triangles::Triangles;
 pub(crate) use work_precision::WorkPrecision;
-pub(crate) use zoomed::Zoomed;
 
 use std::path::{Path, PathBuf};
 

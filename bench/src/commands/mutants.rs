@@ -1,12 +1,11 @@
-//! The page `mutants.md`: proofs of tools that are broken on purpose.
+//! Proofs of tools that are broken on purpose.
 
-use clap::Args;
 use std::error::Error;
 use std::fmt::Write;
 use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
-use touchoff_bench::page::Page;
+use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
 /// Times that each tool is broken.
@@ -14,13 +13,9 @@ const EACH: usize = 20;
 /// Columns of counts: all, alike, and one for each [`Caught`].
 const COLUMNS: usize = 7;
 
-/// Breaks every tool of the library on purpose, and counts what proofs see of it.
-#[derive(Args)]
-pub(crate) struct Mutants {}
-
-impl Mutants {
-    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
-        let mut body = format!(
+/// Breaks every tool of the library on purpose, and returns the section that counts what proofs see of it.
+pub(super) fn section() -> Result<Section, Box<dyn Error>> {
+    let mut body = format!(
             "Every tool is broken {EACH} times, in one place each, after it was compiled; and `touchoff check`'s proof is made once more. **Alike** are
 those that are no other solid, depth or direction at 20,000 points. The rest are seen by an **error**, with a point where depth
 jumps; by a warning of a proof that stays **open**; by another **warning**, with a point where the direction is not the steepest way out; only by
@@ -31,79 +26,71 @@ anything reported.
 |---|--:|--:|--:|--:|--:|--:|--:|
 "
         );
-        let mut unseen = Vec::new();
-        let (mut all, mut by_kind) = ([0; COLUMNS], vec![[0; 3]; KINDS.len()]);
-        for (seed, source) in library().iter().enumerate() {
-            let whole = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
-            let proved = Certificate::of(&whole);
-            if let Some(report) = proved.reports(&whole).first() {
-                return Err(
-                    format!("{} is not broken, and: {}", whole.model.name, report.message).into()
-                );
+    let mut unseen = Vec::new();
+    let (mut all, mut by_kind) = ([0; COLUMNS], vec![[0; 3]; KINDS.len()]);
+    for (seed, source) in library().iter().enumerate() {
+        let whole = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
+        let proved = Certificate::of(&whole);
+        if let Some(report) = proved.reports(&whole).first() {
+            return Err(
+                format!("{} is not broken, and: {}", whole.model.name, report.message).into()
+            );
+        }
+        eprintln!("{}", whole.model.name);
+        let mut counts = [0; COLUMNS];
+        for mutant in mutants(&whole, EACH, seed as u64) {
+            counts[0] += 1;
+            if !changes(&whole, &mutant.tool, 1) {
+                counts[1] += 1;
+                continue;
             }
-            eprintln!("{}", whole.model.name);
-            let mut counts = [0; COLUMNS];
-            for mutant in mutants(&whole, EACH, seed as u64) {
-                counts[0] += 1;
-                if !changes(&whole, &mutant.tool, 1) {
-                    counts[1] += 1;
-                    continue;
-                }
-                let (column, seen) = match caught(&proved, &mutant.tool) {
-                    Caught::Error => (2, 0),
-                    Caught::Open => (3, 0),
-                    Caught::Warning => (4, 0),
-                    Caught::Compared => (5, 1),
-                    Caught::Not => (6, 2),
-                };
-                counts[column] += 1;
-                by_kind[mutant.kind][seen] += 1;
-                if seen > 0 {
-                    let how = ["", "comparing", "not"][seen];
-                    unseen.push((whole.model.name.clone(), KINDS[mutant.kind], mutant.place, how));
-                }
-            }
-            writeln!(body, "| {} | {} |", whole.model.name, row(&counts))?;
-            for (sum, count) in all.iter_mut().zip(counts) {
-                *sum += count;
+            let (column, seen) = match caught(&proved, &mutant.tool) {
+                Caught::Error => (2, 0),
+                Caught::Open => (3, 0),
+                Caught::Warning => (4, 0),
+                Caught::Compared => (5, 1),
+                Caught::Not => (6, 2),
+            };
+            counts[column] += 1;
+            by_kind[mutant.kind][seen] += 1;
+            if seen > 0 {
+                let how = ["", "comparing", "not"][seen];
+                unseen.push((whole.model.name.clone(), KINDS[mutant.kind], mutant.place, how));
             }
         }
-        writeln!(body, "| **all** | {} |", row(&all))?;
-        let other = all[0] - all[1];
-        let part = |count: usize| 100.0 * count as f64 / other as f64;
+        writeln!(body, "| {} | {} |", whole.model.name, row(&counts))?;
+        for (sum, count) in all.iter_mut().zip(counts) {
+            *sum += count;
+        }
+    }
+    writeln!(body, "| **all** | {} |", row(&all))?;
+    let other = all[0] - all[1];
+    let part = |count: usize| 100.0 * count as f64 / other as f64;
+    writeln!(
+        body,
+        "\nOf {other}, {:.1} % are seen by errors or warnings ({:.1} % errors, {:.1} % open proofs, {:.1} % other warnings), {:.1} % \
+         only by comparing, {:.1} % not.\n",
+        part(all[2] + all[3] + all[4]),
+        part(all[2]),
+        part(all[3]),
+        part(all[4]),
+        part(all[5]),
+        part(all[6])
+    )?;
+    writeln!(body, "| broken | error or warning | comparing | not |\n|---|--:|--:|--:|")?;
+    for (kind, counts) in KINDS.iter().zip(by_kind) {
+        writeln!(body, "| {kind} | {} |", row(&counts))?;
+    }
+    if !unseen.is_empty() {
         writeln!(
             body,
-            "\nOf {other}, {:.1} % are seen by errors or warnings ({:.1} % errors, {:.1} % open proofs, {:.1} % other warnings), {:.1} % \
-         only by comparing, {:.1} % not.\n",
-            part(all[2] + all[3] + all[4]),
-            part(all[2]),
-            part(all[3]),
-            part(all[4]),
-            part(all[5]),
-            part(all[6])
+            "\n### No error and no warning\n\n| tool | what | where | seen |\n|---|---|---|---|"
         )?;
-        writeln!(body, "| broken | error or warning | comparing | not |\n|---|--:|--:|--:|")?;
-        for (kind, counts) in KINDS.iter().zip(by_kind) {
-            writeln!(body, "| {kind} | {} |", row(&counts))?;
+        for (tool, kind, place, how) in unseen {
+            writeln!(body, "| {tool} | {kind} | {place} | {how} |")?;
         }
-        if !unseen.is_empty() {
-            writeln!(
-                body,
-                "\n## No error and no warning\n\n| tool | what | where | seen |\n|---|---|---|---|"
-            )?;
-            for (tool, kind, place, how) in unseen {
-                writeln!(body, "| {tool} | {kind} | {place} | {how} |")?;
-            }
-        }
-        Ok(Some(Page {
-            name: "mutants",
-            title: "The library, broken on purpose".to_owned(),
-            covers: &["tool-dsl/src", "tools-library/tools"],
-            body,
-            figures: Vec::new(),
-            missed: Vec::new(),
-        }))
     }
+    Ok(Section { title: "Broken on purpose", body, missed: Vec::new() })
 }
 
 fn row(counts: &[usize]) -> String {

@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use touchoff::mesh::Shape;
 use touchoff::{Mesh, Unit};
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 use touchoff_bench::postures::page::page;
 use touchoff_bench::postures::parts::relief;
 use touchoff_bench::postures::{Odd, Wanted, measure};
@@ -71,11 +71,14 @@ impl Postures {
         let wrong = found.accessible.wrong.iter().chain(&found.refused.wrong);
         Ok(Some(Page {
             name: "postures",
-            title: "Postures beside brute force".to_owned(),
+            title: "Postures beside brute force",
             covers: &["runtime/src/postures", "runtime/src/certify", "tools-library/tools"],
-            body: about.to_owned() + &page(&name, &wanted, &found)?,
+            sections: vec![Section {
+                title: "",
+                body: about.to_owned() + &page(&name, &wanted, &found)?,
+                missed: wrong.map(|Odd { at, what }| format!("{at}: {what}")).collect(),
+            }],
             figures: Vec::new(),
-            missed: wrong.map(|Odd { at, what }| format!("{at}: {what}")).collect(),
         }))
     }
 }

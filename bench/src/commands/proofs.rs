@@ -1,5 +1,6 @@
-//! The page `proofs.md`: bounds that are proved of every tool.
+//! The page `proofs.md`: bounds that are proved of every tool, and what proofs see of tools that are broken on purpose.
 
+use super::mutants;
 use clap::Args;
 use std::error::Error;
 use std::fmt::Write;
@@ -8,9 +9,9 @@ use tool_dsl::compile;
 use tool_dsl::prove::Certificate;
 use tool_dsl::report::figure;
 use touchoff_bench::compile::sources;
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 
-/// Proves bounds of every tool of the library, and times the proofs.
+/// Proves bounds of every tool of the library, and breaks each on purpose to count what proofs see of it.
 #[derive(Args)]
 pub(crate) struct Proofs {}
 
@@ -52,11 +53,13 @@ boxes where the proof did not come to an end. Times are those of the proof alone
         }
         Ok(Some(Page {
             name: "proofs",
-            title: "What is proved about the library".to_owned(),
+            title: "What is proved about the library",
             covers: &["tool-dsl/src", "tools-library/tools"],
-            body,
+            sections: vec![
+                Section { title: "Bounds", body, missed: Vec::new() },
+                mutants::section()?,
+            ],
             figures: Vec::new(),
-            missed: Vec::new(),
         }))
     }
 }

@@ -3,7 +3,7 @@
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use std::error::Error;
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 use touchoff_bench::stress::ledger::ITEMS;
 use touchoff_bench::stress::{Amount, measure, page};
 
@@ -42,11 +42,14 @@ the last bit, in the tool's frame or as *point of tip, axes* (the rotation's col
 ";
         Ok(Some(Page {
             name: "stress",
-            title: "Under stress".to_owned(),
+            title: "Under stress",
             covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
-            body: about.to_owned() + &page::page(&rows)?,
+            sections: vec![Section {
+                title: "",
+                body: about.to_owned() + &page::page(&rows)?,
+                missed: rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect(),
+            }],
             figures: Vec::new(),
-            missed: rows.iter().filter(|row| row.missed()).map(|row| row.shown()).collect(),
         }))
     }
 }

@@ -7,7 +7,7 @@ use touchoff::Mesh;
 use touchoff::certify::Facets;
 use touchoff_bench::certified::sweeps::{Row, table};
 use touchoff_bench::certified::{Pair, poses};
-use touchoff_bench::page::Page;
+use touchoff_bench::page::{Page, Section};
 use touchoff_bench::parallel;
 use touchoff_tests::oracle::Nearest;
 
@@ -55,11 +55,14 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
         );
         Ok(Some(Page {
             name: "sweeps",
-            title: "Certified sweeps beside samples".to_owned(),
+            title: "Certified sweeps beside samples",
             covers: &["runtime/src/certify", "runtime/src/motion.rs"],
-            body: about + &table(&rows)?,
+            sections: vec![Section {
+                title: "",
+                body: about + &table(&rows)?,
+                missed: rows.into_iter().flat_map(|row| row.violations).collect(),
+            }],
             figures: Vec::new(),
-            missed: rows.into_iter().flat_map(|row| row.violations).collect(),
         }))
     }
 

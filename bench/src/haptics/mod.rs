@@ -3,3 +3,4 @@
 pub mod latency;
 pub mod page;
 pub mod shake;
+mod smooth;

@@ -1,7 +1,7 @@
 //! The page `docs/measured/haptics.md`.
 
 use super::shake::{Case, Shaking};
-use crate::plot::{Axis, Mark, Plot, Series};
+use crate::plot::{Axis, Plot, Series};
 use std::fmt::{self, Write};
 use touchoff::haptic::{Energy, Report};
 use touchoff_tests::haptics::wall::{Row, STEP};
@@ -64,14 +64,9 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
         },
     );
     vec![
-        ("haptics-energy.svg", tapping.mark(Mark::across(0.0, "nothing")).svg()),
+        ("haptics-energy.svg", tapping.svg()),
         ("haptics-walls.svg", walls.svg()),
-        (
-            "haptics-sheet.svg",
-            sheet("tip, mm", "a ball on a sheet of 0.5 mm", 1)
-                .mark(Mark::across(0.0, "sheet"))
-                .svg(),
-        ),
+        ("haptics-sheet.svg", sheet("tip, mm", "a ball on a sheet of 0.5 mm", 1).svg()),
         ("haptics-push.svg", sheet("force, N", "and what the hand feels", 2).svg()),
     ]
 }

@@ -1,6 +1,6 @@
 //! How much a push shakes while a hand moves a tool evenly along a part.
 
-use crate::continuity::smooth::Fig73Smooth;
+use super::smooth::Fig73Smooth;
 use nalgebra::Vector3;
 use touchoff::haptic::{Coupling, Hand, Limits, Rendering, Session, Settings};
 use touchoff::scenes::{BALL, Path};

@@ -7,11 +7,11 @@
 //! shape and a triangle that overlap deepest: one depth, no sum over the contact, so no force and
 //! torque. It feels all of the surface, not points of it.
 
-use crate::race::contender::{Answer, Contender, Workpiece};
+use crate::race::contender::{Answer, Contender};
 use parry3d::math::{Pose as Place, Rotation, Vector};
 use parry3d::query::contact;
 use parry3d::shape::{Compound, SharedShape, TriMesh};
-use touchoff::Pose;
+use touchoff::{Mesh, Pose};
 
 /// The tool as a compound, the part as a mesh.
 pub struct ParryContact {
@@ -20,11 +20,11 @@ pub struct ParryContact {
 }
 
 impl ParryContact {
-    /// Of a part's triangles.
+    /// Makes the method for a part's triangles.
     ///
     /// # Panics
     /// If there are none.
-    pub fn new(piece: &Workpiece) -> ParryContact {
+    pub fn new(mesh: &Mesh) -> ParryContact {
         // parry's cylinders and cones stand along y, the cone's point up; here y is from the spindle
         // to the tip, and places are those of the centres.
         let turn = Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2);
@@ -36,9 +36,9 @@ impl ParryContact {
             (at(3.5), SharedShape::cylinder(2.5, 1.0)),
             (at(1.0), SharedShape::ball(1.0)),
         ]);
-        let vertices = piece.mesh.vertices().iter().map(|v| single([v.x, v.y, v.z])).collect();
-        let part = TriMesh::new(vertices, piece.mesh.triangles().to_vec())
-            .expect("the tube has triangles");
+        let vertices = mesh.vertices().iter().map(|v| single([v.x, v.y, v.z])).collect();
+        let part =
+            TriMesh::new(vertices, mesh.triangles().to_vec()).expect("the tube has triangles");
         ParryContact { tool, part }
     }
 }

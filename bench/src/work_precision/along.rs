@@ -155,7 +155,7 @@ fn add_peers(lineup: &mut Lineup<'_>, mesh: &Mesh, kinds: &[Kind], points: bool,
         peers::add_points(lineup, mesh, kind);
     }
     if triangles {
-        peers::add_triangles(lineup, mesh, &kinds[0]);
+        peers::add_triangles(lineup, mesh);
     }
 }
 

@@ -94,7 +94,7 @@ impl Size<'_> {
         let kinds = self.kinds(0)?;
         let mut lineup = Lineup::default();
         self.add_points(&mut lineup, &kinds);
-        self.add_triangles(&mut lineup, &kinds, facets)?;
+        self.add_triangles(&mut lineup, facets)?;
         let mut tallies = self.check(&mut lineup, 0);
         // What asks triangles comes after what asks points, and knows no clouds.
         for other in &others {
@@ -121,7 +121,6 @@ impl Size<'_> {
     fn add_triangles<'a>(
         &self,
         lineup: &mut Lineup<'a>,
-        kinds: &[Kind],
         facets: &'a Facets,
     ) -> Result<(), Failure> {
         if self.from_last > 0 || !self.patch.is_flat() {
@@ -134,7 +133,7 @@ impl Size<'_> {
             lineup.add(label, Box::new(Proved::new(proved, *tolerance)));
         }
         if self.patch.is_of_ball_or_flute() {
-            peers::add_triangles(lineup, self.mesh, &kinds[0]);
+            peers::add_triangles(lineup, self.mesh);
         }
         Ok(())
     }

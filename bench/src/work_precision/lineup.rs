@@ -3,8 +3,8 @@
 use super::cutter::Cutter;
 use super::methods::{Bounded, Precision};
 use super::row::{LAW, Label, Row};
+use super::sampling::{Pattern, equal};
 use super::truth::{Errors, Tally, Truth, check};
-use crate::convergence::{Pattern, equal};
 use crate::race::clock::{Times, race};
 use crate::race::contender::Contender;
 use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe};

@@ -10,6 +10,7 @@
 mod along;
 pub mod choice;
 mod closed;
+mod contact;
 mod cutter;
 mod lineup;
 mod methods;
@@ -22,6 +23,7 @@ mod plots;
 mod reference;
 mod refine;
 mod row;
+mod sampling;
 mod table;
 mod truth;
 

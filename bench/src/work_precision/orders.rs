@@ -2,7 +2,6 @@
 
 use super::methods::Precision;
 use super::row::{Quantity, Row};
-use crate::convergence::order;
 
 /// What is fitted of a scene and a kind of cloud.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,13 +59,29 @@ fn slope(rows: &[&Row], quantity: Quantity) -> Option<f64> {
         Some([row.points? as f64, error])
     };
     let points: Vec<[f64; 2]> = rows.iter().filter_map(point).collect();
-    (points.len() >= FEWEST).then(|| order(&points)[0])
+    (points.len() >= FEWEST).then(|| order(&points))
+}
+
+/// Returns the order `p` of `y = c x^p`, by least squares of the logarithms.
+fn order(points: &[[f64; 2]]) -> f64 {
+    let logs = points.iter().map(|[x, y]| [x.ln(), y.ln()]).collect::<Vec<_>>();
+    let mean = |axis: usize| logs.iter().map(|p| p[axis]).sum::<f64>() / logs.len() as f64;
+    let [x, y] = [mean(0), mean(1)];
+    let along: f64 = logs.iter().map(|p| (p[0] - x) * (p[1] - y)).sum();
+    let across: f64 = logs.iter().map(|p| (p[0] - x) * (p[0] - x)).sum();
+    along / across
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{Plan, measure};
     use super::*;
+
+    #[test]
+    fn a_power_is_found_again() {
+        let points = [1.0, 10.0, 400.0].map(|x: f64| [x, 3.0 * x.powf(-1.26)]);
+        assert!((order(&points) + 1.26).abs() < 1e-12);
+    }
 
     #[test]
     fn a_ball_in_a_plane_converges_as_is_known() {

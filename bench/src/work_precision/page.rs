@@ -6,7 +6,7 @@ use super::plots::{ahead, plot};
 use super::row::{Label, Quantity, Row};
 use super::table::{cells, error, micros, setting};
 use super::{Facts, Measured, Plan};
-use crate::page::Page;
+use crate::page::{Page, Section};
 use std::fmt::{Error, Write};
 
 /// The beginning of all files' names.
@@ -34,21 +34,22 @@ pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
     choices(&mut body, measured)?;
     Ok(Page {
         name: NAME,
-        title: "Run time against error".to_owned(),
+        title: "Run time against error",
         covers: &["runtime/src", "tool-dsl/src", "tools-library/tools"],
-        body,
+        sections: vec![Section { title: "", body, missed: Vec::new() }],
         figures: figures(measured),
-        missed: Vec::new(),
     })
 }
 
-/// The rows, an object a line, and the diagrams that have points.
+/// The quantities that are drawn; torque goes as force does.
+const DRAWN: [Quantity; 2] = [Quantity::Force, Quantity::Depth];
+
+/// Returns the diagrams of the paths that have points.
 fn figures(measured: &Measured) -> Vec<(String, String)> {
-    let lines: String = measured.rows.iter().map(|row| row.json() + "\n").collect();
-    let mut figures = vec![(format!("{NAME}.jsonl"), lines)];
-    for facts in &measured.scenes {
+    let mut figures = Vec::new();
+    for facts in measured.scenes.iter().filter(|facts| facts.path) {
         let rows = of(measured, &facts.scene);
-        for quantity in Quantity::ALL {
+        for quantity in DRAWN {
             let plot = plot(&rows, &facts.scene, quantity);
             if !plot.is_empty() {
                 figures.push((file(&facts.scene, quantity), plot.svg()));
@@ -70,7 +71,7 @@ depth, under the thesis's law. On patches the truth is a closed form, on paths d
 are sums over the part's own triangles, quartered where that changes them; no error is given below what the truth is known to (`≤`).
 Of patches each size has several clouds and {} placements on each, of paths one cloud and {} poses.
 
-All rows are in [{NAME}.jsonl]({NAME}.jsonl), one object a line. **missed** is the share of poses in contact at which nothing is felt (of
+The command prints all rows, one object a line. **missed** is the share of poses in contact at which nothing is felt (of
 `apart`, where nothing is in contact, at which something is). **worst** is the largest error of depth, in the part's unit.
 
 | method | what it is | setting |
@@ -80,7 +81,14 @@ All rows are in [{NAME}.jsonl]({NAME}.jsonl), one object a line. **missed** is t
 | `graded` | `Graded::wrench` of the largest cloud and its levels, asked pose by pose along the path | nodes a query may look at |
 | `certified` | `Certifier::deepest`: the upper end of what is proved | tolerance |
 | `centroids` | `cloud` of the centroids of equal triangles with their areas | points |
-| others | see [peers](peers.md); they know the thesis's magnitudes, and are judged by those; clouds are blue, with cells | points |
+| `brute-f64`, `brute-f32` | all points, scalar with branches; and 16 at a time, all in `f32` | points |
+| `thesis` | a binary tree of 18-DOPs behind pointers, the tool in three volumes, scalar trees of splits | points |
+| `parry-bvh` | `parry3d`'s `Bvh` over blocks of 64 points, the tool's outline, formula and SIMD by hand, survivors in `f64` | points |
+| `fidget` | the formula as a JIT: intervals on nodes, a slice of points, gradients of hits | points |
+| `parry-contact` | `parry3d`'s `contact` of a compound and the triangle mesh: a depth, no force | |
+
+`brute` to `parry-contact` are other methods, with the feature `peers`. They know the thesis's magnitudes, and are judged by those; clouds are
+blue, with cells.
 ",
         plan.placements, plan.checks,
     )
@@ -99,7 +107,7 @@ fn scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
         "Typical: force {force:.3e} {unit}³, torque {torque:.3e} {unit}⁴, depth {depth:.3e} {unit}; known to {}, {} and {} of that.\n",
         known[0], known[1], known[2]
     )?;
-    for quantity in Quantity::ALL {
+    for quantity in DRAWN.into_iter().filter(|_| facts.path) {
         writeln!(
             page,
             "![{0}: {1}]({2})",

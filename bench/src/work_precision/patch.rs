@@ -1,8 +1,8 @@
 //! Patches of which everything is known: what touches them, where, and what it does.
 
+use super::contact::{Contact, DEPTH};
 use super::cutter::Cutter;
 use super::truth::Truth;
-use crate::convergence::contact::{Contact, DEPTH};
 use nalgebra::{Point3, Rotation3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;

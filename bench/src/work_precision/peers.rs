@@ -6,7 +6,7 @@ use touchoff::Mesh;
 #[cfg(feature = "peers")]
 mod built {
     use super::{Kind, Lineup, Mesh};
-    use crate::peers::{brute, fidget, parry_bvh, parry_contact, shell, thesis};
+    use crate::peers::{brute, fidget, parry_bvh, parry_contact, thesis};
     use crate::race::contender::{Contender, Workpiece};
     use crate::work_precision::row::Label;
 
@@ -16,22 +16,20 @@ mod built {
 
     pub(super) fn points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
         let piece = piece(mesh, kind);
-        let all: [(&str, Box<dyn Contender>); 7] = [
+        let all: [(&str, Box<dyn Contender>); 5] = [
             ("f64", Box::new(brute::Scalar::new(&piece))),
             ("f32", Box::new(brute::Lanes::new(&piece))),
             ("f64", Box::new(thesis::Thesis::new(&piece))),
             ("f32 filter + f64", Box::new(parry_bvh::ParryBvh::new(&piece))),
             ("f32", Box::new(fidget::Fidget::new(&piece))),
-            ("f64", Box::new(shell::Shell::in_space(&piece))),
-            ("f64", Box::new(shell::Shell::in_the_half_plane(&piece))),
         ];
         for (precision, contender) in all {
             lineup.add_of_the_thesis(kind.label(contender.name(), precision), contender);
         }
     }
 
-    pub(super) fn triangles(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
-        let contact = parry_contact::ParryContact::new(&piece(mesh, kind));
+    pub(super) fn triangles(lineup: &mut Lineup<'_>, mesh: &Mesh) {
+        let contact = parry_contact::ParryContact::new(mesh);
         lineup.add(Label::triangles(contact.name(), "f32"), Box::new(contact));
     }
 }
@@ -45,9 +43,9 @@ pub(super) fn add_points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
 }
 
 /// Those that ask the part's triangles: they know the solid, not the thesis's magnitudes.
-pub(super) fn add_triangles(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
+pub(super) fn add_triangles(lineup: &mut Lineup<'_>, mesh: &Mesh) {
     #[cfg(feature = "peers")]
-    built::triangles(lineup, mesh, kind);
+    built::triangles(lineup, mesh);
     #[cfg(not(feature = "peers"))]
-    let _ = (lineup, mesh, kind);
+    let _ = (lineup, mesh);
 }

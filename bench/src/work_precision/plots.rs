@@ -2,7 +2,7 @@
 
 use super::methods::Precision;
 use super::row::{Quantity, Row};
-use crate::plot::{Axis, Plot, Series, front};
+use crate::plot::{Axis, Plot, Series};
 
 /// Methods that belong together, with their words and their look.
 struct Family {
@@ -14,8 +14,8 @@ struct Family {
 }
 
 /// Peers, each with its place among looks.
-const PEERS: [&str; 8] =
-    ["brute-f64", "brute-f32", "thesis", "parry-bvh", "fidget", "grid", "grid-dz", "parry-contact"];
+const PEERS: [&str; 6] =
+    ["brute-f64", "brute-f32", "thesis", "parry-bvh", "fidget", "parry-contact"];
 const FIRST_PEER: usize = 10;
 
 /// Which family a row is of; `None` if it has no error of that quantity, or is shown by another.
@@ -75,7 +75,22 @@ pub(super) fn ahead(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     corners
 }
 
-/// The error of a quantity over the time of a query, and what nothing else beats.
+/// Returns the points that no other is below in both coordinates (Pareto's front), from left to right. Of equal points one is kept; those
+/// that are not finite are on no front.
+fn front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut sorted: Vec<[f64; 2]> =
+        points.iter().copied().filter(|p| p.iter().all(|c| c.is_finite())).collect();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let mut best = f64::INFINITY;
+    sorted.retain(|[_, y]| {
+        let better = *y < best;
+        best = best.min(*y);
+        better
+    });
+    sorted
+}
+
+/// The error of a quantity over the time of a query.
 pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
     let mut plot = Plot::new(
         format!("{scene}: error of the {} against time", quantity.name()),
@@ -98,8 +113,6 @@ pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
     for (look, ends) in late {
         plot = plot.with(Series::dashes("", ends).look(look));
     }
-    let all: Vec<[f64; 2]> = families.iter().flat_map(|(_, points)| points.clone()).collect();
-    plot = plot.with(Series::front("front", &ahead(&all)).look(9));
     for (family, points) in families {
         let series = match family.joined {
             true => Series::line(family.name, points),
@@ -114,6 +127,13 @@ pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_front_is_what_nothing_beats() {
+        let points = [[2.0, 2.0], [1.0, 5.0], [3.0, 2.0], [4.0, 1.0], [1.0, 6.0], [2.0, 2.0]];
+        assert_eq!(front(&points), [[1.0, 5.0], [2.0, 2.0], [4.0, 1.0]]);
+        assert_eq!(front(&[[f64::NAN, 0.0], [1.0, f64::INFINITY]]), [[0.0; 2]; 0]);
+    }
 
     #[test]
     fn the_same_sums_in_another_order_are_not_ahead() {

@@ -308,7 +308,8 @@ fn halves(corners: &Corners) -> [Corners; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::convergence::contact::Contact;
+    use crate::work_precision::contact::Contact;
+    use tools_library::Fig73Exact;
     use touchoff_tests::oracle::draw::Draw;
 
     #[test]
@@ -332,7 +333,7 @@ mod tests {
         let enough = Enough { share: 1e-5, most: 1 << 18 };
         for contact in [Contact::BallInPlane, Contact::SideInPlane] {
             let mesh = contact.mesh();
-            let refined = Refined::new(&mesh, contact.tool(), contact.tool());
+            let refined = Refined::new(&mesh, &Fig73Exact, &Fig73Exact);
             let mut draw = Draw::new(3);
             for _ in 0..5 {
                 let placed = contact.place(&mut draw);

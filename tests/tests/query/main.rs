@@ -6,6 +6,7 @@ mod aligned;
 mod anywhere;
 mod bits;
 mod compare;
+mod composed;
 mod error;
 mod far;
 mod law;

@@ -1,0 +1,54 @@
+//! Certified depths beside samples that zoom in, and tools inside the material.
+
+use std::error::Error;
+use touchoff::certify::Facets;
+use touchoff_bench::certified::subject::{FIELDS, PROFILES, Subject};
+use touchoff_bench::certified::{buried, poses, zoomed};
+use touchoff_bench::page::Section;
+use touchoff_bench::parallel;
+
+/// Returns the section of at least so many poses, with so many samples each where a triangle is near.
+pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, Box<dyn Error>> {
+    let parts = poses::parts()?;
+    let names: Vec<&str> = PROFILES.iter().chain(&FIELDS).copied().collect();
+    let each = count.div_ceil(parts.len() * names.len());
+    let facets: Vec<Facets> = parts.iter().map(|(_, mesh)| Facets::new(mesh)).collect();
+    let rows = parallel::rows(parts.len() * names.len(), |k| {
+        let ((part, mesh), name) = (&parts[k / names.len()], names[k % names.len()]);
+        let tool = tools_library::find(name).expect("a tool of the library");
+        let subject = Subject::of(name);
+        let facets = &facets[k / names.len()];
+        let row = zoomed::Zoomed { part, mesh, facets, tool, subject: &subject }.measure(
+            each,
+            samples,
+            seed + k as u64,
+        );
+        eprintln!("{name} in {part}: {} violations", row.violations.len());
+        row
+    });
+    // A solid's extents are no distances from an axis.
+    let round: Vec<&str> =
+        names.into_iter().filter(|name| !["Block", "LBracket"].contains(name)).collect();
+    let blocks = parallel::rows(round.len(), |k| {
+        let subject = Subject::of(round[k]);
+        let tool = tools_library::find(round[k]).expect("a tool of the library");
+        let count = if matches!(subject, Subject::Profile(..)) { 1000 } else { 20 };
+        buried::measure(tool, &subject, count, seed)
+    });
+
+    let about = format!(
+            "For each tool and part {each} poses with {samples} samples each where a triangle is near. Half of them are middles of triangles and of their halves, the piece that may
+have the deepest place first; the others zoom in on the deepest of these. Lengths are parts of the tool's size. *Over* is by how much a sample is above the upper
+bound, *behind* by how much the samples fall short of the lower one, which they do not know, *reached* at how many poses by no more than 1e-9 or, of the tools by
+their field or with overhangs, 1e-6. Tolerances are 1e-9 of the size, and of these 1e-6 mm; *wider* counts intervals wider than that and rounding.
+
+"
+    );
+    let buried = blocks.iter().flat_map(|row| row.violations.clone());
+    let missed = rows.iter().flat_map(|row| row.violations.clone()).chain(buried).collect();
+    Ok(Section {
+        title: "Beside samples that zoom in",
+        body: about + &zoomed::table(&rows, &blocks)?,
+        missed,
+    })
+}

@@ -1,0 +1,268 @@
+//! The page `triangles.md`: how long it takes to prove depths in triangles, and, with the feature `peers`, `parry3d`'s contact.
+
+use clap::Args;
+use nalgebra::{Point3, Vector3};
+use std::error::Error;
+use std::f64::consts::PI;
+use std::fmt::Write;
+use tools_library::{Fig73Exact, Flat};
+use touchoff::certify::{Certifier, Clear, Facets, Sweep};
+use touchoff::mesh::shapes;
+use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, Path, apart};
+use touchoff::{Mesh, Motion, Pose, Tool, Unit};
+use touchoff_bench::page::{Page, Section};
+#[cfg(feature = "peers")]
+use touchoff_bench::peers::parry_contact::ParryContact;
+use touchoff_bench::race::clock::{self, Times};
+use touchoff_bench::race::contender::{Answer, Contender};
+
+/// How closely depth is proved, mm.
+const TOLERANCE: f64 = 1e-9;
+/// How deep tools are in the scenes where many triangles are as deep, mm.
+const TIED: f64 = 0.1;
+
+/// Methods that say no depth.
+const YES_OR_NO: [&str; 2] = ["touchoff clear", "touchoff sweep"];
+
+/// Times certified depths, and whether a tool or a motion is clear, on meshes of several sizes.
+#[derive(Args)]
+pub(crate) struct Triangles {
+    /// Triangles of the meshes, about.
+    #[arg(long, value_name = "N,M,…", value_delimiter = ',', default_value = "2000,20000,200000")]
+    triangles: Vec<usize>,
+    /// Time that a method may take for a row, s; slower ones sit out poses.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.4, value_parser = super::not_negative)]
+    seconds: f64,
+}
+
+impl Triangles {
+    pub(crate) fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
+        clock::pin();
+        let mut body = about();
+        for size in &self.triangles {
+            for scene in Scene::ALL {
+                rows(&mut body, scene, &scene.mesh(*size), self.seconds)?;
+            }
+        }
+        Ok(Some(Page {
+            name: "triangles",
+            title: "How long proofs of depth take",
+            covers: &["runtime/src"],
+            sections: vec![Section { title: "", body, missed: Vec::new() }],
+            figures: Vec::new(),
+        }))
+    }
+}
+
+/// A scene of triangles.
+#[derive(Clone, Copy)]
+enum Scene {
+    /// The tube and a path of `touchoff::scenes`.
+    Along(Path),
+    /// The ball that far from the tube.
+    Apart(f64),
+    /// A flat end flat on a plate.
+    Flat,
+    /// The side of a cutter along a plate.
+    Line,
+    /// A cutter in a bore as wide as it is, but for the depth.
+    Bore,
+}
+
+impl Scene {
+    const ALL: [Scene; 8] = [
+        Scene::Along(Path::Outside),
+        Scene::Along(Path::Inside),
+        Scene::Along(Path::Hold),
+        Scene::Apart(1.0),
+        Scene::Apart(0.01),
+        Scene::Flat,
+        Scene::Line,
+        Scene::Bore,
+    ];
+
+    fn name(self) -> String {
+        match self {
+            Scene::Along(path) => path.name().to_owned(),
+            Scene::Apart(gap) => format!("apart {gap}"),
+            Scene::Flat => "flat".to_owned(),
+            Scene::Line => "line".to_owned(),
+            Scene::Bore => "bore".to_owned(),
+        }
+    }
+
+    fn tool(self) -> &'static dyn Tool {
+        match self {
+            Scene::Along(_) | Scene::Apart(_) => &Fig73Exact,
+            Scene::Flat | Scene::Line | Scene::Bore => &Flat,
+        }
+    }
+
+    /// A mesh of about so many triangles.
+    fn mesh(self, triangles: usize) -> Mesh {
+        let root = (triangles as f64).sqrt();
+        let tube = |inner: f64, height: f64| {
+            // As wide as high, as triangles of a wall are.
+            let around = (root * 0.9).round().max(3.0);
+            let layers = (triangles as f64 / (4.0 * around) - 1.0).round().max(1.0);
+            shapes::tube(inner, inner + 2.0, height, around as u32, layers as u32, Unit::Millimetre)
+        };
+        match self {
+            Scene::Along(_) | Scene::Apart(_) => tube(INNER, HEIGHT),
+            Scene::Flat | Scene::Line => {
+                shapes::plane(30.0, (root / 2f64.sqrt()).round() as u32, Unit::Millimetre)
+            }
+            Scene::Bore => tube(6.0 - TIED, 20.0),
+        }
+        .expect("a shape by construction")
+    }
+
+    fn pose(self, k: usize, n: usize) -> Pose {
+        let u = k as f64 / n as f64;
+        let [x, y] = [3.0 * (2.0 * PI * u).cos(), 3.0 * (6.0 * PI * u).sin()];
+        let stand = |tip: Point3<f64>, axis: Vector3<f64>| {
+            Pose::from_axis(tip, axis).expect("a unit vector")
+        };
+        match self {
+            Scene::Along(path) => path.pose(k, n),
+            Scene::Apart(gap) => apart(gap, k, n),
+            Scene::Flat => stand(Point3::new(x, y, -TIED), Vector3::z()),
+            Scene::Line => {
+                let turn = 2.0 * PI * u;
+                let axis = Vector3::new(turn.cos(), turn.sin(), 0.0);
+                stand(Point3::new(x, y, 6.0 - TIED), axis)
+            }
+            Scene::Bore => stand(Point3::new(0.0, 0.0, -5.0 + 10.0 * u), Vector3::z()),
+        }
+    }
+}
+
+/// The depth, proved.
+struct Certified<'a>(Certifier<'a>);
+
+impl Contender for Certified<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let found = self.0.deepest(pose, TOLERANCE);
+        let colliding = usize::from(found.witness.is_some());
+        Answer { colliding, depth: found.depth[1], wrench: None }
+    }
+}
+
+/// Whether it is clear.
+struct Cleared<'a>(Certifier<'a>);
+
+impl Contender for Cleared<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff clear"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let clear = matches!(self.0.clear(pose), Clear::Clear | Clear::SurfaceOnly);
+        Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
+    }
+}
+
+/// Whether it stays clear on a way of a tool's radius: along the wall, in half of the poses swung by a
+/// tenth of a radian the while.
+struct Swept<'a>(Certifier<'a>);
+
+impl Contender for Swept<'_> {
+    fn name(&self) -> &'static str {
+        "touchoff sweep"
+    }
+
+    fn query(&mut self, pose: &Pose) -> Answer {
+        let centre = pose.tip() + BALL * pose.axis();
+        let out = Vector3::new(centre.x, centre.y, 0.0).normalize();
+        let (up, along) = (Vector3::z(), Vector3::z().cross(&out));
+        let turn = 34.0 * centre.z;
+        let way = BALL * (turn.cos() * up + turn.sin() * along);
+        let swing = if (7.0 * turn).sin() > 0.0 { 0.1 } else { 0.0 };
+        let axis = (pose.axis() + swing * way.normalize()).normalize();
+        let to = Pose::from_axis(centre + way - BALL * axis, axis).expect("a unit vector");
+        let motion = Motion::new(pose, &to).expect("axes that are not opposite");
+        let clear = matches!(self.0.sweep_clear(&motion, TOLERANCE), Sweep::Clear);
+        Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
+    }
+}
+
+/// Times the methods of a scene on a mesh, and adds a row for each.
+fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt::Result {
+    let facets = Facets::new(mesh);
+    let certifier = || Certifier::new(&facets, scene.tool()).expect("a tool with a profile");
+    let mut methods: Vec<Box<dyn Contender>> =
+        vec![Box::new(Certified(certifier())), Box::new(Cleared(certifier()))];
+    if let Scene::Apart(_) = scene {
+        methods.push(Box::new(Swept(certifier())));
+    }
+    #[cfg(feature = "peers")]
+    if let Scene::Along(_) | Scene::Apart(_) = scene {
+        methods.push(Box::new(ParryContact::new(mesh)));
+    }
+    let poses: Vec<Pose> = (0..POSES).map(|k| scene.pose(k, POSES)).collect();
+    let times = clock::race(&mut methods, &poses, seconds);
+    for (method, times) in methods.iter_mut().zip(&times) {
+        let error = error(&mut **method, &mut certifier(), &poses);
+        eprintln!("{} {} {}", scene.name(), mesh.triangles().len(), method.name());
+        row(body, scene, mesh.triangles().len(), method.name(), times, error)?;
+    }
+    Ok(())
+}
+
+/// Returns the largest distance of a method's depths from the proved ones; `None` of methods that say no depth.
+fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pose]) -> Option<f64> {
+    if YES_OR_NO.contains(&method.name()) {
+        return None;
+    }
+    let some = poses.iter().step_by(poses.len() / 50);
+    let errors = some.map(|pose| {
+        let [low, high] = certifier.deepest(pose, TOLERANCE).depth;
+        let depth = method.query(pose).depth;
+        (depth - low).abs().max((depth - high).abs())
+    });
+    Some(errors.fold(0.0, f64::max))
+}
+
+fn row(
+    body: &mut String,
+    scene: Scene,
+    triangles: usize,
+    method: &str,
+    times: &Times,
+    error: Option<f64>,
+) -> std::fmt::Result {
+    let time = |ns: Option<u64>| ns.map_or("-".into(), |ns| format!("{:.2}", ns as f64 / 1e3));
+    let [half, most] = [0.5, 0.99].map(|part| time(times.percentile(part)));
+    writeln!(
+        body,
+        "| {} | {triangles} | `{method}` | {} | {:.2} | {half} | {most} | {} | {:.2} | {:.2} | {} |",
+        scene.name(),
+        times.poses(),
+        times.average() / 1e3,
+        time(times.longest()),
+        times.cpu() / 1e3,
+        times.colliding().0,
+        error.map_or("-".into(), |error| format!("{error:.0e}")),
+    )
+}
+
+fn about() -> String {
+    format!(
+        "How deep the part's triangles are in the tool. `touchoff` proves it to {TOLERANCE:e} mm (`Certifier::deepest`), with the tool of
+fig. 7.3 as its profile has it on `outside`, `inside`, `hold` and `apart`, where its ball is that many mm off; `touchoff clear`
+only asks whether anything touches; `touchoff sweep` whether it stays clear on a way of 1 mm, the ball's radius, along the wall, in
+half of the poses swung by 0.1 rad the while. In `flat`, `line` and `bore` a square end mill of 12 mm lies {TIED} mm deep with its end or
+its side in a plate, or in a bore, where a great many triangles are as deep. `parry-contact` is `parry3d`'s `contact` of a compound and
+the triangle mesh, without sweeps and without a proof; of convex shapes it takes the way out of one, which in `hold` is another depth.
+**In contact** is the part of the poses at which something is inside, **error** the largest distance of a depth from the proved one, in mm,
+and of the proved one the width of its interval.
+
+| scene | triangles | method | poses | avg µs | p50 | p99 | max | CPU | in contact | error |
+|---|--:|---|--:|--:|--:|--:|--:|--:|--:|--:|
+"
+    )
+}

@@ -1,0 +1,268 @@
+//! Plots as SVG: lines and points over linear or logarithmic axes, by `plotters`.
+
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
+use plotters::prelude::*;
+
+/// Width and height, pixels.
+const SIZE: (u32, u32) = (860, 560);
+
+/// Okabe and Ito's colours, which those who see fewer colours tell apart too, and darker ones.
+const COLOURS: [RGBColor; 10] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+    RGBColor(140, 81, 10),
+    RGBColor(106, 61, 154),
+    RGBColor(127, 127, 127),
+];
+
+/// A plot: two axes and what is drawn between them.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    title: String,
+    axes: [Axis; 2],
+    series: Vec<Series>,
+}
+
+/// An axis: its title, and whether equal steps are equal quotients.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    title: String,
+    log: bool,
+}
+
+/// Points that belong together, and how they are drawn.
+#[derive(Clone, Debug)]
+pub struct Series {
+    name: String,
+    points: Vec<[f64; 2]>,
+    form: Form,
+    look: Option<usize>,
+    bold: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Line,
+    Dashes,
+    Points,
+}
+
+impl Axis {
+    /// Returns an axis on which equal steps are equal differences.
+    pub fn linear(title: impl Into<String>) -> Axis {
+        Axis { title: title.into(), log: false }
+    }
+
+    /// Returns an axis on which equal steps are equal quotients.
+    pub fn log(title: impl Into<String>) -> Axis {
+        Axis { title: title.into(), log: true }
+    }
+
+    /// Returns whether a value has a place on the axis.
+    fn shows(&self, value: f64) -> bool {
+        value.is_finite() && (!self.log || value > 0.0)
+    }
+
+    /// Returns the stretch that holds all values, with some room at its ends.
+    fn span(&self, values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+        let ends = values.filter(|value| self.shows(*value)).fold(None, |ends, value| {
+            let [low, high] = ends.unwrap_or([value; 2]);
+            Some([value.min(low), value.max(high)])
+        });
+        let Some([low, high]) = ends else { return if self.log { 1.0..10.0 } else { 0.0..1.0 } };
+        if self.log {
+            return low / 1.3..high * 1.3;
+        }
+        let room = if high > low { 0.04 * (high - low) } else { 0.5 * low.abs().max(1.0) };
+        low - room..high + room
+    }
+}
+
+impl Series {
+    /// Returns points, each joined to the next. Series without a name are not in the legend.
+    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series { name: name.into(), points, form: Form::Line, look: None, bold: false }
+    }
+
+    /// Returns a dashed line.
+    pub fn dashes(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series { form: Form::Dashes, ..Series::line(name, points) }
+    }
+
+    /// Returns points alone.
+    pub fn points(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
+        Series { form: Form::Points, ..Series::line(name, points) }
+    }
+
+    /// Returns the series with the colour of that number, instead of that of its place in the plot: the same thing looks the same
+    /// in every plot.
+    #[must_use]
+    pub fn look(self, look: usize) -> Series {
+        Series { look: Some(look), ..self }
+    }
+
+    /// Returns the series with a thicker line and larger markers.
+    #[must_use]
+    pub fn bold(self) -> Series {
+        Series { bold: true, ..self }
+    }
+}
+
+impl Plot {
+    /// Returns an empty plot over its axes, the one to the right and the one upward.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
+        Plot { title: title.into(), axes: [x, y], series: Vec::new() }
+    }
+
+    /// Returns the plot with one more series, over those that are there.
+    #[must_use]
+    pub fn with(mut self, series: Series) -> Plot {
+        self.series.push(series);
+        self
+    }
+
+    /// Returns whether there is no point in it.
+    pub fn is_empty(&self) -> bool {
+        self.series.iter().all(|series| series.points.is_empty())
+    }
+
+    /// Returns the plot as an SVG file, the same bytes for the same numbers. A point that the axes cannot show (0 on a logarithmic one) is left
+    /// out.
+    ///
+    /// # Panics
+    /// Never: a text in memory can be written.
+    pub fn svg(&self) -> String {
+        let mut svg = String::new();
+        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        let [x, y] = [0, 1].map(|axis| {
+            let all = self.series.iter().flat_map(|series| &series.points);
+            self.axes[axis].span(all.map(|point| point[axis]))
+        });
+        let drawn = match [self.axes[0].log, self.axes[1].log] {
+            [true, true] => self.draw(&area, x.log_scale(), y.log_scale()),
+            [true, false] => self.draw(&area, x.log_scale(), y),
+            [false, true] => self.draw(&area, x, y.log_scale()),
+            [false, false] => self.draw(&area, x, y),
+        };
+        drawn.expect("a text in memory");
+        drop(area);
+        svg
+    }
+
+    fn draw<'a, X, Y>(
+        &self,
+        area: &DrawingArea<SVGBackend<'a>, Shift>,
+        x: X,
+        y: Y,
+    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>>
+    where
+        X: AsRangedCoord<Value = f64>,
+        Y: AsRangedCoord<Value = f64>,
+        X::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
+        area.fill(&WHITE)?;
+        let mut chart = ChartBuilder::on(area)
+            .caption(&self.title, ("sans-serif", 17))
+            .margin(14)
+            .x_label_area_size(42)
+            .y_label_area_size(70)
+            .build_cartesian_2d(x, y)?;
+        chart
+            .configure_mesh()
+            .x_desc(&self.axes[0].title)
+            .y_desc(&self.axes[1].title)
+            .x_label_formatter(&|value| label(*value))
+            .y_label_formatter(&|value| label(*value))
+            .label_style(("sans-serif", 12))
+            .axis_desc_style(("sans-serif", 13))
+            .light_line_style(RGBColor(240, 240, 240))
+            .bold_line_style(RGBColor(215, 215, 215))
+            .draw()?;
+        for (number, series) in self.series.iter().enumerate() {
+            let colour = COLOURS[series.look.unwrap_or(number) % COLOURS.len()];
+            let style = colour.stroke_width(if series.bold { 3 } else { 1 });
+            let size = if series.bold { 4 } else { 3 };
+            let shown =
+                |p: &&[f64; 2]| self.axes.iter().zip(*p).all(|(axis, value)| axis.shows(*value));
+            let points: Vec<(f64, f64)> =
+                series.points.iter().filter(shown).map(|[x, y]| (*x, *y)).collect();
+            let filled = series.form != Form::Points;
+            let marker = colour.mix(if filled { 1.0 } else { 0.7 }).filled();
+            let drawn = match series.form {
+                Form::Line => chart.draw_series(LineSeries::new(points.iter().copied(), style))?,
+                Form::Dashes => {
+                    chart.draw_series(DashedLineSeries::new(points.iter().copied(), 5, 4, style))?
+                }
+                Form::Points => chart.draw_series(
+                    points.iter().map(|p| TriangleMarker::new(*p, size + 1, marker)),
+                )?,
+            };
+            if !series.name.is_empty() {
+                drawn.label(&series.name).legend(move |(x, y)| {
+                    PathElement::new(vec![(x, y), (x + 18, y)], colour.stroke_width(3))
+                });
+            }
+            if series.form == Form::Line {
+                chart.draw_series(points.iter().map(|p| Circle::new(*p, size, marker)))?;
+            }
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(190, 190, 190))
+            .label_font(("sans-serif", 12))
+            .draw()?;
+        area.present()
+    }
+}
+
+/// Returns a number at a tick, short.
+fn label(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        size if (0.001..100_000.0).contains(&size) => format!("{}", (value * 1e6).round() / 1e6),
+        _ => format!("{value:.0e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plot_is_the_same_bytes_each_time_and_leaves_out_what_has_no_place() {
+        let points = vec![[1.0, 1.0], [2.0, 0.0], [0.0, 1.0], [3.0, f64::NAN], [4.0, 2.0]];
+        for (x, y, circles) in [
+            (Axis::log("x"), Axis::log("y"), 2),
+            (Axis::log("x"), Axis::linear("y"), 3),
+            (Axis::linear("x"), Axis::log("y"), 3),
+            (Axis::linear("x"), Axis::linear("y"), 4),
+        ] {
+            let plot = Plot::new("a < b", x, y)
+                .with(Series::line("line", points.clone()))
+                .with(Series::dashes("", vec![[1.0, 1.0], [4.0, 1.0]]));
+            let svg = plot.svg();
+            assert_eq!(svg, plot.svg());
+            assert_eq!(svg.matches("<circle").count(), circles);
+            assert!(svg.contains("a &lt; b") && svg.ends_with("</svg>\n") && !svg.contains("NaN"));
+        }
+    }
+
+    #[test]
+    fn nothing_and_one_point_are_plots_too() {
+        for axis in [Axis::log, Axis::linear] {
+            for points in [vec![], vec![[5.0, 5.0]]] {
+                let plot = Plot::new("", axis("x"), axis("y")).with(Series::points("p", points));
+                assert!(plot.svg().ends_with("</svg>\n"));
+            }
+        }
+    }
+}

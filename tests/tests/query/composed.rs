@@ -1,0 +1,121 @@
+//! Poses that are composed many times stay rotations, and stay where they should be.
+
+use nalgebra::{Matrix3, Point3, Unit, UnitQuaternion, Vector3};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
+use touchoff::Pose;
+use touchoff_tests::oracle::draw::Draw;
+
+/// Largest entry of `RᵀR - I` of a composed rotation, in ε.
+const APART: f64 = 4.0;
+
+/// Axes and angles, small and large, about any axis and about those of the frame.
+const TURNS: [([f64; 3], f64); 7] = [
+    ([1.0, 2.0, 3.0], 1e-3),
+    ([3.0, -1.0, 2.0], 1.0),
+    ([-0.2, 0.7, 0.1], 1e-9),
+    ([0.0, 0.0, 1.0], TAU / 360.0),
+    ([1.0, 1.0, 1.0], FRAC_PI_3),
+    ([0.0, 1.0, 0.0], FRAC_PI_2),
+    ([0.6, -0.5, 2.0], TAU / 7.0),
+];
+
+/// The largest entry of `RᵀR - I`, in ε: products without rounding, sums of six as if in twice the precision.
+fn apart(rotation: &Matrix3<f64>) -> f64 {
+    let mut most = 0f64;
+    for i in 0..3 {
+        for j in i..3 {
+            let (mut sum, mut rest) = (if i == j { -1.0 } else { 0.0 }, 0.0);
+            for k in 0..3 {
+                let (a, b) = (rotation[(k, i)], rotation[(k, j)]);
+                let product = a * b;
+                rest += a.mul_add(b, -product);
+                // Knuth's sum of two: what it rounds away is known.
+                let total: f64 = sum + product;
+                let back = total - sum;
+                rest += (sum - (total - back)) + (product - back);
+                sum = total;
+            }
+            most = most.max((sum + rest).abs());
+        }
+    }
+    most / f64::EPSILON
+}
+
+/// The rotation by `times` an angle about an axis.
+fn turn((axis, angle): ([f64; 3], f64), times: f64) -> UnitQuaternion<f64> {
+    let axis = Unit::new_normalize(Vector3::from(axis));
+    UnitQuaternion::from_axis_angle(&axis, (times * angle) % TAU)
+}
+
+/// A motion: the rotation about a point that is not the origin.
+fn motion(by: ([f64; 3], f64)) -> Pose {
+    let turn = turn(by, 1.0);
+    let fixed = Point3::new(10.0, -20.0, 5.0);
+    let q = turn.coords;
+    let tip = fixed - turn * fixed.coords;
+    Pose::from_quaternion(Point3::from(tip.coords), [q.x, q.y, q.z, q.w])
+        .expect("a unit quaternion")
+}
+
+#[test]
+fn rotations_stay_rotations() {
+    const TIMES: u32 = 30_000;
+    for by in TURNS {
+        let step = motion(by);
+        let mut pose = Pose::default();
+        for _ in 0..TIMES {
+            pose = pose.then(&step);
+            assert!(apart(pose.rotation()) <= APART, "{by:?}");
+        }
+        // Each composition, and the step itself, is off by some ε.
+        let exact = turn(by, f64::from(TIMES)).to_rotation_matrix();
+        let off = (pose.rotation() - exact.matrix()).norm();
+        assert!(off <= 2.0 * f64::EPSILON * f64::from(TIMES), "{by:?}: {off:e}");
+    }
+}
+
+/// However a chain of poses goes, seen from one another or one after the other.
+#[test]
+fn any_chain_of_poses_ends_in_a_rotation() {
+    let mut draw = Draw::new(12);
+    let mut any = || {
+        let [x, y, z] = draw.direction();
+        let [a, b, c] = draw.direction();
+        let tip = Point3::new(a, b, c);
+        let axis = Pose::from_axis(tip, Vector3::new(x, y, z)).expect("a unit vector");
+        let w = draw.between(-1.0, 1.0);
+        let size = (1.0 + w * w).sqrt();
+        let full = Pose::from_quaternion(tip, [x, y, z, w].map(|part| part / size));
+        [axis, full.expect("a unit quaternion")]
+    };
+    let mut pose = Pose::default();
+    for _ in 0..20_000 {
+        for other in any() {
+            assert!(apart(other.rotation()) <= 2.0 * APART, "{other:?}");
+            pose = pose.then(&other).seen_from(&any()[1]);
+            assert!(apart(pose.rotation()) <= APART, "{pose:?}");
+            // The way there and back.
+            let back = pose.then(&other).seen_from(&other);
+            assert!((back.rotation() - pose.rotation()).norm() < 3e-15, "{other:?}");
+            assert!((back.tip() - pose.tip()).norm() < 1e-14 * (1.0 + pose.tip().coords.norm()));
+        }
+    }
+}
+
+/// One motion after another is the product, point by point.
+#[test]
+fn one_motion_after_another() {
+    let mut draw = Draw::new(5);
+    for by in TURNS {
+        let first = motion(by);
+        let second = motion((draw.direction(), 0.7));
+        let both = first.then(&second);
+        let through = |pose: &Pose, p: Point3<f64>| pose.tip() + pose.rotation() * p.coords;
+        let p = Point3::from(draw.direction());
+        let off = through(&both, p) - through(&second, through(&first, p));
+        assert!(off.norm() < 1e-12, "{off}");
+        assert!(both.is_full());
+        let spun = Pose::from_axis(p, Vector3::z()).expect("a unit vector");
+        assert!(!spun.then(&second).is_full());
+    }
+}
