@@ -70,7 +70,6 @@ pub use mesh::{Mesh, MeshError, StlError, Survey};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
 pub use pose::{AXIS_TOLERANCE, FARTHEST_TIP, Pose, PoseError};
-pub use probe::precision;
 pub use probe::{
     BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Stiffness,
     Summary, Weights, Wrench, summary,

@@ -15,7 +15,7 @@ use touchoff_bench::work_precision::{self, Own, Plan, Row};
 /// The word for all scenes.
 const ALL: &str = "all";
 
-/// Races settings, precisions, levels, proofs and, with the feature `peers`, other methods; a row is printed as it comes.
+/// Races settings, levels, proofs and, with the feature `peers`, other methods; a row is printed as it comes.
 #[derive(Args)]
 pub(crate) struct WorkPrecision {
     /// Measures a sample, in less than a minute.
@@ -48,7 +48,7 @@ impl WorkPrecision {
         let own = match (&self.part, self.unit, &self.path) {
             (Some(part), Some(unit), Some(path)) => {
                 let tool = self.tool(loaded.as_ref())?;
-                Some(own((part, unit), (tool, loaded.is_none()), path)?)
+                Some(own((part, unit), tool, path)?)
             }
             _ => None,
         };
@@ -95,10 +95,10 @@ fn words() -> Vec<&'static str> {
     words
 }
 
-/// Reads a part and a tool's path along it; `compiled` is whether the tool is the library's.
+/// Reads a part and a tool's path along it.
 fn own<'t>(
     (part, unit): (&Path, Unit),
-    (tool, compiled): (&'t dyn Tool, bool),
+    tool: &'t dyn Tool,
     path: &Path,
 ) -> Result<Own<'t>, Box<dyn Error>> {
     let program = Program::read(path)?;
@@ -117,5 +117,5 @@ fn own<'t>(
     }
     let name = part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy().into_owned());
     let poses = program.stops.iter().map(|stop| stop.pose).collect();
-    Ok(Own { mesh, name, tool, compiled, poses })
+    Ok(Own { mesh, name, tool, poses })
 }

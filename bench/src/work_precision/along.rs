@@ -2,7 +2,7 @@
 
 use super::cutter::Cutter;
 use super::lineup::{CELLS, Kind, Lineup, Truths, kinds};
-use super::methods::{Budgeted, Precision, Proved};
+use super::methods::{Budgeted, Proved};
 use super::plan::Plan;
 use super::reference::{Reference, in_contact};
 use super::row::{Label, Row};
@@ -126,7 +126,6 @@ fn add_graded<'a>(lineup: &mut Lineup<'a>, known: &Known<'a>, detailed: &'a Part
                 points: Some(detailed.tree().len()),
                 sampling: Some("blue"),
                 weights: Some(CELLS),
-                precision: Precision::USUAL.name(),
                 budget: Some(*budget),
                 tolerance: None,
             };
@@ -143,7 +142,7 @@ fn add_certified<'a>(
 ) -> Result<(), Failure> {
     for tolerance in &plan.tolerances {
         let certifier = Certifier::new(facets, known.scene.cutter.tool())?;
-        let label = Label::triangles("certified", "f32 filter + f64");
+        let label = Label::triangles("certified");
         let label = Label { tolerance: Some(*tolerance), ..label };
         lineup.add(label, Box::new(Proved::new(certifier, *tolerance)));
     }
@@ -200,7 +199,7 @@ fn facts(known: Known<'_>, mesh: &Mesh) -> Facts {
 #[cfg(test)]
 mod tests {
     use super::super::{Plan, measure};
-    use super::{CELLS, Precision};
+    use super::CELLS;
 
     #[test]
     fn along_a_path_what_is_proved_keeps_its_tolerance_and_more_points_are_nearer() {
@@ -221,15 +220,12 @@ mod tests {
             assert!(row.worst_depth <= row.tolerance.map(|t| t + 1e-9), "{row:?}");
         }
         let clouds = of("inside", "cloud");
-        for precision in Precision::ALL.map(Precision::name) {
-            let errors: Vec<f64> = clouds
-                .iter()
-                .filter(|row| (row.sampling, row.weights) == (Some("blue"), Some(CELLS)))
-                .filter(|row| row.precision == precision)
-                .filter_map(|row| row.err_force)
-                .collect();
-            assert!(errors.len() == 2 && errors[1] < 0.3 * errors[0], "{precision} {errors:?}");
-        }
+        let errors: Vec<f64> = clouds
+            .iter()
+            .filter(|row| (row.sampling, row.weights) == (Some("blue"), Some(CELLS)))
+            .filter_map(|row| row.err_force)
+            .collect();
+        assert!(errors.len() == 2 && errors[1] < 0.3 * errors[0], "{errors:?}");
         assert!(of("inside", "graded").len() == 1 && of("inside", "cloud + bound").len() == 4);
         // Nothing is felt where nothing is, and nothing can be wrong with it.
         for row in measured.rows.iter().filter(|row| row.scene == "apart") {

@@ -128,7 +128,7 @@ impl Size<'_> {
         }
         for tolerance in &self.plan.tolerances {
             let proved = Certifier::new(facets, self.patch.cutter().tool())?;
-            let label = Label::triangles("certified", "f32 filter + f64");
+            let label = Label::triangles("certified");
             let label = Label { tolerance: Some(*tolerance), ..label };
             lineup.add(label, Box::new(Proved::new(proved, *tolerance)));
         }

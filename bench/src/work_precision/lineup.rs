@@ -1,7 +1,7 @@
 //! Methods side by side: raced on the same poses, checked against the same truths.
 
 use super::cutter::Cutter;
-use super::methods::{Bounded, Precision};
+use super::methods::{Bounded, Points};
 use super::row::{LAW, Label, Row};
 use super::sampling::{Pattern, equal};
 use super::truth::{Errors, Tally, Truth, check};
@@ -26,13 +26,12 @@ impl Kind {
     }
 
     /// What rows say of a method that asks its points.
-    pub(super) fn label(&self, method: &'static str, precision: &'static str) -> Label {
+    pub(super) fn label(&self, method: &'static str) -> Label {
         Label {
             method,
             points: Some(self.cloud.len()),
             sampling: Some(self.words[0]),
             weights: Some(self.words[1]),
-            precision,
             ..Label::default()
         }
     }
@@ -112,19 +111,15 @@ impl<'a> Lineup<'a> {
         self.entries.last_mut().expect("it was just added").thesis = true;
     }
 
-    /// A tool beside clouds: all that it feels, in every precision, and of each way to spread them what no
-    /// place is deeper than.
+    /// A tool beside clouds: the wrench, and of each way to spread points the bound of what no place is deeper than.
     pub(super) fn add_clouds(&mut self, kinds: &'a [Kind], cutter: Cutter<'a>) {
         for kind in kinds {
-            for precision in Precision::ALL {
-                if let Some(probe) = cutter.probe(&kind.part, precision) {
-                    self.add(kind.label(probe.name(), precision.name()), probe);
-                }
-            }
+            let points = Points(Probe::new(&kind.part, cutter.tool()));
+            self.add(kind.label(points.name()), Box::new(points));
         }
         for kind in kinds {
             if let Some(bounded) = Bounded::new(Probe::new(&kind.part, cutter.tool())) {
-                let mut label = kind.label(bounded.name(), Precision::USUAL.name());
+                let mut label = kind.label(bounded.name());
                 label.weights = None;
                 self.add(label, Box::new(bounded));
             }
@@ -190,7 +185,6 @@ fn row(scene: &str, label: &Label, times: &Times, errors: Result<Errors, f64>) -
         points: label.points,
         sampling: label.sampling,
         weights: label.weights,
-        precision: label.precision,
         p50_ns: times.percentile(0.5),
         p99_ns: times.percentile(0.99),
         err_force: relative[0],

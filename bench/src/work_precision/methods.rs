@@ -2,47 +2,17 @@
 
 use crate::race::contender::{Answer, Contender};
 use touchoff::certify::Certifier;
-use touchoff::precision;
-use touchoff::tool::Senses;
 use touchoff::{Graded, Pose, Probe, Wrench};
 
-/// In what arithmetic a cloud's points are asked. The one place where those that are measured stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Precision {
-    /// `f64` throughout.
-    Double,
-    /// `f32` rules out, `f64` decides.
-    Filtered,
-    /// `f32` throughout, but for the sums.
-    Single,
-}
-
-impl Precision {
-    /// All that are measured.
-    pub(super) const ALL: [Precision; 3] =
-        [Precision::Filtered, Precision::Double, Precision::Single];
-    /// What a probe does if nothing is said.
-    pub(super) const USUAL: Precision = Precision::Filtered;
-
-    /// The words for it.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Precision::Double => "f64",
-            Precision::Filtered => "f32 filter + f64",
-            Precision::Single => "f32",
-        }
-    }
-}
-
-/// All that is felt of a cloud's points.
-pub(super) struct Felt<'a, T: ?Sized, P: precision::Precision>(pub(super) Probe<'a, T, P>);
+/// The wrench of a cloud's points.
+pub(super) struct Points<'a>(pub(super) Probe<'a>);
 
 fn answer(felt: &Wrench) -> Answer {
     let wrench = Some([felt.force, felt.torque]);
     Answer { colliding: felt.colliding, depth: felt.depth(), wrench }
 }
 
-impl<T: Senses<P::Number> + ?Sized, P: precision::Precision> Contender for Felt<'_, T, P> {
+impl Contender for Points<'_> {
     fn name(&self) -> &'static str {
         "cloud"
     }

@@ -106,8 +106,6 @@ pub struct Own<'t> {
     pub name: String,
     /// The tool.
     pub tool: &'t dyn Tool,
-    /// Whether it is the library's tool of its name.
-    pub compiled: bool,
     /// Where it goes.
     pub poses: Vec<Pose>,
 }
@@ -139,11 +137,10 @@ pub fn measure(
     if !tube_scenes.is_empty() {
         scenes.extend(along::measure(&tube(), tube_scenes, plan, &mut both)?);
     }
-    if let Some(Own { mesh, name, tool, compiled, poses }) = own {
+    if let Some(Own { mesh, name, tool, poses }) = own {
         let triangles = mesh.triangles().len();
         let about = format!("{} along a part of {triangles} triangles", tool.card().name);
-        let cutter = Cutter::of(tool, compiled);
-        let scene = Along { name, about, cutter, poses, touches: true };
+        let scene = Along { name, about, cutter: Cutter(tool), poses, touches: true };
         scenes.extend(along::measure(&mesh, vec![scene], plan, &mut both)?);
     }
     Ok(Measured { scenes, pinned, ..measured })

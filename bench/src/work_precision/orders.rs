@@ -1,6 +1,5 @@
 //! Orders of convergence: the slopes of errors over the number of points.
 
-use super::methods::Precision;
 use super::row::{Quantity, Row};
 
 /// What is fitted of a scene and a kind of cloud.
@@ -48,7 +47,7 @@ pub fn orders(rows: &[Row]) -> Vec<Orders> {
 }
 
 fn of_a_cloud(row: &Row) -> bool {
-    row.method == "cloud" && row.precision == Precision::USUAL.name()
+    row.method == "cloud"
 }
 
 fn slope(rows: &[&Row], quantity: Quantity) -> Option<f64> {

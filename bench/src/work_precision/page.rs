@@ -156,8 +156,8 @@ pub(super) fn beaten_by_none<'a>(rows: &[&'a Row], quantity: Quantity) -> Vec<&'
 fn table(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     writeln!(
         page,
-        "| method | setting | sampling | weights | precision | p50 µs | p99 µs | force | torque | depth | worst | missed |
-|---|--:|---|---|---|--:|--:|--:|--:|--:|--:|--:|"
+        "| method | setting | sampling | weights | p50 µs | p99 µs | force | torque | depth | worst | missed |
+|---|--:|---|---|--:|--:|--:|--:|--:|--:|--:|"
     )?;
     for row in rows {
         writeln!(page, "| {} % |", cells(row).join(" | "))?;
@@ -206,8 +206,8 @@ fn choices(page: &mut String, measured: &Measured) -> Result<(), Error> {
 The fastest that keeps the tolerance on every path ({}): of the force by its error, a root mean square, of the depth by its worst, in the part's
 unit. The fastest is the one whose slowest median is the shortest. *Safe* are those that answer no less than the true depth.
 
-| tolerance | of | method | setting | sampling | weights | precision | p50 µs ({}) | error |
-|--:|---|---|--:|---|---|---|--:|--:|",
+| tolerance | of | method | setting | sampling | weights | p50 µs ({}) | error |
+|--:|---|---|--:|---|---|--:|--:|",
         scenes.join(", "),
         scenes.join(", ")
     )?;
@@ -234,10 +234,10 @@ fn chosen(
     found: Option<Choice>,
 ) -> Result<(), Error> {
     let Some(Choice { label, p50, error: worst }) = found else {
-        return writeln!(page, "| {tolerance} | {what} | none that was measured | | | | | | |");
+        return writeln!(page, "| {tolerance} | {what} | none that was measured | | | | | |");
     };
     let times: Vec<String> = p50.into_iter().map(|ns| micros(Some(ns))).collect();
-    let Label { method, points, sampling, weights, precision, tolerance: to, budget } = label;
+    let Label { method, points, sampling, weights, tolerance: to, budget } = label;
     let setting = match (points, budget, to) {
         (_, Some(budget), _) => format!("≤ {budget}"),
         (_, _, Some(to)) => format!("{to:.0e}"),
@@ -246,7 +246,7 @@ fn chosen(
     };
     writeln!(
         page,
-        "| {tolerance} | {what} | {method} | {setting} | {} | {} | {precision} | {} | {} |",
+        "| {tolerance} | {what} | {method} | {setting} | {} | {} | {} | {} |",
         sampling.unwrap_or("-"),
         weights.unwrap_or("-"),
         times.join(", "),

@@ -16,21 +16,21 @@ mod built {
 
     pub(super) fn points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
         let piece = piece(mesh, kind);
-        let all: [(&str, Box<dyn Contender>); 5] = [
-            ("f64", Box::new(brute::Scalar::new(&piece))),
-            ("f32", Box::new(brute::Lanes::new(&piece))),
-            ("f64", Box::new(thesis::Thesis::new(&piece))),
-            ("f32 filter + f64", Box::new(parry_bvh::ParryBvh::new(&piece))),
-            ("f32", Box::new(fidget::Fidget::new(&piece))),
+        let all: [Box<dyn Contender>; 5] = [
+            Box::new(brute::Scalar::new(&piece)),
+            Box::new(brute::Lanes::new(&piece)),
+            Box::new(thesis::Thesis::new(&piece)),
+            Box::new(parry_bvh::ParryBvh::new(&piece)),
+            Box::new(fidget::Fidget::new(&piece)),
         ];
-        for (precision, contender) in all {
-            lineup.add_of_the_thesis(kind.label(contender.name(), precision), contender);
+        for contender in all {
+            lineup.add_of_the_thesis(kind.label(contender.name()), contender);
         }
     }
 
     pub(super) fn triangles(lineup: &mut Lineup<'_>, mesh: &Mesh) {
         let contact = parry_contact::ParryContact::new(mesh);
-        lineup.add(Label::triangles(contact.name(), "f32"), Box::new(contact));
+        lineup.add(Label::triangles(contact.name()), Box::new(contact));
     }
 }
 

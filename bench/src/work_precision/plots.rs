@@ -1,6 +1,5 @@
 //! Time against error as diagrams.
 
-use super::methods::Precision;
 use super::row::{Quantity, Row};
 use crate::plot::{Axis, Plot, Series};
 
@@ -21,7 +20,6 @@ const FIRST_PEER: usize = 10;
 /// Which family a row is of; `None` if it has no error of that quantity, or is shown by another.
 fn family(row: &Row, quantity: Quantity) -> Option<Family> {
     quantity.error(row)?;
-    let usual = row.precision == Precision::USUAL.name();
     let (sampling, weights) = (row.sampling.unwrap_or("-"), row.weights.unwrap_or("-"));
     let depth = quantity == Quantity::Depth;
     let ours = |name: String, look| Some(Family { name, look, joined: true, bold: false });
@@ -31,14 +29,8 @@ fn family(row: &Row, quantity: Quantity) -> Option<Family> {
         ("cloud", _, "equal") if depth => None,
         ("cloud", "blue", "cells") => {
             let kind = if depth { "blue" } else { "blue, cells" };
-            match Precision::ALL.iter().position(|p| p.name() == row.precision) {
-                _ if usual => {
-                    Some(Family { name: kind.to_owned(), look: 3, joined: true, bold: true })
-                }
-                at => ours(format!("{kind}, {}", row.precision), [5, 8, 9][at.unwrap_or(0) % 3]),
-            }
+            Some(Family { name: kind.to_owned(), look: 3, joined: true, bold: true })
         }
-        ("cloud", ..) if !usual => None,
         ("cloud", "random", "cells") if depth => ours("random".to_owned(), 1),
         ("cloud", ..) => {
             let look = match (sampling, weights) {

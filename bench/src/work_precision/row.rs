@@ -16,8 +16,6 @@ pub struct Label {
     pub sampling: Option<&'static str>,
     /// What each counts for: `equal`, the area over their number, or `cells`.
     pub weights: Option<&'static str>,
-    /// In what arithmetic it is asked.
-    pub precision: &'static str,
     /// How closely depth is proved, in the part's unit.
     pub tolerance: Option<f64>,
     /// How many nodes a query may look at.
@@ -26,8 +24,8 @@ pub struct Label {
 
 impl Label {
     /// A method that asks the part's triangles.
-    pub fn triangles(method: &'static str, precision: &'static str) -> Label {
-        Label { method, precision, ..Label::default() }
+    pub fn triangles(method: &'static str) -> Label {
+        Label { method, ..Label::default() }
     }
 }
 
@@ -46,8 +44,6 @@ pub struct Row {
     pub sampling: Option<&'static str>,
     /// See [`Label`].
     pub weights: Option<&'static str>,
-    /// See [`Label`].
-    pub precision: &'static str,
     /// Half of the queries took no longer.
     pub p50_ns: Option<u64>,
     /// Of a hundred 99 took no longer; `None` of too few.
@@ -89,7 +85,6 @@ impl Row {
             points: self.points,
             sampling: self.sampling,
             weights: self.weights,
-            precision: self.precision,
             tolerance: self.tolerance,
             budget: self.budget,
         }
@@ -156,7 +151,6 @@ pub(super) mod tests {
             points: Some(1000),
             sampling: Some("blue"),
             weights: Some("cells"),
-            precision: "f32 filter + f64",
             p50_ns: Some(ns),
             p99_ns: None,
             err_force: Some(error),
@@ -186,7 +180,6 @@ pub(super) mod tests {
             "points",
             "sampling",
             "weights",
-            "precision",
             "p50_ns",
             "p99_ns",
             "err_force",

@@ -2,15 +2,14 @@
 
 use super::row::Row;
 
-/// The cells behind the scene: method, setting, sampling, weights, precision, times, errors, and how many
+/// The cells behind the scene: method, setting, sampling, weights, times, errors, and how many
 /// contacts in a hundred were missed.
-pub(super) fn cells(row: &Row) -> [String; 12] {
+pub(super) fn cells(row: &Row) -> [String; 11] {
     [
         row.method.to_owned(),
         setting(row),
         row.sampling.unwrap_or("-").to_owned(),
         row.weights.unwrap_or("-").to_owned(),
-        row.precision.to_owned(),
         micros(row.p50_ns),
         micros(row.p99_ns),
         marked(row, "force", row.err_force),

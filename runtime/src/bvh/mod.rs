@@ -6,13 +6,11 @@
 
 mod build;
 mod lanes;
-mod rough;
 mod view;
 
 pub(crate) use build::{Bounds, Item, around, levels, order, outward};
 pub(crate) use lanes::{LANE, Triple, extent, load, seen};
-pub(crate) use rough::{Rough, Sixteen};
-pub(crate) use view::{Reach, SLABS, Sight, View};
+pub(crate) use view::{PoseTransform, QuerySetup, Reach, SLABS};
 
 use bytemuck::{Pod, Zeroable};
 use nalgebra::Point3;

@@ -43,7 +43,7 @@ impl Certifier<'_> {
             return Clearance { distance: [low, f64::INFINITY], witness: None };
         };
         if self.apart.as_ref().is_none_or(|apart| apart.surfaces != surfaces) {
-            let margin = self.setting.sight.margin;
+            let margin = self.setting.setup.margin;
             let of = |limit| Question::new(section, margin, limit, |k| surfaces.contains(&k));
             // A limit below 0 asks for the surfaces themselves, whatever it is.
             let (inside, outside) = (of(0.0), of(-1.0));

@@ -37,7 +37,7 @@ pub use part::Facets;
 #[cfg(feature = "postures")]
 pub(crate) use part::Location;
 
-use crate::bvh::Sight;
+use crate::bvh::QuerySetup;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tool::{Card, Tool};
@@ -121,7 +121,7 @@ impl<'a> Certifier<'a> {
     pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Certifier<'a>, Uncertified> {
         let (card, level) = (tool.card(), Level::new());
         let length = card.unit.to(facets.unit());
-        let sight = Sight::new(&facets.frame, card, length);
+        let setup = QuerySetup::new(&facets.frame, card, length);
         let part = f64::from(facets.frame.size) * facets.frame.scale / length;
         let error = rounding::place(card, part);
         let (body, error) = match Section::new(card, error) {
@@ -136,7 +136,7 @@ impl<'a> Certifier<'a> {
         };
         let surfaces = card.surfaces.len();
         let (size, exact) = (card.size(), card.exact());
-        let setting = Setting { facets, body, size, exact, sight, level, length, error };
+        let setting = Setting { facets, body, size, exact, setup, level, length, error };
         let whole = setting.question(0.0, |_| true);
         Ok(Certifier {
             whole,

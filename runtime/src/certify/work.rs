@@ -1,6 +1,6 @@
 //! The search of a part's triangles, and what it keeps from question to question.
 
-use crate::bvh::{Sight, View};
+use crate::bvh::{PoseTransform, QuerySetup};
 use crate::certify::answer::Witness;
 use crate::certify::body::Body;
 use crate::certify::body::field::Scratch;
@@ -25,7 +25,7 @@ pub(crate) struct Setting<'a> {
     pub(crate) size: f64,
     /// Whether what is said of places outside is their distance.
     pub(crate) exact: bool,
-    pub(crate) sight: Sight,
+    pub(crate) setup: QuerySetup,
     pub(crate) level: Level,
     /// The tool's unit of length in the part's.
     pub(crate) length: f64,
@@ -37,7 +37,7 @@ impl Setting<'_> {
     /// What some surfaces are asked, by their places in the card's list; of a tool by its field no less than
     /// 0 is a limit.
     pub(crate) fn question(&self, limit: f64, surfaces: impl Fn(usize) -> bool) -> Question {
-        let margin = self.sight.margin;
+        let margin = self.setup.margin;
         match &self.body {
             Body::Profile(section) => Question::new(section, margin, limit, surfaces),
             Body::Field(field) => Question::of_field(field, [margin, self.error], limit, surfaces),
@@ -46,7 +46,7 @@ impl Setting<'_> {
 
     /// Looks at the part from a pose; whether the tool may reach it.
     pub(crate) fn look(&self, work: &mut Work, pose: &Pose) -> bool {
-        self.sight.look(&self.facets.frame, pose, &mut work.view)
+        self.setup.set_pose(&self.facets.frame, pose, &mut work.view)
     }
 
     /// A place as people are told it.
@@ -61,14 +61,14 @@ impl Setting<'_> {
     /// How far `f32` can take a bound: planes are as steep as 2, so that one errs by three times as much
     /// as a place, and a few roundings.
     pub(crate) fn margin(&self) -> f64 {
-        if self.sight.fits { 4.0 * self.body.steep() * self.sight.margin } else { f64::INFINITY }
+        if self.setup.fits { 4.0 * self.body.steep() * self.setup.margin } else { f64::INFINITY }
     }
 }
 
 /// What a search is at, or has found.
 #[derive(Default)]
 pub(crate) struct Work {
-    pub(crate) view: View,
+    pub(crate) view: PoseTransform,
     pub(crate) search: Search,
     pub(crate) descent: Descent,
     batch: Batch,
@@ -105,7 +105,7 @@ impl Faces {
         &mut self,
         of: &Setting<'_>,
         question: &Question,
-        (pose, view): (&Pose, &View),
+        (pose, view): (&Pose, &PoseTransform),
         faces: &[u32],
     ) -> f64 {
         let more = of.body.steep() * flat(&of.facets.frame) / of.length;

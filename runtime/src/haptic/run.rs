@@ -1,7 +1,6 @@
 //! A session in time: so many cycles a second, in a thread of its own.
 
 use super::{Device, Faults, Session, State};
-use crate::probe::precision::Precision;
 use crate::tool::Senses;
 use hdrhistogram::Histogram;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -162,8 +161,8 @@ const STALL: Duration = Duration::from_secs(1);
 /// Lets cycles happen, each at its time after the start whatever those before it took, until so many are over,
 /// the device has nothing left to play, or it is told to stop. What comes too late for its time is left out,
 /// and counts as over.
-pub fn run<T: Senses<P::Number> + ?Sized, P: Precision>(
-    (session, device): (&mut Session<'_, T, P>, &mut impl Device),
+pub fn run<T: Senses + ?Sized>(
+    (session, device): (&mut Session<'_, T>, &mut impl Device),
     (clock, cycles): (&mut impl Clock, u64),
     watch: &mut Watch,
     stop: &AtomicBool,

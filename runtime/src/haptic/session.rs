@@ -7,7 +7,6 @@ use super::passivity::{Energy, Passivity};
 use super::setting::{self, SettingError};
 use super::{Axes, Device, Limits, Push};
 use crate::pose::Pose;
-use crate::probe::precision::{Filtered, Precision};
 use crate::probe::{Law, Probe, Stiffness, Wrench};
 use crate::tool::Senses;
 use crate::tool::Tool;
@@ -82,8 +81,8 @@ pub struct State {
 /// A tool at a part, in a hand. No cycle waits or allocates, however much larger its contact is than those
 /// before: [`Session::new`] reserves memory for a contact of all points of the part. A device allocates what
 /// it will, and so does a [`Tool`] of one's own that has no [`Tool::reserve`].
-pub struct Session<'a, T: ?Sized = dyn Tool + 'a, P: Precision = Filtered> {
-    probe: Probe<'a, T, P>,
+pub struct Session<'a, T: ?Sized = dyn Tool + 'a> {
+    probe: Probe<'a, T>,
     newtons: f64,
     rendering: Rendering,
     passive: bool,
@@ -127,7 +126,7 @@ const ASKED: usize = 6;
 /// Springs and contact balance where what is left is no more than this share of what the device can push.
 const BALANCED: f64 = 1e-7;
 
-impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Session<'a, T, P> {
+impl<'a, T: Senses + ?Sized> Session<'a, T> {
     /// A session of a probe, whose law and compliance centre it goes by. It reserves 127 bytes per point of
     /// the part, 13 MB for 100,000 points, and some 100 kB for a tool that is interpreted.
     ///
@@ -135,10 +134,10 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Session<'a, T, P> {
     /// If a setting, a limit of the device or the compliance centre is out of its range: a rate of 0, a
     /// stiffness that is NaN.
     pub fn new(
-        mut probe: Probe<'a, T, P>,
+        mut probe: Probe<'a, T>,
         settings: &Settings,
         limits: Limits,
-    ) -> Result<Session<'a, T, P>, SettingError> {
+    ) -> Result<Session<'a, T>, SettingError> {
         settings.check()?;
         limits.check()?;
         let period = setting::period(settings.rate)?;

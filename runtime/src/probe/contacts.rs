@@ -1,8 +1,8 @@
 //! Contacts one by one, and what can be said of them together (Ho 1999, section 4.4).
 
-use super::{Beside, Weights};
+use super::Weights;
+use super::state::QueryState;
 use crate::pose::Pose;
-use crate::probe::precision::Precision;
 use crate::tool::Card;
 use nalgebra::{Point3, Vector3};
 
@@ -34,32 +34,25 @@ pub struct Contact {
 }
 
 /// Lists what the probe has just felt.
-pub(super) fn list<P: Precision>(
-    beside: &Beside<'_, P>,
-    card: &Card,
-    pose: &Pose,
-    contacts: &mut Vec<Contact>,
-) {
-    let (felt, tree) = (&beside.felt, beside.tree);
+pub(super) fn list(state: &QueryState<'_>, card: &Card, pose: &Pose, contacts: &mut Vec<Contact>) {
+    let (felt, tree) = (&state.felt, state.tree);
     let rotation = pose.rotation();
     for at in felt.places() {
-        let index = beside.search.candidates.indices()[at] as usize;
-        let vector = |lists: &[Vec<P::Number>; 3]| {
-            Vector3::from(lists.each_ref().map(|list| list[at].into()))
-        };
-        let region = felt.region[at].into() as usize;
+        let index = state.candidates.indices()[at] as usize;
+        let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
+        let region = felt.region[at] as usize;
         contacts.push(Contact {
-            point: pose.tip() + tree.relative_to_tip(&beside.view, index),
+            point: pose.tip() + tree.relative_to_tip(&state.view, index),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,
             surface: card.regions[region].surface,
-            depth: felt.depth[at].into() * beside.length,
-            magnitude: felt.magnitude[at].into(),
+            depth: felt.depth[at] * state.length,
+            magnitude: felt.magnitude[at],
             direction: rotation * vector(&felt.direction),
             gradient: rotation * vector(&felt.gradient),
-            niceness: felt.niceness[at].into(),
-            weight: match beside.weights {
+            niceness: felt.niceness[at],
+            weight: match state.weights {
                 Weights::Area => tree.weight(index),
                 Weights::Unit => 1.0,
             },

@@ -80,20 +80,20 @@ impl<'a, T: Senses + ?Sized> Graded<'a, T> {
     /// Force, torque, depth and niceness of the whole contact, as finely as the budget allows.
     pub fn wrench(&mut self, pose: &Pose) -> GradedWrench {
         let last = self.last.take();
-        let (mut nodes, mut finest) = (0, 0);
+        let (mut nodes, mut finest, mut in_reach) = (0, 0, false);
         let coarsest = self.probes.len() - 1;
         for (place, probe) in self.probes.iter_mut().enumerate() {
             if last.as_ref().is_some_and(|last| last.left > 0 && coarsest - place < last.level) {
                 break;
             }
-            match probe.look_within(pose, self.budget - nodes) {
-                Some(more) => (nodes, finest) = (nodes + more, place),
+            match probe.traverse_within(pose, self.budget - nodes) {
+                Some(more) => (nodes, finest, in_reach) = (nodes + more, place, more > 0),
                 None => break,
             }
         }
         let level = coarsest - finest;
         let probe = &mut self.probes[finest];
-        let mut wrench = probe.looked(pose);
+        let mut wrench = if in_reach { probe.reduce(pose) } else { probe.nothing() };
         if wrench.colliding > 0 {
             let (step, left) = match &last {
                 Some(last) if last.level == level => (last.step, last.left.saturating_sub(1)),

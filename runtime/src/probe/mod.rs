@@ -1,39 +1,40 @@
-//! A tool feeling a part, pose by pose.
+//! The questions to a cloud's points, pose by pose.
 //!
 //! ```text
-//! pose ──look──▶ leaves near the tool ──sift──▶ candidates, in the tool's frame
-//!                                                                   │ feel
-//!   detect, deepest, posture, wrench, contacts ◀──sum or list──  what is felt
+//! pose ──set_pose, traverse──▶ leaves near the tool ──filter──▶ candidates, in the tool's frame
+//!                                                                       │ evaluate
+//!   detect, deepest, posture, wrench, contacts ◀──reduce or list──  evaluations
 //! ```
 
 mod contacts;
 mod graded;
 mod law;
-mod once;
 mod posture;
-pub mod precision;
+mod state;
 mod stiffness;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
 pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
-pub(crate) use once::Once;
 pub use posture::{Deepest, Posture};
 pub use stiffness::Stiffness;
 pub use wrench::{Rounding, Wrench};
 
-use crate::bvh::{Sight, View, WIDTH};
+use crate::bvh::WIDTH;
 use crate::pose::Pose;
-use crate::tool::{Ask, Felt, Senses, Tool, Wanted, reserve};
-use crate::tree::{Search, Tree};
+use crate::tool::{Ask, Senses, Tool, Wanted, reserve};
+use crate::tree::Tree;
 use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
-use precision::{Filtered, Precision};
+use state::QueryState;
 
 /// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
 /// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
+///
+/// Points are ruled out in `f32`, with a margin for what that rounds; those that are left are evaluated in `f64`,
+/// and sums are taken in `f64`.
 ///
 /// Memory is kept between questions: one allocates only where more points are near the tool than in
 /// any before, and never after [`Probe::reserved`]. The answers have the same bits on every machine
@@ -42,33 +43,9 @@ use precision::{Filtered, Precision};
 /// What a question does not need is not computed. Of a tool whose type is known, as in
 /// `Probe::new(&part, &Ball)`, a program has code only for the questions that it asks; of a
 /// `&dyn Tool` for all of them.
-pub struct Probe<'a, T: ?Sized = dyn Tool + 'a, P: Precision = Filtered> {
+pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
     tool: &'a T,
-    beside: Beside<'a, P>,
-}
-
-/// What is beside a tool: a part, how it is to be felt, and room to find out.
-pub struct Beside<'a, P: Precision> {
-    tree: &'a Tree,
-    /// The part's.
-    unit: Unit,
-    /// The tool's unit of length in the part's.
-    length: f64,
-    /// How far the tool reaches from its tip, in its unit.
-    reach: f64,
-    law: Law,
-    weights: Weights,
-    centre: Point3<f64>,
-    level: Level,
-    sight: Sight<P::Rough>,
-    view: View<P::Rough>,
-    search: Search<P::Rough, P::Number>,
-    /// A leaf that had a point inside when it was asked last whether any has.
-    hit: u32,
-    felt: Felt<P::Number>,
-    /// For what tools keep between questions in `f64`.
-    room: Felt,
-    contacts: Vec<Contact>,
+    state: QueryState<'a>,
 }
 
 /// What is asked for, question by question.
@@ -101,103 +78,69 @@ impl Wanted for Everything {
 impl<'a, T: Senses + ?Sized> Probe<'a, T> {
     /// Of a part's points in their tree, whose lengths are in that unit.
     pub(crate) fn of(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T> {
-        Probe::exactly(tree, unit, tool)
-    }
-}
-
-impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
-    fn exactly(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T, P> {
-        let length = tool.card().unit.to(unit);
-        let beside = Beside {
-            tree,
-            unit,
-            length,
-            reach: tool.card().size(),
-            law: Law::Thesis,
-            weights: Weights::Area,
-            centre: Point3::origin(),
-            level: Level::new(),
-            sight: Sight::new(&tree.frame, tool.card(), length),
-            view: View::default(),
-            search: Search::default(),
-            hit: 0,
-            felt: Felt::default(),
-            room: Felt::default(),
-            contacts: Vec::new(),
-        };
-        Probe { tool, beside }
+        Probe { tool, state: QueryState::new(tree, unit, tool.card()) }
     }
 
     /// With another force law.
     #[must_use]
-    pub fn law(mut self, law: Law) -> Probe<'a, T, P> {
-        self.beside.law = law;
+    pub fn law(mut self, law: Law) -> Probe<'a, T> {
+        self.state.law = law;
         self
     }
 
     /// With other weights.
     #[must_use]
-    pub fn weights(mut self, weights: Weights) -> Probe<'a, T, P> {
-        self.beside.weights = weights;
+    pub fn weights(mut self, weights: Weights) -> Probe<'a, T> {
+        self.state.weights = weights;
         self
     }
 
     /// With a compliance centre: a point of the tool's frame, in the part's unit, about which
     /// torque is taken.
     #[must_use]
-    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a, T, P> {
-        self.beside.centre = centre;
+    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a, T> {
+        self.state.centre = centre;
         self
     }
 
     /// With another SIMD level than the best of this machine. The answers do not change.
     #[must_use]
-    pub fn level(mut self, level: Level) -> Probe<'a, T, P> {
-        self.beside.level = level;
+    pub fn level(mut self, level: Level) -> Probe<'a, T> {
+        self.state.level = level;
         self
-    }
-
-    /// With another precision than [`Filtered`]: `probe.precision::<Single>()`.
-    #[must_use]
-    pub fn precision<Q: Precision>(self) -> Probe<'a, T, Q>
-    where
-        T: Senses<Q::Number>,
-    {
-        let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
-        Probe::exactly(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
     }
 
     /// With memory for a contact of all points of the part, so that no question to this probe allocates,
     /// however much larger its contact is than those before: 280 bytes per point, 28 MB for 100,000.
     /// Memory that no contact needs is never touched. Probes that are made from this one reserve nothing.
     #[must_use]
-    pub fn reserved(mut self) -> Probe<'a, T, P> {
+    pub fn reserved(mut self) -> Probe<'a, T> {
         self.reserve();
-        let points = self.beside.tree.places();
-        reserve(&mut self.beside.contacts, points);
+        let points = self.state.tree.places();
+        reserve(&mut self.state.contacts, points);
         self
     }
 
     /// Reserves memory for all questions but [`Probe::contacts`]: 127 bytes per point.
     pub(crate) fn reserve(&mut self) {
-        let Beside { tree, search, felt, room, .. } = &mut self.beside;
-        search.reserve(tree, true);
+        self.state.reserve();
+        let QueryState { tree, felt, room, .. } = &mut self.state;
         felt.reserve_for(tree.leaves.len() * WIDTH, Everything::ASK);
-        self.tool.reserve_room(felt);
+        self.tool.reserve(felt);
         self.tool.reserve(room);
     }
 
     /// Another probe like this one, for another thread.
     #[must_use]
-    pub fn another(&self) -> Probe<'a, T, P> {
-        let Beside { tree, unit, law, weights, centre, level, .. } = self.beside;
-        Probe::exactly(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
+    pub fn another(&self) -> Probe<'a, T> {
+        let QueryState { tree, unit, law, weights, centre, level, .. } = self.state;
+        Probe::of(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
     }
 
     /// The compliance centre in the tool's frame, and the part's unit in mm.
     #[cfg(feature = "haptic")]
     pub(crate) fn place(&self) -> (Point3<f64>, f64) {
-        (self.beside.centre, self.beside.unit.to(Unit::Millimetre))
+        (self.state.centre, self.state.unit.to(Unit::Millimetre))
     }
 
     /// How far a depth that is felt can be from that of the point that was given, in the part's unit:
@@ -206,14 +149,16 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     /// of the tool ([`crate::tool::Depth::lipschitz`]). What lies between points is not in it.
     pub fn error(&self) -> Option<f64> {
         const HALF: f64 = f64::EPSILON / 2.0;
-        let (card, tree, length) = (self.tool.card(), self.beside.tree, self.beside.length);
+        let (card, tree, length) = (self.tool.card(), self.state.tree, self.state.length);
         let tool = length * card.size();
         let frame = &tree.frame;
         let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
         // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
         let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
-        let carried = P::carried(tool, leaf, part);
-        let own = length * P::felt(&card.depth) + HALF * tool;
+        // A point inside is no farther from the tip than the tool is large, so neither is the origin but for the
+        // part's size: two sums, then three products and a change of unit.
+        let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
+        let own = length * card.depth.rounding + HALF * tool;
         card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
     }
 
@@ -221,7 +166,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     /// times how steep depth is at most, and what rounding does ([`Probe::error`]). `None` where either
     /// is not known. As sure as the [cover](crate::Tree::cover), which may be an estimate.
     pub fn unseen(&self) -> Option<f64> {
-        let (card, cover) = (self.tool.card(), self.beside.tree.cover()?);
+        let (card, cover) = (self.tool.card(), self.state.tree.cover()?);
         Some(card.depth.lipschitz? * cover.radius + self.error()?)
     }
 
@@ -235,33 +180,33 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     /// Whether any point of the part is inside the tool or on its surface. Stops at the first, and looks
     /// first where one was found last: tools move little from pose to pose.
     pub fn detect(&mut self, pose: &Pose) -> bool {
-        if !self.beside.look(pose) {
+        if !self.state.set_pose(pose) {
             return false;
         }
-        P::again(&mut self.beside);
-        let any = self.feel::<Inside>() || {
+        self.state.traverse_to_last_hit();
+        let any = self.filter_and_evaluate::<Inside>() || {
             // Sixteen leaves at a time.
-            let nodes = P::nodes(&mut self.beside);
+            let nodes = self.state.traverse_to_nodes();
             (0..nodes).any(|node| {
-                P::under(&mut self.beside, node);
-                self.feel::<Inside>()
+                self.state.traverse_under(node);
+                self.filter_and_evaluate::<Inside>()
             })
         };
         if any {
-            self.beside.remember();
+            self.state.remember_hit();
         }
         any
     }
 
     /// The deepest point; `None` without contact.
     pub fn deepest(&mut self, pose: &Pose) -> Option<Deepest> {
-        if self.ask::<Depths>(pose) { posture::deepest(&self.beside, pose) } else { None }
+        if self.ask::<Depths>(pose) { posture::deepest(&self.state, pose) } else { None }
     }
 
     /// What a posture is judged by: niceness, and how deep which surfaces are.
     pub fn posture(&mut self, pose: &Pose) -> Posture {
         if self.ask::<Postures>(pose) {
-            posture::posture(&self.beside, self.tool.card(), pose)
+            posture::posture(&self.state, self.tool.card(), pose)
         } else {
             Posture::default()
         }
@@ -269,48 +214,42 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
 
     /// Force, torque, depth and niceness of the whole contact.
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
-        let found = self.beside.look(pose);
-        if found {
-            P::all(&mut self.beside, true);
+        if self.traverse_within(pose, usize::MAX) == Some(0) {
+            return self.nothing();
         }
-        self.sum(pose, found)
+        self.reduce(pose)
     }
 
-    /// Finds the leaves of the whole part that the tool may reach, if no more nodes are looked at than
-    /// that; how many were.
-    fn look_within(&mut self, pose: &Pose, budget: usize) -> Option<usize> {
-        if self.beside.look(pose) { P::within(&mut self.beside, budget) } else { Some(0) }
+    /// Sets the pose and finds the leaves that the tool may reach, looking at no more nodes than that. Returns how many it looked at: 0 if the
+    /// whole part is out of reach.
+    fn traverse_within(&mut self, pose: &Pose, budget: usize) -> Option<usize> {
+        if self.state.set_pose(pose) { self.state.traverse(budget) } else { Some(0) }
     }
 
-    /// [`Probe::wrench`] of the leaves that were found last.
-    fn looked(&mut self, pose: &Pose) -> Wrench {
-        let found = self.beside.look(pose);
-        if found {
-            P::found(&mut self.beside);
-        }
-        self.sum(pose, found)
+    /// Returns what is felt without contact.
+    fn nothing(&self) -> Wrench {
+        Wrench::nothing(self.state.law, self.state.weights)
     }
 
-    /// Evaluates the candidates, if there are any, and sums what is felt.
-    fn sum(&mut self, pose: &Pose, found: bool) -> Wrench {
-        let any = found
-            && match self.beside.law {
-                Law::Gradient => self.feel::<AlongGradients>(),
-                Law::Thesis | Law::Facing => self.feel::<AlongDirections>(),
-            };
-        let Beside { law, weights, .. } = self.beside;
-        if any { P::sum(&self.beside, pose) } else { Wrench::nothing(law, weights) }
+    /// Returns the wrench of the leaves that were found last.
+    fn reduce(&mut self, pose: &Pose) -> Wrench {
+        self.state.filter(true);
+        let any = match self.state.law {
+            Law::Gradient => self.state.evaluate::<AlongGradients, T>(self.tool),
+            Law::Thesis | Law::Facing => self.state.evaluate::<AlongDirections, T>(self.tool),
+        };
+        if any { self.state.reduce(pose) } else { self.nothing() }
     }
 
     /// Every point of the part inside the tool, with all that is felt there.
     pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
-        let mut contacts = std::mem::take(&mut self.beside.contacts);
+        let mut contacts = std::mem::take(&mut self.state.contacts);
         contacts.clear();
         if self.ask::<Everything>(pose) {
-            contacts::list(&self.beside, self.tool.card(), pose, &mut contacts);
+            contacts::list(&self.state, self.tool.card(), pose, &mut contacts);
         }
-        self.beside.contacts = contacts;
-        &self.beside.contacts
+        self.state.contacts = contacts;
+        &self.state.contacts
     }
 
     /// The places in the tree of the points inside that are deeper than that.
@@ -318,9 +257,9 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
         if !self.ask::<Depths>(pose) {
             return vec![];
         }
-        let Beside { felt, search, length, .. } = &self.beside;
-        let deep = felt.places().filter(|at| felt.depth[*at].into() * length > depth);
-        deep.map(|at| search.candidates.indices()[at] as usize).collect()
+        let QueryState { felt, candidates, length, .. } = &self.state;
+        let deep = felt.places().filter(|at| felt.depth[*at] * length > depth);
+        deep.map(|at| candidates.indices()[at] as usize).collect()
     }
 
     /// Asks the same at many poses, on all cores: what each is asked, it is asked by itself, so the
@@ -336,7 +275,7 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
     pub fn map<R: Send>(
         &self,
         poses: &[Pose],
-        ask: impl Fn(&mut Probe<'a, T, P>, &Pose) -> R + Sync,
+        ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
     ) -> Vec<R> {
         use rayon::prelude::*;
         // So many that starting another probe is nothing beside them.
@@ -351,37 +290,18 @@ impl<'a, T: Senses<P::Number> + ?Sized, P: Precision> Probe<'a, T, P> {
             .collect()
     }
 
-    /// Finds the candidates of the whole part and evaluates them; whether any is inside.
+    /// Evaluates the tool at all points of the part that may be inside. Returns whether any is.
     fn ask<W: Wanted>(&mut self, pose: &Pose) -> bool {
-        if !self.beside.look(pose) {
+        if !self.state.set_pose(pose) {
             return false;
         }
-        P::all(&mut self.beside, false);
-        self.feel::<W>()
+        self.state.traverse(usize::MAX);
+        self.filter_and_evaluate::<W>()
     }
 
-    /// Evaluates the candidates; whether any is inside.
-    fn feel<W: Wanted>(&mut self) -> bool {
-        let Beside { level, search, length, felt, .. } = &mut self.beside;
-        let candidates = &search.candidates;
-        if candidates.points.is_empty() {
-            return false;
-        }
-        self.tool.feel::<W>(*level, &candidates.points, *length, felt);
-        felt.inside.iter().any(|block| *block != 0)
-    }
-}
-
-impl<P: Precision> Beside<'_, P> {
-    /// Looks from a pose; whether the tool may reach the part.
-    fn look(&mut self, pose: &Pose) -> bool {
-        self.sight.look(&self.tree.frame, pose, &mut self.view)
-    }
-
-    /// Notes the leaf of a point inside.
-    fn remember(&mut self) {
-        if let Some(place) = self.felt.places().next() {
-            self.hit = self.search.candidates.indices()[place] / WIDTH as u32;
-        }
+    /// Evaluates the tool at the points of the leaves that were found last. Returns whether any is inside.
+    fn filter_and_evaluate<W: Wanted>(&mut self) -> bool {
+        self.state.filter(false);
+        self.state.evaluate::<W, T>(self.tool)
     }
 }

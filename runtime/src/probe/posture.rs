@@ -1,8 +1,7 @@
 //! How deep a contact is, and what a posture is judged by (Ho 1999, chapter 6).
 
-use super::Beside;
+use super::state::QueryState;
 use crate::pose::Pose;
-use crate::probe::precision::Precision;
 use crate::tool::Card;
 use nalgebra::Point3;
 
@@ -32,50 +31,45 @@ pub struct Posture {
 }
 
 /// The deepest of what was felt, the first of several.
-pub(super) fn deepest<P: Precision>(beside: &Beside<'_, P>, pose: &Pose) -> Option<Deepest> {
+pub(super) fn deepest(state: &QueryState<'_>, pose: &Pose) -> Option<Deepest> {
     let mut most = None;
-    for candidate in beside.felt.places() {
-        let depth = beside.felt.depth[candidate].into();
+    for candidate in state.felt.places() {
+        let depth = state.felt.depth[candidate];
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
         }
     }
-    most.map(|(depth, candidate)| at(beside, pose, candidate, depth))
+    most.map(|(depth, candidate)| at(state, pose, candidate, depth))
 }
 
 /// A candidate as the deepest; its depth is in the tool's unit.
-pub(super) fn at<P: Precision>(
-    beside: &Beside<'_, P>,
-    pose: &Pose,
-    candidate: usize,
-    depth: f64,
-) -> Deepest {
-    let place = beside.search.candidates.indices()[candidate] as usize;
-    let tree = beside.tree;
-    let point = pose.tip() + tree.relative_to_tip(&beside.view, place);
-    Deepest { depth: depth * beside.length, point, triangle: tree.triangle(place) }
+pub(super) fn at(state: &QueryState<'_>, pose: &Pose, candidate: usize, depth: f64) -> Deepest {
+    let place = state.candidates.indices()[candidate] as usize;
+    let tree = state.tree;
+    let point = pose.tip() + tree.relative_to_tip(&state.view, place);
+    Deepest { depth: depth * state.length, point, triangle: tree.triangle(place) }
 }
 
 /// What was felt as a posture.
-pub(super) fn posture<P: Precision>(beside: &Beside<'_, P>, card: &Card, pose: &Pose) -> Posture {
-    let felt = &beside.felt;
+pub(super) fn posture(state: &QueryState<'_>, card: &Card, pose: &Pose) -> Posture {
+    let felt = &state.felt;
     let (mut colliding, mut most, mut niceness) = (0, None, f64::INFINITY);
     let mut body: Option<f64> = None;
     for candidate in felt.places() {
         colliding += 1;
-        let depth = felt.depth[candidate].into();
+        let depth = felt.depth[candidate];
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
         }
-        niceness = niceness.min(felt.niceness[candidate].into());
-        if !card.surface_of(felt.region[candidate].into() as usize).cutting {
+        niceness = niceness.min(felt.niceness[candidate]);
+        if !card.surface_of(felt.region[candidate] as usize).cutting {
             body = Some(body.map_or(depth, |most| most.max(depth)));
         }
     }
     Posture {
         colliding,
-        deepest: most.map(|(depth, candidate)| at(beside, pose, candidate, depth)),
+        deepest: most.map(|(depth, candidate)| at(state, pose, candidate, depth)),
         niceness: (colliding > 0).then_some(niceness),
-        body: body.map(|depth| depth * beside.length),
+        body: body.map(|depth| depth * state.length),
     }
 }

@@ -1,8 +1,8 @@
 //! How what a tool feels changes as it moves.
 
-use super::{Beside, Everything, Law, Probe, Weights, Wrench};
+use super::state::QueryState;
+use super::{Everything, Law, Probe, Weights, Wrench};
 use crate::pose::Pose;
-use crate::probe::precision::Precision;
 use crate::tool::{Senses, Tool};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
@@ -21,24 +21,29 @@ pub struct Stiffness {
     pub matrix: Matrix6<f64>,
 }
 
-impl<T: Senses<P::Number> + ?Sized, P: Precision> Probe<'_, T, P> {
+impl<T: Senses + ?Sized> Probe<'_, T> {
     /// The wrench, and its derivative by the pose: of each point inside by the chain rule through the
     /// tool's own evaluators ([`Tool::slopes`]), so exact but for rounding wherever regions do not part.
     pub fn stiffness(&mut self, pose: &Pose) -> Stiffness {
-        let found = self.beside.look(pose);
-        if found {
-            P::all(&mut self.beside, true);
+        if !self.state.set_pose(pose) {
+            return self.loose();
         }
-        if !(found && self.feel::<Everything>()) {
-            let Beside { law, weights, .. } = self.beside;
-            return Stiffness { wrench: Wrench::nothing(law, weights), matrix: Matrix6::zeros() };
+        self.state.traverse(usize::MAX);
+        self.state.filter(true);
+        if !self.state.evaluate::<Everything, T>(self.tool) {
+            return self.loose();
         }
-        let wrench = P::sum(&self.beside, pose);
-        Stiffness { wrench, matrix: self.beside.matrix(self.tool, pose) }
+        let wrench = self.state.reduce(pose);
+        Stiffness { wrench, matrix: self.state.matrix(self.tool, pose) }
+    }
+
+    /// Returns the stiffness without contact.
+    fn loose(&self) -> Stiffness {
+        Stiffness { wrench: self.nothing(), matrix: Matrix6::zeros() }
     }
 }
 
-impl<P: Precision> Beside<'_, P> {
+impl QueryState<'_> {
     /// The sum over what was felt, in the tool's frame and turned at the end. With `p` in the tool's frame
     /// and `r` from the centre to it, a force `f = R φ(p)` changes by `θ × f - A (u + θ × r)`, where
     /// `A = R Dφ Rᵀ`; of one along `n - R u`, of which the part's normal `n` does not turn, by `θ × f'`
@@ -48,17 +53,16 @@ impl<P: Precision> Beside<'_, P> {
         let mut room = std::mem::take(&mut self.room);
         let mut sum = Sum::default();
         for at in self.felt.places() {
-            let index = self.search.candidates.indices()[at] as usize;
+            let index = self.candidates.indices()[at] as usize;
             let weight = match self.weights {
                 Weights::Area => self.tree.weight(index),
                 Weights::Unit => 1.0,
             };
-            let vector = |lists: &[Vec<P::Number>; 3]| {
-                Vector3::from(lists.each_ref().map(|list| list[at].into()))
-            };
-            let own = vector(self.search.candidates.points.lists());
+            let vector =
+                |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
+            let own = vector(self.candidates.points.lists());
             let arm = own * self.length - self.centre.coords;
-            let magnitude: f64 = self.felt.magnitude[at].into();
+            let magnitude = self.felt.magnitude[at];
             let gradient = vector(&self.felt.gradient);
             let slopes = tool.slopes(own.into(), self.length, &mut room);
             let rows = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|row, column| rows[row][column]);

@@ -1,9 +1,9 @@
 //! The whole contact as one force and torque (Ho 1999, eq. 5.1 to 5.5).
 
-use super::{Beside, Deepest, Law, Weights, posture};
+use super::state::QueryState;
+use super::{Deepest, Law, Weights, posture};
 use crate::pose::Pose;
-use crate::probe::precision::Precision;
-use crate::tool::{LANES, Number};
+use crate::tool::LANES;
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
 use nalgebra::Vector3;
 
@@ -142,30 +142,30 @@ struct Totals {
     deepest: f64,
 }
 
-/// Sums what the probe has just felt.
-pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, pose: &Pose) -> Wrench {
-    let colliding = beside.felt.count();
-    let totals = dispatch!(beside.level, simd => totals(simd, beside, pose));
+/// Sums the evaluations of the points inside.
+pub(super) fn sum(state: &QueryState<'_>, pose: &Pose) -> Wrench {
+    let colliding = state.felt.count();
+    let totals = dispatch!(state.level, simd => totals(simd, state, pose));
     let rotation = pose.rotation();
     let half =
         |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
     // In the tool's frame lengths are the tool's.
     let force = rotation * half(&totals.tool, 0);
-    let about_tip = rotation * (half(&totals.tool, 3) * beside.length);
-    let arm = rotation * beside.centre.coords;
+    let about_tip = rotation * (half(&totals.tool, 3) * state.length);
+    let arm = rotation * state.centre.coords;
     let torque = about_tip - arm.cross(&force);
     Wrench {
-        law: beside.law,
-        weights: beside.weights,
+        law: state.law,
+        weights: state.weights,
         colliding,
         deepest: (totals.depth >= 0.0)
-            .then(|| posture::at(beside, pose, totals.deepest as usize, totals.depth)),
+            .then(|| posture::at(state, pose, totals.deepest as usize, totals.depth)),
         force,
         torque,
         niceness: (colliding > 0).then_some(totals.niceness),
         integral: totals.pushes[0],
         energy: totals.pushes[1] / 2.0,
-        rounding: rounding(beside, &totals, torque),
+        rounding: rounding(state, &totals, torque),
     }
 }
 
@@ -173,17 +173,13 @@ pub(super) fn sum<P: Precision>(beside: &Beside<'_, P>, pose: &Pose) -> Wrench {
 /// Algorithms*, 2002, eq. 4.4). A force is a product of a push, which is two products, and of the
 /// difference of a direction and a turned normal, each part of which errs by five units at most where
 /// these cancel. A moment is two products and a difference of lengths up to the tool's and such forces.
-fn rounding<P: Precision>(
-    beside: &Beside<'_, P>,
-    totals: &Totals,
-    torque: Vector3<f64>,
-) -> Rounding {
+fn rounding(state: &QueryState<'_>, totals: &Totals, torque: Vector3<f64>) -> Rounding {
     let additions = totals.blocks as f64 + 7.0;
     let terms = 3.0 * totals.size + 9.0 * totals.pushes[0];
     let force = UNIT * ((additions + TURNED) * totals.size + terms);
     let moments = UNIT * ((additions + TURNED + 5.0) * totals.size + terms);
-    let arm = beside.centre.coords.norm();
-    let torque = 2.0 * beside.reach * beside.length * moments
+    let arm = state.centre.coords.norm();
+    let torque = 2.0 * state.reach * state.length * moments
         + arm * (force + UNIT * 12.0 * totals.size)
         + UNIT * torque.norm();
     Rounding { force, torque }
@@ -195,7 +191,7 @@ fn rounding<P: Precision>(
 type Triple<S> = [f64x8<S>; 3];
 
 #[inline(always)]
-fn totals<P: Precision, S: Simd>(simd: S, beside: &Beside<'_, P>, pose: &Pose) -> Totals {
+fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
     let zero = f64x8::splat(simd, 0.0);
     let mut sums = Sums {
         pushes: [zero; 2],
@@ -206,10 +202,10 @@ fn totals<P: Precision, S: Simd>(simd: S, beside: &Beside<'_, P>, pose: &Pose) -
         deepest: zero,
     };
     let mut blocks = 0;
-    for (block, inside) in beside.felt.inside.iter().enumerate() {
+    for (block, inside) in state.felt.inside.iter().enumerate() {
         if *inside != 0 {
             blocks += 1;
-            add(simd, beside, pose, block, *inside, &mut sums);
+            add(simd, state, pose, block, *inside, &mut sums);
         }
     }
     let depth = sums.depth.reduce_max();
@@ -235,64 +231,78 @@ fn six<S: Simd>(sums: &[f64x8<S>; 6]) -> [f64; 6] {
     totals
 }
 
+/// A block of a list.
+#[inline(always)]
+fn load<S: Simd>(simd: S, list: &[f64], block: usize) -> f64x8<S> {
+    f64x8::from_slice(simd, &list[block * LANES..(block + 1) * LANES])
+}
+
+/// A block of a list in `f32`.
+#[inline(always)]
+fn widen<S: Simd>(simd: S, list: &[f32], block: usize) -> f64x8<S> {
+    let mut wide = [0.0; LANES];
+    for (wide, single) in wide.iter_mut().zip(&list[block * LANES..(block + 1) * LANES]) {
+        *wide = f64::from(*single);
+    }
+    f64x8::from_slice(simd, &wide)
+}
+
 /// Three lists; 0 where the mask is not set.
 #[inline(always)]
-fn load_vector<N: Number, S: Simd>(
+fn load_vector<S: Simd>(
     simd: S,
-    lists: &[Vec<N>; 3],
+    lists: &[Vec<f64>; 3],
     block: usize,
     mask: mask64x8<S>,
 ) -> Triple<S> {
     let zero = f64x8::splat(simd, 0.0);
     [
-        mask.select(N::wide(simd, &lists[0], block), zero),
-        mask.select(N::wide(simd, &lists[1], block), zero),
-        mask.select(N::wide(simd, &lists[2], block), zero),
+        mask.select(load(simd, &lists[0], block), zero),
+        mask.select(load(simd, &lists[1], block), zero),
+        mask.select(load(simd, &lists[2], block), zero),
     ]
 }
 
 /// Adds one block of points.
 #[inline(always)]
-fn add<P: Precision, S: Simd>(
+fn add<S: Simd>(
     simd: S,
-    beside: &Beside<'_, P>,
+    state: &QueryState<'_>,
     pose: &Pose,
     block: usize,
     inside: u8,
     sums: &mut Sums<S>,
 ) {
     const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let (felt, candidates) = (&beside.felt, &beside.search.candidates);
+    let (felt, candidates) = (&state.felt, &state.candidates);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
-    let magnitude = in_solid.select(P::Number::wide(simd, &felt.magnitude, block), zero);
-    let push = match beside.weights {
-        Weights::Area => {
-            f32::wide(simd, &candidates.weights, block) * beside.tree.weight * magnitude
-        }
+    let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
+    let push = match state.weights {
+        Weights::Area => widen(simd, &candidates.weights, block) * state.tree.weight * magnitude,
         Weights::Unit => magnitude,
     };
     sums.pushes[0] += push;
     sums.pushes[1] += push * magnitude;
-    let niceness = sums.niceness.min(P::Number::wide(simd, &felt.niceness, block));
+    let niceness = sums.niceness.min(load(simd, &felt.niceness, block));
     sums.niceness = in_solid.select(niceness, sums.niceness);
-    let depth = P::Number::wide(simd, &felt.depth, block);
+    let depth = load(simd, &felt.depth, block);
     let deeper = in_solid & depth.simd_gt(sums.depth);
     let indices = f64x8::from_slice(simd, &COUNT) + (block * LANES) as f64;
     sums.depth = deeper.select(depth, sums.depth);
     sums.deepest = deeper.select(indices, sums.deepest);
 
     let p = load_vector(simd, candidates.points.lists(), block, in_solid);
-    if beside.law == Law::Gradient {
+    if state.law == Law::Gradient {
         let slope = load_vector(simd, &felt.gradient, block, in_solid);
         accumulate(sums, push, p, slope);
         return;
     }
     let direction = load_vector(simd, &felt.direction, block, in_solid);
     let normal = [
-        f32::wide(simd, &candidates.normals[0], block),
-        f32::wide(simd, &candidates.normals[1], block),
-        f32::wide(simd, &candidates.normals[2], block),
+        widen(simd, &candidates.normals[0], block),
+        widen(simd, &candidates.normals[1], block),
+        widen(simd, &candidates.normals[2], block),
     ];
     // The normal in the tool's frame, where the direction is.
     let mut way = direction;
@@ -303,7 +313,7 @@ fn add<P: Precision, S: Simd>(
         along += turned * *part;
         *part = turned - *part;
     }
-    let force = match beside.law {
+    let force = match state.law {
         Law::Facing => along.simd_le(zero).select(push, zero),
         _ => push,
     };

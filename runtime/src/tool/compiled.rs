@@ -1,10 +1,11 @@
 //! Tools that the macros compile.
 
 use super::{
-    Ask, Card, Dual, Enclosed, Felt, LANES, Lane, Number, Points, Senses, Slopes, Tool, Wanted,
-    number::Floats, on_vectors, present,
+    Ask, Card, Dual, Enclosed, Felt, LANES, Lane, Points, Senses, Slopes, Tool, Wanted, on_vectors,
+    present,
 };
-use fearless_simd::{Level, Simd};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use std::ops::Range;
 
 /// The evaluators of a compiled tool. Implemented by the macros, not by hand.
 ///
@@ -91,7 +92,7 @@ impl<T: Evaluators> Tool for T {
 
     fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, ask);
-        on_vectors!(level, simd => lanes::<T, f64, _>(simd, ask, points, length, felt));
+        on_vectors!(level, simd => lanes::<T, _>(simd, ask, points, length, felt));
         one_by_one::<T>(ask, points, length, felt);
     }
 
@@ -109,75 +110,51 @@ impl<T: Evaluators> Tool for T {
 impl<T: Evaluators> Senses for T {
     fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
         felt.reserve(points, W::ASK);
-        on_vectors!(level, simd => lanes::<T, f64, _>(simd, W::ASK, points, length, felt));
+        on_vectors!(level, simd => lanes::<T, _>(simd, W::ASK, points, length, felt));
         one_by_one::<T>(W::ASK, points, length, felt);
     }
 }
 
-/// The nested form is of `f64`, so without vectors there are lanes of one.
-impl<T: Evaluators> Senses<f32> for T {
-    fn feel<W: Wanted>(
-        &self,
-        level: Level,
-        points: &Points<f32>,
-        length: f64,
-        felt: &mut Felt<f32>,
-    ) {
-        felt.reserve(points, W::ASK);
-        on_vectors!(level, simd => lanes::<T, f32, _>(simd, W::ASK, points, length, felt));
-        singly::<T>(W::ASK, points, length, felt);
-    }
-}
-
 #[inline(always)]
-fn store_vector<N: Number, S: Simd>(
-    lists: &mut [Vec<N>; 3],
-    block: usize,
-    values: [N::Eight<S>; 3],
-) {
-    N::store::<S>(values[0], &mut lists[0], block);
-    N::store::<S>(values[1], &mut lists[1], block);
-    N::store::<S>(values[2], &mut lists[2], block);
+fn store_vector<S: Simd>(lists: &mut [Vec<f64>; 3], block: Range<usize>, values: [f64x8<S>; 3]) {
+    values[0].store_slice(&mut lists[0][block.clone()]);
+    values[1].store_slice(&mut lists[1][block.clone()]);
+    values[2].store_slice(&mut lists[2][block]);
 }
 
-/// Blocks of eight. What runs on vectors is in functions that are always inlined, since a closure would
+/// Blocks of eight. Vector code stands in functions that are always inlined, since a closure would
 /// be compiled without the vector instructions of its surroundings.
 #[inline(always)]
-fn lanes<T: Evaluators, N: Number, S: Simd>(
-    simd: S,
-    ask: Ask,
-    points: &Points<N>,
-    length: f64,
-    felt: &mut Felt<N>,
-) {
-    let length = N::splat(simd, length);
+fn lanes<T: Evaluators, S: Simd>(simd: S, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
+    let length = f64x8::splat(simd, length);
     let lists = points.coordinates();
-    for block in 0..felt.inside.len() {
-        let present = N::mask(simd, present(points.len(), block));
+    for at in 0..felt.inside.len() {
+        let block = at * LANES..(at + 1) * LANES;
+        let present = mask64x8::from_bitmask(simd, u64::from(present(points.len(), at)));
         let p = [
-            N::load(simd, lists[0], block),
-            N::load(simd, lists[1], block),
-            N::load(simd, lists[2], block),
+            f64x8::from_slice(simd, &lists[0][block.clone()]),
+            f64x8::from_slice(simd, &lists[1][block.clone()]),
+            f64x8::from_slice(simd, &lists[2][block.clone()]),
         ];
         let here = T::feel_lanes(p, length, present, ask);
-        felt.inside[block] = N::bits::<S>(here.inside);
+        felt.inside[at] = here.inside.to_bitmask() as u8;
         if ask.depth {
-            N::store::<S>(here.depth, &mut felt.depth, block);
+            here.depth.store_slice(&mut felt.depth[block.clone()]);
         }
         if ask.magnitude {
-            N::store::<S>(here.magnitude, &mut felt.magnitude, block);
+            here.magnitude.store_slice(&mut felt.magnitude[block.clone()]);
         }
         if ask.niceness {
-            N::store::<S>(here.niceness, &mut felt.niceness, block);
+            here.niceness.store_slice(&mut felt.niceness[block.clone()]);
         }
         if ask.direction {
-            store_vector::<N, S>(&mut felt.direction, block, here.direction);
+            store_vector(&mut felt.direction, block.clone(), here.direction);
         }
         if ask.gradient {
-            store_vector::<N, S>(&mut felt.gradient, block, here.gradient);
+            store_vector(&mut felt.gradient, block.clone(), here.gradient);
         }
         if ask.region {
-            N::store::<S>(here.region, &mut felt.region, block);
+            here.region.store_slice(&mut felt.region[block]);
         }
     }
 }
@@ -212,38 +189,6 @@ fn one_by_one<T: Evaluators>(ask: Ask, points: &Points, length: f64, felt: &mut 
         }
         if ask.region {
             felt.region[at] = T::owner(p).map_or(-1.0, |region| region as f64);
-        }
-    }
-}
-
-/// The same in `f32`.
-fn singly<T: Evaluators>(ask: Ask, points: &Points<f32>, length: f64, felt: &mut Felt<f32>) {
-    let [x, y, z] = points.coordinates();
-    for at in 0..points.len() {
-        let p = [x[at], y[at], z[at]].map(Floats);
-        let here = T::feel_lanes(p, Floats(0.0).of(length), true, ask);
-        felt.inside[at / LANES] |= u8::from(here.inside) << (at % LANES);
-        if ask.depth {
-            felt.depth[at] = here.depth.0;
-        }
-        if ask.magnitude {
-            felt.magnitude[at] = here.magnitude.0;
-        }
-        if ask.niceness {
-            felt.niceness[at] = here.niceness.0;
-        }
-        if ask.direction {
-            for (list, part) in felt.direction.iter_mut().zip(here.direction) {
-                list[at] = part.0;
-            }
-        }
-        if ask.gradient {
-            for (list, part) in felt.gradient.iter_mut().zip(here.gradient) {
-                list[at] = part.0;
-            }
-        }
-        if ask.region {
-            felt.region[at] = here.region.0;
         }
     }
 }

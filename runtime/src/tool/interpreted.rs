@@ -233,10 +233,6 @@ impl Senses for Interpreted {
     fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
         self.evaluate(level, W::ASK, points, length, felt);
     }
-
-    fn reserve_room(&self, felt: &mut Felt) {
-        self.reserve(felt);
-    }
 }
 
 impl Interpreted {

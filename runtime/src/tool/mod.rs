@@ -10,7 +10,6 @@ mod enclosure;
 #[cfg(feature = "interpreter")]
 mod interpreted;
 mod lane;
-mod number;
 
 pub use card::{Card, Circle, Depth, Piece, Region, Shape, Slab, Surface};
 pub use compiled::{Evaluators, FeltLanes};
@@ -20,7 +19,6 @@ pub use enclosure::{Enclosed, Enclosure, Maybe};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
-pub use number::Number;
 
 use fearless_simd::Level;
 
@@ -118,21 +116,12 @@ pub trait Wanted {
 
 /// A tool that knows what is wanted of it when it is compiled, so that no code is made for what nobody
 /// wants. Every compiled tool does; a `dyn Tool` learns it when it is asked.
-///
-/// In which format it feels is a type as well: of `f32` only tools that are known by their type know how.
-pub trait Senses<N: Number = f64>: Tool {
+pub trait Senses: Tool {
     /// [`Tool::evaluate`] for what a type says.
-    fn feel<W: Wanted>(&self, level: Level, points: &Points<N>, length: f64, felt: &mut Felt<N>);
-
-    /// [`Tool::reserve`] in that format.
-    fn reserve_room(&self, _felt: &mut Felt<N>) {}
+    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt);
 }
 
 impl Senses for dyn Tool + '_ {
-    fn reserve_room(&self, felt: &mut Felt) {
-        self.reserve(felt);
-    }
-
     fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
         self.evaluate(level, W::ASK, points, length, felt);
     }
@@ -176,20 +165,20 @@ impl Ask {
 
 /// Points of the tool's frame, in the unit of the tool's file.
 #[derive(Clone, Debug, Default)]
-pub struct Points<N = f64> {
+pub struct Points {
     /// As long as ever needed; always a multiple of [`LANES`], and finite.
-    lists: [Vec<N>; 3],
+    lists: [Vec<f64>; 3],
     count: usize,
 }
 
-impl<N: Number> Points<N> {
+impl Points {
     /// No points; the memory stays.
     pub fn clear(&mut self) {
         self.count = 0;
     }
 
     /// One more point.
-    pub fn push(&mut self, point: [N; 3]) {
+    pub fn push(&mut self, point: [f64; 3]) {
         self.room(1);
         for (list, part) in self.next(0, 1).into_iter().zip(point) {
             list[0] = part;
@@ -207,13 +196,13 @@ impl<N: Number> Points<N> {
     pub(crate) fn room(&mut self, more: usize) {
         let wanted = (self.count + more).next_multiple_of(LANES);
         if self.lists[0].len() < wanted {
-            self.lists.iter_mut().for_each(|list| list.resize(wanted, N::default()));
+            self.lists.iter_mut().for_each(|list| list.resize(wanted, 0.0));
         }
     }
 
     /// Where points go that come after so many more, for which there is room, coordinate by coordinate.
     #[inline(always)]
-    pub(crate) fn next(&mut self, after: usize, count: usize) -> [&mut [N]; 3] {
+    pub(crate) fn next(&mut self, after: usize, count: usize) -> [&mut [f64]; 3] {
         let place = self.count + after..self.count + after + count;
         let [x, y, z] = &mut self.lists;
         [&mut x[place.clone()], &mut y[place.clone()], &mut z[place]]
@@ -236,12 +225,12 @@ impl<N: Number> Points<N> {
     }
 
     /// x, y and z of all points, and of what fills the last block of [`LANES`].
-    pub fn coordinates(&self) -> [&[N]; 3] {
+    pub fn coordinates(&self) -> [&[f64]; 3] {
         let end = self.count.next_multiple_of(LANES);
         [&self.lists[0][..end], &self.lists[1][..end], &self.lists[2][..end]]
     }
 
-    pub(crate) fn lists(&self) -> &[Vec<N>; 3] {
+    pub(crate) fn lists(&self) -> &[Vec<f64>; 3] {
         &self.lists
     }
 }
@@ -249,21 +238,21 @@ impl<N: Number> Points<N> {
 /// What is felt at [`Points`], list by list. Entries of points outside, and lists not asked for,
 /// mean nothing.
 #[derive(Clone, Debug, Default)]
-pub struct Felt<N = f64> {
+pub struct Felt {
     /// A bit a point, set inside; a byte a block of [`LANES`]. Padding is not inside.
     pub inside: Vec<u8>,
     /// Penetration depth, at least 0, in the file's unit.
-    pub depth: Vec<N>,
+    pub depth: Vec<f64>,
     /// Magnitude: if it is the depth, in the part's unit; else the file's own number.
-    pub magnitude: Vec<N>,
+    pub magnitude: Vec<f64>,
     /// Niceness, at least 0.
-    pub niceness: Vec<N>,
+    pub niceness: Vec<f64>,
     /// Unit vector to the nearest surface.
-    pub direction: [Vec<N>; 3],
+    pub direction: [Vec<f64>; 3],
     /// Gradient of the magnitude by the position in the part's unit.
-    pub gradient: [Vec<N>; 3],
+    pub gradient: [Vec<f64>; 3],
     /// The region's place in the card's list.
-    pub region: Vec<N>,
+    pub region: Vec<f64>,
     /// Room for the interpreter.
     #[cfg(feature = "interpreter")]
     pub(crate) registers: Vec<tool_dsl::interpret::Lanes>,
@@ -281,7 +270,7 @@ pub struct Felt<N = f64> {
     pub(crate) lanes: tool_dsl::interpret::Registers,
 }
 
-impl<N: Number> Felt<N> {
+impl Felt {
     /// How many points are inside.
     pub(crate) fn count(&self) -> usize {
         self.inside.iter().map(|block| block.count_ones() as usize).sum()
@@ -307,21 +296,21 @@ impl<N: Number> Felt<N> {
     }
 
     /// Makes room for what is asked of so many points.
-    pub(crate) fn reserve(&mut self, points: &Points<N>, ask: Ask) {
+    pub(crate) fn reserve(&mut self, points: &Points, ask: Ask) {
         let blocks = points.count.div_ceil(LANES);
         self.inside.clear();
         self.inside.resize(blocks, 0);
         self.asked(ask, |list| {
             if list.len() < blocks * LANES {
-                list.resize(blocks * LANES, N::default());
+                list.resize(blocks * LANES, 0.0);
             }
         });
     }
 
     /// Goes to all lists that are asked for.
     #[inline]
-    fn asked(&mut self, ask: Ask, mut each: impl FnMut(&mut Vec<N>)) {
-        let mut list = |list: &mut Vec<N>, wanted: bool| {
+    fn asked(&mut self, ask: Ask, mut each: impl FnMut(&mut Vec<f64>)) {
+        let mut list = |list: &mut Vec<f64>, wanted: bool| {
             if wanted {
                 each(list);
             }

@@ -1,48 +1,75 @@
 //! Points that may be inside, carried to the tool's frame.
 
 use super::Skin;
-use crate::bvh::{LANE, Rough, Triple, View, WIDTH, seen};
-use crate::tool::{LANES, Number, Points, reserve};
+use crate::bvh::{LANE, PoseTransform, Triple, WIDTH};
+use crate::tool::{LANES, Points, reserve};
 use fearless_simd::{
     Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
 };
 
-/// A format that points are carried to the tool's frame in.
-pub trait Carried: Number {
-    /// What of a view is wanted for that.
-    type Way;
-
-    /// The same, of a view.
-    fn way<R: Rough>(view: &View<R>) -> Self::Way;
-
-    /// Carries those points of a leaf whose bits are set: `Rᵀ (p − t)`, the difference first. `base` is
-    /// the leaf's centre from the tip.
-    fn carry<R: Rough, S: Simd>(
-        simd: S,
-        view: (&View<R>, &Self::Way),
-        base: [f64; 3],
-        offset: &Triple<S>,
-        hits: u32,
-        points: &mut Points<Self>,
-    );
+/// Candidates by their place in the tree, and in the tool's frame in the tool's unit.
+#[derive(Default)]
+pub(crate) struct Candidates {
+    /// Leaves with points that may be inside, and a bit for each of these.
+    pub(super) leaves: Vec<(u32, u32)>,
+    indices: Vec<u32>,
+    pub(crate) points: Points,
+    /// Of each, if it was wanted.
+    pub(crate) normals: [Vec<f32>; 3],
+    pub(crate) weights: Vec<f32>,
 }
 
-impl Carried for f64 {
-    type Way = ();
+impl Candidates {
+    pub(crate) fn clear(&mut self) {
+        self.points.clear();
+    }
 
-    #[inline(always)]
-    fn way<R: Rough>(_: &View<R>) {}
+    /// Where the candidates are in the tree.
+    pub(crate) fn indices(&self) -> &[u32] {
+        &self.indices[..self.points.len()]
+    }
 
-    /// All of it in `f64`.
+    /// Reserves memory for all points of a part with so many leaves, without touching it.
+    pub(crate) fn reserve(&mut self, leaves: usize, attributes: bool) {
+        let count = (leaves + 1) * WIDTH;
+        reserve(&mut self.leaves, leaves + 1);
+        self.points.reserve(count);
+        reserve(&mut self.indices, count);
+        if attributes {
+            reserve(&mut self.weights, count);
+            self.normals.iter_mut().for_each(|list| reserve(list, count));
+        }
+    }
+
+    /// Makes room for the points of so many leaves.
+    pub(super) fn room(&mut self, leaves: usize, attributes: bool) {
+        let more = (leaves + 1) * WIDTH;
+        self.points.room(more);
+        let wanted = self.points.len() + more;
+        if self.indices.len() < wanted {
+            self.indices.resize(wanted, 0);
+        }
+        if attributes && self.weights.len() < wanted {
+            self.weights.resize(wanted, 0.0);
+            self.normals.iter_mut().for_each(|list| list.resize(wanted, 0.0));
+        }
+    }
+
+    /// Takes the points of a leaf whose bits are set; there is room for all of them. They are carried to the tool's frame in `f64`:
+    /// `Rᵀ (p − t)`, the difference first. `base` is the leaf's centre from the tip.
     #[inline(always)]
-    fn carry<R: Rough, S: Simd>(
+    pub(super) fn take<S: Simd>(
+        &mut self,
         simd: S,
-        (view, ()): (&View<R>, &()),
-        base: [f64; 3],
+        view: &PoseTransform,
+        (leaf, base): (u32, [f64; 3]),
         offset: &Triple<S>,
         hits: u32,
-        points: &mut Points,
     ) {
+        let lanes = u32x16::from_slice(simd, &LANE) + leaf * WIDTH as u32;
+        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
+        let at = self.points.len();
+        lanes.compress(mask).store_slice(&mut self.indices[at..at + WIDTH]);
         let (x, y, z) = (offset[0].widen(), offset[1].widen(), offset[2].widen());
         let halves = [[x.0, y.0, z.0], [x.1, y.1, z.1]];
         let mut count = 0;
@@ -53,7 +80,7 @@ impl Carried for f64 {
                 half[2] * view.scale + base[2],
             ];
             let mask = mask64x8::from_bitmask(simd, u64::from(bits));
-            let places = points.next(count, LANES);
+            let places = self.points.next(count, LANES);
             for (row, place) in view.carry.iter().zip(places) {
                 let carried: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
                 carried.compress(mask).store_slice(place);
@@ -61,100 +88,10 @@ impl Carried for f64 {
             count += bits.count_ones() as usize;
         }
     }
-}
 
-impl Carried for f32 {
-    /// From the tree's frame and unit to the tool's.
-    type Way = [[f32; 3]; 3];
-
+    /// Takes the normals and weights of the same points.
     #[inline(always)]
-    fn way<R: Rough>(view: &View<R>) -> [[f32; 3]; 3] {
-        view.exactly().0.map(|row| row.map(|part| part as f32))
-    }
-
-    /// The leaf's centre in `f64`, so that it does not matter how far away the part begins.
-    #[inline(always)]
-    fn carry<R: Rough, S: Simd>(
-        simd: S,
-        (view, rows): (&View<R>, &[[f32; 3]; 3]),
-        base: [f64; 3],
-        offset: &Triple<S>,
-        hits: u32,
-        points: &mut Points<f32>,
-    ) {
-        let centre = view.carried(base).map(|part| part as f32);
-        let carried = seen::<f32, S>(offset, rows, centre);
-        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
-        for (part, place) in carried.into_iter().zip(points.next(0, WIDTH)) {
-            part.compress(mask).store_slice(place);
-        }
-    }
-}
-
-/// Candidates by their place in the tree, and in the tool's frame in the tool's unit.
-#[derive(Default)]
-pub(crate) struct Candidates<N = f64> {
-    indices: Vec<u32>,
-    pub(crate) points: Points<N>,
-    /// Of each, if it was wanted.
-    pub(crate) normals: [Vec<f32>; 3],
-    pub(crate) weights: Vec<f32>,
-}
-
-impl<N: Carried> Candidates<N> {
-    pub(crate) fn clear(&mut self) {
-        self.points.clear();
-    }
-
-    /// Where the candidates are in the tree.
-    pub(crate) fn indices(&self) -> &[u32] {
-        &self.indices[..self.points.len()]
-    }
-
-    /// Reserves memory for so many candidates, without touching it.
-    pub(super) fn reserve(&mut self, count: usize, skin: bool) {
-        self.points.reserve(count);
-        reserve(&mut self.indices, count);
-        if skin {
-            reserve(&mut self.weights, count);
-            self.normals.iter_mut().for_each(|list| reserve(list, count));
-        }
-    }
-
-    /// Makes room for the points of so many leaves.
-    pub(super) fn room(&mut self, leaves: usize, skin: bool) {
-        let more = (leaves + 1) * WIDTH;
-        self.points.room(more);
-        let wanted = self.points.len() + more;
-        if self.indices.len() < wanted {
-            self.indices.resize(wanted, 0);
-        }
-        if skin && self.weights.len() < wanted {
-            self.weights.resize(wanted, 0.0);
-            self.normals.iter_mut().for_each(|list| list.resize(wanted, 0.0));
-        }
-    }
-
-    /// Takes the points of a leaf whose bits are set; there is room for all of them.
-    #[inline(always)]
-    pub(super) fn take<R: Rough, S: Simd>(
-        &mut self,
-        simd: S,
-        view: (&View<R>, &N::Way),
-        (leaf, base): (u32, [f64; 3]),
-        offset: &Triple<S>,
-        hits: u32,
-    ) {
-        let lanes = u32x16::from_slice(simd, &LANE) + leaf * WIDTH as u32;
-        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
-        let at = self.points.len();
-        lanes.compress(mask).store_slice(&mut self.indices[at..at + WIDTH]);
-        N::carry(simd, view, base, offset, hits, &mut self.points);
-    }
-
-    /// Takes what the part has there.
-    #[inline(always)]
-    pub(super) fn take_skin<S: Simd>(&mut self, simd: S, skin: &Skin, hits: u32) {
+    pub(super) fn take_attributes<S: Simd>(&mut self, simd: S, skin: &Skin, hits: u32) {
         let mask = mask32x16::from_bitmask(simd, u64::from(hits));
         let place = self.points.len()..self.points.len() + WIDTH;
         for (list, of) in self.normals.iter_mut().zip(&skin.normal) {

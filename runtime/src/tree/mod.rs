@@ -15,14 +15,14 @@
 mod build;
 mod candidates;
 mod change;
-mod sift;
-mod walk;
+mod filter;
+mod traverse;
 
-use candidates::Candidates;
-pub(crate) use candidates::Carried;
-pub(crate) use sift::Search;
+pub(crate) use candidates::Candidates;
+pub(crate) use filter::filter;
+pub(crate) use traverse::Traversal;
 
-use crate::bvh::{Boxes, Frame, Rough, View, WIDTH};
+use crate::bvh::{Boxes, Frame, PoseTransform, WIDTH};
 use crate::cloud::{Cloud, Cover};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Point3, Vector3};
@@ -142,7 +142,7 @@ impl Tree {
     }
 
     /// A point from the tip in the part's frame, by its place in the tree.
-    pub(crate) fn relative_to_tip<R: Rough>(&self, view: &View<R>, index: usize) -> Vector3<f64> {
+    pub(crate) fn relative_to_tip(&self, view: &PoseTransform, index: usize) -> Vector3<f64> {
         let [centre, offset] = self.stored(index);
         let base = view.leaf_from_tip(centre);
         Vector3::from_fn(|axis, _| base[axis] + view.scale * offset[axis])

@@ -4,7 +4,6 @@
 use super::COUNTED;
 use stats_alloc::Region;
 use touchoff::haptic::{Limits, Rendering, Scripted, Session, Settings};
-use touchoff::precision::{Double, Precision, Single};
 use touchoff::tool::{Interpreted, Senses};
 use touchoff::{Law, Part, Probe, Tool};
 use touchoff_tests::haptics::wall::LIMITS;
@@ -24,25 +23,19 @@ fn height(cycle: u64) -> f64 {
 }
 
 /// A loop whose contact grows asks for no memory from its first cycle on, for compiled tools and for those that
-/// are interpreted, in each precision, by each law and rendering.
+/// are interpreted, by each law and rendering.
 pub(crate) fn no_cycle_allocates() {
     let part = block(POINTS);
     let interpreted = Interpreted::parse(&source(CONE)).expect("a cone");
     for law in [Law::Thesis, Law::Facing, Law::Gradient] {
         session(&part, &Probe::new(&part, &Cone).law(law), "compiled");
-        session(&part, &Probe::new(&part, &Cone).law(law).precision::<Double>(), "in f64");
-        session(&part, &Probe::new(&part, &Cone).law(law).precision::<Single>(), "in f32");
         session(&part, &Probe::new(&part, &Cone as &dyn Tool).law(law), "by its table");
         session(&part, &Probe::new(&part, &interpreted).law(law), "interpreted");
         session(&part, &Probe::new(&part, &interpreted as &dyn Tool).law(law), "interpreted, dyn");
     }
 }
 
-fn session<T: Senses<P::Number> + ?Sized, P: Precision>(
-    part: &Part,
-    probe: &Probe<'_, T, P>,
-    name: &str,
-) {
+fn session<T: Senses + ?Sized>(part: &Part, probe: &Probe<'_, T>, name: &str) {
     let limits = Limits { force: 1e6, torque: 1e9, ..LIMITS };
     for rendering in [None, Some(Rendering::Direct { scaled: true, damping: 0.0 })] {
         // So soft that a coupled tool follows.
@@ -75,16 +68,13 @@ pub(crate) fn no_question_allocates() {
     let part = block(POINTS);
     let interpreted = Interpreted::parse(&source(CONE)).expect("a cone");
     questions(&part, || Probe::new(&part, &Cone));
-    questions(&part, || Probe::new(&part, &Cone).law(Law::Gradient).precision::<Single>());
+    questions(&part, || Probe::new(&part, &Cone).law(Law::Gradient));
     questions(&part, || Probe::new(&part, &interpreted as &dyn Tool));
 }
 
-fn questions<'a, T: Senses<P::Number> + ?Sized + 'a, P: Precision>(
-    part: &Part,
-    probe: impl Fn() -> Probe<'a, T, P>,
-) {
-    type Ask<'a, T, P> = fn(&mut Probe<'a, T, P>, &touchoff::Pose) -> usize;
-    let asks: [(&str, Ask<'a, T, P>); 6] = [
+fn questions<'a, T: Senses + ?Sized + 'a>(part: &Part, probe: impl Fn() -> Probe<'a, T>) {
+    type Ask<'a, T> = fn(&mut Probe<'a, T>, &touchoff::Pose) -> usize;
+    let asks: [(&str, Ask<'a, T>); 6] = [
         ("detect", |probe, pose| usize::from(probe.detect(pose))),
         ("deepest", |probe, pose| usize::from(probe.deepest(pose).is_some())),
         ("posture", |probe, pose| probe.posture(pose).colliding),

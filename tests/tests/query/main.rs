@@ -13,7 +13,6 @@ mod law;
 mod margins;
 mod parts;
 mod poses;
-mod precision;
 mod scenes;
 mod solids;
 mod stiffness;

@@ -1,6 +1,6 @@
 //! Eight triangles in the tool's frame, side by side in `f64`.
 
-use crate::bvh::View;
+use crate::bvh::PoseTransform;
 use crate::certify::bounds::hull::Hull;
 use crate::certify::part::{Face, Facets};
 use crate::pose::Pose;
@@ -74,7 +74,7 @@ impl Batch {
     }
 
     /// Turns them to the tool's frame.
-    pub(crate) fn turn(&mut self, view: &View) {
+    pub(crate) fn turn(&mut self, view: &PoseTransform) {
         for corner in &mut self.corners {
             let p = *corner;
             for lane in 0..LANES {

@@ -1,6 +1,6 @@
 //! The way down a tree of triangles, the deepest first.
 
-use crate::bvh::{Boxes, View, WIDTH, extent, load, seen};
+use crate::bvh::{Boxes, PoseTransform, WIDTH, extent, load, seen};
 use crate::certify::bounds::nearest::Space;
 use crate::certify::part::Ring;
 use crate::certify::part::{Corners, Facets};
@@ -18,7 +18,7 @@ pub(crate) struct Node {
 
 impl Node {
     /// What it is within, as `f64` knows it.
-    pub(crate) fn ring(&self, facets: &Facets, view: &View) -> Option<Ring> {
+    pub(crate) fn ring(&self, facets: &Facets, view: &PoseTransform) -> Option<Ring> {
         facets.ring(self.level as usize, self.index as usize, view)
     }
 
@@ -49,7 +49,7 @@ impl Node {
         &self,
         simd: S,
         facets: &Facets,
-        view: &View,
+        view: &PoseTransform,
     ) -> [Space<f32x16<S>>; 3] {
         let index = self.index as usize;
         let boxes = &facets.levels[self.level as usize - 1][index / WIDTH];
@@ -58,9 +58,9 @@ impl Node {
         let middle = view.seen(centre);
         let Corners([a, b, c]) = &facets.leaves[index];
         [
-            seen::<f32, S>(&load::<f32, S>(simd, a), &view.rows, middle),
-            seen::<f32, S>(&load::<f32, S>(simd, b), &view.rows, middle),
-            seen::<f32, S>(&load::<f32, S>(simd, c), &view.rows, middle),
+            seen(&load(simd, a), &view.rows, middle),
+            seen(&load(simd, b), &view.rows, middle),
+            seen(&load(simd, c), &view.rows, middle),
         ]
     }
 
@@ -86,7 +86,13 @@ pub(crate) struct Descent {
 /// Something that depth, or a negative distance, is no more than in boxes.
 pub(crate) trait BoxBounds {
     /// In 16 boxes; what is not there has NaN. What is no more than wanted need not be close.
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, wanted: f32) -> f32x16<S>;
+    fn of_boxes<S: Simd>(
+        &self,
+        simd: S,
+        boxes: &Boxes,
+        view: &PoseTransform,
+        wanted: f32,
+    ) -> f32x16<S>;
 }
 
 /// The same in boxes and triangles.
@@ -134,11 +140,11 @@ impl Shift {
 pub(crate) fn rings<S: Simd>(
     simd: S,
     boxes: &Boxes,
-    view: &View,
+    view: &PoseTransform,
     shift: Option<&Shift>,
 ) -> Rings<f32x16<S>> {
-    let centre = load::<f32, S>(simd, &boxes.centre);
-    let half = load::<f32, S>(simd, &boxes.half);
+    let centre = load(simd, &boxes.centre);
+    let half = load(simd, &boxes.half);
     let [x, y, z] = seen(&centre, &view.rows, view.origin);
     let zero = f32x16::splat(simd, 0.0);
     let (x, y) = (x.abs(), y.abs());
@@ -167,7 +173,7 @@ pub(crate) fn rings<S: Simd>(
 }
 
 /// A part as a tool sees it.
-pub(crate) type Seen<'a, B> = (&'a Facets, &'a B, &'a View);
+pub(crate) type Seen<'a, B> = (&'a Facets, &'a B, &'a PoseTransform);
 
 impl Descent {
     pub(crate) fn clear(&mut self) {

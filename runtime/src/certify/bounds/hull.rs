@@ -1,13 +1,13 @@
 //! How deep a tool is at most in boxes and triangles, side by side.
 
-use crate::bvh::{Boxes, View};
+use crate::bvh::{Boxes, PoseTransform};
 use crate::certify::body::feature::{Feature, Place};
 use crate::certify::body::owners::Owners;
 use crate::certify::body::section::{self, Section};
 use crate::certify::bounds::descent::{Bounds, BoxBounds, Rings, rings};
 use crate::certify::bounds::nearest::{
-    Clip, Many, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least,
-    most, under_both,
+    Clip, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least, most,
+    under_both,
 };
 use crate::certify::part::Ring;
 use crate::tool::Card;
@@ -121,7 +121,7 @@ impl<R: Real> Hull<R> {
     /// may be greatest. What is not there has NaN. What is no more than wanted need not be close. Given
     /// such places, it looks closer from there.
     #[inline(always)]
-    pub(crate) fn triangles<S: Simd, V: Many<S, R>>(
+    pub(crate) fn triangles<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
@@ -170,7 +170,7 @@ type Part<V, M> = Option<Clip<V, M>>;
 impl<R: Real> Slab<R> {
     /// The least of the most of what planes say of each triangle.
     #[inline(always)]
-    fn under_planes<S: Simd, V: Many<S, R>>(
+    fn under_planes<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
@@ -186,7 +186,7 @@ impl<R: Real> Slab<R> {
 
     /// The same of the parts of triangles between a slab's heights, for those that are open.
     #[inline(always)]
-    fn triangles<S: Simd, V: Many<S, R>>(
+    fn triangles<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         corners: &[Space<V>; 3],
@@ -286,7 +286,7 @@ impl<R: Real> Slab<R> {
 
 /// How far corners are under a plane, as far out as they are.
 #[inline(always)]
-fn under_plane<S: Simd, R: Real, V: Many<S, R>>(
+fn under_plane<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: &[Space<V>; 3],
     out: &[V; 3],
@@ -372,7 +372,13 @@ impl BoxBounds for Hull<f32> {
     /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
     /// NaN.
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, wanted: f32) -> f32x16<S> {
+    fn of_boxes<S: Simd>(
+        &self,
+        simd: S,
+        boxes: &Boxes,
+        view: &PoseTransform,
+        wanted: f32,
+    ) -> f32x16<S> {
         self.of_rings(simd, &rings(simd, boxes, view, None), wanted)
     }
 }
@@ -398,7 +404,7 @@ const SEVERAL: u32 = 2;
 
 /// The most of what is linear between corners, within a slab if that cuts them.
 #[inline(always)]
-fn most_of<S: Simd, R: Real, V: Many<S, R>>(
+fn most_of<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     part: &Part<V, V::Mask>,
     [a, b, c]: [V; 3],

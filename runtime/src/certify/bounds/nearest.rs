@@ -48,10 +48,6 @@ impl Real for f64 {
     }
 }
 
-/// A vector of them.
-pub(crate) trait Many<S: Simd, R>: SimdFloat<S, Element = R> {}
-impl<S: Simd, R, V: SimdFloat<S, Element = R>> Many<S, R> for V {}
-
 /// Where a triangle is nearest to the axis or a place on it.
 pub(crate) struct Near<V> {
     pub(crate) place: Space<V>,
@@ -97,7 +93,7 @@ fn cross<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> V {
 /// The points of segments that are nearest to the origin, if `level` those nearest to the axis, and the
 /// squares of their distances.
 #[inline(always)]
-fn on_edge<S: Simd, R: Real, V: Many<S, R>>(
+fn on_edge<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     a: &Space<V>,
     b: &Space<V>,
@@ -119,7 +115,7 @@ fn product<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>, level: bool) -> 
 
 /// The same of the edges of triangles.
 #[inline(always)]
-fn on_edges<S: Simd, R: Real, V: Many<S, R>>(
+fn on_edges<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: [&Space<V>; 3],
     level: bool,
@@ -138,7 +134,7 @@ impl<V: Copy> Near<V> {
     #[inline(always)]
     pub(crate) fn to_axis<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3]) -> Near<V>
     where
-        V: Many<S, R>,
+        V: SimdFloat<S, Element = R>,
     {
         let zero = V::splat(simd, R::of(0.0));
         let (place, square) = on_edges(simd, [a, b, c], true);
@@ -157,7 +153,7 @@ impl<V: Copy> Near<V> {
     #[inline(always)]
     pub(crate) fn to_place<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3], z: R) -> Near<V>
     where
-        V: Many<S, R>,
+        V: SimdFloat<S, Element = R>,
     {
         let zero = V::splat(simd, R::of(0.0));
         let centre = V::splat(simd, z);
@@ -204,7 +200,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         [low, high]: [R; 2],
     ) -> Clip<V, M>
     where
-        V: Many<S, R> + SimdBase<S, Mask = M>,
+        V: SimdFloat<S, Element = R> + SimdBase<S, Mask = M>,
         M: SimdMask<S>,
     {
         let zero = V::splat(simd, R::of(0.0));
@@ -226,7 +222,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
     #[inline(always)]
     pub(crate) fn most<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
     where
-        V: Many<S, R> + SimdBase<S, Mask = M>,
+        V: SimdFloat<S, Element = R> + SimdBase<S, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
         let none = V::splat(simd, R::of(f64::NEG_INFINITY));
@@ -251,7 +247,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         upper: M,
     ) -> Space<V>
     where
-        V: Many<S, R> + SimdBase<S, Mask = M>,
+        V: SimdFloat<S, Element = R> + SimdBase<S, Mask = M>,
         M: SimdMask<S> + Select<V>,
     {
         let [a, b, c] = corners;
@@ -287,7 +283,7 @@ fn cut<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, at: V) -> (V, V::Mask)
 
 /// The direction of a place from one of the axis, no longer than 1.
 #[inline(always)]
-pub(crate) fn direction<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn direction<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     place: &Space<V>,
     z: V,
@@ -307,7 +303,7 @@ pub(crate) fn across<S: Simd, V: SimdBase<S>>([a, b, c]: &[Space<V>; 3], way: &S
 
 /// How far out corners are in a direction from a place of the axis.
 #[inline(always)]
-pub(crate) fn beyond<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn beyond<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     corners: &[Space<V>; 3],
     way: &Space<V>,
@@ -337,7 +333,7 @@ pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> 
 /// between them it is no more than linear: `out` is no more, `far` no less than how far they are from the
 /// axis.
 #[inline(always)]
-pub(crate) fn from_ring<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn from_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c]: &[Space<V>; 3],
     (out, far): (&[V; 3], &[V; 3]),
@@ -383,7 +379,7 @@ pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
 }
 
 #[inline(always)]
-pub(crate) fn to_ring<S: Simd, R: Real, V: Many<S, R>>(
+pub(crate) fn to_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [out, far, z]: [V; 3],
     [d, height]: [V; 2],

@@ -1,6 +1,6 @@
 //! How near a tool is to boxes and triangles, 16 at a time, in `f32`.
 
-use crate::bvh::{Boxes, View};
+use crate::bvh::{Boxes, PoseTransform};
 use crate::certify::body::feature::Feature;
 use crate::certify::body::owners::Owners;
 use crate::certify::body::section::Section;
@@ -75,7 +75,13 @@ impl Shell {
 
 impl BoxBounds for Shell {
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, _wanted: f32) -> f32x16<S> {
+    fn of_boxes<S: Simd>(
+        &self,
+        simd: S,
+        boxes: &Boxes,
+        view: &PoseTransform,
+        _wanted: f32,
+    ) -> f32x16<S> {
         self.bound(simd, &rings(simd, boxes, view, None))
     }
 }

@@ -5,9 +5,9 @@
 
 use crate::certify::bounds::hull::{Hull, Slab};
 use crate::certify::bounds::nearest::{
-    Clip, Many, Near, Real, Space, across, choose, direction, most, to_ring,
+    Clip, Near, Real, Space, across, choose, direction, most, to_ring,
 };
-use fearless_simd::{Select, Simd, SimdBase, SimdMask};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 /// The corners of a triangle at both ends of its way.
 pub(crate) type Ends<V> = [Space<V>; 6];
@@ -16,7 +16,7 @@ impl<R: Real> Hull<R> {
     /// No less than the depth of any place of the hulls of triangles at both ends of their way, or no
     /// farther from these than they `grow`; `middle` is where they are between.
     #[inline(always)]
-    pub(crate) fn swept<S: Simd, V: Many<S, R>>(
+    pub(crate) fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         (ends, middle): (&Ends<V>, &[Space<V>; 3]),
@@ -51,7 +51,7 @@ impl<R: Real> Hull<R> {
 impl<R: Real> Slab<R> {
     /// The least of the most of what planes say of corners so far out and so high.
     #[inline(always)]
-    fn under_planes_of<S: Simd, V: Many<S, R>>(
+    fn under_planes_of<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         out: &[V; 6],
@@ -73,7 +73,7 @@ impl<R: Real> Slab<R> {
 
     /// The same and more of what is between heights.
     #[inline(always)]
-    fn swept<S: Simd, V: Many<S, R>>(
+    fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
         (ends, middle, goes): (&Ends<V>, &[Space<V>; 3], &Space<V>),
@@ -146,7 +146,10 @@ impl<R: Real> Slab<R> {
 
 /// How far triangles go from the middle to the end of their way.
 #[inline(always)]
-fn half_way<S: Simd, R: Real, V: Many<S, R>>(simd: S, [a, b, c, d, e, f]: &Ends<V>) -> Space<V> {
+fn half_way<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
+    simd: S,
+    [a, b, c, d, e, f]: &Ends<V>,
+) -> Space<V> {
     let sixth = V::splat(simd, R::of(1.0 / 6.0));
     [
         (d[0] + e[0] + f[0] - a[0] - b[0] - c[0]) * sixth,
@@ -157,7 +160,7 @@ fn half_way<S: Simd, R: Real, V: Many<S, R>>(simd: S, [a, b, c, d, e, f]: &Ends<
 
 /// Where a place comes nearest to the axis, or to a height of it, if it goes so far either way.
 #[inline(always)]
-fn slide<S: Simd, R: Real, V: Many<S, R>>(
+fn slide<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     place: &Space<V>,
     goes: &Space<V>,
@@ -177,7 +180,7 @@ fn slide<S: Simd, R: Real, V: Many<S, R>>(
 
 /// A place, or if it is beyond two heights the place at that end which is nearest to the axis.
 #[inline(always)]
-fn within<S: Simd, R: Real, V: Many<S, R>>(
+fn within<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     clip: &Clip<V, V::Mask>,
     middle: &[Space<V>; 3],
@@ -207,7 +210,7 @@ const FAR: f64 = 1e30;
 
 /// The least of something linear at one height of a hull; `FAR` if it does not come there.
 #[inline(always)]
-fn least_at<S: Simd, R: Real, V: Many<S, R>>(
+fn least_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     values: &[V; 6],
     heights: &[V; 6],

@@ -4,7 +4,7 @@
 //! a node's triangles have along a normal can.
 
 use super::Facets;
-use crate::bvh::{View, WIDTH};
+use crate::bvh::{PoseTransform, WIDTH};
 use crate::certify::space::{Point, dot};
 
 /// Between which heights along a normal the corners of a node's triangles lie, in the tree's frame.
@@ -45,7 +45,7 @@ impl Plane {
 impl Facets {
     /// The ring about the tool's axis that a node is within, by its box and its plane; the whole part has
     /// no box.
-    pub(crate) fn ring(&self, level: usize, index: usize, view: &View) -> Option<Ring> {
+    pub(crate) fn ring(&self, level: usize, index: usize, view: &PoseTransform) -> Option<Ring> {
         let boxes = &self.levels[level.checked_sub(1)?][index / WIDTH];
         let lane = index % WIDTH;
         let centre = [0, 1, 2].map(|axis| f64::from(boxes.centre[axis][lane]));

@@ -8,7 +8,7 @@ mod moving;
 pub(crate) mod stretch;
 mod task;
 
-use crate::bvh::{View, WIDTH};
+use crate::bvh::{PoseTransform, WIDTH};
 use crate::certify::body::Body;
 use crate::certify::body::field::Scratch;
 use crate::certify::body::owners::Owners;
@@ -56,8 +56,8 @@ enum Left {
 /// The search for what is in the way.
 #[derive(Default)]
 pub(crate) struct Sweeper {
-    view: View,
-    ends: [View; 2],
+    view: PoseTransform,
+    ends: [PoseTransform; 2],
     /// What may be in the way, of all stretches that are being looked at.
     left: Vec<Left>,
     stack: Vec<Node>,
@@ -113,9 +113,9 @@ impl Sweeper {
         let facets = setting.facets;
         let frame = &facets.frame;
         let [first, middle, last] = &stretch.poses;
-        setting.sight.look(frame, first, &mut self.ends[0]);
-        setting.sight.look(frame, middle, &mut self.view);
-        setting.sight.look(frame, last, &mut self.ends[1]);
+        setting.setup.set_pose(frame, first, &mut self.ends[0]);
+        setting.setup.set_pose(frame, middle, &mut self.view);
+        setting.setup.set_pose(frame, last, &mut self.ends[1]);
         // The tips of poses are rounded where they are in the world.
         let tip = task.motion.start().coords.norm() + task.motion.way().norm();
         let margin = setting.margin()
@@ -148,7 +148,7 @@ impl Sweeper {
                     if let Some(stop) = self.add(task, stretch, part) {
                         return Some(stop);
                     }
-                } else if node.size(facets) * setting.sight.unit < small {
+                } else if node.size(facets) * setting.setup.unit < small {
                     self.left.push(Left::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];

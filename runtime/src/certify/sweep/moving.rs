@@ -1,6 +1,6 @@
 //! Boxes and triangles on their way past a hull, 16 at a time in `f32`.
 
-use crate::bvh::{Boxes, View};
+use crate::bvh::{Boxes, PoseTransform};
 use crate::certify::bounds::descent::{BoxBounds, Node, Seen, Shift, above, rings};
 use crate::certify::bounds::hull::Hull;
 use crate::certify::bounds::nearest::Space;
@@ -13,12 +13,18 @@ pub(super) struct Moving<'a> {
     pub(super) shift: Shift,
     pub(super) keep: f32,
     /// The part at the beginning and at the end.
-    pub(super) ends: &'a [View; 2],
+    pub(super) ends: &'a [PoseTransform; 2],
 }
 
 impl BoxBounds for Moving<'_> {
     #[inline(always)]
-    fn of_boxes<S: Simd>(&self, simd: S, boxes: &Boxes, view: &View, wanted: f32) -> f32x16<S> {
+    fn of_boxes<S: Simd>(
+        &self,
+        simd: S,
+        boxes: &Boxes,
+        view: &PoseTransform,
+        wanted: f32,
+    ) -> f32x16<S> {
         self.hull.of_rings(simd, &rings(simd, boxes, view, Some(&self.shift)), wanted)
     }
 }
