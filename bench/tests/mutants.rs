@@ -6,7 +6,8 @@ use tool_dsl::interpret::Interpreter;
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
-use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
+use touchoff_bench::mutants::{Caught, KINDS, Mutant, caught, changes, mutants};
+use touchoff_bench::parallel;
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::draw::Draw;
 
@@ -139,23 +140,27 @@ fn what_passes_keeps_its_bounds() {
 /// A sample of `docs/measured/mutants.md`, of every tool.
 #[test]
 fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
-    let (mut seen, mut compared, mut missed) = (0, Vec::new(), Vec::new());
-    for (seed, source) in library().iter().enumerate() {
-        let whole = *compile(source).into_tool().expect("the library compiles");
+    // A source stays on its thread.
+    let found = parallel::rows(library().len(), |at| {
+        let whole = *compile(&library()[at]).into_tool().expect("the library compiles");
         let proved = Certificate::of(&whole);
         let reports = proved.reports(&whole);
         assert!(reports.is_empty(), "{}: {reports:#?}", whole.model.name);
         // Others than those of the table.
-        for mutant in mutants(&whole, 4, 1000 + seed as u64) {
-            if changes(&whole, &mutant.tool, 1) {
-                let place =
-                    format!("{}: {} at {}", whole.model.name, KINDS[mutant.kind], mutant.place);
-                match caught(&proved, &mutant.tool) {
-                    Caught::Error | Caught::Open | Caught::Warning => seen += 1,
-                    Caught::Compared => compared.push(place),
-                    Caught::Not => missed.push(place),
-                }
-            }
+        let mut mutants = mutants(&whole, 4, 1000 + at as u64);
+        mutants.retain(|mutant| changes(&whole, &mutant.tool, 1));
+        let place =
+            |kind: usize, place: &str| format!("{}: {} at {place}", whole.model.name, KINDS[kind]);
+        let seen =
+            |mutant: &Mutant| (caught(&proved, &mutant.tool), place(mutant.kind, &mutant.place));
+        mutants.iter().map(seen).collect::<Vec<_>>()
+    });
+    let (mut seen, mut compared, mut missed) = (0, Vec::new(), Vec::new());
+    for (how, place) in found.into_iter().flatten() {
+        match how {
+            Caught::Error | Caught::Open | Caught::Warning => seen += 1,
+            Caught::Compared => compared.push(place),
+            Caught::Not => missed.push(place),
         }
     }
     println!("{seen} seen, {} by comparing, {} not", compared.len(), missed.len());

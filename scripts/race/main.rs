@@ -67,12 +67,12 @@ macro_rules! version {
                     for (k, pose) in poses.iter().enumerate() {
                         let pose = black_box(pose);
                         match question {
-                            0 => drop(black_box(probe.wrench(pose))),
-                            1 => drop(black_box(probe.detect(pose))),
-                            2 => drop(black_box(certifier.deepest(pose, TOLERANCE))),
+                            0 => _ = black_box(probe.wrench(pose)),
+                            1 => _ = black_box(probe.detect(pose)),
+                            2 => _ = black_box(certifier.deepest(pose, TOLERANCE)),
                             _ => {
                                 let motion = &motions[(block * BLOCK + k).min(motions.len() - 1)];
-                                drop(black_box(certifier.sweep_clear(black_box(motion), TOLERANCE)));
+                                _ = black_box(certifier.sweep_clear(black_box(motion), TOLERANCE));
                             }
                         }
                     }

@@ -74,6 +74,7 @@ impl<'a> QueryState<'a> {
     }
 
     /// Sets the pose. Returns whether the tool may reach the part.
+    #[inline]
     pub(super) fn set_pose(&mut self, pose: &Pose) -> bool {
         self.setup.set_pose(&self.tree.frame, pose, &mut self.view)
     }
