@@ -143,7 +143,7 @@ fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
     for (seed, source) in library().iter().enumerate() {
         let whole = *compile(source).into_tool().expect("the library compiles");
         let proved = Certificate::of(&whole);
-        let reports = proved.reports(&whole);
+        let reports = proved.diagnostics(&whole);
         assert!(reports.is_empty(), "{}: {reports:#?}", whole.model.name);
         // Others than those of the table.
         for mutant in mutants(&whole, 4, 1000 + seed as u64) {

@@ -66,7 +66,7 @@ fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
         Err(failure) => {
             // A report of the compiler begins with its severity.
             let words = failure.to_string();
-            let severity = if words.starts_with("error:") { "" } else { "error: " };
+            let severity = if words.starts_with("error[") { "" } else { "error: " };
             say!("{severity}{words}");
             ExitCode::from(failure.status().max(failed))
         }

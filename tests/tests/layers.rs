@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-const COMPILER: [&str; 24] = [
+const COMPILER: [&str; 25] = [
     "number",
     "source",
-    "report",
+    "dimension",
+    "diagnostic",
     "expr",
     "domain",
     "formula",
