@@ -41,7 +41,7 @@ fn refused(text: &str) -> Vec<String> {
         assert!(!report.help().is_empty(), "no remedy: {}", report.message());
         assert!(report.render(&compiled.sources, false).contains(&report.message()));
     }
-    errors(&compiled).into_iter().map(str::to_owned).collect()
+    errors(&compiled)
 }
 
 #[test]

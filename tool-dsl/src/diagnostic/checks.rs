@@ -19,7 +19,8 @@ kinds! {
         "constant beyond all doubles"
         message "a constant of this tool outgrows all numbers"
         help "powers upon powers of large constants do so: write lengths in a nearer unit"
-        explain "Generated code computes in double precision. A constant that it needs is infinite there.";
+        explain "Generated code computes in double precision. A constant that it needs is infinite there."
+        without "no text is known whose single constants are in range";
     error T0603 NoPoint { file: &'static str }
         "tool without a point"
         message "no point belongs to this {file}"
@@ -155,12 +156,14 @@ kinds! {
         "more errors"
         message "more is wrong from here on"
         help "mend what stands above first"
-        explain "At most 50 errors are shown at once. Later ones often follow from earlier ones.";
+        explain "At most 50 errors are shown at once. Later ones often follow from earlier ones."
+        without "an example would have fifty errors";
     warning T0691 MoreWarnings
         "more warnings"
         message "more is warned of from here on"
         help "look at what stands above first"
-        explain "At most 50 warnings are shown at once.";
+        explain "At most 50 warnings are shown at once."
+        without "an example would have fifty warnings";
     error T0692 Unexplained
         "refusal without a reason"
         message "this tool is refused, and the compiler did not say why"

@@ -77,7 +77,7 @@ kinds! {
         "mounted file that cannot be read"
         message "cannot read `{file}`: {error}"
         help "the path is relative to the file that mounts it"
-        explain "The file does not exist, or may not be read.";
+        explain "The file does not exist, may not be read, is too long, or is no UTF-8 text.";
     error T0514 MountsItself { file: String, chain: Chain }
         "file that mounts itself"
         message "`{file}` mounts itself: {chain}"

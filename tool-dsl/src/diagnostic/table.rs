@@ -152,7 +152,12 @@ macro_rules! kinds {
     (@severity error) => { $crate::diagnostic::Severity::Error };
     (@severity warning) => { $crate::diagnostic::Severity::Warning };
     (@example $code:ident) => {
-        $crate::diagnostic::Example::Text("")
+        $crate::diagnostic::Example::Text(include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/tests/errors/",
+            stringify!($code),
+            ".tool"
+        )))
     };
     (@example $code:ident $reason:literal) => { $crate::diagnostic::Example::Without($reason) };
 }

@@ -89,11 +89,7 @@ impl Felt<'_> {
 }
 
 /// The parts of a tuple, as many as the domain has coordinates.
-fn components<'t>(
-    tuple: &'t Tuple,
-    domain: Domain,
-    role: Role,
-) -> Result<Vec<&'t Expr>, Diagnostic> {
+fn components(tuple: &Tuple, domain: Domain, role: Role) -> Result<Vec<&Expr>, Diagnostic> {
     let (count, wanted) = (tuple.parts.len(), domain.coordinates().len());
     if count == wanted {
         return Ok(tuple.parts.iter().collect());
@@ -104,6 +100,6 @@ fn components<'t>(
 }
 
 /// The two parts of a point of a tool.
-pub(super) fn pair<'t>(tuple: &'t Tuple, role: Role) -> Result<[&'t Expr; 2], Diagnostic> {
+pub(super) fn pair(tuple: &Tuple, role: Role) -> Result<[&Expr; 2], Diagnostic> {
     components(tuple, Domain::HalfPlane, role).map(|_| [&tuple.parts[0], &tuple.parts[1]])
 }

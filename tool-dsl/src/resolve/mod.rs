@@ -226,7 +226,7 @@ fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<
     for item in &tool.items {
         match item {
             Item::Regions { span, .. } if first.is_none() && mounts.is_empty() => {
-                diagnostics.push(Diagnostic::new(*span, RegionKind::NoProfile))
+                diagnostics.push(Diagnostic::new(*span, RegionKind::NoProfile));
             }
             Item::Tip(Expr { span, .. }) | Item::Spindle { span, .. } if !mounts.is_empty() => {
                 diagnostics.push(Diagnostic::new(*span, MountKind::FrameOfMounts));
