@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod demo;
 mod draw;
+mod explain;
 mod failure;
 mod files;
 mod fmt;
@@ -49,6 +50,7 @@ fn main() -> ExitCode {
             stages::check(&folder, &files, &given)
         }
         Some(Command::Expand { files, plan, given, .. }) => files::expand(&files, plan, &given),
+        Some(Command::Explain { code }) => explain::explain(code.as_deref(), arguments.json),
         Some(Command::Fmt { check, files }) => fmt::fmt(&files, check, arguments.json),
         Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),
     };

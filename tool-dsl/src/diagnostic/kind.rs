@@ -10,6 +10,9 @@ use super::syntax::SyntaxKind;
 use super::table::Entry;
 use super::values::ValueKind;
 
+/// The most edits between two codes that are like each other.
+const MOST_EDITS: usize = 2;
+
 /// A family of kinds, whose codes begin alike.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
@@ -65,4 +68,11 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
 /// Returns the row of a code.
 pub fn entry(code: &str) -> Option<&'static Entry> {
     entries().find(|entry| entry.code == code)
+}
+
+/// Returns the rows whose codes are most like a code that there is none of: at most three, and none if nothing is near.
+pub fn near(code: &str) -> impl Iterator<Item = &'static Entry> {
+    let edits = |entry: &Entry| strsim::damerau_levenshtein(code, entry.code);
+    let least = entries().map(edits).min().filter(|edits| *edits <= MOST_EDITS);
+    entries().filter(move |entry| Some(edits(entry)) == least).take(3)
 }

@@ -23,7 +23,7 @@ pub use data::{
 };
 pub use escape::escaped;
 pub(crate) use escape::is_hidden;
-pub use kind::{FAMILIES, Family, Kind, entries, entry};
+pub use kind::{FAMILIES, Family, Kind, entries, entry, near};
 pub use mounts::MountKind;
 pub use profile::ProfileKind;
 pub use refusal::{MOST, Refusal, Reported, any_error};

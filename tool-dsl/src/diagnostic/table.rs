@@ -109,7 +109,6 @@ macro_rules! kinds {
                 }),*],
             };
 
-            /// Returns the row of the table.
             pub(super) fn code(&self) -> &'static str {
                 match self {
                     $(Self::$name { .. } => stringify!($code)),*

@@ -419,8 +419,11 @@ impl Part {
 /// A tool that ends at a z which is not its tip; its other end may be.
 pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let size = other - end;
-    let (end_shown, tip) = (Figure(frame.to_file(end)), Figure(frame.tip.to_f64()));
+    let tip = Figure(frame.tip.to_f64());
     let turned = other.abs() <= 1e-6 * size;
     let spindle = turned.then_some(if frame.down { '+' } else { '-' });
-    Diagnostic::new(frame.tip_span, CheckKind::OffTip { end: end_shown, tip, spindle })
+    Diagnostic::new(
+        frame.tip_span,
+        CheckKind::OffTip { end: Figure(frame.to_file(end)), tip, spindle },
+    )
 }

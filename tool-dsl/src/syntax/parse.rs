@@ -28,7 +28,7 @@ const TAKEN: [&str; 14] = [
     "Surface",
 ];
 
-/// Reads a tool. What could be read comes back even beside errors, so that later steps can diagnostic
+/// Reads a tool. What could be read comes back even beside errors, so that later steps can report
 /// theirs; without a tool's name nothing can, which fails with an error among the diagnostics.
 pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool, Reported> {
     // With the tokens that would have fitted, not the rules alone.
