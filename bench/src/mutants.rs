@@ -1,11 +1,11 @@
 //! Tools broken in one place each after they were compiled, and what is proved of them then.
 
+use tool_dsl::diagnostic::any_error;
 use tool_dsl::expr::Id;
 use tool_dsl::expr::value::{At, Evaluator};
 use tool_dsl::number::Number;
 use tool_dsl::plan::{PlannedTool, Tree};
 use tool_dsl::prove::Certificate;
-use tool_dsl::report::any_error;
 use touchoff_tests::oracle::draw::Draw;
 
 /// Points at which a broken tool is compared with the whole one.
@@ -186,7 +186,7 @@ pub fn changes(whole: &PlannedTool, broken: &PlannedTool, seed: u64) -> bool {
 /// whole tool. The whole tool must have no report.
 pub fn caught(whole: &Certificate, mutant: &PlannedTool) -> Caught {
     let broken = Certificate::of(mutant);
-    let reports = broken.reports(mutant);
+    let reports = broken.diagnostics(mutant);
     let same = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs(),
         (a, b) => a == b,

@@ -144,7 +144,7 @@ fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
     let found = parallel::rows(library().len(), |at| {
         let whole = *compile(&library()[at]).into_tool().expect("the library compiles");
         let proved = Certificate::of(&whole);
-        let reports = proved.reports(&whole);
+        let reports = proved.diagnostics(&whole);
         assert!(reports.is_empty(), "{}: {reports:#?}", whole.model.name);
         // Others than those of the table.
         let mut mutants = mutants(&whole, 4, 1000 + at as u64);

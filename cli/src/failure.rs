@@ -31,6 +31,14 @@ pub(crate) enum Failure {
     /// There is no such device.
     #[error("{0}")]
     Device(String),
+    /// No diagnostic has such a code.
+    #[error("no code is called `{code}`: {}", near_codes(near))]
+    Code {
+        /// The code that was asked for.
+        code: String,
+        /// The codes that are most like it.
+        near: String,
+    },
     /// A signal ended a session.
     #[error("the session was interrupted: all of it until then was kept")]
     Interrupted,
@@ -233,4 +241,12 @@ pub(crate) enum Failure {
     /// A row could not be written as JSON.
     #[error("the output could not be written whole: {0}")]
     Json(#[from] serde_json::Error),
+}
+
+/// The remedy for a code that there is none of.
+fn near_codes(near: &str) -> String {
+    match near {
+        "" => "`touchoff explain` lists them".to_owned(),
+        near => format!("did you mean `{near}`?"),
+    }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use tool_dsl::report::escaped;
+use tool_dsl::diagnostic::escaped;
 use tool_dsl::{CheckedTool, compile_with, emit};
 use tools_library::TOOLS;
 use touchoff::tool::{Card, Interpreted, Shape};
@@ -128,8 +128,8 @@ impl Found {
 pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<CheckedTool>, Failure> {
     let source = given.source(file)?;
     let compiled = compile_with(&source, &given.sources());
-    for report in compiled.reports() {
-        show(report, &compiled.sources);
+    for diagnostic in compiled.diagnostics() {
+        show(diagnostic, &compiled.sources);
     }
     compiled.into_tool().ok_or(Failure::Files { wrong: 1, all: 1 })
 }

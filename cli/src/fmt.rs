@@ -68,10 +68,10 @@ fn one(file: &Path, check: bool, json: bool) -> Result<Outcome, Failure> {
     };
     let formatted = match format(&source) {
         Ok(formatted) => formatted,
-        Err(reports) => {
+        Err(diagnostics) => {
             let sources = Sources::new(source, []);
-            for report in reports {
-                show(&report, &sources);
+            for diagnostic in diagnostics {
+                show(&diagnostic, &sources);
             }
             return Ok(Outcome::Wrong);
         }

@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod demo;
 mod draw;
+mod explain;
 mod failure;
 mod files;
 mod fmt;
@@ -49,6 +50,7 @@ fn main() -> ExitCode {
             stages::check(&folder, &files, &given)
         }
         Some(Command::Expand { files, plan, given, .. }) => files::expand(&files, plan, &given),
+        Some(Command::Explain { code }) => explain::explain(code.as_deref(), arguments.json),
         Some(Command::Fmt { check, files }) => fmt::fmt(&files, check, arguments.json),
         Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),
     };
@@ -66,7 +68,7 @@ fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
         Err(failure) => {
             // A report of the compiler begins with its severity.
             let words = failure.to_string();
-            let severity = if words.starts_with("error:") { "" } else { "error: " };
+            let severity = if words.starts_with("error[") { "" } else { "error: " };
             say!("{severity}{words}");
             ExitCode::from(failure.status().max(failed))
         }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
-use tool_dsl::report::Report;
+use tool_dsl::diagnostic::Diagnostic;
 use tool_dsl::source::{Source, Sources};
 use touchoff::{AtomicFile, EscapedLines};
 
@@ -91,13 +91,13 @@ macro_rules! say {
     }};
 }
 
-/// Shows a report of the compiler on standard error, in colours where that is a terminal.
-pub(crate) fn show(report: &Report, sources: &Sources) {
-    let plain = report.render(sources, false);
+/// Shows a diagnostic of the compiler on standard error, in colours where that is a terminal.
+pub(crate) fn show(diagnostic: &Diagnostic, sources: &Sources) {
+    let plain = diagnostic.render(sources, false);
     let escaped = EscapedLines(&plain).to_string();
     // Colours are control characters too: they are left out where there are others.
     let colours = io::stderr().is_terminal() && escaped == plain;
-    let shown = if colours { report.render(sources, true) } else { escaped };
+    let shown = if colours { diagnostic.render(sources, true) } else { escaped };
     let _ = writeln!(io::stderr(), "{shown}\n");
 }
 

@@ -9,8 +9,8 @@ use std::ffi::OsStr;
 use std::fmt::Write;
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
+use tool_dsl::diagnostic::escaped;
 use tool_dsl::prove::Certificate;
-use tool_dsl::report::escaped;
 use tool_dsl::{CheckedTool, compile_with, emit};
 
 /// Writes the stages of files into a folder, each file's into one of its own.
@@ -72,8 +72,8 @@ fn stages(
     let tool = match &compiled.outcome {
         Ok(accepted) => &*accepted.tool,
         Err(refusal) => {
-            for report in refusal.reports() {
-                show(report, &compiled.sources);
+            for diagnostic in refusal.diagnostics() {
+                show(diagnostic, &compiled.sources);
             }
             return Err(Failure::Files { wrong: 1, all: 1 });
         }

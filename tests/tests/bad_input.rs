@@ -2,7 +2,7 @@
 //! text. Each is refused with a clear word, at once: an input that took long would be seen here.
 
 use std::path::PathBuf;
-use tool_dsl::report::Severity;
+use tool_dsl::diagnostic::{Diagnostic, Severity};
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile};
 
@@ -22,9 +22,9 @@ fn numbered(count: usize, item: impl Fn(usize) -> String) -> String {
     (0..count).map(item).collect()
 }
 
-fn errors(compiled: &Compiled) -> Vec<&str> {
-    let errors = compiled.reports().iter().filter(|report| report.severity == Severity::Error);
-    errors.map(|report| report.message.as_str()).collect()
+fn errors(compiled: &Compiled) -> Vec<String> {
+    let errors = compiled.diagnostics().iter().filter(|report| report.severity == Severity::Error);
+    errors.map(Diagnostic::message).collect()
 }
 
 /// A text's errors: few enough to read, each with a remedy and a place that can be shown.
@@ -32,12 +32,16 @@ fn refused(text: &str) -> Vec<String> {
     let compiled = compile(&Source::new("t.tool", text));
     let start: String = text.chars().take(200).collect();
     assert!(compiled.tool().is_none() && !errors(&compiled).is_empty(), "{start} was taken");
-    assert!(compiled.reports().len() <= 51, "{} reports of {start}", compiled.reports().len());
-    for report in compiled.reports() {
-        assert!(report.help.is_some(), "no remedy: {}", report.message);
-        assert!(report.render(&compiled.sources, false).contains(&report.message));
+    assert!(
+        compiled.diagnostics().len() <= 51,
+        "{} reports of {start}",
+        compiled.diagnostics().len()
+    );
+    for report in compiled.diagnostics() {
+        assert!(!report.help().is_empty(), "no remedy: {}", report.message());
+        assert!(report.render(&compiled.sources, false).contains(&report.message()));
     }
-    errors(&compiled).into_iter().map(str::to_owned).collect()
+    errors(&compiled)
 }
 
 #[test]
@@ -129,7 +133,7 @@ fn what_is_no_text_of_a_tool() {
         assert!(refused(&text)[0].contains(word), "{word}: {:?}", refused(&text));
     }
     let windows = compile(&Source::new("t.tool", tool("").replace('\n', "\r\n")));
-    assert!(windows.tool().is_some(), "{:?}", windows.reports());
+    assert!(windows.tool().is_some(), "{:?}", windows.diagnostics());
 }
 
 /// A folder of this test's files.
@@ -193,5 +197,5 @@ fn a_hundred_balls_on_a_string() {
     };
     let text = format!("tool T {{ units mm; {} }}", numbered(100, ball));
     let compiled = compile(&Source::new("t.tool", text));
-    assert!(compiled.tool().is_some(), "{:?}", compiled.reports());
+    assert!(compiled.tool().is_some(), "{:?}", compiled.diagnostics());
 }

@@ -265,7 +265,7 @@ fn jumps_are_found() {
         let source = Source::new("core.tool", core(depth));
         let compiled = compile(&source);
         assert!(compiled.tool().is_none());
-        compiled.reports().iter().map(|report| report.message.clone()).collect::<Vec<_>>()
+        compiled.diagnostics().iter().map(|report| report.message()).collect::<Vec<_>>()
     };
     // 4 instead of 2 at the core.
     let wrong = said("2*(3 - r)");

@@ -7,7 +7,7 @@
 
 use std::path::{Path, PathBuf};
 use tool_dsl::compile;
-use tool_dsl::report::{Report, Severity};
+use tool_dsl::diagnostic::{Diagnostic, Severity};
 use tool_dsl::source::Source;
 
 const PAGE: &str = include_str!("../../docs/language.md");
@@ -49,8 +49,8 @@ impl Example {
     /// What is wrong with a good example.
     fn compiles(source: &Source) -> Option<String> {
         let compiled = compile(source);
-        let render = |report: &Report| report.render(&compiled.sources, false);
-        let said: Vec<String> = compiled.reports().iter().map(render).collect();
+        let render = |report: &Diagnostic| report.render(&compiled.sources, false);
+        let said: Vec<String> = compiled.diagnostics().iter().map(render).collect();
         (!said.is_empty()).then(|| said.join("\n"))
     }
 
@@ -61,12 +61,12 @@ impl Example {
         };
         let (line, expected) = (before.lines().count(), after.lines().next().unwrap_or_default());
         let compiled = compile(source);
-        let reports = compiled.reports();
+        let reports = compiled.diagnostics();
         let found = reports.iter().any(|report| {
             let stands = source.text[..report.span.start].matches('\n').count() + 1;
             report.severity == Severity::Error
                 && stands == line
-                && report.message.contains(expected)
+                && report.message().contains(expected)
         });
         (!found).then(|| format!("`{expected}` is not said of its line {line}, but {reports:#?}"))
     }

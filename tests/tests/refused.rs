@@ -1,6 +1,6 @@
 //! Texts that once were taken wrongly, took forever or took the process down.
 
-use tool_dsl::report::any_error;
+use tool_dsl::diagnostic::any_error;
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile, emit};
 use touchoff::{Pose, PoseError};
@@ -12,8 +12,8 @@ fn compiled(items: &str) -> Compiled {
 /// The messages of a text that must be refused.
 fn refused(items: &str) -> String {
     let compiled = compiled(items);
-    assert!(any_error(compiled.reports()) && compiled.tool().is_none(), "{items} was taken");
-    compiled.reports().iter().map(|r| r.message.as_str()).collect::<Vec<_>>().join("; ")
+    assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
+    compiled.diagnostics().iter().map(|r| r.message()).collect::<Vec<_>>().join("; ")
 }
 
 /// A sum whose second part is no constant is computed before it is compared.
@@ -55,7 +55,7 @@ fn small_tools_are_looked_at_as_closely() {
         region a where hypot(d, z - r) <= r { depth: r - hypot(d, z - r); }
         region b where hypot(d, z - 1.5*r) <= r { depth: r - hypot(d, z - 1.5*r); } }";
     let compiled = compile(&Source::new("t.tool", text));
-    assert!(compiled.reports().iter().any(|report| report.message.contains("overlap")));
+    assert!(compiled.diagnostics().iter().any(|report| report.message().contains("overlap")));
 }
 
 #[test]
@@ -108,12 +108,7 @@ fn what_is_only_worth_knowing() {
     let said = |items: &str| {
         let compiled = compiled(items);
         assert!(compiled.tool().is_some(), "{items}");
-        compiled
-            .reports()
-            .iter()
-            .map(|report| report.message.clone())
-            .collect::<Vec<_>>()
-            .join("; ")
+        compiled.diagnostics().iter().map(|report| report.message()).collect::<Vec<_>>().join("; ")
     };
     let ball =
         |depth: &str| format!("region ball where hypot(d, z - 3) <= 3 {{ depth: {depth}; }}");

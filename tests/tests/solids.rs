@@ -1,8 +1,8 @@
 //! Solids without an axis: what the library's say at stated places, and what is refused of others.
 
 use std::path::Path;
+use tool_dsl::diagnostic::any_error;
 use tool_dsl::interpret::Interpreter;
-use tool_dsl::report::any_error;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, compile_with};
 use tools_library::{Block, LBracket};
@@ -109,7 +109,7 @@ fn a_block_of_other_sides() {
         let given = [("w", w), ("l", l), ("h", h)]
             .map(|(name, value)| Source::new("a test", format!("{name} = {value}")));
         let compiled = compile_with(&block, &given);
-        assert!(compiled.reports().is_empty(), "{:?}", compiled.reports());
+        assert!(compiled.diagnostics().is_empty(), "{:?}", compiled.diagnostics());
         let tool = compiled.into_tool().expect("a block");
         let mut reference = Interpreter::new(&tool);
         let mut draw = Draw::new(7);
@@ -150,18 +150,16 @@ fn solid(items: &str) -> tool_dsl::Compiled {
 
 fn taken(items: &str) -> CheckedTool {
     let compiled = solid(items);
-    assert!(!any_error(compiled.reports()), "{:?}", compiled.reports());
+    assert!(!any_error(compiled.diagnostics()), "{:?}", compiled.diagnostics());
     *compiled.into_tool().expect("no error, so a solid")
 }
 
 /// The only message of a text that must be refused, and its help.
 fn refused(items: &str) -> String {
     let compiled = solid(items);
-    assert!(any_error(compiled.reports()) && compiled.tool().is_none(), "{items} was taken");
-    let said = |r: &tool_dsl::report::Report| {
-        format!("{}: {}", r.message, r.help.clone().unwrap_or_default())
-    };
-    compiled.reports().iter().map(said).collect::<Vec<_>>().join("; ")
+    assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
+    let said = |r: &tool_dsl::diagnostic::Diagnostic| format!("{}: {}", r.message(), r.help());
+    compiled.diagnostics().iter().map(said).collect::<Vec<_>>().join("; ")
 }
 
 const BALL: &str = "region b where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z);";
@@ -188,9 +186,9 @@ fn coordinates_of_the_other_kind_are_named() {
     assert_eq!(message, "`d` exists in a `tool` only: in a `solid` write `hypot(x, y)`");
     let tool = "tool T { units mm; region r where hypot(d, z - 3) <= 3, y <= 4 { depth: 3 - hypot(d, z - 3); } }";
     let compiled = compile(&Source::new("t.tool", tool));
-    assert_eq!(compiled.reports().len(), 1);
-    assert_eq!(compiled.reports()[0].message, "`y` exists in a `solid` only");
-    let help = compiled.reports()[0].help.clone().expect("a remedy");
+    assert_eq!(compiled.diagnostics().len(), 1);
+    assert_eq!(compiled.diagnostics()[0].message(), "`y` exists in a `solid` only");
+    let help = compiled.diagnostics()[0].help();
     assert!(help.contains("`d`, the distance from the axis"), "{help}");
     assert!(refused("let x = 3;").contains("`x` is a coordinate and cannot be defined"));
     assert!(refused("let d = 3;").contains("`d` belongs to the language"));
@@ -252,8 +250,8 @@ fn mistakes_come_with_a_point() {
 #[test]
 fn other_beginnings() {
     let message = |text: &str| {
-        let report = compile(&Source::new("t.tool", text)).reports()[0].clone();
-        format!("{}: {}", report.message, report.help.unwrap_or_default())
+        let report = compile(&Source::new("t.tool", text)).diagnostics()[0].clone();
+        format!("{}: {}", report.message(), report.help())
     };
     assert_eq!(
         message("sold S { units mm; }"),

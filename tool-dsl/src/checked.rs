@@ -1,12 +1,12 @@
 //! The last pass: a planned tool is looked over, bounded and proved as far as a build proves it.
 
 use crate::bound::{self, Slab};
+use crate::diagnostic::{CheckKind, Diagnostic, Reported, without_error};
 use crate::expr;
 use crate::look;
 use crate::model::Model;
 use crate::plan::{self, PlannedTool};
 use crate::prove::Bounds;
-use crate::report::{Report, Reported, without_error};
 use std::ops::Deref;
 
 /// A tool in which no error was found, with everything that is emitted about it. Only [`compile`](crate::compile()) makes one.
@@ -47,39 +47,42 @@ impl Deref for CheckedTool {
 /// Checks a model, plans its splits and bounds its depth.
 ///
 /// # Errors
-/// With an error among the reports.
-pub(crate) fn check(model: Model, reports: &mut Vec<Report>) -> Result<CheckedTool, Reported> {
-    finite(&model).map_err(|report| Reported::push(reports, report))?;
+/// With an error among the diagnostics.
+pub(crate) fn check(
+    model: Model,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Result<CheckedTool, Reported> {
+    finite(&model).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let extent = match bound::extent(&model) {
         Ok(extent) => extent,
         // A curve that has no value somewhere has no bound either: say so.
-        Err(report) => {
-            reports.extend(look::undefined(&model));
-            let undefined = Reported::among(reports);
-            return Err(undefined.unwrap_or_else(|| Reported::push(reports, report)));
+        Err(diagnostic) => {
+            diagnostics.extend(look::undefined(&model));
+            let undefined = Reported::among(diagnostics);
+            return Err(undefined.unwrap_or_else(|| Reported::push(diagnostics, diagnostic)));
         }
     };
-    reports.extend(look::look(&model, &extent));
+    diagnostics.extend(look::look(&model, &extent));
     // The plan would only repeat what is wrong.
-    without_error(reports)?;
+    without_error(diagnostics)?;
     let envelope = bound::envelope(&model, &extent);
-    let planned = plan::plan(model, extent).map_err(|report| Reported::push(reports, report))?;
+    let planned =
+        plan::plan(model, extent).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let (bounds, found) = Bounds::of(&planned);
-    reports.extend(found);
-    without_error(reports)?;
+    diagnostics.extend(found);
+    without_error(diagnostics)?;
     Ok(CheckedTool { planned, envelope, bounds })
 }
 
 /// Every constant that code needs is a double.
-fn finite(model: &Model) -> Result<(), Report> {
+fn finite(model: &Model) -> Result<(), Diagnostic> {
     let outputs = model.regions.iter().flat_map(|region| region.outputs.roots());
     let curves = model.curves.iter().map(|curve| curve.value);
     let needed = model.graph.needed(outputs.chain(curves));
     let beyond =
         |id: &expr::Id| model.graph.constant(*id).is_some_and(|value| !value.to_f64().is_finite());
     if needed.iter().any(beyond) {
-        return Err(Report::error(model.name_span, "a constant of this tool outgrows all numbers")
-            .help("powers upon powers of large constants do so: write lengths in a nearer unit"));
+        return Err(Diagnostic::new(model.name_span, CheckKind::ConstantOutgrows));
     }
     Ok(())
 }

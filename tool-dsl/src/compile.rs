@@ -1,7 +1,10 @@
 //! From a text to a checked tool, and what is reported on the way.
 
 use crate::checked::{self, CheckedTool};
-use crate::report::{self, Missing, Refusal, Report, Reported, Severity, any_error, without_error};
+use crate::diagnostic::{
+    Diagnostic, Kind, Refusal, RegionKind, Reported, Severity, ValueKind, any_error, readable,
+    without_error,
+};
 use crate::resolve;
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
@@ -14,7 +17,7 @@ pub struct Compiled {
     pub outcome: Result<Accepted, Refusal>,
     /// The tool's name, if the text got so far.
     pub name: Option<String>,
-    /// The texts that the reports speak of.
+    /// The texts that the diagnostics speak of.
     pub sources: Sources,
 }
 
@@ -24,7 +27,7 @@ pub struct Accepted {
     /// The tool.
     pub tool: Box<CheckedTool>,
     /// Warnings about it, in the order of the text.
-    pub warnings: Vec<Report>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Compiled {
@@ -49,10 +52,10 @@ impl Compiled {
     }
 
     /// Errors and warnings, in the order of the text.
-    pub fn reports(&self) -> &[Report] {
+    pub fn diagnostics(&self) -> &[Diagnostic] {
         match &self.outcome {
             Ok(accepted) => &accepted.warnings,
-            Err(refusal) => refusal.reports(),
+            Err(refusal) => refusal.diagnostics(),
         }
     }
 }
@@ -68,99 +71,109 @@ pub fn compile(source: &Source) -> Compiled {
 /// unit.
 pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     let mut sources = Sources::new(source.clone(), given.iter().cloned());
-    let mut reports = Vec::new();
+    let mut diagnostics = Vec::new();
     let mut name = None;
     let start = Span { start: 0, end: 0 };
-    let outcome = match compiled(&mut sources, &mut name, &mut reports) {
-        Ok(tool) => Ok(Accepted { tool: Box::new(tool), warnings: report::readable(reports) }),
+    let outcome = match compiled(&mut sources, &mut name, &mut diagnostics) {
+        Ok(tool) => Ok(Accepted { tool: Box::new(tool), warnings: readable(diagnostics) }),
         Err(reported) => {
-            name_given(&sources, given.len(), &mut reports);
-            Err(Refusal::new(reports, start, reported))
+            name_given(&sources, given.len(), &mut diagnostics);
+            Err(Refusal::new(diagnostics, start, reported))
         }
     };
     Compiled { outcome, name, sources }
 }
 
 /// Names what the params are given beside each error of the tool's own text: a value may have broken it.
-fn name_given(sources: &Sources, count: usize, reports: &mut [Report]) {
+fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     let given = &sources.all()[1..=count];
     if given.is_empty() {
         return;
     }
-    let texts: Vec<String> =
-        given.iter().map(|source| format!("`{}`", source.text.trim())).collect();
-    let note = format!("given: {}", texts.join(", "));
-    let is_given = |report: &Report| {
-        let (source, _) = sources.locate(report.span);
+    let texts: Vec<String> = given.iter().map(|source| source.text.trim().to_owned()).collect();
+    let is_given = |diagnostic: &Diagnostic| {
+        let (source, _) = sources.locate(diagnostic.span);
         given.iter().any(|given| given.base == source.base)
     };
-    for report in reports.iter_mut() {
-        if report.severity == Severity::Error && !report.is_follow_up() && !is_given(report) {
-            report.help = Some(match report.help.take() {
-                Some(help) => format!("{help}; {note}"),
-                None => note.clone(),
-            });
+    for diagnostic in diagnostics.iter_mut() {
+        if diagnostic.severity == Severity::Error && !is_given(diagnostic) {
+            diagnostic.given = texts.clone().into();
         }
     }
 }
 
 /// Compiles the first of the sources with what the others give its params. Fails only with an error
-/// among the reports, and never succeeds with one.
+/// among the diagnostics, and never succeeds with one.
 fn compiled(
     sources: &mut Sources,
     name: &mut Option<String>,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<CheckedTool, Reported> {
-    let tree = syntax::parse(sources.own(), reports);
+    let tree = syntax::parse(sources.own(), diagnostics);
     let mut settings = Vec::new();
     for source in &sources.all()[1..] {
-        settings.extend(syntax::given(source, reports));
+        settings.extend(syntax::given(source, diagnostics));
     }
     let tree = tree?;
     *name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
     let mut found = Vec::new();
     let model = resolve::resolve(&tree, &settings, sources, &mut found);
     let broken: BTreeSet<&str> = tree.broken.iter().map(String::as_str).collect();
-    let unread = any_error(reports);
-    reports.extend(found.into_iter().filter(|report| !unread || !follows(report, &broken)));
+    let unread = any_error(diagnostics);
+    diagnostics
+        .extend(found.into_iter().filter(|diagnostic| !unread || !follows(diagnostic, &broken)));
     let model = model?;
-    without_error(reports)?;
-    checked::check(model, reports)
+    without_error(diagnostics)?;
+    checked::check(model, diagnostics)
 }
 
-/// Returns whether a report only says that what a broken item would have said is missing.
-fn follows(report: &Report, broken: &BTreeSet<&str>) -> bool {
+/// Returns whether a diagnostic only says that what a broken item would have said is missing.
+fn follows(diagnostic: &Diagnostic, broken: &BTreeSet<&str>) -> bool {
     let has = |word: &str| broken.contains(word);
-    match &report.missing {
-        None => false,
-        Some(Missing::Name(word) | Missing::Definition(word)) => has(word),
-        Some(Missing::Surface(word)) => has(word) || has("region"),
-        Some(Missing::Use | Missing::Region) => true,
-        Some(Missing::Unit) => has("units"),
+    match &diagnostic.kind {
+        Kind::ValueKind(kind) => match kind {
+            ValueKind::UnknownName { word, .. }
+            | ValueKind::UnknownFunction { word, .. }
+            | ValueKind::UnknownUnit { word, .. }
+            | ValueKind::UnknownFileUnit { word, .. } => has(word),
+            ValueKind::UnusedName { .. } => true,
+            ValueKind::NoUnit => has("units"),
+            _ => false,
+        },
+        Kind::RegionKind(kind) => match kind {
+            RegionKind::UnknownCurve { word, .. } => has(word),
+            RegionKind::UnknownSurface { word, .. } => has(word) || has("region"),
+            RegionKind::NoRegion { .. } => true,
+            _ => false,
+        },
+        _ => false,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diagnostic::{NameRemedy, SurfaceRemedy};
 
-    /// Reports are told by what is missing, however they are worded.
+    /// What follows from a broken item is decided by the kind and its names, not by a message.
     #[test]
     fn words_decide_nothing() {
         let at = Span { start: 0, end: 0 };
         let broken = BTreeSet::from(["flute", "units"]);
-        let follows = |message: &str, missing: Option<Missing>| {
-            let report = Report { missing, ..Report::error(at, message) };
-            follows(&report, &broken)
+        let follows = |kind: Kind| follows(&Diagnostic::new(at, kind), &broken);
+        let name = |word: &str| {
+            let (word, remedy) = (word.to_owned(), NameRemedy::Define);
+            ValueKind::UnknownName { word, remedy }.into()
         };
-        let flute = || "flute".to_owned();
-        for message in ["unknown name `flute`", "there is no flute"] {
-            assert!(!follows(message, None));
-            assert!(follows(message, Some(Missing::Name(flute()))));
-            assert!(follows(message, Some(Missing::Surface(flute()))));
-            assert!(!follows(message, Some(Missing::Definition("shank".to_owned()))));
-            assert!(!follows(message, Some(Missing::Surface("shank".to_owned()))));
-            assert!(follows(message, Some(Missing::Unit)) && follows(message, Some(Missing::Use)));
-        }
+        let surface = |word: &str| {
+            let (word, remedy) = (word.to_owned(), SurfaceRemedy::OfProfile);
+            RegionKind::UnknownSurface { word, remedy }.into()
+        };
+        assert!(follows(name("flute")) && !follows(name("shank")));
+        assert!(follows(surface("flute")) && !follows(surface("shank")));
+        assert!(follows(ValueKind::NoUnit.into()));
+        assert!(follows(ValueKind::UnusedName { word: "shank".to_owned() }.into()));
+        // A name of a broken item in another kind is no reason to be silent.
+        assert!(!follows(ValueKind::DefinedTwice { word: "flute".to_owned() }.into()));
     }
 }

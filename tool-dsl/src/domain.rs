@@ -4,9 +4,9 @@
 //! x ≥ 0, where x is the distance `d` from the axis; only what is emitted turns its vectors to
 //! where a point lies in space.
 
+use crate::diagnostic::figure;
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::{Coord, Graph, Id};
-use crate::report::figure;
 
 /// What a file describes, and so what its expressions are functions of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,16 +86,6 @@ impl Domain {
             (Domain::HalfPlane, "z") => Some("the place along the axis"),
             (Domain::Space, "x" | "y" | "z") => Some("a coordinate"),
             _ => None,
-        }
-    }
-
-    /// What to write instead of a coordinate that only the other kind of file has.
-    pub(crate) fn instead(self) -> &'static str {
-        match self {
-            Domain::HalfPlane => {
-                "in a `tool` the coordinates are `d`, the distance from the axis, and `z`"
-            }
-            Domain::Space => "in a `solid` write `hypot(x, y)`",
         }
     }
 }

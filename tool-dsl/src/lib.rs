@@ -12,7 +12,9 @@
 pub mod bound;
 mod checked;
 mod compile;
+pub mod diagnostic;
 mod digest;
+mod dimension;
 pub mod domain;
 pub mod draw;
 mod elimination;
@@ -28,7 +30,6 @@ pub mod number;
 pub mod plan;
 pub mod prove;
 mod regionalise;
-pub mod report;
 pub mod resolve;
 pub mod source;
 pub mod syntax;

@@ -6,7 +6,7 @@
 //! Source ──syntax──▶ Ast ──resolve──▶ Model ──bound, look, plan──▶ PlannedTool ──prove──▶ CheckedTool
 //! ```
 //!
-//! A [`Model`] has no text in it. Spans are kept for reports alone; no pass after `resolve` reads a source.
+//! A [`Model`] has no text in it. Spans are kept for diagnostics alone; no pass after `resolve` reads a source.
 //!
 //! # What a model means
 //!

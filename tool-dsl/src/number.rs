@@ -15,9 +15,6 @@ const PRECISION: usize = 256;
 /// The part of its terms' sizes that a sum of [`Number`]s may keep when it cancels.
 pub(crate) const ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 95) as f64);
 
-/// The sizes that numbers of a file have, in words.
-pub(crate) const RANGE: &str = "numbers are 0, or between 1e-90 and 1e90 in size";
-
 /// A real constant to 256 bits.
 #[derive(Clone)]
 pub struct Number {

@@ -15,9 +15,9 @@ fn tool(items: &str) -> String {
 fn error(compiled: &Compiled) -> String {
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
     let first = refusal.errors().next().expect("a refusal has an error");
-    assert!(first.render(&compiled.sources, false).contains(&first.message));
-    assert!(!first.message.is_empty());
-    first.message.clone()
+    assert!(first.render(&compiled.sources, false).contains(&first.message()));
+    assert!(!first.message().is_empty());
+    first.message()
 }
 
 #[track_caller]
@@ -78,7 +78,7 @@ fn each_cycle_is_said_once() {
     let compiled =
         compile(&Source::new("t.tool", tool("let a = b; let b = a; let c = a; let e = c + e;")));
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
-    let said: Vec<&str> = refusal.errors().map(|report| report.message.as_str()).collect();
+    let said: Vec<String> = refusal.errors().map(|report| report.message()).collect();
     assert_eq!(
         said,
         ["`a` is defined by itself: `a` needs `b`, `b` needs `a`", "`e` is defined by itself"]
@@ -119,7 +119,7 @@ fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
         let compiled = compile(&Source::new("t.tool", text).held_by(folder.join("t.tool")));
         assert_eq!(error(&compiled), "`a` is defined by itself");
         let Err(refusal) = &compiled.outcome else { panic!("taken") };
-        let place = refusal.reports()[0].span;
+        let place = refusal.diagnostics()[0].span;
         assert!(compiled.sources.locate(place).0.name.ends_with(&format!("{name}.tool")));
     }
 }
@@ -284,7 +284,7 @@ fn the_text_of_other_files_is_not_shown() {
     std::fs::write(own.join("key"), "secret = 1234\n").expect("a writable folder");
     let compiled = compile(&mounting("key").held_by(own.join("t.tool")));
     assert_eq!(error(&compiled), "`key` is not a `.tool` file");
-    for report in compiled.reports() {
+    for report in compiled.diagnostics() {
         assert!(!report.render(&compiled.sources, false).contains("secret"));
     }
 }
@@ -312,7 +312,7 @@ fn what_cannot_be_seen_is_refused_or_escaped() {
         let source =
             Source::new(format!("t{hidden}.tool"), tool(&format!("/*{hidden}*/ let a = b;")));
         let compiled = compile(&source);
-        for report in compiled.reports() {
+        for report in compiled.diagnostics() {
             let shown = report.render(&compiled.sources, false);
             assert!(
                 !shown.contains(&hidden[..hidden.chars().next().expect("one").len_utf8()]),
@@ -320,7 +320,7 @@ fn what_cannot_be_seen_is_refused_or_escaped() {
             );
         }
     }
-    assert_eq!(tool_dsl::report::escaped("a\u{1b}\u{202e}é"), "a\\u{1b}\\u{202e}é");
+    assert_eq!(tool_dsl::diagnostic::escaped("a\u{1b}\u{202e}é"), "a\\u{1b}\\u{202e}é");
 }
 
 #[test]
@@ -328,13 +328,11 @@ fn values_that_break_a_profile_are_named() {
     let text = "tool T { units mm; param D = 6; profile { start (0, 0); line to (D/2, 0), (D/2, 9), (0, 9) as a cutting; } }";
     let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=-1")]);
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
-    assert!(refusal.errors().all(|report| {
-        report.help.as_ref().is_some_and(|help| help.ends_with("given: `D=-1`"))
-    }));
+    assert!(refusal.errors().all(|report| { report.help().ends_with("given: `D=-1`") }));
     // An error of the value itself shows it already.
     let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=x")]);
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
-    assert!(refusal.errors().all(|r| r.help.as_ref().is_none_or(|help| !help.contains("given: "))));
+    assert!(refusal.errors().all(|r| !r.help().contains("given: ")));
 }
 
 #[test]
@@ -365,9 +363,9 @@ fn a_proof_that_ends_early_takes_nothing_back() {
     let certificate = tool_dsl::prove::Certificate::of(tool);
     assert!(certificate.boxes < 35_000, "{}", certificate.boxes);
     assert_eq!((certificate.lipschitz(), tool.bounds().lipschitz), (None, Some(1.0)));
-    let reports = certificate.reports(tool);
-    let help = reports.iter().filter_map(|report| report.help.as_deref()).next();
-    assert!(help.is_some_and(|help| help.contains("by construction")), "{help:?}");
+    let reports = certificate.diagnostics(tool);
+    let help = reports.first().map(|report| report.help());
+    assert!(help.as_ref().is_some_and(|help| help.contains("by construction")), "{help:?}");
 }
 
 /// A ring below the tip that no column of samples meets.

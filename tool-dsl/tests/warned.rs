@@ -2,8 +2,8 @@
 //! nobody says that it is meant.
 
 use std::path::PathBuf;
+use tool_dsl::diagnostic::Severity;
 use tool_dsl::prove::Certificate;
-use tool_dsl::report::Severity;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, Compiled, compile};
 
@@ -31,7 +31,7 @@ fn compiled(text: &str) -> Compiled {
 #[track_caller]
 fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compiled(text);
-    let reports = format!("{:#?}", compiled.reports());
+    let reports = format!("{:#?}", compiled.diagnostics());
     compiled.into_tool().unwrap_or_else(|| panic!("{text}\n{reports}"))
 }
 
@@ -39,11 +39,11 @@ fn tool(text: &str) -> Box<CheckedTool> {
 #[track_caller]
 fn warned(text: &str) -> Vec<(String, String)> {
     let tool = tool(text);
-    let reports = Certificate::of(&tool).reports(&tool);
+    let reports = Certificate::of(&tool).diagnostics(&tool);
     let said = reports.into_iter().map(|report| {
         assert_eq!(report.severity, Severity::Warning);
-        assert!(report.help.is_some_and(|help| help.contains("`allow") || help.contains("allow ")));
-        (report.message, text[report.span.start..report.span.end].to_owned())
+        assert!(report.help().contains("allow "));
+        (report.message(), text[report.span.start..report.span.end].to_owned())
     });
     said.collect()
 }
@@ -106,7 +106,7 @@ fn regions_of_a_profile_are_held_to_its_depth() {
     let [(message, place)] = said.as_slice() else { panic!("{said:#?}") };
     assert!(message.starts_with("the direction of low is 90° from"), "{message}");
     assert_eq!(place, "direction: (0, -1);");
-    assert_eq!(compiled(&split("direction: (0, -1);")).reports().len(), 1);
+    assert_eq!(compiled(&split("direction: (0, -1);")).diagnostics().len(), 1);
     assert_eq!(warned(&split("direction: (0, -1) allow oblique;")), []);
     // A magnitude's slope is a direction too.
     let said = warned(&split("magnitude: 3 - d;"));
@@ -153,7 +153,7 @@ fn niceness_that_may_rise_comes_along_with_a_mounted_file() {
         let text = format!("tool Whole {{ units mm; mount \"{name}.tool\" as pin; }}");
         let compiled = compile(&Source::new("whole.tool", text).held_by(folder.join("whole.tool")));
         let tool = compiled.into_tool().expect("a tool");
-        assert_eq!(Certificate::of(&tool).reports(&tool).len(), warnings, "{name}");
+        assert_eq!(Certificate::of(&tool).diagnostics(&tool).len(), warnings, "{name}");
     }
 }
 
@@ -162,7 +162,7 @@ fn regions_by_hand_are_warned_of_while_they_are_compiled() {
     let said = |side: &str| -> Vec<String> {
         let compiled = compiled(&pin(side));
         assert!(compiled.tool().is_some());
-        compiled.reports().iter().map(|report| report.message.clone()).collect()
+        compiled.diagnostics().iter().map(|report| report.message()).collect()
     };
     let both = said("direction: (0, 1); niceness: depth;");
     assert_eq!(both.len(), 2, "{both:?}");
@@ -184,14 +184,14 @@ fn what_cannot_be_allowed_is_refused_with_the_words_that_can() {
         let Err(refusal) = &compiled.outcome else { panic!("{side}") };
         let errors: Vec<_> = refusal.errors().collect();
         assert_eq!(errors.len(), 1, "{side}: {errors:?}");
-        assert_eq!(errors[0].message, format!("`allow {written}` does not fit here"));
+        assert_eq!(errors[0].message(), format!("`allow {written}` does not fit here"));
         let span = errors[0].span;
         assert_eq!(text[span.start..span.end], format!("allow {written}"));
-        let help = errors[0].help.as_deref().unwrap_or_default();
+        let help = errors[0].help();
         assert!(help.contains("allow oblique") && help.contains("allow rising"), "{help}");
     }
     let law = compiled(&profile("magnitude: depth allow rising;"));
-    assert_eq!(law.reports()[0].message, "`allow rising` does not fit here");
+    assert_eq!(law.diagnostics()[0].message(), "`allow rising` does not fit here");
 }
 
 #[test]
@@ -199,9 +199,9 @@ fn a_misspelt_allow_is_told_what_would_fit() {
     for side in ["direction: (1, 0) alow oblique;", "niceness: 1 alow rising;"] {
         let compiled = compiled(&pin(side));
         let Err(refusal) = &compiled.outcome else { panic!("{side}") };
-        let first = &refusal.reports()[0];
-        assert_eq!(first.message, "`alow` does not fit here");
-        assert!(first.help.as_ref().is_some_and(|help| help.contains("`allow`")), "{first:?}");
+        let first = &refusal.diagnostics()[0];
+        assert_eq!(first.message(), "`alow` does not fit here");
+        assert!(first.help().contains("`allow`"), "{first:?}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use tool_dsl::report::{Refusal, Report};
+use tool_dsl::diagnostic::{Diagnostic, Refusal};
 use tool_dsl::source::Sources;
 
 /// A tool's errors, each at its place.
@@ -22,8 +22,8 @@ pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> Token
 ///
 /// A macro has none of its own on stable Rust. But rustc warns where something deprecated is used, with the text that
 /// it was deprecated with.
-pub(crate) fn warnings(reports: &[Report], sources: &Sources, place: Span) -> TokenStream {
-    placed(reports.iter(), sources, place)
+pub(crate) fn warnings(diagnostics: &[Diagnostic], sources: &Sources, place: Span) -> TokenStream {
+    placed(diagnostics.iter(), sources, place)
         .map(|(message, [first, _])| {
             quote_spanned! { first =>
                 const _: () = {
@@ -36,20 +36,20 @@ pub(crate) fn warnings(reports: &[Report], sources: &Sources, place: Span) -> To
         .collect()
 }
 
-/// Texts, and the first and the last token that rustc shows each at: a report of the program's own text at its tokens,
+/// Texts, and the first and the last token that rustc shows each at: a diagnostic of the program's own text at its tokens,
 /// one of a mounted file at the mount, with its file's line; all others together at the macro's call.
 fn placed<'r>(
-    reports: impl Iterator<Item = &'r Report>,
+    diagnostics: impl Iterator<Item = &'r Diagnostic>,
     sources: &Sources,
     place: Span,
 ) -> impl Iterator<Item = (String, [Span; 2])> {
     let (mut texts, mut rest) = (Vec::new(), Vec::new());
-    for report in reports {
-        let (source, inside) = sources.locate(report.span);
-        match (source.tokens_at(inside), sources.tokens_at(report.span)) {
-            (Some(place), _) => texts.push((in_words(report, sources), place)),
-            (None, Some(mount)) => texts.push((excerpt(report, sources), mount)),
-            (None, None) => rest.push(excerpt(report, sources)),
+    for diagnostic in diagnostics {
+        let (source, inside) = sources.locate(diagnostic.span);
+        match (source.tokens_at(inside), sources.tokens_at(diagnostic.span)) {
+            (Some(place), _) => texts.push((in_words(diagnostic, sources), place)),
+            (None, Some(mount)) => texts.push((excerpt(diagnostic, sources), mount)),
+            (None, None) => rest.push(excerpt(diagnostic, sources)),
         }
     }
     if !rest.is_empty() {
@@ -58,17 +58,18 @@ fn placed<'r>(
     texts.into_iter()
 }
 
-/// A report with the line of its file.
-fn excerpt(report: &Report, sources: &Sources) -> String {
-    let text = report.render(sources, false);
-    // rustc says "error: " and "warning: " itself.
-    text.trim_start_matches("error: ").trim_start_matches("warning: ").to_owned()
+/// A diagnostic with the line of its file.
+fn excerpt(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    let text = diagnostic.render(sources, false);
+    // rustc says "error: " and "warning: " itself: the code goes behind the message.
+    let text = text.split_once("]: ").map_or(text.as_str(), |(_, message)| message);
+    text.replacen('\n', &format!(" [{}]\n", diagnostic.code()), 1)
 }
 
-/// A report where rustc shows the place itself.
-fn in_words(report: &Report, sources: &Sources) -> String {
-    let mut text = report.message.clone();
-    if let Some((span, label)) = &report.second {
+/// A diagnostic where rustc shows the place itself.
+fn in_words(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    let mut text = format!("{} [{}]", diagnostic.message(), diagnostic.code());
+    if let Some((span, label)) = &diagnostic.second {
         let (source, inside) = sources.locate(*span);
         let place = sources.text(*span);
         text.push_str(&format!("\nnote: {label}: `{place}`"));
@@ -80,8 +81,6 @@ fn in_words(report: &Report, sources: &Sources) -> String {
             }
         });
     }
-    if let Some(help) = &report.help {
-        text.push_str(&format!("\nhelp: {help}"));
-    }
+    text.push_str(&format!("\nhelp: {}", diagnostic.help()));
     text
 }

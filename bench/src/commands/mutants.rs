@@ -31,10 +31,13 @@ anything reported.
     for (seed, source) in library().iter().enumerate() {
         let whole = *compile(source).into_tool().ok_or("a tool of the library has an error")?;
         let proved = Certificate::of(&whole);
-        if let Some(report) = proved.reports(&whole).first() {
-            return Err(
-                format!("{} is not broken, and: {}", whole.model.name, report.message).into()
-            );
+        if let Some(diagnostic) = proved.diagnostics(&whole).first() {
+            return Err(format!(
+                "{} is not broken, and: {}",
+                whole.model.name,
+                diagnostic.message()
+            )
+            .into());
         }
         eprintln!("{}", whole.model.name);
         let mut counts = [0; COLUMNS];

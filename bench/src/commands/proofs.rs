@@ -6,8 +6,8 @@ use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
 use tool_dsl::compile;
+use tool_dsl::diagnostic::figure;
 use tool_dsl::prove::Certificate;
-use tool_dsl::report::figure;
 use touchoff_bench::compile::sources;
 use touchoff_bench::page::{Page, Section};
 

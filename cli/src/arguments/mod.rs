@@ -82,6 +82,12 @@ pub(crate) enum Command {
         #[command(flatten)]
         given: Given,
     },
+    /// Explain a code of an error or a warning, with its remedy and an example; without one, list all codes.
+    Explain {
+        /// The code, as between the brackets of a message.
+        #[arg(value_name = "CODE")]
+        code: Option<String>,
+    },
     /// Lay `.tool` files out as they are usually written.
     Fmt {
         /// Change nothing: name the files that would change, and fail if there are any.

@@ -23,7 +23,7 @@ pub(super) struct Proved<'t> {
     boxes: usize,
     regions: Vec<ProvedRegion<'t>>,
     borders: Vec<ProvedBorder<'t>>,
-    undecided: Vec<ProvedNot<'t>>,
+    undecided: Vec<ProvedNot>,
 }
 
 #[derive(Serialize)]
@@ -64,8 +64,8 @@ struct ProvedBorder<'t> {
 }
 
 #[derive(Serialize)]
-struct ProvedNot<'t> {
-    what: &'t str,
+struct ProvedNot {
+    what: String,
     near: [f64; 3],
 }
 
@@ -117,7 +117,7 @@ impl<'t> Proved<'t> {
             undecided: certificate
                 .undecided
                 .iter()
-                .map(|not| ProvedNot { what: &not.what, near: not.cell.middle() })
+                .map(|not| ProvedNot { what: not.statement.to_string(), near: not.cell.middle() })
                 .collect(),
         }
     }

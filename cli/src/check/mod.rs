@@ -10,10 +10,10 @@ use json::Proved;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use tool_dsl::diagnostic::{self, Severity};
 use tool_dsl::domain::Domain;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
-use tool_dsl::report::{self, Severity};
 use tool_dsl::{CheckedTool, compile_with};
 
 /// The exit status where nothing is wrong but something is warned of; wrong files give 1, wrong options 2.
@@ -33,21 +33,21 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
             }
         };
         let compiled = compile_with(&source, &given.sources());
-        let mut reports = compiled.reports().to_vec();
+        let mut diagnostics = compiled.diagnostics().to_vec();
         let proved = compiled.tool().map(|tool| (tool, Certificate::of(tool)));
         if let Some((tool, certificate)) = &proved {
             // What was found while it was compiled is found again.
-            for report in certificate.reports(tool) {
-                if !reports.iter().any(|known| known.span == report.span) {
-                    reports.push(report);
+            for diagnostic in certificate.diagnostics(tool) {
+                if !diagnostics.iter().any(|known| known.span == diagnostic.span) {
+                    diagnostics.push(diagnostic);
                 }
             }
         }
-        for report in &reports {
-            show(report, &compiled.sources);
+        for diagnostic in &diagnostics {
+            show(diagnostic, &compiled.sources);
         }
         let count = |severity: Severity| {
-            reports.iter().filter(|report| report.severity == severity).count()
+            diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count()
         };
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         wrong += usize::from(errors > 0);
@@ -58,7 +58,7 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
             writeln!(out)?;
         } else {
             let shown = file.display().to_string();
-            writeln!(out, "{}: {}", report::escaped(&shown), described(tool, warnings))?;
+            writeln!(out, "{}: {}", diagnostic::escaped(&shown), described(tool, warnings))?;
             table::write(&mut out, tool, certificate)?;
         }
     }
@@ -79,12 +79,12 @@ fn described(tool: &CheckedTool, warnings: usize) -> String {
     let size = match model.domain {
         Domain::HalfPlane => format!(
             "{} {unit} long and {} {unit} in radius",
-            report::figure(extent.high - extent.low),
-            report::figure(extent.radius),
+            diagnostic::figure(extent.high - extent.low),
+            diagnostic::figure(extent.radius),
         ),
         Domain::Space => {
             let sides = extent.cell().sides;
-            let [x, y, z] = sides.map(|side| report::figure(side.high - side.low));
+            let [x, y, z] = sides.map(|side| diagnostic::figure(side.high - side.low));
             format!("a solid of {x} by {y} by {z} {unit}")
         }
     };

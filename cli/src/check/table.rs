@@ -3,9 +3,9 @@
 use super::niceness;
 use std::io::Write;
 use tool_dsl::CheckedTool;
+use tool_dsl::diagnostic::figure;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Border, Certificate, RegionFacts};
-use tool_dsl::report::figure;
 
 /// Writes it.
 pub(crate) fn write(

@@ -13,7 +13,7 @@ use tool_dsl::domain::Domain;
 use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Value, Walk};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
-use tool_dsl::{Accepted, CheckedTool, compile_with, digest, model, report};
+use tool_dsl::{Accepted, CheckedTool, compile_with, diagnostic, digest, model};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
@@ -49,7 +49,7 @@ impl Interpreted {
 
     /// The text of a `.tool` file.
     pub fn source(path: impl AsRef<Path>) -> Result<Source, ToolError> {
-        let file = report::escaped(&path.as_ref().display().to_string()).into_owned();
+        let file = diagnostic::escaped(&path.as_ref().display().to_string()).into_owned();
         Source::read(path).map_err(|source| ToolError::Unreadable { file, source })
     }
 
@@ -62,7 +62,7 @@ impl Interpreted {
     pub fn parse_with(source: &Source, given: &[Source]) -> Result<Interpreted, ToolError> {
         let compiled = compile_with(source, given);
         let said: Vec<String> =
-            compiled.reports().iter().map(|r| r.render(&compiled.sources, false)).collect();
+            compiled.diagnostics().iter().map(|r| r.render(&compiled.sources, false)).collect();
         let said = said.join("\n\n");
         match compiled.outcome {
             Ok(Accepted { tool, .. }) => Ok(Interpreted {

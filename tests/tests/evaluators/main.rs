@@ -28,7 +28,7 @@ fn text(file: &str) -> Source {
 /// The tool of a text, checked for the reference interpreter.
 fn checked(source: &Source) -> CheckedTool {
     let compiled = compile(source);
-    assert_eq!(compiled.reports(), [], "a tool of the library has nothing to report");
+    assert_eq!(compiled.diagnostics(), [], "a tool of the library has nothing to report");
     *compiled.into_tool().expect("no report, so a tool")
 }
 

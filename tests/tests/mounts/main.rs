@@ -19,8 +19,11 @@ fn source(text: &str) -> Source {
 }
 
 fn said(compiled: &Compiled) -> String {
-    let all: Vec<String> =
-        compiled.reports().iter().map(|report| report.render(&compiled.sources, false)).collect();
+    let all: Vec<String> = compiled
+        .diagnostics()
+        .iter()
+        .map(|report| report.render(&compiled.sources, false))
+        .collect();
     all.join("\n")
 }
 

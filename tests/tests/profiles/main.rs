@@ -20,7 +20,7 @@ fn tool(text: &str) -> Result<Box<CheckedTool>, String> {
     let source = Source::new("t.tool", text);
     let compiled = compile(&source);
     let said: Vec<String> =
-        compiled.reports().iter().map(|r| r.render(&compiled.sources, false)).collect();
+        compiled.diagnostics().iter().map(|r| r.render(&compiled.sources, false)).collect();
     match compiled.into_tool() {
         Some(tool) if said.is_empty() => Ok(tool),
         _ => Err(said.join("\n")),
@@ -35,9 +35,10 @@ fn warned(text: &str) -> Option<Box<CheckedTool>> {
 /// What is said of a text, each with the text of its place.
 fn said(text: &str) -> Vec<(String, String)> {
     let compiled = compile(&Source::new("t.tool", text));
-    let place = |report: &tool_dsl::report::Report| compiled.sources.text(report.span).to_owned();
-    let said = compiled.reports().iter();
-    let said: Vec<_> = said.map(|report| (report.message.clone(), place(report))).collect();
+    let place =
+        |report: &tool_dsl::diagnostic::Diagnostic| compiled.sources.text(report.span).to_owned();
+    let said = compiled.diagnostics().iter();
+    let said: Vec<_> = said.map(|report| (report.message(), place(report))).collect();
     assert!(compiled.tool().is_some() || !said.is_empty(), "refused without a word: {text}");
     said
 }

@@ -5,13 +5,13 @@ mod envelope;
 
 pub use envelope::{Slab, across, envelope};
 
+use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::domain::Domain;
 use crate::elimination::Linear;
 use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval, halves};
 use crate::formula::{ANY, CurveIndex, Formula, Signs, possible};
 use crate::geometry::outline;
 use crate::model::{Model, Region};
-use crate::report::Report;
 
 /// The power of two of the farthest reach of a solid.
 const FARTHEST: i32 = 280;
@@ -205,7 +205,7 @@ pub(crate) fn spread(
 }
 
 /// The reach of the solid, proved; an error if no bound is found.
-pub fn extent(model: &Model) -> Result<Extent, Report> {
+pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     if let Some(section) = &model.section {
         let [low, high] = outline::reach(&section.outline);
         let (d, z) = (Interval::new(0.0, high[0]), Interval::new(low[1], high[1]));
@@ -236,11 +236,10 @@ pub fn extent(model: &Model) -> Result<Extent, Report> {
             side.low >= side.high
         };
         if domain.coordinates().iter().any(void) {
-            return Err(Report::error(
+            return Err(Diagnostic::new(
                 model.name_span,
-                format!("no point belongs to this {}", domain.word()),
-            )
-            .help("the conditions of each region contradict one another"));
+                CheckKind::NoPoint { file: domain.word() },
+            ));
         }
     }
     let widest = cell.radius().high;
@@ -275,23 +274,22 @@ fn way_out(domain: Domain, prover: &mut Prover<'_>, size: f64) -> Option<(usize,
 }
 
 /// The first region of which no end is found.
-fn endless(model: &Model) -> Report {
+fn endless(model: &Model) -> Diagnostic {
     let domain = model.domain;
     let mut alone = model.clone();
     for region in &model.regions {
         alone.regions = vec![region.clone()];
         let out = way_out(domain, &mut Prover::of_regions(&alone), 2f64.powi(FARTHEST));
         let Some((axis, high)) = out else { continue };
-        let name = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
-        let way = if high { "large" } else { "small" };
-        let end = if high { "<= 40" } else { ">= 0" };
-        let message =
-            format!("region {} has no end toward {way} {name} that can be proved", region.name);
-        return Report::error(region.span, message)
-            .help(format!("bound it there, as in `{name} {end}`"));
+        let coordinate = domain.coordinates().iter().find(|c| c.1 == axis).map_or("z", |c| c.2);
+        let toward = if high { "large" } else { "small" };
+        let bound = if high { "<= 40" } else { ">= 0" };
+        return Diagnostic::new(
+            region.span,
+            CheckKind::EndlessRegion { region: region.name.clone(), toward, coordinate, bound },
+        );
     }
-    Report::error(model.name_span, "no end of the regions can be proved")
-        .help("bound each by lines, as in `d <= 3, 0 <= z <= 40`")
+    Diagnostic::new(model.name_span, CheckKind::Endless)
 }
 
 /// The innermost place from `outer` toward `inner` for which `empty` still holds, by halving.

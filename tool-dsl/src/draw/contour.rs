@@ -60,7 +60,7 @@ pub(super) fn tidy(value: f64, unit: Unit) -> String {
     };
     match trimmed(&format!("{value:.decimals$}")) {
         // Too small for that: as many figures as show it.
-        text if text == "0" && value.abs() > 1e-12 => crate::report::figure(value),
+        text if text == "0" && value.abs() > 1e-12 => crate::diagnostic::figure(value),
         text => text,
     }
 }

@@ -2,9 +2,9 @@
 
 use super::code::Writer;
 use crate::checked::CheckedTool;
+use crate::diagnostic::figure;
 use crate::expr::Id;
 use crate::formula::Formula;
-use crate::report::figure;
 use crate::source::Source;
 use crate::syntax;
 use std::fmt::Write;

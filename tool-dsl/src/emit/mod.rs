@@ -12,13 +12,13 @@ pub use listing::{model, regions, tree};
 
 use crate::bound::across;
 use crate::checked::CheckedTool;
+use crate::diagnostic::figure;
 use crate::digest;
 use crate::domain::Domain;
 use crate::draw::{self, Lettering};
 use crate::expr::Id;
 use crate::model::Outputs;
 use crate::plan::Tree;
-use crate::report::figure;
 use code::{Form, Writer};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};

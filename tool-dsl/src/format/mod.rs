@@ -18,7 +18,7 @@ mod line;
 mod tests;
 mod token;
 
-use crate::report::{Report, any_error};
+use crate::diagnostic::{Diagnostic, any_error};
 use crate::source::Source;
 use crate::syntax;
 
@@ -28,23 +28,23 @@ const WIDTH: usize = 100;
 const STEP: usize = 4;
 
 /// Lays out a tool's text. One with errors of syntax gives these instead.
-pub fn format(source: &Source) -> Result<String, Vec<Report>> {
-    let mut reports = Vec::new();
-    if syntax::parse(source, &mut reports).is_err() || any_error(&reports) {
-        return Err(reports);
+pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
+    let mut diagnostics = Vec::new();
+    if syntax::parse(source, &mut diagnostics).is_err() || any_error(&diagnostics) {
+        return Err(diagnostics);
     }
-    layout(&source.text).map_err(|report| vec![report])
+    layout(&source.text).map_err(|diagnostic| vec![diagnostic])
 }
 
 /// Lays out a text that may be more than the grammar knows. Lines end as the file's do.
-fn layout(text: &str) -> Result<String, Report> {
+fn layout(text: &str) -> Result<String, Diagnostic> {
     if text.contains("\r\n") {
         return Ok(lines(&text.replace("\r\n", "\n"))?.replace('\n', "\r\n"));
     }
     lines(text)
 }
 
-fn lines(text: &str) -> Result<String, Report> {
+fn lines(text: &str) -> Result<String, Diagnostic> {
     let tokens = token::tokens(text)?;
     Ok(block::write(&block::nodes(&tokens)))
 }

@@ -1,6 +1,6 @@
 //! Tokens with what a layout has to know of each.
 
-use crate::report::Report;
+use crate::diagnostic::Diagnostic;
 use crate::syntax::{self, Rule};
 
 /// What a token is to its neighbours.
@@ -53,7 +53,7 @@ enum Last {
 }
 
 /// The tokens of a text.
-pub(super) fn tokens(text: &str) -> Result<Vec<Token<'_>>, Report> {
+pub(super) fn tokens(text: &str) -> Result<Vec<Token<'_>>, Diagnostic> {
     let (mut last, mut first, mut end) = (Last::Nothing, "", 0);
     let mut tokens = Vec::new();
     for pair in syntax::tokens(text)? {

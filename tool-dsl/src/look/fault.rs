@@ -1,9 +1,8 @@
 //! Why a value is no number.
 
+use crate::diagnostic::{CheckKind, Subject};
 use crate::expr::value::Evaluator;
 use crate::expr::{Graph, Id, Node};
-use crate::report::Report;
-use crate::source::Span;
 
 /// Why a value is no number.
 pub(super) enum Fault {
@@ -38,18 +37,12 @@ impl Fault {
         }
     }
 
-    pub(super) fn report(&self, span: Span, place: &str) -> Report {
-        let (what, help) = match self {
-            Fault::Root => (
-                "square root of a negative number",
-                "bound the region by what is under the root, or take `max(0, …)` of that",
-            ),
-            Fault::Quotient => ("division by zero", "bound the region away from there"),
-            Fault::Size => (
-                "a number beyond all bounds",
-                "powers of large numbers grow so: divide by a length of the tool first",
-            ),
-        };
-        Report::error(span, format!("{what} {place}")).help(help)
+    /// Returns the kind of the error: an expression that has no value at a place.
+    pub(super) fn kind(&self, place: String, subject: Subject) -> CheckKind {
+        match self {
+            Fault::Root => CheckKind::RootOfNegative { place, subject },
+            Fault::Quotient => CheckKind::DivisionByZero { place, subject },
+            Fault::Size => CheckKind::Unbounded { place, subject },
+        }
     }
 }

@@ -4,9 +4,9 @@
 use super::fault::Fault;
 use super::{Look, norm};
 use crate::bound::Extent;
+use crate::diagnostic::{CheckKind, Diagnostic, Figure, Subject};
 use crate::expr::Id;
 use crate::geometry::outline::{Point, Segment, stations};
-use crate::report::{Report, figure};
 use crate::source::Span;
 
 /// Points along a piece of a profile.
@@ -66,19 +66,25 @@ impl Look<'_> {
         if self.owner(far) != Some(owner) {
             return;
         }
-        for (law, (what, id, span)) in self.laws(owner).into_iter().enumerate() {
+        for (law, (quantity, id, span)) in self.laws(owner).into_iter().enumerate() {
             let (near, far) = (values[law], self.evaluator.get(id).abs());
             if near > GROWN * far && near > BEYOND * self.largest[owner][law] {
-                let (name, place) = (&self.model.regions[owner].name, self.place(at));
-                let message = format!(
-                    "`{what}` of {name} grows without bound toward the surface: it is {} beside {place}",
-                    figure(near)
-                );
-                self.report(
-                    Report::warning(span, message).help(
-                        "add a length to what it is divided by: contact begins on the surface",
-                    ),
-                );
+                let kind = CheckKind::GrowsUnbounded {
+                    quantity,
+                    region: self.model.regions[owner].name.clone(),
+                    value: Figure(near),
+                    place: self.place(at),
+                };
+                self.report(Diagnostic::new(span, kind));
+                self.report(Diagnostic::new(
+                    span,
+                    CheckKind::GrowsUnbounded {
+                        quantity,
+                        region: self.model.regions[owner].name.clone(),
+                        value: Figure(near),
+                        place: self.place(at),
+                    },
+                ));
             }
         }
     }
@@ -96,30 +102,31 @@ impl Look<'_> {
 
     /// Reports laws that have no value at the point where it is.
     fn without_value(&mut self, owner: usize, point: [f64; 3]) {
-        for (what, id, span) in self.laws(owner) {
+        for (quantity, id, span) in self.laws(owner) {
             if !self.evaluator.get(id).is_finite() {
-                let report = self.no_number(owner, (what, id, span), &self.place(point));
-                self.report(report);
+                let diagnostic = self.no_number(owner, (quantity, id, span), self.place(point));
+                self.report(diagnostic);
             }
         }
     }
 
-    /// Returns the report of a law that is no number at the point where it is.
+    /// Returns the diagnostic of a law that is no number at the point where it is.
     pub(super) fn no_number(
         &self,
         owner: usize,
-        (what, id, span): (&str, Id, Span),
-        place: &str,
-    ) -> Report {
-        let name = &self.model.regions[owner].name;
-        Fault::of(&self.model.graph, &self.evaluator, id)
-            .report(span, &format!("at {place}, in `{what}` of {name}"))
+        (quantity, id, span): (&'static str, Id, Span),
+        place: String,
+    ) -> Diagnostic {
+        let subject = Subject::Quantity(quantity, self.model.regions[owner].name.clone());
+        let fault = Fault::of(&self.model.graph, &self.evaluator, id);
+        Diagnostic::new(span, fault.kind(place, subject))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::compile;
+    use crate::diagnostic::Diagnostic;
     use crate::source::Source;
 
     /// What is said of tools with a law: a profile whose magnitude it is, one whose niceness it is, and one of regions
@@ -136,7 +143,7 @@ mod tests {
         .map(|items| {
             let compiled =
                 compile(&Source::new("a.tool", format!("tool A {{ units mm; {items} }}")));
-            compiled.reports().iter().map(|report| report.message.clone()).collect()
+            compiled.diagnostics().iter().map(Diagnostic::message).collect()
         })
     }
 

@@ -6,13 +6,13 @@ mod laws;
 
 use crate::bound::Extent;
 use crate::bound::spread;
+use crate::diagnostic::{CheckKind, Diagnostic, Figure, Subject, any_error};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{Curve, CurveIndex, Formula};
 use crate::model::{Model, Region};
-use crate::report::{Report, any_error, figure};
-use crate::resolve::{never_wins, off_tip};
+use crate::resolve::{never_wins, off_tip, overlapping};
 use crate::source::Span;
 use fault::Fault;
 
@@ -31,8 +31,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// Curves that are undefined somewhere about the origin, for a tool of which nothing
 /// else is known yet.
-pub(crate) fn undefined(model: &Model) -> Vec<Report> {
-    let mut reports = Vec::new();
+pub(crate) fn undefined(model: &Model) -> Vec<Diagnostic> {
+    let mut diagnostics = Vec::new();
     for power in -20..=20 {
         let size = 2f64.powi(power);
         let around = Extent::of(model.domain.whole(size), size);
@@ -41,16 +41,16 @@ pub(crate) fn undefined(model: &Model) -> Vec<Report> {
             look.go(point);
             look.undefined_curves(point);
         }
-        reports = look.found;
-        if !reports.is_empty() {
+        diagnostics = look.found;
+        if !diagnostics.is_empty() {
             break;
         }
     }
-    reports
+    diagnostics
 }
 
 /// Everything that is found, each kind once a region.
-pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Report> {
+pub(crate) fn look(model: &Model, extent: &Extent) -> Vec<Diagnostic> {
     let mut look = Look::new(model, extent);
     if let Some(section) = &model.section {
         // The regions are known; only what is felt in them was written.
@@ -102,7 +102,7 @@ struct Look<'m> {
     model: &'m Model,
     size: f64,
     evaluator: Evaluator<'m>,
-    found: Vec<Report>,
+    found: Vec<Diagnostic>,
     wins: Vec<usize>,
     holds: Vec<usize>,
     /// Who own points that this region would have had.
@@ -163,9 +163,13 @@ impl<'m> Look<'m> {
     }
 
     /// Reports something once a place of the text.
-    fn report(&mut self, report: Report) {
-        if !self.found.iter().any(|r| r.span == report.span && r.severity == report.severity) {
-            self.found.push(report);
+    fn report(&mut self, diagnostic: Diagnostic) {
+        if !self
+            .found
+            .iter()
+            .any(|r| r.span == diagnostic.span && r.severity == diagnostic.severity)
+        {
+            self.found.push(diagnostic);
         }
     }
 
@@ -245,18 +249,8 @@ impl<'m> Look<'m> {
         }
         if let Some((first, second)) = overlap {
             let (a, b) = (&self.model.regions[first], &self.model.regions[second]);
-            let report = Report::error(
-                b.span,
-                format!(
-                    "regions {} and {} overlap, for instance at {}",
-                    a.name,
-                    b.name,
-                    self.place(point)
-                ),
-            )
-            .and(a.span, "the other one")
-            .help("bound one of them by the curve that divides them");
-            self.report(report);
+            let diagnostic = overlapping(&a.name, (&b.name, b.span), self.place(point), a.span);
+            self.report(diagnostic);
         }
         let owner = owner?;
         self.wins[owner] += 1;
@@ -276,36 +270,28 @@ impl<'m> Look<'m> {
             ("magnitude", region.magnitude, said.magnitude, ROUNDING),
             ("niceness", region.niceness, said.niceness, f64::INFINITY),
         ];
-        for (what, id, span, slack) in sayings {
+        for (quantity, id, span, slack) in sayings {
             let value = get(id);
-            let report = if !value.is_finite() {
-                self.no_number(owner, (what, id, span), &place)
+            let diagnostic = if !value.is_finite() {
+                self.no_number(owner, (quantity, id, span), place)
             } else if value < -slack {
-                Report::error(span, format!("`{what}` of {name} is {} at {place}", figure(value)))
-                    .help("it is never negative inside: turn a sign, or bound the region")
+                let (region, value) = (name.clone(), Figure(value));
+                Diagnostic::new(span, CheckKind::Negative { quantity, region, value, place })
             } else {
                 continue;
             };
-            return self.report(report);
+            return self.report(diagnostic);
         }
         let course = region.course.0.map(get);
         if !course.into_iter().all(f64::is_finite) || course == [0.0; 3] {
-            let report = Report::error(
-                region.course.1,
-                format!("the direction of {name} vanishes at {place}"),
-            )
-            .help("give a vector that is nowhere 0, or `toward` a point");
-            return self.report(report);
+            let kind = CheckKind::DirectionVanishes { region: name.clone(), place };
+            return self.report(Diagnostic::new(region.course.1, kind));
         }
         let [x, y, z] = region.direction.map(get);
         let off = (x.hypot(y).hypot(z) - 1.0).abs();
         if off.is_nan() || off > 1e-9 {
-            let report = Report::error(
-                region.course.1,
-                format!("the direction of {name} is too long to be made a unit vector at {place}"),
-            )
-            .help("divide it by its size");
-            self.report(report);
+            let kind = CheckKind::DirectionTooLong { region: name.clone(), place };
+            self.report(Diagnostic::new(region.course.1, kind));
         }
     }
 
@@ -317,14 +303,13 @@ impl<'m> Look<'m> {
             }
             self.undefined = true;
             let Curve { name, value } = &self.model.curves[curve];
-            let what = match name {
-                Some(name) => format!("curve `{name}`"),
-                None => "a condition".to_owned(),
+            let subject = match name {
+                Some(name) => Subject::Curve(name.clone()),
+                None => Subject::Condition,
             };
-            let place = self.place(point);
-            let report = Fault::of(&self.model.graph, &self.evaluator, *value)
-                .report(self.reader_of(curve), &format!("at {place}, in {what}"));
-            self.report(report);
+            let fault = Fault::of(&self.model.graph, &self.evaluator, *value);
+            let kind = fault.kind(self.place(point), subject);
+            self.report(Diagnostic::new(self.reader_of(curve), kind));
         }
     }
 
@@ -341,19 +326,19 @@ impl<'m> Look<'m> {
             }
             let by: Vec<&Region> =
                 self.beaten[index].iter().map(|other| &self.model.regions[*other]).collect();
-            let report = match by.as_slice() {
+            let diagnostic = match by.as_slice() {
                 [first, more @ ..] if self.holds[index] > 2 => {
                     // That it overlaps them was said of it.
-                    self.found.retain(|report| report.span != region.span);
+                    self.found.retain(|diagnostic| diagnostic.span != region.span);
                     never_wins(&region.name, region.span, (&first.name, first.span), more.len())
                 }
-                _ => Report::warning(
-                    region.span,
-                    format!("region {} has none of the {POINTS} points looked at", region.name),
-                )
-                .help("do its conditions contradict one another?"),
+                _ => {
+                    let kind =
+                        CheckKind::NoPointSeen { region: region.name.clone(), points: POINTS };
+                    Diagnostic::new(region.span, kind)
+                }
             };
-            self.found.push(report);
+            self.found.push(diagnostic);
         }
     }
 
@@ -370,8 +355,8 @@ impl<'m> Look<'m> {
         let region = &self.model.regions[owner];
         let depth = self.evaluator.get(region.depth);
         if depth.abs() > 1e-6 * self.size {
-            let report = deep_on_the_surface(region, depth, &self.place(point));
-            self.report(report);
+            let diagnostic = deep_on_the_surface(region, depth, self.place(point));
+            self.report(diagnostic);
             return;
         }
         let away = [0, 1, 2].map(|k| outside[k] - inside[k]);
@@ -385,12 +370,9 @@ impl<'m> Look<'m> {
         if let (Some(near), Some(far)) = (slope(1e-10), slope(1e-6))
             && near > 10.0 * far.max(100.0)
         {
-            let (name, place) = (&region.name, self.place(point));
-            let message = format!("`depth` of {name} has no finite slope at {place}");
-            self.report(Report::warning(region.said.depth, message).help(
-                "certified queries are not available for this tool: they want a depth that grows \
-                 in step with the distance to the surface",
-            ));
+            let kind =
+                CheckKind::SteepDepth { region: region.name.clone(), place: self.place(point) };
+            self.report(Diagnostic::new(region.said.depth, kind));
         }
         self.toward_surface(point, away.map(|part| -part));
     }
@@ -401,11 +383,9 @@ fn norm([x, y, z]: [f64; 3]) -> f64 {
 }
 
 /// A depth where the solid ends.
-pub(crate) fn deep_on_the_surface(region: &Region, depth: f64, place: &str) -> Report {
-    let message =
-        format!("`depth` of {} is {} at {place}, on the surface", region.name, figure(depth));
-    Report::error(region.said.depth, message)
-        .help("is a region missing beside it? A depth is 0 on the surface")
+pub(crate) fn deep_on_the_surface(region: &Region, depth: f64, place: String) -> Diagnostic {
+    let (name, depth) = (region.name.clone(), Figure(depth));
+    Diagnostic::new(region.said.depth, CheckKind::DeepOnSurface { region: name, depth, place })
 }
 
 /// Whether a formula holds with room to spare, measured by each curve's largest values.

@@ -15,11 +15,11 @@ mod signs;
 mod zeros;
 
 use crate::bound::Extent;
+use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::{Coord, Id};
 use crate::formula::{Curve, CurveIndex};
 use crate::model::Model;
 use crate::number::Number;
-use crate::report::Report;
 use signs::by_signs;
 
 /// The most tests of one tree.
@@ -137,12 +137,12 @@ pub struct PlannedTool {
 }
 
 /// Plans a tool's splits.
-pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Report> {
+pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diagnostic> {
     let plan = trees(&mut model, &extent)?;
     Ok(PlannedTool { model, extent, plan })
 }
 
-fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Report> {
+fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
     let (owner, outside) = match &model.section {
         Some(section) => {
             let (owner, outside) = section::trees(model, section)?;
@@ -223,9 +223,8 @@ fn beside(model: &mut Model, extent: &Extent) -> Id {
 }
 
 /// That a tree outgrew its bound.
-fn too_large(model: &Model) -> Report {
-    let message = format!("the regions need more than {LARGEST} tests to tell apart");
-    Report::error(model.name_span, message).help("divide the tool by fewer curves")
+fn too_large(model: &Model) -> Diagnostic {
+    Diagnostic::new(model.name_span, CheckKind::TooManyTests { most: LARGEST })
 }
 
 /// What a curve costs to evaluate, in additions.

@@ -5,6 +5,7 @@ use super::corners::{Corner, corners};
 use super::samples::{Few, Samples};
 use super::zeros::Zeros;
 use super::{LARGEST, Tree, costs};
+use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
 use crate::geometry::cut::{Cut, Cutter, Piece};
@@ -13,7 +14,6 @@ use crate::geometry::shape::Shape;
 use crate::model::{Model, Over, Section};
 use crate::regionalise::cells;
 use crate::regionalise::{ROUNDING, overlay};
-use crate::report::Report;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -30,7 +30,7 @@ pub(super) const PRICE: f64 = 0.01;
 /// What a test costs that the tree does elsewhere too: lanes do it once.
 const AGAIN: f64 = 0.3;
 /// The owners' tree, and that of the features which are nearest outside.
-pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Report> {
+pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let mut tried = try_trees(model, section, CHORDS[0]);
     for chords in &CHORDS[1..] {
         if tried.is_err() {
@@ -74,7 +74,11 @@ pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> boo
     around || beside()
 }
 
-fn try_trees(model: &Model, section: &Section, chords: u32) -> Result<(Owners, Tree<Id>), Report> {
+fn try_trees(
+    model: &Model,
+    section: &Section,
+    chords: u32,
+) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
     let whole = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
@@ -197,7 +201,7 @@ fn plan<'m>(
     size: f64,
     ground: Ground,
     inside: Vec<&'m Formula>,
-) -> Result<Owners, Report> {
+) -> Result<Owners, Diagnostic> {
     let samples = Samples::new(&ground.samples, shapes);
     let all = samples.all();
     let about = |piece: &Rc<Piece>| (Rc::clone(piece), piece.about());
@@ -263,7 +267,7 @@ impl Planner<'_> {
         pieces: &[Rc<Piece>],
         (samples, corners): (Few, Vec<usize>),
         mut open: Vec<CurveIndex>,
-    ) -> Result<Owners, Report> {
+    ) -> Result<Owners, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
         if pieces.iter().all(|piece| piece.owner == first) {
             return Ok(self.leaf(first, pieces, &corners));
@@ -411,11 +415,10 @@ impl Planner<'_> {
     }
 }
 
-fn inseparable(model: &Model, [d, z]: Point) -> Report {
+fn inseparable(model: &Model, [d, z]: Point) -> Diagnostic {
     let outline = model.section.iter().flat_map(|section| &section.outline);
     let outline: Vec<_> = outline.cloned().collect();
     let span = outline::nearest_span(&outline, [d, z]).unwrap_or(model.name_span);
     let z = model.frame.to_file(z);
-    Report::error(span, format!("no curve tells the nearest features apart near ({d:.4}, {z:.4})"))
-        .help("features closer than 10^-10 of the tool's size cannot be told apart")
+    Diagnostic::new(span, CheckKind::Inseparable { d, z })
 }

@@ -3,13 +3,13 @@
 use super::empty::Void;
 use super::{LARGEST, Tree, bits, costs, too_large};
 use crate::bound::{Extent, spread};
+use crate::diagnostic::Diagnostic;
 use crate::expr::value::{At, Evaluator};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
-use crate::report::Report;
 
 /// The owners' tree of written regions, of which only the conditions are known.
-pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Report> {
+pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Diagnostic> {
     let samples = samples(model, extent);
     let all: Vec<u32> = (0..samples.len() as u32).collect();
     let costs = costs(model);
@@ -58,7 +58,7 @@ impl Planner<'_> {
         &mut self,
         mut signs: Vec<Signs>,
         samples: &[u32],
-    ) -> Result<Tree<Option<usize>>, Report> {
+    ) -> Result<Tree<Option<usize>>, Diagnostic> {
         loop {
             let possible = self.possible(&signs);
             if let [only] = possible.as_slice() {

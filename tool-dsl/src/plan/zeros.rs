@@ -3,10 +3,10 @@
 use super::Tree;
 use super::samples::Few;
 use super::section::{Halves, Owners, Planner};
+use crate::diagnostic::Diagnostic;
 use crate::formula::CurveIndex;
 use crate::geometry::cut::{Edge, NEAR, Piece, is_along};
 use crate::geometry::outline::Point;
-use crate::report::Report;
 use std::cmp::Ordering;
 use std::rc::Rc;
 
@@ -74,7 +74,7 @@ impl Planner<'_> {
         halves: &Halves,
         corners: &[usize],
         open: &[CurveIndex],
-    ) -> Result<Owners, Report> {
+    ) -> Result<Owners, Diagnostic> {
         let shape = &self.shapes[curve];
         let touches =
             |piece: &&Rc<Piece>| piece.vertices.iter().any(|p| shape.side(*p, self.size) == 0);

@@ -122,7 +122,7 @@ mod tests {
         let profile = profile.replace(';', " as body;").replacen(" as body", "", 1);
         let text = format!("tool T \"a profile\" {{ units mm; profile {{ {profile} }} }}");
         let compiled = crate::compile(&Source::new("t.tool", text));
-        assert!(compiled.reports().is_empty(), "{:?}", compiled.reports());
+        assert!(compiled.diagnostics().is_empty(), "{:?}", compiled.diagnostics());
         let tool = compiled.into_tool().expect("a tool");
         let section = tool.model.section.as_ref().expect("a profile");
         Profile::new(&section.outline)

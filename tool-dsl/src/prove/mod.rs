@@ -9,6 +9,7 @@
 
 mod aim;
 mod cover;
+mod diagnostics;
 mod excess;
 mod foot;
 mod jordan;
@@ -16,7 +17,6 @@ mod kink;
 mod meridian;
 mod parting;
 mod range;
-mod reports;
 mod root;
 mod rounding;
 mod slope;
@@ -26,11 +26,11 @@ mod tangent;
 mod touch;
 mod witness;
 
+use crate::diagnostic::{Diagnostic, Statement};
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::formula::CurveIndex;
 use crate::model::{DirectionSource, Region};
 use crate::plan::PlannedTool;
-use crate::report::Report;
 use meridian::Meridian;
 
 /// At points where three regions or more meet, depths are known to agree to this part of the tool's
@@ -156,8 +156,8 @@ pub struct Border {
 pub struct Undecided {
     /// The box, in the tool's frame.
     pub cell: Cell,
-    /// What.
-    pub what: String,
+    /// The statement.
+    pub statement: Statement,
 }
 
 impl Border {
@@ -199,7 +199,7 @@ impl Bounds {
     /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves once
     /// more; regions by hand are looked at in a few thousand boxes, but not for their owners, which the
     /// plan proves as it is made. So are those of a profile for which a direction is written.
-    pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Report>) {
+    pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding = rounding::over(tool);
         let written = |region: &Region| region.source == DirectionSource::Written;
         let exact = Bounds { least: Some(1.0), lipschitz: Some(1.0), rounding };
@@ -208,13 +208,13 @@ impl Bounds {
         }
         let proved = proved(tool, FEW, false);
         // What is undecided here may not be in more boxes.
-        let reports = proved.certain(tool);
+        let diagnostics = proved.certain(tool);
         if tool.model.is_exact() {
-            return (exact, reports);
+            return (exact, diagnostics);
         }
         let [least, lipschitz] = [proved.least(), proved.lipschitz()];
         let rounding = rounding.map(|rounding| rounding + proved.slack);
-        (Bounds { least, lipschitz, rounding }, reports)
+        (Bounds { least, lipschitz, rounding }, diagnostics)
     }
 }
 

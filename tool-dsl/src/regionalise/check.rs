@@ -1,13 +1,13 @@
 //! What is wrong with a profile, before anything is derived of it.
 
+use crate::diagnostic::{Diagnostic, ProfileKind, enough};
 use crate::geometry::crossing::meeting;
 use crate::geometry::outline::{Point, Segment, TANGENT, along, cross, dot, minus, norm, reach};
-use crate::report::{Report, enough};
 
 /// What is wrong with a profile that runs from the axis to the axis: its sense, crossings.
-pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Report> {
+pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Diagnostic> {
     let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
-    let mut reports = Vec::new();
+    let mut diagnostics = Vec::new();
     let points: Vec<Point> = outline.iter().flat_map(along).collect();
     let [_, high] = reach(outline);
     for (index, segment) in outline.iter().enumerate() {
@@ -24,32 +24,20 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
             segment.round().is_none() && from == 0.0 && to == 0.0
         };
         if lies(segment) {
-            reports.push(
-                Report::error(segment.span, "this segment lies on the axis")
-                    .help("leave it out: the axis closes the profile by itself"),
-            );
+            diagnostics.push(Diagnostic::new(segment.span, ProfileKind::OnAxis));
         } else if lowest < -1e-12 * high[0] || to < 0.0 {
-            reports.push(
-                Report::error(segment.span, "this segment crosses the axis")
-                    .help("`d` is a radius and never negative"),
-            );
+            diagnostics.push(Diagnostic::new(segment.span, ProfileKind::CrossesAxis));
         } else if touches && !outline.get(index + 1).is_some_and(lies) {
-            reports.push(
-                Report::error(segment.span, "this segment touches the axis")
-                    .help("a profile is on the axis at its two ends only"),
-            );
+            diagnostics.push(Diagnostic::new(segment.span, ProfileKind::TouchesAxis));
         }
     }
-    if !reports.is_empty() {
-        return reports;
+    if !diagnostics.is_empty() {
+        return diagnostics;
     }
     let area: f64 = points.windows(2).map(|pair| cross(pair[0], pair[1])).sum();
     if area <= 0.0 {
-        reports.push(
-            Report::error(first.span, "the profile runs clockwise")
-                .help("start at its low end and keep the material on the left"),
-        );
-        return reports;
+        diagnostics.push(Diagnostic::new(first.span, ProfileKind::Clockwise));
+        return diagnostics;
     }
     let axis_ends = [
         (first, first.tangent(false), first.ends()[0]),
@@ -57,12 +45,8 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     ];
     for (segment, along, at) in axis_ends {
         if along[0].abs() < TANGENT {
-            let message = format!("this segment runs along the axis at {}", show(at));
-            reports.push(
-                Report::error(segment.span, message).help(
-                    "a needle without an angle is no solid: let it meet the axis at an angle",
-                ),
-            );
+            diagnostics
+                .push(Diagnostic::new(segment.span, ProfileKind::AlongAxis { place: show(at) }));
         }
     }
     // Segments of which something was said: their neighbours would only repeat it.
@@ -70,20 +54,17 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     for (index, pair) in outline.windows(2).enumerate() {
         let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
         if cross(before, after).abs() < TANGENT && dot(before, after) < 0.0 {
-            let at = show(pair[0].ends()[1]);
-            reports.push(
-                Report::error(pair[1].span, format!("this segment turns straight back at {at}"))
-                    .and(pair[0].span, "from this one")
-                    .help("a needle without an angle is no solid: move a corner"),
+            let place = show(pair[0].ends()[1]);
+            diagnostics.push(
+                Diagnostic::new(pair[1].span, ProfileKind::TurnsBack { place })
+                    .and(pair[0].span, "from this one"),
             );
             said.extend([index, index + 1]);
         } else if hardly_turns(&pair[0], &pair[1]) {
-            let at = show(pair[0].ends()[1]);
-            let message = format!("this segment turns by less than {TANGENT:e} at {at}");
-            reports.push(
-                Report::error(pair[1].span, message)
-                    .and(pair[0].span, "from this one")
-                    .help("such a corner is told from none by no double: draw both as one line"),
+            let place = show(pair[0].ends()[1]);
+            diagnostics.push(
+                Diagnostic::new(pair[1].span, ProfileKind::HardlyTurns { least: TANGENT, place })
+                    .and(pair[0].span, "from this one"),
             );
             said.extend([index, index + 1]);
         }
@@ -99,21 +80,21 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                 let end = |segment: &Segment| {
                     segment.ends().iter().any(|end| norm(minus(*end, at)) <= slack)
                 };
-                let verb = if end(a) || end(b) { "touches" } else { "crosses" };
-                let message = format!("this segment {verb} that one at {}", show(at));
-                reports.push(
-                    Report::error(b.span, message)
-                        .and(a.span, "that one")
-                        .help("a profile never crosses or touches itself: move a corner"),
+                diagnostics.push(
+                    Diagnostic::new(
+                        b.span,
+                        ProfileKind::MeetsItself { touches: end(a) || end(b), place: show(at) },
+                    )
+                    .and(a.span, "that one"),
                 );
                 said.extend([i, j]);
             }
-            if enough(&reports) {
-                return reports;
+            if enough(&diagnostics) {
+                return diagnostics;
             }
         }
     }
-    reports
+    diagnostics
 }
 
 /// Whether a line follows another at an angle that is not 0 and yet taken for tangent: what lies between the two would be felt by the

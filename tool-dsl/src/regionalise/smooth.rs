@@ -5,9 +5,9 @@
 //! an arc ends it touches one segment at `w` and the other nearer to the corner. Normals of the rounded outline turn
 //! steadily, so a direction that follows them does not jump along the surface.
 
+use crate::diagnostic::figure;
 use crate::geometry::outline::{Circle, Place, Segment, cross, dot, doubles, minus, turn};
 use crate::number::Number;
-use crate::report::figure;
 use std::f64::consts::PI;
 
 /// Lengths may differ by this part of theirs and count as equal.

@@ -1,6 +1,6 @@
 //! Names that are defined by themselves.
 
-use crate::report::{Report, Reported};
+use crate::diagnostic::{Diagnostic, Links, Reported, ValueKind};
 use crate::source::Span;
 use crate::syntax::tree::{Definition, Expr, ExprKind};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ const LISTED: usize = 64;
 /// definitions of one name the first counts.
 pub(super) fn refused<'t>(
     definitions: impl Iterator<Item = &'t Definition>,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> BTreeMap<String, Reported> {
     let mut of_name: BTreeMap<&str, &Definition> = BTreeMap::new();
     for definition in definitions {
@@ -45,7 +45,7 @@ pub(super) fn refused<'t>(
                     let cycle = &path[first.unwrap_or_default()..];
                     let known = cycle.iter().any(|step| refused.contains_key(step.word()));
                     if !known {
-                        let reported = Reported::push(reports, report(cycle, place));
+                        let reported = Reported::push(diagnostics, circular(cycle, place));
                         refused.extend(cycle.iter().map(|step| (step.word().to_owned(), reported)));
                     }
                 }
@@ -94,24 +94,17 @@ fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
     names
 }
 
-/// The error for a cycle; its last definition mentions the first one at `place`.
-fn report(cycle: &[Step<'_>], place: Span) -> Report {
-    let first = cycle[0].word();
-    if let [_] = cycle {
-        return Report::error(place, format!("`{first}` is defined by itself"))
-            .help("write its value: a name has one only below its definition");
-    }
-    let links: Vec<String> = cycle
-        .iter()
-        .zip(cycle.iter().skip(1).chain(&cycle[..1]))
-        .take(LISTED)
-        .map(|(step, next)| format!("`{}` needs `{}`", step.word(), next.word()))
-        .collect();
-    let more = match cycle.len() - links.len() {
-        0 => String::new(),
-        more => format!(", and {more} links more lead back to `{first}`"),
+/// Returns the error for a cycle; its last definition mentions the first one at `place`.
+fn circular(cycle: &[Step<'_>], place: Span) -> Diagnostic {
+    let word = cycle[0].word().to_owned();
+    let [_, second, ..] = cycle else {
+        let kind = ValueKind::DefinedByItself { word, links: Links(Vec::new()), more: 0 };
+        return Diagnostic::new(place, kind);
     };
-    Report::error(place, format!("`{first}` is defined by itself: {}{more}", links.join(", ")))
-        .and(cycle[1].place, "the first link")
-        .help("give one of them a value of its own")
+    let next = cycle.iter().skip(1).chain(&cycle[..1]);
+    let link = |(step, next): (&Step<'_>, &Step<'_>)| [step.word(), next.word()].map(str::to_owned);
+    let links: Vec<[String; 2]> = cycle.iter().zip(next).take(LISTED).map(link).collect();
+    let more = cycle.len() - links.len();
+    let kind = ValueKind::DefinedByItself { word, links: Links(links), more };
+    Diagnostic::new(place, kind).and(second.place, "the first link")
 }

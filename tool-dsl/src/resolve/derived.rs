@@ -6,13 +6,13 @@ use super::law::Laws;
 use super::lower::Lowering;
 use super::over::{Conditions, Divider};
 use super::region::{Bare, Felt, noted};
+use crate::diagnostic::{Diagnostic, ProfileKind};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::formula::Formula;
 use crate::geometry::outline::{Segment, nearest_span};
 use crate::model::{DirectionSource, Outside, Over, Region, Section, Surface};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
-use crate::report::Report;
 use crate::source::Span;
 
 /// What a profile makes of a tool.
@@ -49,11 +49,11 @@ pub(super) fn derived(
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> FromProfile {
-    laws.check(&surfaces, reports);
-    if let Err(report) = divider.in_limits(&outline) {
-        reports.push(report);
+    laws.check(&surfaces, diagnostics);
+    if let Err(diagnostic) = divider.in_limits(&outline) {
+        diagnostics.push(diagnostic);
         return FromProfile::default();
     }
     let reversed: Vec<Segment> = outline.iter().rev().map(Segment::reversed).collect();
@@ -66,21 +66,16 @@ pub(super) fn derived(
         Err(Undivided([d, z])) => {
             let at = nearest_span(&outline, [d, z]).unwrap_or(span);
             let z = lowering.frame.to_file(z);
-            let report = Report::error(
-                at,
-                format!(
-                    "the section could not be divided by nearest features near ({d:.4}, {z:.4})"
-                ),
-            );
-            reports.push(report.help("write this tool's regions by hand, as in docs/language.md"));
+            let diagnostic = Diagnostic::new(at, ProfileKind::Undivided { d, z });
+            diagnostics.push(diagnostic);
             return FromProfile::default();
         }
     };
     let parts = parts(&derived, &outline, &surfaces, lowering, curves);
     let whole = (outline.as_slice(), &inner);
     let mut regions = Vec::new();
-    let before = reports.len();
-    let conditions = divider.conditions(whole, &surfaces, lowering, curves, reports);
+    let before = diagnostics.len();
+    let conditions = divider.conditions(whole, &surfaces, lowering, curves, diagnostics);
     let mut over = None;
     match conditions {
         None => {
@@ -88,15 +83,15 @@ pub(super) fn derived(
                 let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
                 let said = (part.name.clone(), part.span, part.owner, part.inside.clone());
                 let course = part.own_course();
-                regions.extend(noted(felt.of_part(part, said, course), reports));
+                regions.extend(noted(felt.of_part(part, said, course), diagnostics));
             }
         }
-        Some(conditions) if reports.len() == before => {
+        Some(conditions) if diagnostics.len() == before => {
             let pairs =
-                conditions.pairs((&outline, &inner, &parts), (curves, lowering), span, reports);
+                conditions.pairs((&outline, &inner, &parts), (curves, lowering), span, diagnostics);
             for (part, index) in &pairs {
                 let pair = (&parts[*part], *index);
-                regions.extend(conditions.region(pair, &surfaces, laws, lowering, reports));
+                regions.extend(conditions.region(pair, &surfaces, laws, lowering, diagnostics));
             }
             let Conditions { conditions, distances, .. } = conditions;
             over = Some(Over { conditions, regions: pairs, distances });
@@ -195,7 +190,7 @@ impl Felt<'_> {
         part: &Part,
         (name, span, owner, inside): (String, Span, usize, Formula),
         course: Course,
-    ) -> Result<Region, Report> {
+    ) -> Result<Region, Diagnostic> {
         let magnitude = self.magnitude(None, part.depth)?;
         let niceness = self.niceness(None, part.depth)?;
         let bare = Bare { name, span, owner, inside };

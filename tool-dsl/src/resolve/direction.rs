@@ -1,12 +1,12 @@
 //! Points and directions as a file writes them, two numbers in a tool and three in a solid.
 
-use super::dimension::Dimension;
 use super::lower::May;
 use super::region::Felt;
+use crate::diagnostic::{Diagnostic, RegionKind, Role};
+use crate::dimension::Dimension;
 use crate::domain::Domain;
 use crate::expr::{Coord, Id};
 use crate::model::DirectionSource;
-use crate::report::Report;
 use crate::source::Span;
 use crate::syntax::tree::{Direction, Expr, Region, Tuple};
 
@@ -20,7 +20,7 @@ pub(super) struct Course {
 
 impl Felt<'_> {
     /// The direction that a region writes, if it does.
-    pub(super) fn course(&mut self, written: &Region) -> Result<Option<Course>, Report> {
+    pub(super) fn course(&mut self, written: &Region) -> Result<Option<Course>, Diagnostic> {
         match written.direction.as_slice() {
             [] => Ok(None),
             [course] => Ok(Some(Course {
@@ -31,14 +31,13 @@ impl Felt<'_> {
                     false => DirectionSource::Written,
                 },
             })),
-            [first, second, ..] => Err(Report::error(second.span, "the direction is said twice")
-                .and(first.span, "first here")
-                .help("drop one")),
+            [first, second, ..] => Err(Diagnostic::new(second.span, RegionKind::DirectionTwice)
+                .and(first.span, "first here")),
         }
     }
 
     /// The vector that a region writes, not yet a unit vector.
-    fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Report> {
+    fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Diagnostic> {
         match direction {
             Direction::Along(tuple) => self.along(tuple),
             Direction::AwayFrom(tuple) => self.away_from(tuple),
@@ -49,15 +48,17 @@ impl Felt<'_> {
         }
     }
 
-    fn along(&mut self, tuple: &Tuple) -> Result<[Id; 3], Report> {
+    fn along(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
         let domain = self.lowering.domain;
         let (mut parts, mut dimension) = (Vec::new(), Dimension::Bare);
-        for part in components(tuple, domain, "a direction")? {
+        for part in components(tuple, domain, Role::Direction)? {
             let (id, of_part) = self.lowering.lower(part, May::Coordinates)?;
             let alike = dimension.alike(of_part).filter(|d| *d != Dimension::Angle);
             dimension = alike.ok_or_else(|| {
-                let message = format!("a direction of {dimension} and {of_part}");
-                Report::error(tuple.span, message).help("all its parts are alike")
+                Diagnostic::new(
+                    tuple.span,
+                    RegionKind::UnlikeParts { first: dimension, other: of_part },
+                )
             })?;
             parts.push(id);
         }
@@ -68,13 +69,13 @@ impl Felt<'_> {
     }
 
     /// The vector from a point to where one feels.
-    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 3], Report> {
+    fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
         let domain = self.lowering.domain;
         let mut parts = Vec::new();
         for (part, (coord, ..)) in
-            components(tuple, domain, "a point")?.into_iter().zip(domain.coordinates())
+            components(tuple, domain, Role::Point)?.into_iter().zip(domain.coordinates())
         {
-            let there = self.lowering.length(part, "a point")?;
+            let there = self.lowering.length(part, Role::Point)?;
             let there = match coord {
                 Coord::Z => self.lowering.frame.to_tool(&there),
                 _ => there,
@@ -88,29 +89,17 @@ impl Felt<'_> {
 }
 
 /// The parts of a tuple, as many as the domain has coordinates.
-fn components<'t>(tuple: &'t Tuple, domain: Domain, what: &str) -> Result<Vec<&'t Expr>, Report> {
+fn components(tuple: &Tuple, domain: Domain, role: Role) -> Result<Vec<&Expr>, Diagnostic> {
     let (count, wanted) = (tuple.parts.len(), domain.coordinates().len());
     if count == wanted {
         return Ok(tuple.parts.iter().collect());
     }
-    let (word, number) = (domain.word(), if wanted == 2 { "two" } else { "three" });
-    let report = Report::error(
-        tuple.span,
-        format!("{what} in a {word} has {number} numbers, this has {count}"),
-    );
-    Err(match (what, domain) {
-        ("a point", _) => {
-            let comma = if count > wanted { "; a decimal comma? write `0.5`" } else { "" };
-            report.help(format!("write `{}`{comma}", domain.tuple()))
-        }
-        (_, Domain::HalfPlane) => {
-            report.help("write `(radial, axial)`: across the axis, and along the file's z")
-        }
-        (_, Domain::Space) => report.help("write `(x, y, z)`"),
-    })
+    let (file, shown) = (domain.word(), domain.tuple());
+    let kind = RegionKind::WrongParts { role, file, wanted, count, tuple: shown };
+    Err(Diagnostic::new(tuple.span, kind))
 }
 
 /// The two parts of a point of a tool.
-pub(super) fn pair<'t>(tuple: &'t Tuple, what: &str) -> Result<[&'t Expr; 2], Report> {
-    components(tuple, Domain::HalfPlane, what).map(|_| [&tuple.parts[0], &tuple.parts[1]])
+pub(super) fn pair(tuple: &Tuple, role: Role) -> Result<[&Expr; 2], Diagnostic> {
+    components(tuple, Domain::HalfPlane, role).map(|_| [&tuple.parts[0], &tuple.parts[1]])
 }

@@ -1,12 +1,14 @@
 //! What a tool's `param`s are given from outside its file.
 
-use super::dimension::Dimension;
 use super::lower::Lowering;
+use crate::diagnostic::{
+    Diagnostic, Figure, Kind, NameRemedy, Names, ParamRemedy, Role, ValueKind, nearest,
+};
+use crate::dimension::Dimension;
 use crate::domain::Domain;
 use crate::expr::Graph;
 use crate::model::Unit;
 use crate::number::Number;
-use crate::report::{Missing, Report, figure, nearest};
 use crate::syntax::tree::{Definition, Expr, Item, Name, Tool};
 
 /// A value for a `param`, evaluated where it is given.
@@ -22,13 +24,13 @@ pub(super) struct Given<'t> {
 pub(super) fn from_outside<'t>(
     settings: &'t [Definition],
     (domain, unit): (Domain, Unit),
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<Given<'t>> {
-    given(settings, &mut Lowering::new(domain, unit), reports, |report| {
-        if matches!(report.missing, Some(Missing::Name(_))) {
-            return report.help("what is given is a constant: numbers with their units, `pi`");
+    given(settings, &mut Lowering::new(domain, unit), diagnostics, |mut diagnostic| {
+        if let Kind::ValueKind(ValueKind::UnknownName { remedy, .. }) = &mut diagnostic.kind {
+            *remedy = NameRemedy::Constant;
         }
-        report
+        diagnostic
     })
 }
 
@@ -36,33 +38,32 @@ pub(super) fn from_outside<'t>(
 pub(super) fn from_mount<'t>(
     settings: &'t [Definition],
     lowering: &mut Lowering,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<Given<'t>> {
-    given(settings, lowering, reports, |report| report)
+    given(settings, lowering, diagnostics, |diagnostic| diagnostic)
 }
 
 fn given<'t>(
     settings: &'t [Definition],
     lowering: &mut Lowering,
-    reports: &mut Vec<Report>,
-    said: impl Fn(Report) -> Report,
+    diagnostics: &mut Vec<Diagnostic>,
+    said: impl Fn(Diagnostic) -> Diagnostic,
 ) -> Vec<Given<'t>> {
     let mut given: Vec<Given<'t>> = Vec::new();
     for setting in settings {
         let name = &setting.name;
         if let Some(first) = given.iter().find(|other| other.setting.name.word == name.word) {
-            reports.push(
-                Report::error(name.span, format!("`{}` is given twice", name.word))
-                    .and(first.setting.name.span, "first here")
-                    .help("drop one"),
+            diagnostics.push(
+                Diagnostic::new(name.span, ValueKind::GivenTwice { word: name.word.clone() })
+                    .and(first.setting.name.span, "first here"),
             );
             continue;
         }
-        match lowering.constant(&setting.value, "a `param`") {
+        match lowering.constant(&setting.value, Role::Param) {
             Ok((value, dimension)) => {
                 given.push(Given { setting, value, dimension, unit: lowering.unit });
             }
-            Err(report) => reports.push(said(report)),
+            Err(diagnostic) => diagnostics.push(said(diagnostic)),
         }
     }
     given
@@ -74,7 +75,7 @@ pub(super) fn value_of(
     default: (Number, Dimension),
     given: &[Given<'_>],
     unit: Unit,
-) -> Result<(Number, Dimension), Report> {
+) -> Result<(Number, Dimension), Diagnostic> {
     match given.iter().find(|given| given.setting.name.word == param.name.word) {
         Some(given) => given.replacing(&param.value, default.1, unit),
         None => Ok(default),
@@ -87,24 +88,33 @@ impl Given<'_> {
         default: &Expr,
         of_default: Dimension,
         unit: Unit,
-    ) -> Result<(Number, Dimension), Report> {
+    ) -> Result<(Number, Dimension), Diagnostic> {
         let Definition { name: Name { word, .. }, value } = self.setting;
         let Some(dimension) = of_default.alike(self.dimension) else {
-            let message = format!("`{word}` is {of_default}, what is given is {}", self.dimension);
-            let report = Report::error(value.span, message).and(default.span, "its default");
-            return Err(report.help(format!("give {of_default}")));
+            let diagnostic = Diagnostic::new(
+                value.span,
+                ValueKind::GivenDimension {
+                    word: word.clone(),
+                    wanted: of_default,
+                    found: self.dimension,
+                },
+            )
+            .and(default.span, "its default");
+            return Err(diagnostic);
         };
         let power = match dimension {
             // Where a length is wanted a bare number is in the unit of the file that it stands in.
             Dimension::Length(power) => power,
             Dimension::Bare if self.unit != unit && !self.value.is_zero() => {
-                let number = figure(self.value.to_f64());
-                let (here, there) = (self.unit.word(), unit.word());
-                let message = format!("is `{word}` {number}{here} or {number}{there}?");
-                return Err(Report::error(value.span, message).help(format!(
-                    "this file is in {here}, the mounted one in {there}: write the unit; \
-                     a mere number is `{number}{here}/1{here}`"
-                )));
+                return Err(Diagnostic::new(
+                    value.span,
+                    ValueKind::GivenUnit {
+                        word: word.clone(),
+                        number: Figure(self.value.to_f64()),
+                        here: self.unit.word(),
+                        there: unit.word(),
+                    },
+                ));
             }
             _ => 0.0,
         };
@@ -122,7 +132,7 @@ fn scale(from: Unit, to: Unit, power: f64) -> Number {
 }
 
 /// What is given that no `param` takes.
-pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], reports: &mut Vec<Report>) {
+pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], diagnostics: &mut Vec<Diagnostic>) {
     let params: Vec<&str> = tool
         .items
         .iter()
@@ -131,14 +141,6 @@ pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], reports: &mut Vec<Report
             _ => None,
         })
         .collect();
-    let list = match params.as_slice() {
-        [] => "it has none".to_owned(),
-        [one] => format!("it has `{one}`"),
-        many => format!(
-            "it has {}",
-            many.iter().map(|p| format!("`{p}`")).collect::<Vec<_>>().join(", ")
-        ),
-    };
     for Given { setting: Definition { name, .. }, .. } in given {
         let word = name.word.as_str();
         if params.contains(&word) {
@@ -148,14 +150,17 @@ pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], reports: &mut Vec<Report
             Item::Let(definition) if definition.name.word == word => Some(definition),
             _ => None,
         });
-        let report =
-            Report::error(name.span, format!("`{}` has no param `{word}`", tool.name.word));
-        reports.push(match (other, nearest(word, params.iter().copied())) {
-            (Some(other), _) => report
-                .and(other.name.span, "this is a `let`")
-                .help(format!("write `param` there; {list}")),
-            (None, Some(meant)) => report.help(format!("did you mean `{meant}`? {list}")),
-            (None, None) => report.help(list.clone()),
+        let remedy = match (other, nearest(word, params.iter().copied())) {
+            (Some(_), _) => ParamRemedy::Let,
+            (None, Some(meant)) => ParamRemedy::Meant(meant.to_owned()),
+            (None, None) => ParamRemedy::List,
+        };
+        let (tool, params) = (tool.name.word.clone(), Names::new(params.iter().copied()));
+        let kind = ValueKind::NoSuchParam { tool, word: word.to_owned(), remedy, params };
+        let diagnostic = Diagnostic::new(name.span, kind);
+        diagnostics.push(match other {
+            Some(other) => diagnostic.and(other.name.span, "this is a `let`"),
+            None => diagnostic,
         });
     }
 }

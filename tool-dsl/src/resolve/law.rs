@@ -1,8 +1,8 @@
 //! Laws: what is said of surfaces, wherever these are.
 
 use super::mount::Along;
+use crate::diagnostic::{Diagnostic, Names, RegionKind, SurfaceRemedy, enough, nearest};
 use crate::model::Surface;
-use crate::report::{Missing, Report, enough, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{Law, Quantity};
 use std::collections::BTreeMap;
@@ -34,18 +34,15 @@ impl<'t> Laws<'t> {
     }
 
     /// What is wrong with the laws themselves.
-    pub(super) fn check(&self, surfaces: &[Surface], reports: &mut Vec<Report>) {
+    pub(super) fn check(&self, surfaces: &[Surface], diagnostics: &mut Vec<Diagnostic>) {
         let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
         for law in self.own {
-            if enough(reports) {
+            if enough(diagnostics) {
                 return;
             }
             let what = law.quantity.word();
             if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
-                reports.push(
-                    Report::error(law.span, "for which surfaces is this niceness?")
-                        .help("write `niceness cutting: …;` or name the surfaces"),
-                );
+                diagnostics.push(Diagnostic::new(law.span, RegionKind::NicenessOfAll));
             }
             let words: Vec<(&str, Span)> = if law.surfaces.is_empty() {
                 vec![("", law.span)]
@@ -56,12 +53,10 @@ impl<'t> Laws<'t> {
                 if let Some((.., first)) =
                     seen.iter().find(|(q, w, _)| *q == law.quantity && *w == word)
                 {
-                    let of =
-                        if word.is_empty() { "everything".to_owned() } else { format!("`{word}`") };
-                    reports.push(
-                        Report::error(span, format!("two laws give the {what} of {of}"))
-                            .and(*first, "the first")
-                            .help("drop one"),
+                    let surface = (!word.is_empty()).then(|| word.to_owned());
+                    diagnostics.push(
+                        Diagnostic::new(span, RegionKind::TwoLaws { quantity: what, surface })
+                            .and(*first, "the first"),
                     );
                 }
                 seen.push((law.quantity, word, span));
@@ -71,19 +66,19 @@ impl<'t> Laws<'t> {
                 }
                 match surface {
                     None => {
-                        let report = Report::error(span, format!("unknown surface `{word}`"))
-                            .missing(Missing::Surface(word.to_owned()));
                         let known = surfaces.iter().map(|s| s.name.as_str());
                         // Of a part's surface the part may have been forgotten.
                         let of_part = format!(".{word}");
                         let whole = known.clone().find(|name| name.ends_with(&of_part));
-                        reports.push(match whole.or(nearest(word, known)) {
-                            Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                            None => report.help(named(word, surfaces)),
-                        });
+                        let remedy = match whole.or(nearest(word, known)) {
+                            Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
+                            None => named(word, surfaces),
+                        };
+                        let kind = RegionKind::UnknownSurface { word: word.to_owned(), remedy };
+                        diagnostics.push(Diagnostic::new(span, kind));
                     }
                     Some(s) if law.quantity == Quantity::Niceness && !s.cutting => {
-                        reports.push(idle_niceness(span, s));
+                        diagnostics.push(idle_niceness(span, s));
                     }
                     Some(_) => {}
                 }
@@ -92,23 +87,20 @@ impl<'t> Laws<'t> {
     }
 }
 
-/// Which surfaces there are: those of a mounted part, if it is named.
-fn named(word: &str, surfaces: &[Surface]) -> String {
+/// Lists the surfaces: those of a mounted part, if it is named.
+fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
     let of = format!("{word}.");
-    let list = |names: Vec<&Surface>| {
-        names.iter().map(|s| format!("`{}`", s.name)).collect::<Vec<_>>().join(", ")
-    };
-    let part: Vec<&Surface> = surfaces.iter().filter(|s| s.name.starts_with(&of)).collect();
-    match part.as_slice() {
-        [] => format!("surfaces are {}", list(surfaces.iter().take(8).collect())),
-        _ => format!("name a surface of the part: {}", list(part)),
+    let names = || surfaces.iter().map(|surface| surface.name.as_str());
+    if names().any(|name| name.starts_with(&of)) {
+        SurfaceRemedy::OfPart(Names::new(names().filter(|name| name.starts_with(&of))))
+    } else {
+        SurfaceRemedy::List(Names::new(names().take(8)))
     }
 }
 
-pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Report {
-    Report::error(span, format!("`{}` does not cut, its niceness is 0", surface.name))
+pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
+    Diagnostic::new(span, RegionKind::IdleNiceness { surface: surface.name.clone() })
         .and(surface.span, "not `cutting` here")
-        .help("make it `cutting` or drop the rule")
 }
 
 /// Which rule a law is of.

@@ -1,12 +1,14 @@
 //! Expressions of the syntax tree to nodes of the graph, with their dimension.
 
-use super::call::{FUNCTIONS, NO_POWER};
-use super::dimension::{Dimension, LENGTH};
+use super::call::FUNCTIONS;
+use crate::diagnostic::{
+    Diagnostic, Kind, NameRemedy, Names, Operation, Reported, Role, ValueKind, nearest,
+};
+use crate::dimension::{Dimension, LENGTH};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::model::{Frame, Unit};
-use crate::number::{Number, RANGE};
-use crate::report::{Missing, Report, Reported, nearest};
+use crate::number::Number;
 use crate::source::Span;
 use crate::syntax::TALLEST;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
@@ -28,8 +30,8 @@ pub(super) struct Value {
 /// What an expression may mention where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum May {
-    /// Constants only, for what (to be named in errors).
-    Constants(&'static str),
+    /// Constants only, for this.
+    Constants(Role),
     /// Coordinates too.
     Coordinates,
     /// And `depth`, which is this here.
@@ -55,7 +57,7 @@ pub(super) struct Lowering {
 /// The largest constant on the way to a length, 2^1000: powers of lengths fit.
 const LARGEST: f64 = 1.071508607186267e301;
 
-pub(super) type Lowered = Result<(Id, Dimension), Report>;
+pub(super) type Lowered = Result<(Id, Dimension), Diagnostic>;
 
 impl Lowering {
     /// Gives a value its name.
@@ -63,32 +65,27 @@ impl Lowering {
         &mut self,
         name: &Name,
         (id, dimension): (Id, Dimension),
-    ) -> Result<(), Report> {
+    ) -> Result<(), Diagnostic> {
         let word = name.word.as_str();
-        if let Some(what) = self.domain.meaning(word) {
-            let report =
-                Report::error(name.span, format!("`{word}` is {what} and cannot be defined"));
-            return Err(report.help(match word {
-                "d" => "for a diameter use `D`",
-                _ => "take another name",
-            }));
+        if let Some(meaning) = self.domain.meaning(word) {
+            let kind = ValueKind::ReservedName { word: word.to_owned(), meaning: Some(meaning) };
+            return Err(Diagnostic::new(name.span, kind));
         }
         if COORDINATES.contains(&word)
             || FUNCTIONS.contains(&word)
             || word == "pi"
             || word == "depth"
         {
-            let report = Report::error(
-                name.span,
-                format!("`{word}` belongs to the language and cannot be defined"),
-            );
-            return Err(report.help("take another name"));
+            let kind = ValueKind::ReservedName { word: word.to_owned(), meaning: None };
+            return Err(Diagnostic::new(name.span, kind));
         }
         let value = Value { id, dimension, span: name.span, used: false };
         if let Some(earlier) = self.values.get(word) {
-            return Err(Report::error(name.span, format!("`{word}` is defined twice"))
-                .and(earlier.span, "first here")
-                .help("drop one, or give it another name"));
+            return Err(Diagnostic::new(
+                name.span,
+                ValueKind::DefinedTwice { word: word.to_owned() },
+            )
+            .and(earlier.span, "first here"));
         }
         self.values.insert(word.to_owned(), value);
         Ok(())
@@ -98,37 +95,33 @@ impl Lowering {
     pub(super) fn note(
         &mut self,
         name: &Name,
-        defined: Result<(), Report>,
-        reports: &mut Vec<Report>,
+        defined: Result<(), Diagnostic>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) {
-        if let Err(report) = defined {
-            let reported = Reported::push(reports, report);
+        if let Err(diagnostic) = defined {
+            let reported = Reported::push(diagnostics, diagnostic);
             self.broken.insert(name.word.clone(), reported);
         }
     }
 
-    /// An expression that must come out constant, for what.
+    /// An expression that must come out constant, for this.
     pub(super) fn constant(
         &mut self,
         expr: &Expr,
-        what: &'static str,
-    ) -> Result<(Number, Dimension), Report> {
-        let (id, dimension) = self.lower(expr, May::Constants(what))?;
+        role: Role,
+    ) -> Result<(Number, Dimension), Diagnostic> {
+        let (id, dimension) = self.lower(expr, May::Constants(role))?;
         match self.graph.constant(id) {
             Some(value) => Ok((value.clone(), dimension)),
-            None => Err(not_constant(expr.span, "this", what)),
+            None => Err(not_constant(expr.span, None, role)),
         }
     }
 
     /// A constant length.
-    pub(super) fn length(&mut self, expr: &Expr, what: &'static str) -> Result<Number, Report> {
-        let (value, dimension) = self.constant(expr, what)?;
+    pub(super) fn length(&mut self, expr: &Expr, role: Role) -> Result<Number, Diagnostic> {
+        let (value, dimension) = self.constant(expr, role)?;
         if !dimension.is_length() {
-            return Err(Report::error(
-                expr.span,
-                format!("{what} takes a length, this is {dimension}"),
-            )
-            .help("lengths are numbers with or without `mm`, `inch` or `m`"));
+            return Err(Diagnostic::new(expr.span, ValueKind::NotLength { role, dimension }));
         }
         in_range(&value, expr.span)?;
         Ok(value)
@@ -140,14 +133,10 @@ impl Lowering {
         // Constants are checked as they grow, before anything overflows.
         let size = self.graph.constant(id).map_or(0.0, |value| value.to_f64().abs());
         if size > LARGEST {
-            return Err(Report::error(expr.span, "this constant is out of range").help(RANGE));
+            return Err(Diagnostic::new(expr.span, ValueKind::ConstantOutOfRange));
         }
         if self.graph.height(id) > TALLEST {
-            return Err(Report::error(
-                expr.span,
-                "this is built of too many steps upon each other",
-            )
-            .help(format!("at most {TALLEST} operations lie between a value and a coordinate")));
+            return Err(Diagnostic::new(expr.span, ValueKind::TooManySteps { most: TALLEST }));
         }
         Ok((id, dimension))
     }
@@ -179,41 +168,28 @@ impl Lowering {
             let value = value * &from.to(self.unit);
             return Ok((self.graph.number(value), LENGTH));
         }
-        let report = match word {
-            "rad" => return Ok((self.graph.number(value.clone()), Dimension::Angle)),
+        match word {
+            "rad" => Ok((self.graph.number(value.clone()), Dimension::Angle)),
             "deg" => {
                 let radians = &(value * &Number::pi()) / &Number::int(180);
-                return Ok((self.graph.number(radians), Dimension::Angle));
+                Ok((self.graph.number(radians), Dimension::Angle))
             }
-            "in" | "inches" | "zoll" => Report::error(unit.span, format!("unknown unit `{word}`"))
-                .missing(Missing::Definition(word.to_owned()))
-                .help("write `inch`, as in `0.25inch`"),
             _ if COORDINATES.contains(&word) || self.values.contains_key(word) || word == "pi" => {
                 let number = value.to_f64();
-                let report = Report::error(span, format!("`{number}{word}` is not a number"));
-                let written = match (self.domain, word) {
-                    (Domain::Space, "d") => "hypot(x, y)",
-                    _ => word,
+                let diameter = (self.domain, word) == (Domain::HalfPlane, "d") && number == 2.0;
+                let factor = match (self.domain, word) {
+                    (Domain::Space, "d") => "hypot(x, y)".to_owned(),
+                    _ => word.to_owned(),
                 };
-                let times = match (self.domain, word) {
-                    (Domain::HalfPlane, "d") if number == 2.0 => {
-                        " for two times the distance from the axis"
-                    }
-                    _ => "",
-                };
-                return Err(report.help(format!("write `{number}*{written}`{times}")));
+                let word = word.to_owned();
+                Err(Diagnostic::new(span, ValueKind::GluedName { number, word, factor, diameter }))
             }
             _ => {
-                let report = Report::error(unit.span, format!("unknown unit `{word}`"))
-                    .missing(Missing::Definition(word.to_owned()));
-                match UNITS.iter().find(|unit| unit.eq_ignore_ascii_case(word)) {
-                    Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                    None => report
-                        .help(format!("units are {}", UNITS.map(|u| format!("`{u}`")).join(", "))),
-                }
+                let meant = UNITS.into_iter().find(|unit| unit.eq_ignore_ascii_case(word));
+                let (word, known) = (word.to_owned(), Names::new(UNITS));
+                Err(Diagnostic::new(unit.span, ValueKind::UnknownUnit { word, meant, known }))
             }
-        };
-        Err(report)
+        }
     }
 
     fn name(&mut self, word: &str, span: Span, may: May) -> Lowered {
@@ -222,9 +198,8 @@ impl Lowering {
             "depth" => {
                 return match may {
                     May::Depth(depth) => Ok((depth, LENGTH)),
-                    May::Coordinates => Err(Report::error(span, "`depth` is not known here")
-                        .help("only `magnitude` and `niceness` may mention `depth`")),
-                    May::Constants(what) => Err(not_constant(span, &format!("`{word}`"), what)),
+                    May::Coordinates => Err(Diagnostic::new(span, ValueKind::DepthUnknown)),
+                    May::Constants(role) => Err(not_constant(span, Some(word), role)),
                 };
             }
             _ => self.domain.coordinates().iter().find(|(.., name)| *name == word),
@@ -232,48 +207,45 @@ impl Lowering {
         let coordinate = coordinate.map(|(coordinate, ..)| *coordinate);
         if coordinate.is_none() && COORDINATES.contains(&word) {
             let other = if word == "d" { "tool" } else { "solid" };
-            let report = Report::error(span, format!("`{word}` exists in a `{other}` only"));
-            return Err(report.help(self.domain.instead()));
+            let kind = ValueKind::OtherCoordinate { word: word.to_owned(), other };
+            return Err(Diagnostic::new(span, kind));
         }
         if let Some(coordinate) = coordinate {
-            if let May::Constants(what) = may {
-                return Err(not_constant(span, &format!("`{word}`"), what));
+            if let May::Constants(role) = may {
+                return Err(not_constant(span, Some(word), role));
             }
             return Ok((self.coordinate_here(coordinate), LENGTH));
         }
         let Some(value) = self.values.get_mut(word) else {
             if let Some(reported) = self.broken.get(word) {
-                return Err(Report::follow_up(span, *reported));
+                return Err(without_value(span, word, *reported));
             }
             if let Some(definition) = self.declared.get(word) {
                 // Constants are settled before curves, wherever these stand.
                 if definition.start < span.start
-                    && let May::Constants(what) = may
+                    && let May::Constants(role) = may
                 {
-                    return Err(
-                        not_constant(span, &format!("`{word}`"), what).and(*definition, "a curve")
-                    );
+                    return Err(not_constant(span, Some(word), role).and(*definition, "a curve"));
                 }
-                return Err(Report::error(span, format!("`{word}` is used above its definition"))
-                    .and(*definition, "defined here")
-                    .help("move the definition up"));
+                return Err(Diagnostic::new(span, ValueKind::UsedAbove { word: word.to_owned() })
+                    .and(*definition, "defined here"));
             }
-            let report = Report::error(span, format!("unknown name `{word}`"))
-                .missing(Missing::Name(word.to_owned()));
             let coordinates = self.domain.coordinates().iter().map(|(.., name)| *name);
             let known = self.values.keys().map(String::as_str).chain(coordinates);
             let known = known.chain(["pi", "depth"]);
-            return Err(match nearest(word, known) {
-                Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                None => report.help(format!("define it above, as in `let {word} = 3;`")),
-            });
+            let remedy = match nearest(word, known) {
+                Some(meant) => NameRemedy::Meant(meant.to_owned()),
+                None => NameRemedy::Define,
+            };
+            let kind = ValueKind::UnknownName { word: word.to_owned(), remedy };
+            return Err(Diagnostic::new(span, kind));
         };
         value.used = true;
         let value = value.clone();
-        if let May::Constants(what) = may
+        if let May::Constants(role) = may
             && self.graph.constant(value.id).is_none()
         {
-            return Err(not_constant(span, &format!("`{word}`"), what));
+            return Err(not_constant(span, Some(word), role));
         }
         Ok((value.id, value.dimension))
     }
@@ -287,79 +259,69 @@ impl Lowering {
         may: May,
     ) -> Lowered {
         let glued = operator == Binary::Sub && left.span.end + 1 == right.span.start;
-        let (a, da) = self.lower(left, may).map_err(|report| match &left.kind {
-            ExprKind::Name(word) if glued && !self.values.contains_key(word) => {
-                report.help("a name has no dash: write `_`; a difference has spaces about its `-`")
+        let (a, da) = self.lower(left, may).map_err(|mut diagnostic| {
+            if let Kind::ValueKind(ValueKind::UnknownName { remedy, .. }) = &mut diagnostic.kind
+                && glued
+                && matches!(left.kind, ExprKind::Name(_))
+            {
+                *remedy = NameRemedy::Dash;
             }
-            _ => report,
+            diagnostic
         })?;
         let (b, db) = self.lower(right, may)?;
-        let (dimension, verb) = match operator {
-            Binary::Add | Binary::Sub => (da.alike(db), "adds"),
-            Binary::Mul => (da.times(db), "multiplies"),
-            _ => (da.over(db), "divides"),
+        let (dimension, operation) = match operator {
+            Binary::Add => (da.alike(db), Operation::Add),
+            Binary::Sub => (da.alike(db), Operation::Subtract),
+            Binary::Mul => (da.times(db), Operation::Multiply),
+            _ => (da.over(db), Operation::Divide),
         };
-        let Some(dimension) = dimension else {
-            let (what, with) = match operator {
-                Binary::Add => (format!("adds {da} to {db}"), ""),
-                Binary::Sub => (format!("subtracts {db} from {da}"), ""),
-                _ => (format!("{verb} {da} by {db}"), ""),
-            };
-            let report = Report::error(span, format!("this {what}{with}"));
-            return Err(report.help(match (da, db) {
-                (Dimension::Angle, _) | (_, Dimension::Angle) => {
-                    "an angle is for `sin`, `cos` and `tan`: angles go with angles"
-                }
-                _ => "both sides want the same power of length; a bare number fits any",
-            }));
-        };
+        let dimension = dimension.ok_or_else(|| {
+            Diagnostic::new(span, ValueKind::UnlikeOperands { operation, left: da, right: db })
+        })?;
         let id = match operator {
             Binary::Add => self.graph.add(a, b),
             Binary::Sub => self.graph.sub(a, b),
             Binary::Mul => self.graph.mul(a, b),
-            _ => self.graph.div(a, b).ok_or_else(|| {
-                Report::error(right.span, "division by zero")
-                    .help("this is 0; divide by what is not")
-            })?,
+            _ => self
+                .graph
+                .div(a, b)
+                .ok_or_else(|| Diagnostic::new(right.span, ValueKind::DivisionByZero))?,
         };
         Ok((id, dimension))
     }
 
     fn power(&mut self, base: &Expr, exponent: &Expr, span: Span, may: May) -> Lowered {
         let (base_id, dimension) = self.lower(base, may)?;
-        let (value, of_exponent) = self.constant(exponent, "an exponent")?;
-        let halves =
-            value.halves().filter(|_| of_exponent == Dimension::Bare).ok_or_else(|| {
-                Report::error(exponent.span, "an exponent is a multiple of one half from -16 to 16")
-                    .help("only square roots run at every contact")
-            })?;
+        let (value, of_exponent) = self.constant(exponent, Role::Exponent)?;
+        let halves = value
+            .halves()
+            .filter(|_| of_exponent == Dimension::Bare)
+            .ok_or_else(|| Diagnostic::new(exponent.span, ValueKind::Exponent))?;
         let dimension = dimension
             .power(halves)
-            .ok_or_else(|| Report::error(span, "an angle has no powers").help(NO_POWER))?;
-        let id = self.graph.power(base_id, halves).ok_or_else(|| {
-            Report::error(span, "this power of a constant does not exist")
-                .help("the base is negative under a root, or 0 under a negative exponent")
-        })?;
+            .ok_or_else(|| Diagnostic::new(span, ValueKind::PowerOfAngle))?;
+        let id = self
+            .graph
+            .power(base_id, halves)
+            .ok_or_else(|| Diagnostic::new(span, ValueKind::NoSuchPower))?;
         Ok((id, dimension))
     }
 }
 
 /// Whether a constant has a size that the compiler can work with.
-pub(super) fn in_range(value: &Number, span: Span) -> Result<(), Report> {
+pub(super) fn in_range(value: &Number, span: Span) -> Result<(), Diagnostic> {
     if value.is_in_range() {
         return Ok(());
     }
-    let size = format!("{:e} is out of range", value.to_f64());
-    Err(Report::error(span, size).help(RANGE))
+    Err(Diagnostic::new(span, ValueKind::ValueOutOfRange { value: value.to_f64() }))
 }
 
-fn not_constant(span: Span, word: &str, what: &str) -> Report {
-    let report = Report::error(
-        span,
-        format!("{word} changes from point to point; {what} takes constants only"),
-    );
-    report.help(match what {
-        "a `let`" | "a `param`" => "name a function of the coordinates with `curve`",
-        _ => "write a number, or a `let` or `param`",
-    })
+fn not_constant(span: Span, word: Option<&str>, role: Role) -> Diagnostic {
+    Diagnostic::new(span, ValueKind::NotConstant { word: word.map(str::to_owned), role })
+}
+
+/// The use of a name whose definition is refused.
+pub(super) fn without_value(span: Span, word: &str, refused: Reported) -> Diagnostic {
+    let kind = ValueKind::NameWithoutValue { word: word.to_owned() };
+    Diagnostic::new(span, kind).caused_by(refused)
 }

@@ -4,7 +4,6 @@ mod call;
 mod condition;
 mod cycle;
 mod derived;
-mod dimension;
 mod direction;
 mod given;
 mod join;
@@ -18,12 +17,14 @@ mod region;
 mod scope;
 
 pub(crate) use mount::off_tip;
-pub(crate) use over::never_wins;
+pub(crate) use over::{never_wins, overlapping};
 
+use crate::diagnostic::{
+    Diagnostic, MountKind, RegionKind, Reported, Role, ValueKind, enough, nearest,
+};
 use crate::domain::Domain;
 use crate::geometry::outline::Segment;
 use crate::model::{Model, Surface, Unit};
-use crate::report::{Missing, Report, Reported, enough, nearest};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
 use condition::Curves;
@@ -36,27 +37,27 @@ use over::Divider;
 use std::collections::BTreeMap;
 
 /// Resolves a tool with what its params are given; the files that it mounts are read on the way.
-/// Fails only with an error among the reports, and never succeeds with one that it adds.
+/// Fails only with an error among the diagnostics, and never succeeds with one that it adds.
 pub fn resolve(
     tool: &Tool,
     given: &[Definition],
     sources: &mut Sources,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<Model, Reported> {
-    let unit = unit(tool).map_err(|report| Reported::push(reports, report))?;
+    let unit = unit(tool).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let mut lowering = Lowering::of(tool, unit);
-    let given = given::from_outside(given, (tool.domain, unit), reports);
-    given::untaken(tool, &given, reports);
-    constants(tool, &given, &mut lowering, reports);
+    let given = given::from_outside(given, (tool.domain, unit), diagnostics);
+    given::untaken(tool, &given, diagnostics);
+    constants(tool, &given, &mut lowering, diagnostics);
     let misplaced = match tool.domain {
-        Domain::Space => without_axis(tool, reports),
+        Domain::Space => without_axis(tool, diagnostics),
         Domain::HalfPlane => None,
     };
-    frame(tool, &mut lowering, reports);
+    frame(tool, &mut lowering, diagnostics);
     for definition in definitions(tool, |item| matches!(item, Item::Curve(_))) {
-        lowering.curve(definition, reports);
-        if enough(reports)
-            && let Some(reported) = Reported::among(reports)
+        lowering.curve(definition, diagnostics);
+        if enough(diagnostics)
+            && let Some(reported) = Reported::among(diagnostics)
         {
             return Err(reported);
         }
@@ -72,10 +73,10 @@ pub fn resolve(
         .iter()
         .filter_map(|item| if let Item::Law(law) = item { Some(law) } else { None })
         .collect();
-    let shape = if misplaced.is_some() { None } else { shape(tool, reports) };
+    let shape = if misplaced.is_some() { None } else { shape(tool, diagnostics) };
     let outlined = shape.map(|shape| match shape {
         Shape::Profile(profile) => {
-            let outline = profile::outline(profile, &mut lowering, reports);
+            let outline = profile::outline(profile, &mut lowering, diagnostics);
             outline.map(|(outline, surfaces)| Outlined {
                 outline,
                 surfaces,
@@ -84,7 +85,7 @@ pub fn resolve(
             })
         }
         Shape::Mounts(mounts) => {
-            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, reports)
+            mount::assembled(&mounts, tool.name.span, &mut lowering, sources, diagnostics)
         }
     });
     let mut without_shape = misplaced;
@@ -92,8 +93,8 @@ pub fn resolve(
         Some(Ok(Outlined { outline, surfaces, along, span })) => {
             let laws = Laws::new(&laws, along);
             let whole = (outline, surfaces, span);
-            let divider = divider(tool, reports);
-            derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, reports)
+            let divider = divider(tool, diagnostics);
+            derived::derived(whole, &divider, &laws, &mut lowering, &mut curves, diagnostics)
         }
         Some(Err(reported)) => {
             without_shape = Some(reported);
@@ -103,21 +104,18 @@ pub fn resolve(
         None => {
             let laws = Laws::new(&laws, BTreeMap::new());
             let (surfaces, regions) =
-                region::regions(tool, &laws, &mut lowering, &mut curves, reports);
+                region::regions(tool, &laws, &mut lowering, &mut curves, diagnostics);
             FromProfile { surfaces, regions, section: None }
         }
     };
-    let first = first_curves(tool, &mut lowering, &mut curves, reports);
-    if let Some(reported) = without_shape.or(Reported::among(reports)) {
+    let first = first_curves(tool, &mut lowering, &mut curves, diagnostics);
+    if let Some(reported) = without_shape.or(Reported::among(diagnostics)) {
         return Err(reported);
     }
     for (word, value) in &lowering.values {
         if !value.used {
-            reports.push(
-                Report::warning(value.span, format!("`{word}` is never used"))
-                    .missing(Missing::Use)
-                    .help("drop it, or is another name misspelt?"),
-            );
+            diagnostics
+                .push(Diagnostic::new(value.span, ValueKind::UnusedName { word: word.clone() }));
         }
     }
     Ok(Model {
@@ -137,26 +135,25 @@ pub fn resolve(
 }
 
 /// Refuses what only a tool has, in a solid.
-fn without_axis(tool: &Tool, reports: &mut Vec<Report>) -> Option<Reported> {
+fn without_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Reported> {
     let mut refused = None;
     for item in &tool.items {
-        let (span, word, why) = match item {
-            Item::Tip(expr) => (expr.span, "tip", "its file's origin is the pose's"),
-            Item::Spindle { span, .. } => (*span, "spindle", "its file's frame is the pose's"),
-            Item::Profile(profile) => (profile.span, "profile", "it has regions by hand"),
-            Item::Mount(mount) => (mount.span, "mount", "it has regions by hand"),
-            Item::Regions { span, .. } => (*span, "regions", "it has regions by hand"),
+        let (span, word) = match item {
+            Item::Tip(expr) => (expr.span, "tip"),
+            Item::Spindle { span, .. } => (*span, "spindle"),
+            Item::Profile(profile) => (profile.span, "profile"),
+            Item::Mount(mount) => (mount.span, "mount"),
+            Item::Regions { span, .. } => (*span, "regions"),
             _ => continue,
         };
-        let report = Report::error(span, format!("`{word}` exists in a `tool` only"));
-        let help = format!("a `solid` has no axis: {why}");
-        refused = Some(Reported::push(reports, report.help(help)));
+        let diagnostic = Diagnostic::new(span, RegionKind::NotInSolid { word });
+        refused = Some(Reported::push(diagnostics, diagnostic));
     }
     refused
 }
 
 /// What divides a profile's inside: `regions smooth`, or regions by hand.
-fn divider<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Divider<'t> {
+fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t> {
     let by_hand: Vec<&Region> = tool
         .items
         .iter()
@@ -166,20 +163,18 @@ fn divider<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Divider<'t> {
     for item in &tool.items {
         let Item::Regions { span, smooth } = item else { continue };
         if let Some((first, _)) = said {
-            reports.push(
-                Report::error(*span, "`regions` is said twice")
-                    .and(first, "first here")
-                    .help("drop one"),
+            diagnostics.push(
+                Diagnostic::new(*span, RegionKind::SaidTwice { word: "regions".to_owned() })
+                    .and(first, "first here"),
             );
         }
         said = said.or(Some((*span, smooth.as_ref())));
     }
     match (said, by_hand.first()) {
         (Some((span, _)), Some(region)) => {
-            reports.push(
-                Report::error(span, "the regions are derived and written")
-                    .and(region.name.span, "written here")
-                    .help("drop this, or the regions"),
+            diagnostics.push(
+                Diagnostic::new(span, RegionKind::DerivedAndWritten)
+                    .and(region.name.span, "written here"),
             );
             Divider::Features
         }
@@ -206,17 +201,15 @@ struct Outlined {
 }
 
 /// The profile or the mounts, if there are any, and what does not go with them.
-fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
+fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<'t>> {
     let mut profiles = tool.items.iter().filter_map(|item| match item {
         Item::Profile(profile) => Some(profile),
         _ => None,
     });
     let first = profiles.next();
     if let (Some(first), Some(second)) = (first, profiles.next()) {
-        reports.push(
-            Report::error(second.span, "a second profile")
-                .and(first.span, "the first")
-                .help("a tool has one outline: drop one"),
+        diagnostics.push(
+            Diagnostic::new(second.span, RegionKind::SecondProfile).and(first.span, "the first"),
         );
     }
     let mounts: Vec<&Mount> = tool
@@ -225,23 +218,18 @@ fn shape<'t>(tool: &'t Tool, reports: &mut Vec<Report>) -> Option<Shape<'t>> {
         .filter_map(|item| if let Item::Mount(mount) = item { Some(mount) } else { None })
         .collect();
     if let (Some(profile), Some(mount)) = (first, mounts.first()) {
-        reports.push(
-            Report::error(mount.span, "a tool has a profile or mounts")
-                .and(profile.span, "the profile")
-                .help("drop one, or mount the profile as a file of its own"),
+        diagnostics.push(
+            Diagnostic::new(mount.span, MountKind::ProfileAndMounts)
+                .and(profile.span, "the profile"),
         );
     }
     for item in &tool.items {
         match item {
-            Item::Regions { span, .. } if first.is_none() && mounts.is_empty() => reports.push(
-                Report::error(*span, "there is no profile to derive regions of")
-                    .help("write `profile { … }`"),
-            ),
+            Item::Regions { span, .. } if first.is_none() && mounts.is_empty() => {
+                diagnostics.push(Diagnostic::new(*span, RegionKind::NoProfile));
+            }
             Item::Tip(Expr { span, .. }) | Item::Spindle { span, .. } if !mounts.is_empty() => {
-                reports.push(
-                    Report::error(*span, "mounts bring their own tip and spindle")
-                        .help("drop it: the tip is the first mount's, at z = 0"),
-                );
+                diagnostics.push(Diagnostic::new(*span, MountKind::FrameOfMounts));
             }
             _ => {}
         }
@@ -262,31 +250,22 @@ fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Ite
 }
 
 /// The file's unit: the first item, exactly once.
-fn unit(tool: &Tool) -> Result<Unit, Report> {
-    let missing = |span: Span| {
-        Report::error(span, "no unit: a tool says its unit of length first")
-            .missing(Missing::Unit)
-            .help("say `units mm;`, `units inch;` or `units m;`")
-    };
+fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
+    let missing = |span: Span| Diagnostic::new(span, ValueKind::NoUnit);
     let Some(Item::Units(name)) = tool.items.first() else {
         let later = tool.items.iter().find_map(|item| match item {
             Item::Units(name) => Some(name.span),
             _ => None,
         });
         return Err(match later {
-            Some(span) => Report::error(span, "the unit is not the first item")
-                .help("move `units` to the top: everything below is measured in it"),
+            Some(span) => Diagnostic::new(span, ValueKind::UnitNotFirst),
             None => missing(tool.name.span),
         });
     };
     if let Some(Item::Units(again)) = tool.items[1..].iter().find(|i| matches!(i, Item::Units(_))) {
-        return Err(Report::error(again.span, "the unit is said twice")
-            .and(name.span, "first here")
-            .help("drop one; a single number may carry another unit, as in `0.25inch`"));
+        return Err(Diagnostic::new(again.span, ValueKind::UnitTwice).and(name.span, "first here"));
     }
     Unit::from_word(&name.word).ok_or_else(|| {
-        let report = Report::error(name.span, format!("unknown unit `{}`", name.word))
-            .missing(Missing::Definition(name.word.clone()));
         let meant = match name.word.as_str() {
             "in" | "inches" | "IN" => Some("inch"),
             "millimetre" | "millimeter" | "MM" => Some("mm"),
@@ -294,17 +273,20 @@ fn unit(tool: &Tool) -> Result<Unit, Report> {
             word if word.len() > 2 => nearest(word, ["mm", "inch"]),
             _ => None,
         };
-        match meant {
-            Some(meant) => report.help(format!("write `units {meant};`")),
-            None => report.help("units are `mm`, `inch` and `m`"),
-        }
+        let kind = ValueKind::UnknownFileUnit { word: name.word.clone(), meant };
+        Diagnostic::new(name.span, kind)
     })
 }
 
 /// `let` and `param`, in order. Names that are defined by themselves are reported first, those of
 /// curves too, and stay without a value.
-fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports: &mut Vec<Report>) {
-    lowering.broken = cycle::refused(definitions(tool, |_| true), reports);
+fn constants(
+    tool: &Tool,
+    given: &[Given<'_>],
+    lowering: &mut Lowering,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    lowering.broken = cycle::refused(definitions(tool, |_| true), diagnostics);
     for item in &tool.items {
         let (definition, is_param) = match item {
             Item::Let(definition) => (definition, false),
@@ -314,7 +296,7 @@ fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports:
         if lowering.broken.contains_key(&definition.name.word) {
             continue;
         }
-        let value = lowering.constant(&definition.value, "a `let`");
+        let value = lowering.constant(&definition.value, Role::Let);
         let value = value.and_then(|value| match is_param {
             true => given::value_of(definition, value, given, lowering.unit),
             false => Ok(value),
@@ -324,25 +306,25 @@ fn constants(tool: &Tool, given: &[Given<'_>], lowering: &mut Lowering, reports:
             let id = lowering.graph.number(value);
             lowering.define(&definition.name, (id, dimension))
         });
-        lowering.note(&definition.name, defined, reports);
-        if enough(reports) {
+        lowering.note(&definition.name, defined, diagnostics);
+        if enough(diagnostics) {
             break;
         }
     }
 }
 
 /// `tip` and `spindle`, each at most once.
-fn frame(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
+fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>) {
     let (mut tip, mut spindle): (Option<Span>, Option<Span>) = (None, None);
     for item in &tool.items {
         let (seen, span, word) = match item {
             Item::Tip(expr) => {
-                match lowering.length(expr, "`tip`") {
+                match lowering.length(expr, Role::Tip) {
                     Ok(value) => {
                         lowering.frame.tip = value;
                         lowering.frame.tip_span = expr.span;
                     }
-                    Err(report) => reports.push(report),
+                    Err(diagnostic) => diagnostics.push(diagnostic),
                 }
                 (&mut tip, expr.span, "tip")
             }
@@ -353,10 +335,9 @@ fn frame(tool: &Tool, lowering: &mut Lowering, reports: &mut Vec<Report>) {
             _ => continue,
         };
         if let Some(first) = seen.replace(span) {
-            reports.push(
-                Report::error(span, format!("`{word}` is said twice"))
-                    .and(first, "first here")
-                    .help("drop one"),
+            diagnostics.push(
+                Diagnostic::new(span, RegionKind::SaidTwice { word: word.to_owned() })
+                    .and(first, "first here"),
             );
         }
     }
@@ -367,7 +348,7 @@ fn first_curves(
     tool: &Tool,
     lowering: &mut Lowering,
     curves: &mut Curves,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<usize> {
     let mut first = Vec::new();
     let listed = tool.items.iter().filter_map(|item| match item {
@@ -377,15 +358,17 @@ fn first_curves(
     for name in listed.flatten() {
         match curve_of(name, lowering, curves) {
             Ok(Some(curve)) if first.contains(&curve) => {
-                reports
-                    .push(Report::warning(name.span, format!("`{}` is listed twice", name.word)));
+                diagnostics.push(Diagnostic::new(
+                    name.span,
+                    RegionKind::ListedTwice { word: name.word.clone() },
+                ));
             }
             Ok(Some(curve)) => first.push(curve),
-            Ok(None) => reports.push(
-                Report::warning(name.span, format!("no region depends on `{}`", name.word))
-                    .help("drop it from `bsp`"),
-            ),
-            Err(report) => reports.push(report),
+            Ok(None) => diagnostics.push(Diagnostic::new(
+                name.span,
+                RegionKind::IdleCurve { word: name.word.clone() },
+            )),
+            Err(diagnostic) => diagnostics.push(diagnostic),
         }
     }
     first
@@ -395,17 +378,14 @@ fn curve_of(
     name: &Name,
     lowering: &mut Lowering,
     curves: &mut Curves,
-) -> Result<Option<usize>, Report> {
+) -> Result<Option<usize>, Diagnostic> {
     let Some(value) = lowering.values.get_mut(&name.word) else {
         if let Some(reported) = lowering.broken.get(&name.word) {
-            return Err(Report::follow_up(name.span, *reported));
+            return Err(lower::without_value(name.span, &name.word, *reported));
         }
-        let report = Report::error(name.span, format!("unknown curve `{}`", name.word))
-            .missing(Missing::Definition(name.word.clone()));
-        return Err(match nearest(&name.word, lowering.values.keys().map(String::as_str)) {
-            Some(meant) => report.help(format!("did you mean `{meant}`?")),
-            None => report.help(format!("define it above: `curve {} = …;`", name.word)),
-        });
+        let meant = nearest(&name.word, lowering.values.keys().map(String::as_str));
+        let (word, meant) = (name.word.clone(), meant.map(str::to_owned));
+        return Err(Diagnostic::new(name.span, RegionKind::UnknownCurve { word, meant }));
     };
     value.used = true;
     let id = value.id;

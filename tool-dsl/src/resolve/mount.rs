@@ -6,13 +6,13 @@ use super::law::Laws;
 use super::lower::{Lowering, May};
 use super::region::{Niceness, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
+use crate::diagnostic::{Chain, CheckKind, Diagnostic, Figure, MountKind, Reported, Role};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::geometry::outline::{Segment, reach};
 use crate::model::{Frame, Surface, Unit};
 use crate::number::Number;
 use crate::regionalise::check::check;
-use crate::report::{Report, Reported, figure};
 use crate::source::{Source, Sources, Span};
 use crate::syntax;
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
@@ -45,7 +45,7 @@ pub(super) struct Along {
 
 impl Along {
     /// The law at a point of the whole tool, of which this is the depth.
-    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Report> {
+    pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
         self.lowering.clone().on(graph, |lowering| {
             let depth = lowering.length_here(depth);
             let value = quantity(lowering, &self.value, May::Depth(depth))?;
@@ -60,15 +60,17 @@ pub(super) fn assembled(
     span: Span,
     lowering: &mut Lowering,
     sources: &mut Sources,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<Outlined, Reported> {
-    let mut mounting = Mounting { sources, reports, chain: Vec::new(), mounted: 0, full: None };
+    let mut mounting = Mounting { sources, diagnostics, chain: Vec::new(), mounted: 0, full: None };
     mounting.chain.push(mounting.sources.own().base);
     let part = mounting.assemble(mounts, lowering)?;
     let mut scopes = Vec::new();
     for mut scope in part.scopes {
         for definition in &scope.curves {
-            scope.lowering.on(&mut lowering.graph, |lowering| lowering.curve(definition, reports));
+            scope
+                .lowering
+                .on(&mut lowering.graph, |lowering| lowering.curve(definition, diagnostics));
         }
         scopes.push(scope.lowering);
     }
@@ -83,7 +85,7 @@ pub(super) fn assembled(
 /// What goes on while files are mounted.
 struct Mounting<'a> {
     sources: &'a mut Sources,
-    reports: &'a mut Vec<Report>,
+    diagnostics: &'a mut Vec<Diagnostic>,
     /// The files that are being mounted, each by the one before, by where their texts begin.
     chain: Vec<usize>,
     mounted: usize,
@@ -94,22 +96,21 @@ struct Mounting<'a> {
 impl Mounting<'_> {
     /// The parts of a tool joined into one, in the unit of the file that mounts them.
     fn assemble(&mut self, mounts: &[&Mount], lowering: &mut Lowering) -> Result<Part, Reported> {
-        let before = self.reports.len();
+        let before = self.diagnostics.len();
         let mut parts = Vec::new();
         let mut refused = None;
         for (index, mount) in mounts.iter().enumerate() {
             if let Some(first) = mounts[..index].iter().find(|m| m.name.word == mount.name.word) {
-                self.reports.push(
-                    Report::error(
+                self.diagnostics.push(
+                    Diagnostic::new(
                         mount.name.span,
-                        format!("two mounts are called `{}`", mount.name.word),
+                        MountKind::MountsAlike { name: mount.name.word.clone() },
                     )
-                    .and(first.name.span, "the first")
-                    .help("give it another name"),
+                    .and(first.name.span, "the first"),
                 );
             }
             let at = self.place(mount, index, lowering);
-            let given = given::from_mount(&mount.with, lowering, self.reports);
+            let given = given::from_mount(&mount.with, lowering, self.diagnostics);
             let part = self.open(mount, &given, &mut lowering.graph);
             match (at, part) {
                 (Ok(at), Ok((part, unit))) => {
@@ -118,24 +119,24 @@ impl Mounting<'_> {
                 (Err(reported), _) | (_, Err(reported)) => refused = Some(reported),
             }
         }
-        if let Some(reported) = refused.or(Reported::among(&self.reports[before..])) {
+        if let Some(reported) = refused.or(Reported::among(&self.diagnostics[before..])) {
             return Err(reported);
         }
         let mut parts = parts.into_iter();
         let (mut last, mut height, mut whole) = parts.next().ok_or_else(|| {
-            let nothing = Report::error(lowering.frame.tip_span, "nothing is mounted");
-            Reported::push(self.reports, nothing.help("write `mount \"FILE.tool\" as NAME;`"))
+            let nothing = Diagnostic::new(lowering.frame.tip_span, MountKind::NothingMounted);
+            Reported::push(self.diagnostics, nothing)
         })?;
         for (mount, at, part) in parts {
             whole
                 .carry((last, &height), (mount, &at), part)
-                .map_err(|report| Reported::push(self.reports, report))?;
+                .map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
             (last, height) = (mount, at);
         }
         whole.drop_what_is_gone();
-        let shown = |[d, z]: [f64; 2]| format!("({}, {})", figure(d), figure(z));
-        self.reports.extend(check(&whole.outline, shown));
-        Reported::among(&self.reports[before..]).map_or(Ok(whole), Err)
+        let shown = |[d, z]: [f64; 2]| format!("({}, {})", Figure(d), Figure(z));
+        self.diagnostics.extend(check(&whole.outline, shown));
+        Reported::among(&self.diagnostics[before..]).map_or(Ok(whole), Err)
     }
 
     /// Where a mount puts its tip.
@@ -146,32 +147,23 @@ impl Mounting<'_> {
         lowering: &mut Lowering,
     ) -> Result<Number, Reported> {
         if mount.name.word == "cutting" {
-            self.reports.push(
-                Report::error(mount.name.span, "no part is called `cutting`")
-                    .help("give it another name"),
-            );
+            self.diagnostics.push(Diagnostic::new(mount.name.span, MountKind::PartCalledCutting));
         }
         if let Some(span) = mount.cutting {
-            self.reports.push(
-                Report::error(span, "a mount is not `cutting`")
-                    .help("drop it: each surface of the mounted file says so for itself"),
-            );
+            self.diagnostics.push(Diagnostic::new(span, MountKind::CuttingMount));
         }
         let wrong = match (index, &mount.at) {
             (0, None) => return Ok(Number::int(0)),
-            (0, Some(at)) => Report::error(at.span, "the first mount keeps its place")
-                .help("drop `at`: its tip is the tool's, at z = 0"),
+            (0, Some(at)) => Diagnostic::new(at.span, MountKind::FirstMountPlaced),
             (_, None) => {
-                let report = format!("where along the axis does `{}` begin?", mount.name.word);
-                let help = "write `at z = …`, from the first mount's tip";
-                Report::error(mount.span, report).help(help)
+                Diagnostic::new(mount.span, MountKind::NoPlace { name: mount.name.word.clone() })
             }
-            (_, Some(at)) => match lowering.length(at, "`at`") {
+            (_, Some(at)) => match lowering.length(at, Role::At) {
                 Ok(height) => return Ok(height),
-                Err(report) => report,
+                Err(diagnostic) => diagnostic,
             },
         };
-        Err(Reported::push(self.reports, wrong))
+        Err(Reported::push(self.diagnostics, wrong))
     }
 
     /// Reads and resolves a mounted file as far as its profile, and says its unit.
@@ -182,14 +174,15 @@ impl Mounting<'_> {
         graph: &mut Graph,
     ) -> Result<(Part, Unit), Reported> {
         let (base, tree) = self.read(mount)?;
-        let before = self.reports.len();
-        let unit = unit(&tree).map_err(|report| Reported::push(self.reports, report))?;
+        let before = self.diagnostics.len();
+        let unit =
+            unit(&tree).map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
         let mut lowering = Lowering::of(&tree, unit);
         self.chain.push(base);
         let part = lowering.on(graph, |lowering| self.part(mount, &tree, given, lowering));
         self.chain.pop();
         let mut part = part?;
-        if let Some(reported) = Reported::among(&self.reports[before..]) {
+        if let Some(reported) = Reported::among(&self.diagnostics[before..]) {
             return Err(reported);
         }
         part.scopes.push(Scope { lowering, curves: curves(&tree) });
@@ -198,63 +191,64 @@ impl Mounting<'_> {
 
     /// The tree of a mounted file, and where its text begins.
     fn read(&mut self, mount: &Mount) -> Result<(usize, Tool), Reported> {
-        let source = self.source(mount).map_err(|report| Reported::push(self.reports, report))?;
+        let source = self
+            .source(mount)
+            .map_err(|diagnostic| Reported::push(self.diagnostics, diagnostic))?;
         self.mounted += 1;
         if self.mounted > MOST {
             let by = mount.file.span;
             // Once is enough, however many follow.
-            let report = match self.full {
-                Some(reported) => Report::follow_up(by, reported),
-                None => Report::error(by, format!("more than {MOST} mounted files"))
-                    .help("write some of them as one file"),
+            let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { most: MOST });
+            let diagnostic = match self.full {
+                Some(reported) => diagnostic.caused_by(reported),
+                None => diagnostic,
             };
-            let reported = Reported::push(self.reports, report);
+            let reported = Reported::push(self.diagnostics, diagnostic);
             self.full = Some(reported);
             return Err(reported);
         }
         if !syntax::begins_a_tool(&source.text) {
             // Nothing of its text is shown: it may be any file.
-            let message = format!("`{}` is not a `.tool` file", mount.file.word);
-            let report = Report::error(mount.file.span, message)
-                .help("a mounted file begins with `tool Name {`");
-            return Err(Reported::push(self.reports, report));
+            let diagnostic = Diagnostic::new(
+                mount.file.span,
+                MountKind::NotTool { file: mount.file.word.clone() },
+            );
+            return Err(Reported::push(self.diagnostics, diagnostic));
         }
-        let before = self.reports.len();
-        let tree = syntax::parse(&source, self.reports)?;
-        Reported::among(&self.reports[before..]).map_or(Ok((source.base, tree)), Err)
+        let before = self.diagnostics.len();
+        let tree = syntax::parse(&source, self.diagnostics)?;
+        Reported::among(&self.diagnostics[before..]).map_or(Ok((source.base, tree)), Err)
     }
 
     /// The text of a mounted file.
-    fn source(&mut self, mount: &Mount) -> Result<Source, Report> {
+    fn source(&mut self, mount: &Mount) -> Result<Source, Diagnostic> {
         let (written, by) = (mount.file.word.as_str(), mount.file.span);
-        let place = self.sources.beside(by, written).ok_or_else(|| {
-            Report::error(by, format!("where is `{written}`? this text is from no file"))
-                .help("a mounted file is looked for beside the file that mounts it")
-        })?;
+        let place = self
+            .sources
+            .beside(by, written)
+            .ok_or_else(|| Diagnostic::new(by, MountKind::NoFolder { file: written.to_owned() }))?;
         if !self.sources.may_mount(&place.1) {
-            let below = match self.sources.given_root() {
-                Some(root) => format!("`{}`", root.display()),
-                None => "the tool's folder".to_owned(),
-            };
-            let message = format!("`{written}` does not lie below {below}");
-            return Err(Report::error(by, message).help(
-                "move the file there; the program also takes a folder above both: `--root DIR`",
+            let root = self.sources.given_root().map(|root| root.display().to_string());
+            return Err(Diagnostic::new(
+                by,
+                MountKind::OutsideRoot { file: written.to_owned(), root },
             ));
         }
         let shown = place.0.clone();
         let source = self.sources.read(by, place).cloned().map_err(|error| {
-            Report::error(by, format!("cannot read `{shown}`: {error}"))
-                .help("the path is relative to the file that mounts it")
+            Diagnostic::new(by, MountKind::Unreadable { file: shown, error: error.to_string() })
         })?;
         let Some(first) = self.chain.iter().position(|base| *base == source.base) else {
             return Ok(source);
         };
         let name =
-            |base: &usize| self.sources.locate(Span { start: *base, end: *base }).0.name.as_str();
-        let mut chain: Vec<&str> = self.chain[first..].iter().map(name).collect();
-        chain.push(&source.name);
-        let message = format!("`{written}` mounts itself: {}", chain.join(" mounts "));
-        Err(Report::error(by, message).help("mount a file that does not lead back to this one"))
+            |base: &usize| self.sources.locate(Span { start: *base, end: *base }).0.name.clone();
+        let mut chain: Vec<String> = self.chain[first..].iter().map(name).collect();
+        chain.push(source.name.clone());
+        Err(Diagnostic::new(
+            by,
+            MountKind::MountsItself { file: written.to_owned(), chain: Chain(chain) },
+        ))
     }
 
     /// A mounted file's solid and its niceness.
@@ -265,25 +259,25 @@ impl Mounting<'_> {
         given: &[Given<'_>],
         lowering: &mut Lowering,
     ) -> Result<Part, Reported> {
-        let before = self.reports.len();
+        let before = self.diagnostics.len();
         if tree.domain == Domain::Space {
             let file = &mount.file;
-            let report =
-                format!("`{}` is a solid without an axis and cannot be mounted", file.word);
-            let report = Report::error(file.span, report)
-                .help("only outlines can be joined: mount a `tool`");
-            return Err(Reported::push(self.reports, report));
+            let diagnostic = Diagnostic::new(
+                file.span,
+                MountKind::SolidMounted { file: mount.file.word.clone() },
+            );
+            return Err(Reported::push(self.diagnostics, diagnostic));
         }
-        given::untaken(tree, given, self.reports);
-        constants(tree, given, lowering, self.reports);
-        frame(tree, lowering, self.reports);
-        if let Some(reported) = Reported::among(&self.reports[before..]) {
+        given::untaken(tree, given, self.diagnostics);
+        constants(tree, given, lowering, self.diagnostics);
+        frame(tree, lowering, self.diagnostics);
+        if let Some(reported) = Reported::among(&self.diagnostics[before..]) {
             return Err(reported);
         }
-        let mut part = match shape(tree, self.reports) {
+        let mut part = match shape(tree, self.diagnostics) {
             Some(Shape::Profile(profile)) => {
-                let (outline, surfaces) = profile::outline(profile, lowering, self.reports)?;
-                self.reports.extend(not_at_tip(&outline, &lowering.frame));
+                let (outline, surfaces) = profile::outline(profile, lowering, self.diagnostics)?;
+                self.diagnostics.extend(not_at_tip(&outline, &lowering.frame));
                 let niceness = vec![None; surfaces.len()];
                 Part { outline, surfaces, niceness, scopes: Vec::new() }
             }
@@ -291,11 +285,11 @@ impl Mounting<'_> {
             None => {
                 let file = &mount.file;
                 let regions = tree.items.iter().any(|item| matches!(item, Item::Region(_)));
-                let has = if regions { "has regions but no profile" } else { "has no profile" };
-                let message = format!("`{}` {has} and cannot be mounted", file.word);
-                let report = Report::error(file.span, message)
-                    .help("only outlines can be joined: write it as a `profile`");
-                return Err(Reported::push(self.reports, report));
+                let diagnostic = Diagnostic::new(
+                    file.span,
+                    MountKind::NoOutline { file: mount.file.word.clone(), regions },
+                );
+                return Err(Reported::push(self.diagnostics, diagnostic));
             }
         };
         let laws: Vec<&Law> = tree
@@ -305,7 +299,7 @@ impl Mounting<'_> {
             .filter(|law| law.quantity == Quantity::Niceness)
             .collect();
         let laws = Laws::new(&laws, BTreeMap::new());
-        laws.check(&part.surfaces, self.reports);
+        laws.check(&part.surfaces, self.diagnostics);
         let own = part.scopes.len();
         for (surface, niceness) in part.surfaces.iter().zip(&mut part.niceness) {
             if let Some(law) = laws.find(Quantity::Niceness, surface).filter(|_| surface.cutting) {
@@ -322,7 +316,7 @@ fn curves(tree: &Tool) -> Vec<Definition> {
 }
 
 /// A solid that does not end at its tip.
-fn not_at_tip(outline: &[Segment], frame: &Frame) -> Option<Report> {
+fn not_at_tip(outline: &[Segment], frame: &Frame) -> Option<Diagnostic> {
     let [[_, end], [radius, high]] = reach(outline);
     let off = end.abs() > OFF_TIP * radius.max(high - end);
     off.then(|| off_tip(frame, [end, high]))
@@ -353,47 +347,42 @@ impl Part {
         (last, height): (&Mount, &Number),
         (mount, at): (&Mount, &Number),
         mut part: Part,
-    ) -> Result<(), Report> {
+    ) -> Result<(), Diagnostic> {
         let span = mount.at.as_ref().map_or(mount.span, |at| at.span);
-        let (name, below, z) = (&mount.name.word, &last.name.word, figure(at.to_f64()));
+        let (below, z) = (last.name.word.clone(), Figure(at.to_f64()));
         if at <= height {
-            let there = figure(height.to_f64());
-            return Err(Report::error(
+            return Err(Diagnostic::new(
                 span,
-                format!("`{name}` at z = {z} does not lie above `{below}` at z = {there}"),
-            )
-            .help("mounts are listed from the tip up"));
+                MountKind::NotAbove {
+                    name: mount.name.word.clone(),
+                    z,
+                    below,
+                    height: Figure(height.to_f64()),
+                },
+            ));
         }
         let first = self.surfaces.len();
         let upper = moved(&part.outline, &Number::int(1), at, first);
         self.outline = join(&self.outline, &upper, at).map_err(|why| match why {
             Unjoined::Short => {
                 let [_, [_, top]] = reach(&self.outline);
-                let (long, top) = (figure(top - height.to_f64()), figure(top));
-                let message = if height.is_zero() {
-                    format!("`{below}` is {long} long and cannot stick out {z}")
-                } else {
-                    format!("`{below}` ends at z = {top} and does not reach z = {z}")
-                };
-                Report::error(span, message)
-                    .and(last.name.span, "this one")
-                    .help(format!("put it at z = {top} or below, or make `{below}` longer"))
+                let (length, top) = (Figure(top - height.to_f64()), Figure(top));
+                Diagnostic::new(
+                    span,
+                    MountKind::TooShort { below, z, top, length, first: height.is_zero() },
+                )
+                .and(last.name.span, "this one")
             }
-            Unjoined::Point => {
-                Report::error(span, format!("`{below}` comes to a point at z = {z}"))
-                    .help("put the plane where there is something to hold")
-            }
+            Unjoined::Point => Diagnostic::new(span, MountKind::PointAtPlane { below, z }),
             Unjoined::Back(segment) => {
-                Report::error(span, format!("the plane z = {z} cuts `{below}` more than once"))
+                Diagnostic::new(span, MountKind::PlaneCutsTwice { below, z })
                     .and(segment.span, "here it comes back to it")
-                    .help("put the plane where the profile crosses it once")
             }
-            Unjoined::NoFace(segment) => Report::error(
+            Unjoined::NoFace(segment) => Diagnostic::new(
                 mount.file.span,
-                format!("the first segment of `{}` is not a flat face", mount.file.word),
+                MountKind::NoFace { file: mount.file.word.clone() },
             )
-            .and(segment.span, "this one")
-            .help("what is mounted on another part begins with a face across the axis"),
+            .and(segment.span, "this one"),
         })?;
         part.raised(&Number::int(1), at);
         let scopes = self.scopes.len();
@@ -428,18 +417,13 @@ impl Part {
 }
 
 /// A tool that ends at a z which is not its tip; its other end may be.
-pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Report {
+pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let size = other - end;
-    let said = frame.tip.to_f64();
-    let message = format!(
-        "the tool ends at z = {} and its tip is said to be at {}",
-        figure(frame.to_file(end)),
-        figure(said)
-    );
-    let report = Report::error(frame.tip_span, message);
-    if other.abs() <= 1e-6 * size {
-        let way = if frame.down { '+' } else { '-' };
-        return report.help(format!("its other end is there: write `spindle {way}z;`"));
-    }
-    report.help(format!("write `tip z = {};`", figure(frame.to_file(end))))
+    let tip = Figure(frame.tip.to_f64());
+    let turned = other.abs() <= 1e-6 * size;
+    let spindle = turned.then_some(if frame.down { '+' } else { '-' });
+    Diagnostic::new(
+        frame.tip_span,
+        CheckKind::OffTip { end: Figure(frame.to_file(end)), tip, spindle },
+    )
 }

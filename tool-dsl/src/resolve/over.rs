@@ -7,6 +7,9 @@ use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
 use super::region::{Bare, Felt, inside, mention, noted};
+use crate::diagnostic::{
+    CheckKind, Diagnostic, Figure, RegionKind, Role, SurfaceRemedy, any_error, enough, nearest,
+};
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::formula::Formula;
@@ -15,7 +18,6 @@ use crate::model::{DirectionSource, Region, Surface};
 use crate::regionalise::overlay::{self, Overlay};
 use crate::regionalise::smooth::{self, Origin, Rough};
 use crate::regionalise::{self, Feature, Partition, Undivided};
-use crate::report::{Missing, Report, any_error, enough, nearest};
 use crate::source::Span;
 use crate::syntax::tree::{self, Expr, Quantity};
 
@@ -50,12 +52,10 @@ enum Kind<'t> {
 
 impl Divider<'_> {
     /// Refuses an outline that would take minutes to divide.
-    pub(super) fn in_limits(&self, outline: &[Segment]) -> Result<(), Report> {
+    pub(super) fn in_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
         match self {
             Divider::Smooth(length) if outline.len() > MOST_SMOOTH => {
-                let message = format!("`regions smooth` of more than {MOST_SMOOTH} segments");
-                Err(Report::error(length.span, message)
-                    .help("write `regions nearest;`, or arcs instead of many short lines"))
+                Err(Diagnostic::new(length.span, RegionKind::SmoothTooLarge { most: MOST_SMOOTH }))
             }
             _ => Ok(()),
         }
@@ -68,20 +68,20 @@ impl Divider<'_> {
         surfaces: &[Surface],
         lowering: &mut Lowering,
         curves: &mut Curves,
-        reports: &mut Vec<Report>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Conditions<'_>> {
         match self {
             Divider::Features => None,
             Divider::Hand(regions) => {
                 let mut all = Conditions::NONE;
                 for region in regions {
-                    let surface = noted(written(region, &regions[..], surfaces), reports);
-                    let condition = inside(region, lowering, curves, reports);
+                    let surface = noted(written(region, &regions[..], surfaces), diagnostics);
+                    let condition = inside(region, lowering, curves, diagnostics);
                     if let (Some(surface), Some(condition)) = (surface, condition) {
                         all.conditions.push(condition);
                         all.kinds.push(Kind::Hand(region, surface));
                     }
-                    if enough(reports) {
+                    if enough(diagnostics) {
                         break;
                     }
                 }
@@ -89,8 +89,8 @@ impl Divider<'_> {
             }
             Divider::Smooth(length) => match fans(length, outline, inner, lowering, curves) {
                 Ok(all) => Some(all),
-                Err(report) => {
-                    reports.push(report);
+                Err(diagnostic) => {
+                    diagnostics.push(diagnostic);
                     None
                 }
             },
@@ -103,34 +103,33 @@ fn written(
     region: &tree::Region,
     all: &[&tree::Region],
     surfaces: &[Surface],
-) -> Result<Option<usize>, Report> {
+) -> Result<Option<usize>, Diagnostic> {
     let name = &region.name;
     if let Some(first) = all.iter().find(|r| r.name.word == name.word)
         && first.name.span != name.span
     {
-        let report = Report::error(name.span, format!("two regions are called `{}`", name.word));
-        return Err(report.and(first.name.span, "the first").help("give it another name"));
+        let diagnostic =
+            Diagnostic::new(name.span, RegionKind::RegionsAlike { name: name.word.clone() });
+        return Err(diagnostic.and(first.name.span, "the first"));
     }
     if let Some(depth) = region.scalars.iter().find(|s| s.quantity == Quantity::Depth) {
-        return Err(Report::error(depth.value.span, "`depth` is the profile's here")
-            .help("write `magnitude:` for what is felt"));
+        return Err(Diagnostic::new(depth.value.span, RegionKind::DepthBesideProfile));
     }
     match &region.surface {
         None => Ok(None),
         Some(wanted) => {
             if let Some(cutting) = region.cutting {
-                return Err(Report::error(cutting, "the profile says which surfaces cut")
-                    .help("drop `cutting` here"));
+                return Err(Diagnostic::new(cutting, RegionKind::CuttingBesideProfile));
             }
             let found = surfaces.iter().position(|surface| surface.name == wanted.word);
             found.map(Some).ok_or_else(|| {
-                let report =
-                    Report::error(wanted.span, format!("unknown surface `{}`", wanted.word))
-                        .missing(Missing::Surface(wanted.word.clone()));
-                match nearest(&wanted.word, surfaces.iter().map(|s| s.name.as_str())) {
-                    Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                    None => report.help("name a surface of the profile"),
-                }
+                let known = surfaces.iter().map(|surface| surface.name.as_str());
+                let remedy = match nearest(&wanted.word, known) {
+                    Some(meant) => SurfaceRemedy::Meant(meant.to_owned()),
+                    None => SurfaceRemedy::OfProfile,
+                };
+                let kind = RegionKind::UnknownSurface { word: wanted.word.clone(), remedy };
+                Diagnostic::new(wanted.span, kind)
             })
         }
     }
@@ -147,12 +146,11 @@ fn fans<'t>(
     inner: &Partition,
     lowering: &mut Lowering,
     curves: &mut Curves,
-) -> Result<Conditions<'t>, Report> {
+) -> Result<Conditions<'t>, Diagnostic> {
     let span = length.span;
-    let width = lowering.length(length, "`smooth`")?;
+    let width = lowering.length(length, Role::Smooth)?;
     if width.to_f64() <= 0.0 {
-        return Err(Report::error(span, "a tangent length is more than 0")
-            .help("write how far before and behind a corner the direction turns"));
+        return Err(Diagnostic::new(span, RegionKind::SmoothNotPositive));
     }
     let shown = |behind: Option<usize>, lowering: &Lowering| {
         let [d, z] = match behind {
@@ -162,37 +160,28 @@ fn fans<'t>(
         Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)])
     };
     let pieces = smooth::rounded(outline, &width).map_err(|rough| {
-        let remedy = match smooth::fitting(outline, &width) {
-            Some(most) => format!("write at most {most}"),
-            None => "write regions by hand".to_owned(),
-        };
+        let most = smooth::fitting(outline, &width);
         match rough {
-            Rough::Untouched(behind) => {
-                let message =
-                    format!("no arc touches both segments so near to {}", shown(behind, lowering));
-                Report::error(span, message).help(remedy)
-            }
+            Rough::Untouched(behind) => Diagnostic::new(
+                span,
+                RegionKind::NoTouchingArc { place: shown(behind, lowering), most },
+            ),
             Rough::Short(piece, size, count) => {
                 let [from, to] =
                     [piece.checked_sub(1), Some(piece)].map(|behind| shown(behind, lowering));
-                let size = crate::report::figure(size);
-                let fans = if count == 2 {
-                    format!("the fans of {from} and {to} do not fit")
-                } else {
-                    "its fan does not fit".to_owned()
-                };
-                Report::error(span, format!("{fans} on the edge of length {size}"))
+                let corners = (count == 2).then_some([from, to]);
+                Diagnostic::new(span, RegionKind::FansTooWide { corners, edge: Figure(size), most })
                     .and(outline[piece].span, "this edge")
-                    .help(remedy)
             }
         }
     })?;
     let (rounded, origins): (Vec<Segment>, Vec<Origin>) = pieces.into_iter().unzip();
     let graph = &mut lowering.graph;
     let undivided = |Undivided([d, z]): Undivided| {
-        let place = Domain::HalfPlane.shown([d, 0.0, z]);
-        Report::error(span, format!("the smoothed section could not be divided near {place}"))
-            .help("give another tangent length")
+        Diagnostic::new(
+            span,
+            RegionKind::SmoothUndivided { place: Domain::HalfPlane.shown([d, 0.0, z]) },
+        )
     };
     let parts = Partition::new(rounded.clone(), false).parts(graph).map_err(undivided)?;
     let mut all = Conditions::NONE;
@@ -225,7 +214,7 @@ impl Conditions<'_> {
         (outline, inner, parts): (&[Segment], &Partition, &[Part]),
         (curves, lowering): (&Curves, &Lowering),
         span: Span,
-        reports: &mut Vec<Report>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<(usize, usize)> {
         let (shapes, size) = overlay::shapes(&lowering.graph, &curves.list, outline);
         let parts: Vec<&Formula> = parts.iter().map(|part| &part.inside).collect();
@@ -233,41 +222,28 @@ impl Conditions<'_> {
             overlay::overlay(&inner.cells(8), &parts, &self.conditions, &shapes, size);
         let shown = |[d, z]: [f64; 2]| Domain::HalfPlane.shown([d, 0.0, lowering.frame.to_file(z)]);
         if let Some(p) = bare {
-            reports.push(
-                Report::error(
-                    span,
-                    format!("nothing covers {}, which the profile contains", shown(p)),
-                )
-                .help(
-                    "the regions beside a profile divide all of it: widen one, or write one more",
-                ),
-            );
+            diagnostics.push(Diagnostic::new(span, RegionKind::NotCovered { place: shown(p) }));
         }
         if let Some((first, second, p)) = double
             && let (Kind::Hand(a, _), Kind::Hand(b, _)) = (&self.kinds[first], &self.kinds[second])
         {
             let (a, b) = (&a.name, &b.name);
             let left = pairs.iter().any(|(_, condition)| *condition == second);
-            let message =
-                format!("regions {} and {} overlap, for instance at {}", a.word, b.word, shown(p));
-            reports.push(match left {
-                true => Report::error(b.span, message)
-                    .and(a.span, "the other one")
-                    .help("bound one of them by the curve that divides them"),
+            diagnostics.push(match left {
+                true => overlapping(&a.word, (&b.word, b.span), shown(p), a.span),
                 false => never_wins(&b.word, b.span, (&a.word, a.span), 0),
             });
         }
         for (k, kind) in self.kinds.iter().enumerate() {
             if let Kind::Hand(region, _) = kind
-                && !any_error(reports)
+                && !any_error(diagnostics)
                 && pairs.iter().all(|(_, condition)| *condition != k)
             {
                 let name = &region.name;
-                let message = format!("region {} has no point of the profile", name.word);
-                reports.push(
-                    Report::error(name.span, message)
-                        .help("do its conditions contradict one another, or does one listed before it cover it?"),
-                );
+                diagnostics.push(Diagnostic::new(
+                    name.span,
+                    RegionKind::NoPointOfProfile { region: name.word.clone() },
+                ));
             }
         }
         pairs
@@ -280,7 +256,7 @@ impl Conditions<'_> {
         surfaces: &[Surface],
         laws: &Laws<'_>,
         lowering: &mut Lowering,
-        reports: &mut Vec<Report>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Region> {
         let inside = Formula::All(vec![self.conditions[index].clone(), part.inside.clone()]);
         let depth = part.depth;
@@ -298,15 +274,15 @@ impl Conditions<'_> {
                 let said = (name, part.span, part.owner, inside);
                 let source = DirectionSource::Oblique;
                 let course = Course { parts: *course, span: part.span, source };
-                noted(felt.of_part(part, said, course), reports)
+                noted(felt.of_part(part, said, course), diagnostics)
             }
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
                 let mut felt = Felt { laws, lowering, surface: &surfaces[owner] };
-                let (magnitude, niceness) = felt.rules(region, depth, reports);
-                let written = noted(felt.course(region), reports)?;
+                let (magnitude, niceness) = felt.rules(region, depth, diagnostics);
+                let written = noted(felt.course(region), diagnostics)?;
                 let (magnitude, niceness) = (magnitude?, niceness?);
-                let own = noted(felt.said(region, Quantity::Magnitude), reports)?;
+                let own = noted(felt.said(region, Quantity::Magnitude), diagnostics)?;
                 let free = own.filter(|own| mention(&own.value, Quantity::Depth.word()).is_none());
                 let course = match (written, free, magnitude) {
                     (Some(course), ..) => course,
@@ -321,19 +297,33 @@ impl Conditions<'_> {
                 };
                 let (name, span) = (region.name.word.clone(), region.name.span);
                 let bare = Bare { name, span, owner, inside };
-                noted(felt.finish(bare, (depth, span), (magnitude, niceness), course), reports)
+                noted(felt.finish(bare, (depth, span), (magnitude, niceness), course), diagnostics)
             }
         }
     }
 }
 
 /// A region of which nothing is left by one listed before it, or several.
-pub(crate) fn never_wins(name: &str, span: Span, (first, at): (&str, Span), more: usize) -> Report {
-    let by = match more {
-        0 => format!("{first}, listed before it, covers it"),
-        _ => format!("{first} and {more} more, listed before it, cover it"),
-    };
-    Report::error(span, format!("region {name} never wins a point: {by}"))
-        .and(at, "this one")
-        .help("drop it, or bound that one by the curve that divides them")
+pub(crate) fn never_wins(
+    name: &str,
+    span: Span,
+    (first, at): (&str, Span),
+    more: usize,
+) -> Diagnostic {
+    Diagnostic::new(
+        span,
+        CheckKind::NeverWins { region: name.to_owned(), by: first.to_owned(), more },
+    )
+    .and(at, "this one")
+}
+
+/// Two regions that have points in common, for instance at `place`. The first is at `at`.
+pub(crate) fn overlapping(
+    first: &str,
+    (second, span): (&str, Span),
+    place: String,
+    at: Span,
+) -> Diagnostic {
+    let (first, second) = (first.to_owned(), second.to_owned());
+    Diagnostic::new(span, CheckKind::Overlap { first, second, place }).and(at, "the other one")
 }

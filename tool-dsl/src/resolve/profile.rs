@@ -1,11 +1,13 @@
 //! A `profile` to its outline: points, circles and surfaces, in the tool's frame.
 
 use super::lower::Lowering;
+use crate::diagnostic::{
+    Diagnostic, Figure, ProfileKind, Reported, Role, enough, figure, without_error,
+};
 use crate::geometry::outline::{Circle, Place, Segment, doubles, minus, norm};
 use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
-use crate::report::{Report, Reported, enough, figure, without_error};
 use crate::source::Span;
 use crate::syntax::tree::{Arc, Expr, Piece, Profile, Round, Tuple};
 
@@ -20,37 +22,36 @@ const OFF_CIRCLE: f64 = 1e-9;
 pub(super) fn outline(
     profile: &Profile,
     lowering: &mut Lowering,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<(Vec<Segment>, Vec<Surface>), Reported> {
-    let before = reports.len();
+    let before = diagnostics.len();
     if let Some(beyond) = profile.pieces.get(MOST) {
-        let report = Report::error(beyond.span, format!("more than {MOST} segments"))
-            .help("arcs say in one segment what many short lines say");
-        return Err(Reported::push(reports, report));
+        let diagnostic = Diagnostic::new(beyond.span, ProfileKind::TooManySegments { most: MOST });
+        return Err(Reported::push(diagnostics, diagnostic));
     }
     let mut surfaces = Vec::new();
     let mut segments = Vec::new();
-    let mut from = place(&profile.start, lowering).map_err(|r| reports.push(r)).ok();
+    let mut from = place(&profile.start, lowering).map_err(|r| diagnostics.push(r)).ok();
     for piece in &profile.pieces {
-        let surface = surface(piece, &mut surfaces, reports);
-        let to = place(&piece.to, lowering).map_err(|r| reports.push(r)).ok();
+        let surface = surface(piece, &mut surfaces, diagnostics);
+        let to = place(&piece.to, lowering).map_err(|r| diagnostics.push(r)).ok();
         if let (Some(from), Some(to)) = (from, to.clone()) {
             match segment(piece, from, to, surface, lowering) {
                 Ok(segment) => segments.push(segment),
-                Err(report) => reports.push(report),
+                Err(diagnostic) => diagnostics.push(diagnostic),
             }
         }
         from = to;
-        if enough(reports) {
+        if enough(diagnostics) {
             break;
         }
     }
-    without_error(&reports[before..])?;
-    off_axis(profile, &segments, reports);
-    without_error(&reports[before..])?;
+    without_error(&diagnostics[before..])?;
+    off_axis(profile, &segments, diagnostics);
+    without_error(&diagnostics[before..])?;
     let frame = lowering.frame.clone();
-    reports.extend(check(&segments, shown));
-    without_error(&reports[before..])?;
+    diagnostics.extend(check(&segments, shown));
+    without_error(&diagnostics[before..])?;
     // The turn into the tool's frame may turn the sense over; then the walk is turned too.
     let to_tool = |place: &Place| [place[0].clone(), frame.to_tool(&place[1])];
     let mut outline: Vec<Segment> = segments
@@ -75,31 +76,33 @@ fn shown([d, z]: [f64; 2]) -> String {
 }
 
 /// A profile that does not begin or not end on the axis.
-fn off_axis(profile: &Profile, segments: &[Segment], reports: &mut Vec<Report>) {
+fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagnostic>) {
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return };
     let [begin, end] = [first.ends()[0], last.ends()[1]];
     let axis = |[_, z]: [f64; 2]| shown([0.0, z]);
     if begin[0] != 0.0 {
-        let message = format!("the profile begins at {}, not on the axis", shown(begin));
-        let remedy = format!("write `start {};` and then `line to {}`", axis(begin), shown(begin));
-        reports.push(Report::error(profile.start.span, message).help(remedy));
+        diagnostics.push(Diagnostic::new(
+            profile.start.span,
+            ProfileKind::BeginsOffAxis { begin: shown(begin), axis: axis(begin) },
+        ));
     }
     if end[0] != 0.0 {
-        let message = format!("the profile ends at {}, not on the axis", shown(end));
-        let remedy = format!("let it run from the axis to the axis: add `line to {}`", axis(end));
-        reports.push(Report::error(last.span, message).help(remedy));
+        diagnostics.push(Diagnostic::new(
+            last.span,
+            ProfileKind::EndsOffAxis { end: shown(end), axis: axis(end) },
+        ));
     }
 }
 
-fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<Place, Report> {
-    let [d, z] = super::direction::pair(tuple, "a point")?;
-    let mut length = |expr: &Expr| lowering.length(expr, "a point");
+fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<Place, Diagnostic> {
+    let [d, z] = super::direction::pair(tuple, Role::Point)?;
+    let mut length = |expr: &Expr| lowering.length(expr, Role::Point);
     Ok([length(d)?, length(z)?])
 }
 
-fn surface(piece: &Piece, surfaces: &mut Vec<Surface>, reports: &mut Vec<Report>) -> usize {
+fn surface(piece: &Piece, surfaces: &mut Vec<Surface>, diagnostics: &mut Vec<Diagnostic>) -> usize {
     let cutting = piece.cutting.is_some();
-    super::region::named_surface(&piece.surface, cutting, surfaces, reports)
+    super::region::named_surface(&piece.surface, cutting, surfaces, diagnostics)
 }
 
 fn segment(
@@ -108,10 +111,10 @@ fn segment(
     to: Place,
     surface: usize,
     lowering: &mut Lowering,
-) -> Result<Segment, Report> {
+) -> Result<Segment, Diagnostic> {
     let span = piece.span;
     if from == to {
-        return Err(Report::error(span, "this segment has no length").help("drop it"));
+        return Err(Diagnostic::new(span, ProfileKind::SegmentWithoutLength));
     }
     let circle = match &piece.arc {
         None => None,
@@ -125,7 +128,7 @@ fn circle(
     ends: [&Place; 2],
     span: Span,
     lowering: &mut Lowering,
-) -> Result<Circle, Report> {
+) -> Result<Circle, Diagnostic> {
     let (centre, radius) = match &arc.round {
         Round::Center(tuple) => {
             let centre = place(tuple, lowering)?;
@@ -136,41 +139,31 @@ fn circle(
                 if near == far {
                     (near, far) = (a_size.to_string(), b_size.to_string());
                 }
-                return Err(Report::error(
-                    span,
-                    format!("the arc's ends are {near} and {far} from its centre"),
-                )
-                .help("both ends lie on one circle; by `radius` its centre is found for you"));
+                return Err(Diagnostic::new(span, ProfileKind::OffCircle { near, far }));
             }
             if a.agrees(&b) { (centre, a) } else { midway(ends, &centre) }
         }
         Round::Radius(expr) => {
-            let radius = lowering.length(expr, "`radius`")?;
+            let radius = lowering.length(expr, Role::Radius)?;
             if radius.to_f64() <= 0.0 {
-                return Err(Report::error(expr.span, "an arc's radius is more than 0")
-                    .help("into the material it bulges by `concave`"));
+                return Err(Diagnostic::new(expr.span, ProfileKind::RadiusNotPositive));
             }
             (by_radius(ends, &radius, arc.concave.is_some(), span)?, radius)
         }
     };
     let (r, chord) = (radius.to_f64(), norm(minus(doubles(ends[1]), doubles(ends[0]))));
     if r > FLATTEST * chord {
-        let message = format!("this arc of radius {} is a line to all ends", figure(r));
-        return Err(Report::error(span, message).help("write `line to`"));
+        return Err(Diagnostic::new(span, ProfileKind::FlatArc { radius: Figure(r) }));
     }
     let [a, b] = ends.map(|end| [0, 1].map(|k| &end[k] - &centre[k]));
     let turn = (&(&a[0] * &b[1]) - &(&a[1] * &b[0])).to_f64();
     let half = turn.abs() <= 1e-12 * radius.to_f64().powi(2);
     let convex = if half { arc.concave.is_none() } else { turn > 0.0 };
-    let centre_shown = shown(doubles(&centre));
     match (convex, arc.concave) {
-        (true, Some(said)) => Err(Report::error(said, "this arc is not concave")
-            .help("its centre lies in the material: drop `concave`")),
-        (false, None) => Err(Report::error(
-            span,
-            format!("this arc is concave: its centre {centre_shown} lies outside the material"),
-        )
-        .help("say `concave` if it should be")),
+        (true, Some(said)) => Err(Diagnostic::new(said, ProfileKind::NotConcave)),
+        (false, None) => {
+            Err(Diagnostic::new(span, ProfileKind::Concave { centre: shown(doubles(&centre)) }))
+        }
         _ => Ok(Circle { centre, radius, convex }),
     }
 }
@@ -202,7 +195,7 @@ fn by_radius(
     radius: &Number,
     concave: bool,
     span: Span,
-) -> Result<Place, Report> {
+) -> Result<Place, Diagnostic> {
     let half = |a: &Number, b: &Number| &(a + b) / &Number::int(2);
     let middle = [0, 1].map(|k| half(&from[k], &to[k]));
     let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
@@ -214,13 +207,8 @@ fn by_radius(
     let near = short.to_f64().abs() <= rounding * c * c;
     let off = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(off), true) = (off, r > 0.0) else {
-        let (short, chord) = (figure(r), figure(c));
-        let report =
-            Report::error(span, format!("no arc of radius {short} spans a chord of {chord}"));
-        let least = figure(c / 2.0);
-        return Err(
-            report.help(format!("its radius is {least} or more; else bring its ends nearer"))
-        );
+        let [radius, chord, least] = [r, c, c / 2.0].map(Figure);
+        return Err(Diagnostic::new(span, ProfileKind::RadiusTooSmall { radius, chord, least }));
     };
     // The material is on the left: a bulge out of it has its centre there.
     let off = if concave { -&off } else { off };

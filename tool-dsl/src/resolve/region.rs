@@ -1,15 +1,15 @@
 //! Regions: what is felt where, as they or the laws say.
 
 use super::condition::Curves;
-use super::dimension::Dimension;
 use super::direction::Course;
 use super::law::{Laws, idle_niceness};
 use super::lower::{Lowering, May};
 use super::outputs;
+use crate::diagnostic::{Diagnostic, RegionKind, enough};
+use crate::dimension::Dimension;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::model::{DirectionSource, Region, Said, Surface};
-use crate::report::{Missing, Report, enough};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
 
@@ -22,7 +22,7 @@ pub(super) fn regions(
     laws: &Laws<'_>,
     lowering: &mut Lowering,
     curves: &mut Curves,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> (Vec<Surface>, Vec<Region>) {
     let written: Vec<&tree::Region> = tool
         .items
@@ -30,38 +30,34 @@ pub(super) fn regions(
         .filter_map(|item| if let Item::Region(region) = item { Some(region) } else { None })
         .collect();
     if written.is_empty() {
-        reports.push(
-            Report::error(tool.name.span, format!("`{}` has no region", tool.name.word))
-                .missing(Missing::Region)
-                .help("write its outline, `profile { … }`, or `region NAME where … { depth: …; }`"),
-        );
+        diagnostics.push(Diagnostic::new(
+            tool.name.span,
+            RegionKind::NoRegion { tool: tool.name.word.clone() },
+        ));
     }
     if let Some(beyond) = written.get(MOST) {
-        reports.push(
-            Report::error(beyond.name.span, format!("more than {MOST} regions"))
-                .help("write the outline as a `profile`: its regions are derived"),
-        );
+        diagnostics
+            .push(Diagnostic::new(beyond.name.span, RegionKind::TooManyRegions { most: MOST }));
         return Default::default();
     }
     let mut surfaces = Vec::new();
     let owners: Vec<usize> =
-        written.iter().map(|region| surface(region, &mut surfaces, reports)).collect();
-    laws.check(&surfaces, reports);
+        written.iter().map(|region| surface(region, &mut surfaces, diagnostics)).collect();
+    laws.check(&surfaces, diagnostics);
     let mut regions: Vec<Region> = Vec::new();
     for (written, owner) in written.into_iter().zip(owners) {
         if let Some(earlier) = regions.iter().find(|r| r.name == written.name.word) {
-            reports.push(
-                Report::error(
+            diagnostics.push(
+                Diagnostic::new(
                     written.name.span,
-                    format!("two regions are called `{}`", earlier.name),
+                    RegionKind::RegionsAlike { name: earlier.name.clone() },
                 )
-                .and(earlier.span, "the first")
-                .help("give it another name"),
+                .and(earlier.span, "the first"),
             );
         }
         let felt = Felt { laws, lowering, surface: &surfaces[owner] };
-        regions.extend(felt.region(written, owner, curves, reports));
-        if enough(reports) {
+        regions.extend(felt.region(written, owner, curves, diagnostics));
+        if enough(diagnostics) {
             break;
         }
     }
@@ -69,9 +65,13 @@ pub(super) fn regions(
 }
 
 /// The surface of a region: the one it names, or one of its own name.
-fn surface(region: &tree::Region, surfaces: &mut Vec<Surface>, reports: &mut Vec<Report>) -> usize {
+fn surface(
+    region: &tree::Region,
+    surfaces: &mut Vec<Surface>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> usize {
     let name = region.surface.as_ref().unwrap_or(&region.name);
-    named_surface(name, region.cutting.is_some(), surfaces, reports)
+    named_surface(name, region.cutting.is_some(), surfaces, diagnostics)
 }
 
 /// The surface of a name, known or new.
@@ -79,22 +79,21 @@ pub(super) fn named_surface(
     name: &tree::Name,
     cutting: bool,
     surfaces: &mut Vec<Surface>,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> usize {
     if name.word == "cutting" {
-        reports.push(
-            Report::error(name.span, "no surface is called `cutting`")
-                .help("write `as NAME cutting`"),
-        );
+        diagnostics.push(Diagnostic::new(name.span, RegionKind::SurfaceCalledCutting));
     }
     match surfaces.iter().position(|surface| surface.name == name.word) {
         Some(at) => {
             if surfaces[at].cutting != cutting {
-                let (here, there) = if cutting { ("is", "not") } else { ("is not", "is") };
-                reports.push(
-                    Report::error(name.span, format!("`{}` {here} cutting here", name.word))
-                        .and(surfaces[at].span, format!("and {there} here"))
-                        .help("all pieces of one surface agree"),
+                let there = if cutting { "and not here" } else { "and is here" };
+                diagnostics.push(
+                    Diagnostic::new(
+                        name.span,
+                        RegionKind::CuttingDisagrees { name: name.word.clone(), here: cutting },
+                    )
+                    .and(surfaces[at].span, there),
                 );
             }
             at
@@ -126,16 +125,18 @@ pub(super) struct Niceness {
 }
 
 /// What a result is worth; what is wrong is noted.
-pub(super) fn noted<T>(result: Result<T, Report>, reports: &mut Vec<Report>) -> Option<T> {
-    result.map_err(|report| reports.push(report)).ok()
+pub(super) fn noted<T>(
+    result: Result<T, Diagnostic>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<T> {
+    result.map_err(|diagnostic| diagnostics.push(diagnostic)).ok()
 }
 
 /// A magnitude or a niceness.
-pub(super) fn quantity(lowering: &mut Lowering, value: &Expr, may: May) -> Result<Id, Report> {
+pub(super) fn quantity(lowering: &mut Lowering, value: &Expr, may: May) -> Result<Id, Diagnostic> {
     let (id, dimension) = lowering.lower(value, may)?;
     if dimension == Dimension::Angle {
-        return Err(Report::error(value.span, "this is an angle")
-            .help("give a number or a power of length"));
+        return Err(Diagnostic::new(value.span, RegionKind::AngleAsQuantity));
     }
     Ok(id)
 }
@@ -155,7 +156,7 @@ impl Felt<'_> {
         &mut self,
         own: Option<&Expr>,
         depth: Id,
-    ) -> Result<Option<(Id, Span)>, Report> {
+    ) -> Result<Option<(Id, Span)>, Diagnostic> {
         let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
         let Some(value) = own.or(law) else { return Ok(None) };
         let id = quantity(self.lowering, value, May::Depth(depth))?;
@@ -170,11 +171,10 @@ impl Felt<'_> {
         (depth, depth_span): (Id, Span),
         (magnitude, niceness): (Option<Placed>, Niceness),
         course: Course,
-    ) -> Result<Region, Report> {
+    ) -> Result<Region, Diagnostic> {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
         let direction = outputs::unit(graph, course.parts, 2).ok_or_else(|| {
-            Report::error(course.span, format!("the direction of {} vanishes", bare.name))
-                .help("give a vector that is not 0, or `toward` a point")
+            Diagnostic::new(course.span, RegionKind::DirectionIsZero { region: bare.name.clone() })
         })?;
         let is_depth = magnitude.is_none();
         let (magnitude, magnitude_span) = magnitude.unwrap_or((depth, depth_span));
@@ -204,15 +204,15 @@ impl Felt<'_> {
         written: &tree::Region,
         owner: usize,
         curves: &mut Curves,
-        reports: &mut Vec<Report>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> Option<Region> {
-        let inside = inside(written, self.lowering, curves, reports);
-        let known = noted(self.depth(written), reports);
+        let inside = inside(written, self.lowering, curves, diagnostics);
+        let known = noted(self.depth(written), diagnostics);
         // What is said of a depth that is not known is looked at all the same.
         let any = self.lowering.domain.coordinates()[0].0;
         let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
-        let (magnitude, niceness) = self.rules(written, depth.0, reports);
-        let course = noted(self.course(written), reports);
+        let (magnitude, niceness) = self.rules(written, depth.0, diagnostics);
+        let course = noted(self.course(written), diagnostics);
         let (name, span) = (written.name.word.clone(), written.name.span);
         let bare = Bare { name, span, owner, inside: inside? };
         let course = course?.unwrap_or_else(|| Course {
@@ -221,7 +221,7 @@ impl Felt<'_> {
             source: DirectionSource::Derived,
         });
         known?;
-        noted(self.finish(bare, depth, (magnitude?, niceness?), course), reports)
+        noted(self.finish(bare, depth, (magnitude?, niceness?), course), diagnostics)
     }
 
     /// The magnitude and the niceness of a written region.
@@ -229,13 +229,13 @@ impl Felt<'_> {
         &mut self,
         written: &tree::Region,
         depth: Id,
-        reports: &mut Vec<Report>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> (Option<Option<Placed>>, Option<Niceness>) {
         let magnitude = self.said(written, Quantity::Magnitude);
         let magnitude = magnitude.and_then(|own| self.magnitude(own.map(|own| &own.value), depth));
         let niceness = self.said(written, Quantity::Niceness);
         let niceness = niceness.and_then(|own| self.niceness(own, depth));
-        (noted(magnitude, reports), noted(niceness, reports))
+        (noted(magnitude, diagnostics), noted(niceness, diagnostics))
     }
 
     /// The region's own word on a quantity.
@@ -243,68 +243,61 @@ impl Felt<'_> {
         &self,
         written: &'w tree::Region,
         quantity: Quantity,
-    ) -> Result<Option<&'w Scalar>, Report> {
+    ) -> Result<Option<&'w Scalar>, Diagnostic> {
         let mut all = written.scalars.iter().filter(|scalar| scalar.quantity == quantity);
         let first = all.next();
         if let (Some(first), Some(second)) = (first, all.next()) {
-            return Err(Report::error(second.span, format!("`{}` is said twice", quantity.word()))
-                .and(first.span, "first here")
-                .help("drop one"));
+            return Err(Diagnostic::new(
+                second.span,
+                RegionKind::SaidTwice { word: quantity.word().to_owned() },
+            )
+            .and(first.span, "first here"));
         }
         Ok(first)
     }
 
     /// The depth: what the region says, else its magnitude.
-    fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Report> {
+    fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Diagnostic> {
         let (value, by) = match self.said(written, Quantity::Depth)? {
             Some(own) => (&own.value, Quantity::Depth),
             None => match self.said(written, Quantity::Magnitude)? {
                 Some(own) => (&own.value, Quantity::Magnitude),
                 None => {
                     let name = &written.name;
-                    return Err(Report::error(
+                    return Err(Diagnostic::new(
                         name.span,
-                        format!(
-                            "region {} says neither `magnitude` nor `depth`, and there is no profile \
-                             to take it from",
-                            name.word
-                        ),
-                    )
-                    .help("write `depth: …;` in it: 0 on the surface, positive inside"));
+                        RegionKind::NoDepth { region: name.word.clone() },
+                    ));
                 }
             },
         };
         if let (Quantity::Magnitude, Some(span)) = (by, mention(value, "depth")) {
-            let name = &written.name.word;
-            return Err(Report::error(
+            return Err(Diagnostic::new(
                 span,
-                format!("`magnitude` of {name} mentions `depth`, which nothing else gives"),
-            )
-            .help("write `depth: …;` in the region"));
+                RegionKind::DepthOfItself { region: written.name.word.clone() },
+            ));
         }
         let (id, dimension) = self.lowering.lower(value, May::Coordinates)?;
         if by == Quantity::Depth && !dimension.is_length() {
-            return Err(Report::error(
-                value.span,
-                format!("a depth is a length, this is {dimension}"),
-            )
-            .help("write how far it is to the surface; any power is a `magnitude:`"));
+            return Err(Diagnostic::new(value.span, RegionKind::DepthNotLength { dimension }));
         }
         if dimension == Dimension::Angle {
-            return Err(Report::error(value.span, "a magnitude is no angle")
-                .help("give a number or a power of length"));
+            return Err(Diagnostic::new(value.span, RegionKind::AngleAsMagnitude));
         }
         let graph = &mut self.lowering.graph;
         if graph.constant(id).is_some() {
-            return Err(Report::error(value.span, "this depth is the same everywhere")
-                .help("a depth is 0 on the surface and grows inward"));
+            return Err(Diagnostic::new(value.span, RegionKind::ConstantDepth));
         }
         Ok((id, value.span))
     }
 
     /// The niceness that a region or else the law for its surface writes, or else its mounted file;
     /// else 1, or 0 where nothing cuts.
-    pub(super) fn niceness(&mut self, own: Option<&Scalar>, depth: Id) -> Result<Niceness, Report> {
+    pub(super) fn niceness(
+        &mut self,
+        own: Option<&Scalar>,
+        depth: Id,
+    ) -> Result<Niceness, Diagnostic> {
         let nowhere = |value: Id| Niceness { value, span: self.surface.span, rising: false };
         if !self.surface.cutting {
             return match own {
@@ -338,18 +331,16 @@ pub(super) fn inside(
     written: &tree::Region,
     lowering: &mut Lowering,
     curves: &mut Curves,
-    reports: &mut Vec<Report>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Formula> {
     if let Some(beyond) = written.conditions.get(MOST) {
-        reports.push(
-            Report::error(beyond.span, format!("more than {MOST} conditions"))
-                .help("several of one kind are one, by `min` or `max`"),
-        );
+        diagnostics
+            .push(Diagnostic::new(beyond.span, RegionKind::TooManyConditions { most: MOST }));
         return None;
     }
     let sides = written.conditions.iter();
     let sides: Vec<Option<Vec<Formula>>> =
-        sides.map(|one| noted(condition(one, lowering, curves), reports)).collect();
+        sides.map(|one| noted(condition(one, lowering, curves), diagnostics)).collect();
     let sides: Option<Vec<Vec<Formula>>> = sides.into_iter().collect();
     Some(Formula::All(sides?.into_iter().flatten().collect()))
 }
@@ -359,15 +350,16 @@ fn condition(
     condition: &tree::Condition,
     lowering: &mut Lowering,
     curves: &mut Curves,
-) -> Result<Vec<Formula>, Report> {
+) -> Result<Vec<Formula>, Diagnostic> {
     let mut sides = Vec::new();
     let mut left = lowering.lower(&condition.first, May::Coordinates)?;
     for (compare, right) in &condition.rest {
         let right = lowering.lower(right, May::Coordinates)?;
         if left.1.alike(right.1).is_none_or(|d| d == Dimension::Angle) {
-            let message = format!("this compares {} with {}", left.1, right.1);
-            return Err(Report::error(condition.span, message)
-                .help("both sides want the same power of length; a bare number fits any"));
+            return Err(Diagnostic::new(
+                condition.span,
+                RegionKind::UnlikeSides { left: left.1, right: right.1 },
+            ));
         }
         let graph = &mut lowering.graph;
         sides.push(match compare {

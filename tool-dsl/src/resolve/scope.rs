@@ -1,13 +1,13 @@
 //! What names mean in a file, and where its coordinates lie in the whole tool.
 
 use super::definitions;
-use super::dimension::Dimension;
 use super::lower::{Lowering, May};
+use crate::diagnostic::{Diagnostic, ValueKind};
+use crate::dimension::Dimension;
 use crate::domain::Domain;
 use crate::expr::{Coord, Graph, Id};
 use crate::model::{Frame, Unit};
 use crate::number::Number;
-use crate::report::Report;
 use crate::source::Span;
 use crate::syntax::tree::{Definition, Tool};
 use std::collections::BTreeMap;
@@ -70,18 +70,18 @@ impl Lowering {
     }
 
     /// Gives a name to a function of the coordinates, or reports why it has none.
-    pub(super) fn curve(&mut self, definition: &Definition, reports: &mut Vec<Report>) {
+    pub(super) fn curve(&mut self, definition: &Definition, diagnostics: &mut Vec<Diagnostic>) {
         if !self.broken.contains_key(&definition.name.word) {
             let defined = self.curve_value(definition);
-            self.note(&definition.name, defined, reports);
+            self.note(&definition.name, defined, diagnostics);
         }
     }
 
-    fn curve_value(&mut self, definition: &Definition) -> Result<(), Report> {
+    fn curve_value(&mut self, definition: &Definition) -> Result<(), Diagnostic> {
         let value = self.lower(&definition.value, May::Coordinates)?;
         if value.1 == Dimension::Angle {
-            let report = Report::error(definition.value.span, "a curve is no angle");
-            return Err(report.help("give a number or a power of length"));
+            let diagnostic = Diagnostic::new(definition.value.span, ValueKind::CurveOfAngle);
+            return Err(diagnostic);
         }
         self.define(&definition.name, value)
     }

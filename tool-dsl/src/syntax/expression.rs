@@ -4,8 +4,8 @@ use super::Rule;
 use super::limits::TALLEST;
 use super::parse::Reader;
 use super::tree::{Binary, Expr, ExprKind, Name};
-use crate::number::{Number, RANGE};
-use crate::report::Report;
+use crate::diagnostic::{Diagnostic, SyntaxKind};
+use crate::number::Number;
 use crate::source::Span;
 use pest::iterators::{Pair, Pairs};
 use std::str::FromStr;
@@ -22,11 +22,8 @@ impl Reader<'_> {
         let mut beyond = None;
         let (expr, _) = self.tree(pair, &mut beyond);
         if let Some(span) = beyond {
-            let message = "this expression is built of too many steps upon each other";
-            self.reports.push(
-                Report::error(span, message)
-                    .help(format!("at most {TALLEST}: name a part of it with `let` or `curve`")),
-            );
+            self.diagnostics
+                .push(Diagnostic::new(span, SyntaxKind::ExpressionTooTall { most: TALLEST }));
         }
         expr
     }
@@ -114,8 +111,8 @@ impl Reader<'_> {
         while let (Some(operator), Some(right)) = (inner.next(), inner.next()) {
             operands += 1;
             if operands > OPERANDS {
-                let report = Report::error(self.span(&right), "this expression is too long");
-                self.reports.push(report.help("name a part of it with `let` or `curve`"));
+                let diagnostic = Diagnostic::new(self.span(&right), SyntaxKind::ExpressionTooLong);
+                self.diagnostics.push(diagnostic);
                 break;
             }
             let operator = match operator.as_str() {
@@ -139,7 +136,7 @@ impl Reader<'_> {
         let value = match sane.then(|| Number::decimal(&text[..digits])).flatten() {
             Some(value) if value.is_in_range() => value,
             _ => {
-                self.reports.push(Report::error(span, "this number is out of range").help(RANGE));
+                self.diagnostics.push(Diagnostic::new(span, SyntaxKind::NumberOutOfRange));
                 Number::int(1)
             }
         };

@@ -3,7 +3,7 @@
 
 use super::Rule;
 use super::lexeme::{Kind, Lexeme, lexemes};
-use crate::report::Report;
+use crate::diagnostic::{Diagnostic, SyntaxKind};
 use crate::source::{LONGEST, Span};
 use pest::iterators::{Pair, Pairs};
 
@@ -18,7 +18,7 @@ pub(super) const DEEPEST: usize = 64;
 pub(crate) const TALLEST: u32 = 300;
 
 /// A name, or a list of items, that is longer than any that people write.
-pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
+pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
     let place = |pair: &Pair<'_, Rule>, length: usize| {
         let start = pair.as_span().start();
         Span { start, end: start + length }
@@ -27,27 +27,25 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Report> {
     let long =
         pairs.clone().flatten().find(|pair| name(pair) && pair.as_str().len() > LONGEST_NAME);
     if let Some(pair) = long {
-        let message = format!("this name is {} letters long", pair.as_str().len());
-        return Some(
-            Report::error(place(&pair, LONGEST_NAME), message)
-                .help(format!("a name has at most {LONGEST_NAME}")),
-        );
+        return Some(Diagnostic::new(
+            place(&pair, LONGEST_NAME),
+            SyntaxKind::NameTooLong { letters: pair.as_str().len(), most: LONGEST_NAME },
+        ));
     }
     let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
     let beyond = pairs.flatten().find(whole)?.into_inner().nth(MOST)?;
-    Some(
-        Report::error(place(&beyond, 1), format!("more than {MOST} items"))
-            .help("a file describes one tool"),
-    )
+    Some(Diagnostic::new(place(&beyond, 1), SyntaxKind::TooManyItems { most: MOST }))
 }
 
 /// The text's length, its comments and its brackets. A comment that does not end is refused here: pest would
 /// try the comments within it in all combinations.
-pub(super) fn within_limits(text: &str) -> Result<(), Report> {
+pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
     if text.len() > LONGEST {
         let end = Span { start: 0, end: 1 };
-        return Err(Report::error(end, format!("the text is {} bytes long", text.len()))
-            .help(format!("a tool's text has at most {LONGEST} bytes")));
+        return Err(Diagnostic::new(
+            end,
+            SyntaxKind::TextTooLong { bytes: text.len(), most: LONGEST },
+        ));
     }
     let mut depth = 0usize;
     for Lexeme { start, end, kind } in lexemes(text) {
@@ -56,21 +54,19 @@ pub(super) fn within_limits(text: &str) -> Result<(), Report> {
             Kind::Mark(')' | '}' | ']') => depth = depth.saturating_sub(1),
             Kind::Unended => {
                 let opens = Span { start, end: start + 2 };
-                return Err(
-                    Report::error(opens, "this comment does not end").help("close it with `*/`")
-                );
+                return Err(Diagnostic::new(opens, SyntaxKind::CommentNotClosed));
             }
             Kind::TooDeep => {
                 let span = Span { start: end - 2, end };
-                let message = format!("comments are nested more than {DEEPEST} deep");
-                return Err(Report::error(span, message).help("close them with `*/`"));
+                return Err(Diagnostic::new(span, SyntaxKind::CommentsTooDeep { most: DEEPEST }));
             }
             _ => {}
         }
         if depth > DEEPEST {
-            let message = format!("brackets are nested more than {DEEPEST} deep");
-            return Err(Report::error(Span { start, end }, message)
-                .help("name a part of the expression with `let` or `curve`"));
+            return Err(Diagnostic::new(
+                Span { start, end },
+                SyntaxKind::BracketsTooDeep { most: DEEPEST },
+            ));
         }
     }
     Ok(())

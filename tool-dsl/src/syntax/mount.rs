@@ -4,14 +4,14 @@ use super::limits::within_limits;
 use super::parse::{Reader, is_word};
 use super::tree::{Definition, Mount, Name};
 use super::{Grammar, Rule, refuse};
-use crate::report::Report;
+use crate::diagnostic::Diagnostic;
 use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::Pair;
 
 /// Reads what a tool's params are given from outside its file: `D = 0.25inch, flute = 18`. What is
-/// wrong is added to the reports.
-pub fn given(source: &Source, reports: &mut Vec<Report>) -> Vec<Definition> {
+/// wrong is added to the diagnostics.
+pub fn given(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Vec<Definition> {
     pest::set_error_detail(true);
     let text = &source.text;
     let pairs = within_limits(text).and_then(|()| {
@@ -19,13 +19,13 @@ pub fn given(source: &Source, reports: &mut Vec<Report>) -> Vec<Definition> {
     });
     let pairs = match pairs {
         Ok(pairs) => pairs,
-        Err(report) => {
-            reports.push(report.behind(source.base));
+        Err(diagnostic) => {
+            diagnostics.push(diagnostic.behind(source.base));
             return Vec::new();
         }
     };
     let mut broken = Vec::new();
-    let mut reader = Reader { offset: source.base, reports, broken: &mut broken };
+    let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };
     let settings = pairs.flatten().filter(|pair| pair.as_rule() == Rule::setting);
     settings.filter_map(|pair| reader.definition(pair.into_inner())).collect()
 }
@@ -37,7 +37,7 @@ impl Reader<'_> {
         span: Span,
     ) -> Option<Mount> {
         let mut file = self.name(&inner.next()?);
-        self.reports.extend(refuse::hidden(&file.word, file.span));
+        self.diagnostics.extend(refuse::hidden(&file.word, file.span));
         file.word = file.word.trim_matches('"').to_owned();
         let (name, cutting) = self.surface(inner.next()?);
         let mut mount = Mount { file, name: name?, cutting, with: Vec::new(), at: None, span };

@@ -4,8 +4,8 @@ use super::limits::{too_much, within_limits};
 use super::refuse::{self, OBLIQUE, RISING, in_name};
 use super::tree::*;
 use super::{Grammar, Rule};
+use crate::diagnostic::{Diagnostic, Reported, SyntaxKind, enough};
 use crate::domain::Domain;
-use crate::report::{Report, Reported, enough};
 use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
@@ -29,8 +29,8 @@ const TAKEN: [&str; 14] = [
 ];
 
 /// Reads a tool. What could be read comes back even beside errors, so that later steps can report
-/// theirs; without a tool's name nothing can, which fails with an error among the reports.
-pub fn parse(source: &Source, reports: &mut Vec<Report>) -> Result<Tool, Reported> {
+/// theirs; without a tool's name nothing can, which fails with an error among the diagnostics.
+pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool, Reported> {
     // With the tokens that would have fitted, not the rules alone.
     pest::set_error_detail(true);
     let text = &source.text;
@@ -42,9 +42,9 @@ pub fn parse(source: &Source, reports: &mut Vec<Report>) -> Result<Tool, Reporte
     let whole = |pair: &Pair<'_, Rule>| matches!(pair.as_rule(), Rule::tool | Rule::solid);
     let pair = pairs
         .and_then(|pairs| pairs.flatten().find(whole).ok_or_else(|| refuse::nothing(text)))
-        .map_err(|report| Reported::push(reports, report.behind(source.base)))?;
+        .map_err(|diagnostic| Reported::push(diagnostics, diagnostic.behind(source.base)))?;
     let mut broken = Vec::new();
-    let mut reader = Reader { offset: source.base, reports, broken: &mut broken };
+    let mut reader = Reader { offset: source.base, diagnostics, broken: &mut broken };
     let tool = reader.tool(pair);
     Ok(Tool { broken, ..tool })
 }
@@ -52,7 +52,7 @@ pub fn parse(source: &Source, reports: &mut Vec<Report>) -> Result<Tool, Reporte
 pub(super) struct Reader<'a> {
     /// Where the parsed text begins among all sources.
     pub(super) offset: usize,
-    pub(super) reports: &'a mut Vec<Report>,
+    pub(super) diagnostics: &'a mut Vec<Diagnostic>,
     /// The first words of items that could not be read, and the names that they define.
     pub(super) broken: &'a mut Vec<String>,
 }
@@ -74,25 +74,22 @@ impl Reader<'_> {
                 Rule::name => {
                     name = self.name(&pair);
                     if TAKEN.contains(&name.word.as_str()) {
-                        self.reports.push(
-                            Report::error(name.span, format!("the name `{}` is taken", name.word))
-                                .help("the name becomes a Rust type: take another"),
-                        );
+                        self.diagnostics.push(Diagnostic::new(
+                            name.span,
+                            SyntaxKind::TakenName { word: name.word.clone() },
+                        ));
                     } else if !is_type_name(&name.word) {
-                        self.reports.push(
-                            Report::error(
-                                name.span,
-                                format!("`{}` is not a tool's name", name.word),
-                            )
-                            .help("the name becomes a Rust type: write it as `UpperCamelCase`"),
-                        );
+                        self.diagnostics.push(Diagnostic::new(
+                            name.span,
+                            SyntaxKind::NotTypeName { word: name.word.clone() },
+                        ));
                     }
                 }
                 Rule::text => {
                     title = Some(pair.as_str().trim_matches('"').to_owned());
-                    self.reports.extend(refuse::hidden(pair.as_str(), self.span(&pair)));
+                    self.diagnostics.extend(refuse::hidden(pair.as_str(), self.span(&pair)));
                 }
-                Rule::stray if enough(self.reports) => {}
+                Rule::stray if enough(self.diagnostics) => {}
                 Rule::stray => items.extend(self.stray(&pair)),
                 Rule::k_tool | Rule::k_solid => {}
                 _ => items.extend(self.item(pair)),
@@ -108,10 +105,10 @@ impl Reader<'_> {
         match Grammar::parse(Rule::item, text) {
             Ok(mut pairs) => {
                 let inner = pairs.next()?.into_inner().next()?;
-                Reader { offset, reports: self.reports, broken: self.broken }.item(inner)
+                Reader { offset, diagnostics: self.diagnostics, broken: self.broken }.item(inner)
             }
             Err(error) => {
-                self.reports.push(refuse::syntax(text, offset, &error));
+                self.diagnostics.push(refuse::syntax(text, offset, &error));
                 // What it would have defined, and what it swallowed for want of a `;`.
                 let words: Vec<&str> =
                     text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
@@ -226,7 +223,7 @@ impl Reader<'_> {
         let meant = fits && written.as_ref().is_some_and(|written| written.as_str() == word);
         if !meant {
             let written = written.map_or("", |written| written.as_str());
-            self.reports.push(refuse::allowance(span, written));
+            self.diagnostics.push(refuse::allowance(span, written));
         }
         meant
     }
@@ -307,7 +304,7 @@ impl Reader<'_> {
                 "<=" => Compare::AtMost,
                 ">=" => Compare::AtLeast,
                 other => {
-                    self.reports.push(refuse::comparison(place, other));
+                    self.diagnostics.push(refuse::comparison(place, other));
                     return None;
                 }
             };
@@ -333,7 +330,7 @@ fn quantity(pair: &Pair<'_, Rule>) -> Quantity {
 }
 
 /// The text as it stands: its tokens and comments in order.
-pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Report> {
+pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Diagnostic> {
     match Grammar::parse(Rule::tokens, text) {
         Ok(mut pairs) => Ok(pairs.next().map_or(pairs, Pair::into_inner)),
         Err(error) => Err(refuse::syntax(text, 0, &error)),

@@ -5,6 +5,7 @@ use super::super::kink::{across, angle};
 use super::super::parting::{Joint, Pair, Parted};
 use super::super::{Border, SMALL, Seen, TOLERANCE, Undecided};
 use super::{Grain, SLOPING, Survey, VAGUE, up};
+use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
@@ -142,8 +143,8 @@ impl Survey<'_> {
         // Where no more is divided, a jump that may be none is one of a corner.
         if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
             let [from, to] = [Some(own), other].map(|owner| self.named(owner));
-            let what = format!("that depth goes on from {from} to {to}");
-            self.undecided.push(Undecided { cell, what });
+            let statement = Statement::Continues(from, to);
+            self.undecided.push(Undecided { cell, statement });
         }
         let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
         let [of_own, of_other] = [Some(own), other].map(|owner| owner.map(magnitude));

@@ -16,6 +16,7 @@ use super::rounding::Errors;
 use super::slope::Slopes;
 use super::witness::{BESIDE, Witness};
 use super::{Border, Certificate, FEW, RegionFacts, SMALL, Seen, TOLERANCE, Undecided};
+use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use crate::formula::CurveIndex;
@@ -235,8 +236,8 @@ impl<'t> Survey<'t> {
             .iter()
             .find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell), self.alone));
         if let (Some(claim), Grain::Last) = (wrong, grain) {
-            let what = format!("that {} alone has it", self.named(claim.owner));
-            self.undecided.push(Undecided { cell, what });
+            let statement = Statement::Alone(self.named(claim.owner));
+            self.undecided.push(Undecided { cell, statement });
             return true;
         }
         wrong.is_none()
@@ -254,9 +255,8 @@ impl<'t> Survey<'t> {
             if beyond <= allowed {
                 self.beyond = self.beyond.max(unless_rounding(beyond, self.size));
             } else if grain.is_last() {
-                let what =
-                    format!("that {} has what is nearest to its points", self.named(claim.owner));
-                self.undecided.push(Undecided { cell, what });
+                let statement = Statement::Nearest(self.named(claim.owner));
+                self.undecided.push(Undecided { cell, statement });
                 return true;
             } else {
                 return false;
@@ -282,8 +282,8 @@ impl<'t> Survey<'t> {
             return false;
         }
         if !positive {
-            let what = format!("that depth is not negative in {}", self.named(Some(owner)));
-            self.undecided.push(Undecided { cell, what });
+            let statement = Statement::NotNegative(self.named(Some(owner)));
+            self.undecided.push(Undecided { cell, statement });
         }
         self.felt(owner, cell);
         self.descend(&[Some(owner)], cell, grain);
@@ -305,8 +305,8 @@ impl<'t> Survey<'t> {
             return false;
         }
         if claims.len() > CROWD {
-            let what = format!("which of {} regions meet", owners.len());
-            self.undecided.push(Undecided { cell, what });
+            let statement = Statement::Crowd(owners.len());
+            self.undecided.push(Undecided { cell, statement });
         } else if !self.meet(cell, claims, grain) {
             return false;
         }
@@ -316,11 +316,8 @@ impl<'t> Survey<'t> {
     }
 
     /// A region or the outside, in words.
-    fn named(&self, owner: Option<usize>) -> String {
-        match owner {
-            Some(owner) => format!("`{}`", self.tool.model.regions[owner].name),
-            None => "the outside".to_owned(),
-        }
+    fn named(&self, owner: Option<usize>) -> Option<String> {
+        owner.map(|owner| self.tool.model.regions[owner].name.clone())
     }
 
     /// Notes what is felt in the present box, of a region that has all of it or a part.
@@ -429,9 +426,10 @@ impl<'t> Survey<'t> {
     /// Returns how far the solid's surface may be from the nearest place of its profile, given the slack of depth.
     fn off_profile(&mut self, slack: f64) -> f64 {
         let Some(section) = &self.tool.model.section else { return 0.0 };
-        let what = || "that the solid ends on the profile".to_owned();
         let (off, ends) = self.witness.off_profile(&section.outline);
-        let open = off.into_iter().map(|at| Undecided { cell: Cell::point(at), what: what() });
+        let open = off
+            .into_iter()
+            .map(|at| Undecided { cell: Cell::point(at), statement: Statement::EndsOnProfile });
         self.undecided.extend(open);
         // Where something is open, or depth is not the distance from the profile, nothing follows.
         if self.feet.is_none() || !self.undecided.is_empty() {
@@ -439,7 +437,10 @@ impl<'t> Survey<'t> {
         }
         let off = Profile::new(&section.outline).off(slack, BESIDE * self.size).filter(|_| ends);
         off.unwrap_or_else(|| {
-            self.undecided.push(Undecided { cell: self.tool.extent.cell(), what: what() });
+            self.undecided.push(Undecided {
+                cell: self.tool.extent.cell(),
+                statement: Statement::EndsOnProfile,
+            });
             0.0
         })
     }

@@ -2,7 +2,7 @@
 
 use super::super::lexeme::{Kind, Lexeme, lexemes};
 use super::{ITEMS, Stop, first_token};
-use crate::report::Report;
+use crate::diagnostic::{Diagnostic, SyntaxKind};
 
 /// Words that begin an item and nothing else.
 fn begins_an_item(word: &str) -> bool {
@@ -10,22 +10,20 @@ fn begins_an_item(word: &str) -> bool {
 }
 
 /// A bracket without its other one, if the text stopped to fit because of it.
-pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Report> {
+pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
     let Brackets { open, extra } = Brackets::of(stop.text);
     if let Some((at, bracket)) = extra.filter(|(at, _)| *at == stop.at) {
-        let report =
-            Report::error(stop.span(at, at + 1), format!("this `{bracket}` closes nothing"));
-        return Some(report.help("drop it, or open one before"));
+        let diagnostic =
+            Diagnostic::new(stop.span(at, at + 1), SyntaxKind::ClosesNothing { bracket });
+        return Some(diagnostic);
     }
     let (at, bracket) = open.filter(|(at, _)| *at < stop.at)?;
-    let place = stop.span(at, at + 1);
-    let report = Report::error(place, format!("this `{bracket}` is not closed"));
     let close = if bracket == '{' { '}' } else { ')' };
+    let kind = SyntaxKind::NotClosed { bracket, close };
+    let diagnostic = Diagnostic::new(stop.span(at, at + 1), kind);
     Some(match first_token(stop.rest()) {
-        "" => report.help(format!("write `{close}` where its contents end")),
-        next => report
-            .and(stop.next(next.len()), "before this")
-            .help(format!("write `{close}` where its contents end")),
+        "" => diagnostic,
+        next => diagnostic.and(stop.next(next.len()), "before this"),
     })
 }
 

@@ -4,7 +4,7 @@ use crate::syntax::Rule;
 use pest::error::{Error, ErrorVariant};
 
 /// The rules and tokens that would have fitted.
-pub(super) fn expected(error: &Error<Rule>) -> String {
+pub(super) fn expected(error: &Error<Rule>) -> Vec<String> {
     let attempts = error.parse_attempts();
     let token_at = attempts.as_ref().map_or(0, |attempts| attempts.max_position);
     let rules: &[Rule] = match &error.variant {
@@ -20,11 +20,7 @@ pub(super) fn expected(error: &Error<Rule>) -> String {
     words.extend(tokens.iter().filter_map(|t| token(t, ruled)));
     words.sort_unstable();
     words.dedup();
-    match words.as_slice() {
-        [] => String::new(),
-        [one] => one.clone(),
-        [most @ .., last] => format!("{} or {last}", most.join(", ")),
-    }
+    words
 }
 
 /// A token; of words only if no rule says more.

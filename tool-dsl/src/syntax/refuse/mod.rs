@@ -5,7 +5,7 @@ mod expected;
 mod spelling;
 
 use super::Rule;
-use crate::report::{Report, is_hidden, nearest};
+use crate::diagnostic::{Diagnostic, Expected, Names, SyntaxKind, is_hidden, nearest};
 use crate::source::Span;
 use expected::expected;
 use pest::error::{Error, InputLocation};
@@ -33,21 +33,13 @@ pub(super) const RISING: &str = "rising";
 const PROPERTIES: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
 
 /// A comparison that a closed region cannot have.
-pub(super) fn comparison(span: Span, written: &str) -> Report {
-    let remedy = match written {
-        "<" => "write `<=`",
-        ">" => "write `>=`",
-        "=" | "==" => "write two conditions, `a <= b` and `a >= b`, if a single line is meant",
-        _ => "write `<=` or `>=`",
-    };
-    Report::error(span, format!("`{written}` is no comparison here: a region is closed"))
-        .help(format!("{remedy}; a border belongs to the region listed first"))
+pub(super) fn comparison(span: Span, written: &str) -> Diagnostic {
+    Diagnostic::new(span, SyntaxKind::StrictComparison { written: written.to_owned() })
 }
 
 /// An `allow` of something that is not allowed there, or nowhere.
-pub(super) fn allowance(span: Span, written: &str) -> Report {
-    Report::error(span, format!("`allow {written}` does not fit here"))
-        .help(format!("write `direction: … allow {OBLIQUE};` or `niceness: … allow {RISING};`"))
+pub(super) fn allowance(span: Span, written: &str) -> Diagnostic {
+    Diagnostic::new(span, SyntaxKind::UnknownAllowance { written: written.to_owned() })
 }
 
 /// A text that stopped to fit somewhere.
@@ -90,62 +82,63 @@ impl<'t> Stop<'t> {
 const BLANK: [char; 4] = [' ', '\t', '\r', '\n'];
 
 /// A syntax error of pest's, at a place in a text that begins at `offset` of the source.
-pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Report {
+pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Diagnostic {
     let stop = Stop { text, offset, at: place(text, error) };
     let wants_end = error.parse_attempts().is_some_and(|attempts| {
         let ends = attempts.expected_tokens().iter().any(|token| token.to_string() == ";");
         ends && attempts.max_position >= rule_at(error)
     });
     let (rest, before) = (stop.rest(), stop.before());
-    if let Some(report) = spelling::character(&stop)
+    if let Some(diagnostic) = spelling::character(&stop)
         .or_else(|| item(&stop))
         .or_else(|| bracket::unmatched(&stop))
         .or_else(|| spelling::habit(&stop))
         .or_else(|| spelling::unended(&stop))
     {
-        return report;
+        return diagnostic;
     }
     if wants_end && ends_a_value(before) && (rest.starts_with('}') || starts_a_word(rest)) {
         let end = before.len();
-        return Report::error(stop.span(end.saturating_sub(1), end), "`;` is missing after this")
-            .help("write `;` here");
+        return Diagnostic::new(
+            stop.span(end.saturating_sub(1), end),
+            SyntaxKind::MissingSemicolon,
+        );
     }
-    let report = does_not_fit(&stop);
-    match expected(error) {
-        expected if expected.is_empty() => report,
-        expected => report.help(format!("expected {expected}")),
-    }
+    let expected = expected(error);
+    does_not_fit(
+        &stop,
+        if expected.is_empty() { Expected::Unknown } else { Expected::OneOf(expected) },
+    )
 }
 
 /// A text between quotes with a character that must not come onto a screen.
-pub(super) fn hidden(text: &str, place: Span) -> Option<Report> {
+pub(super) fn hidden(text: &str, place: Span) -> Option<Diagnostic> {
     let found = text.chars().find(|c| is_hidden(*c))?;
-    let message =
-        format!("this text has the character U+{:04X}, which cannot be seen", found as u32);
-    Some(Report::error(place, message).help("delete it: texts are shown as they are written"))
+    Some(Diagnostic::new(place, SyntaxKind::HiddenCharacter { code: u32::from(found) }))
 }
 
 /// A text without a tool.
-pub(super) fn nothing(text: &str) -> Report {
+pub(super) fn nothing(text: &str) -> Diagnostic {
     let stop = Stop { text, offset: 0, at: text.len() };
     spelling::no_tool(&stop)
 }
 
 /// A syntax error in what a tool's params are given.
-pub(super) fn given(text: &str, error: &Error<Rule>) -> Report {
+pub(super) fn given(text: &str, error: &Error<Rule>) -> Diagnostic {
     let stop = Stop { text, offset: 0, at: place(text, error) };
     spelling::character(&stop)
         .or_else(|| bracket::unmatched(&stop))
         .or_else(|| spelling::habit(&stop))
-        .unwrap_or_else(|| {
-            does_not_fit(&stop).help("write `PARAM = VALUE`, as in `D = 0.25inch, flute = 18`")
-        })
+        .unwrap_or_else(|| does_not_fit(&stop, Expected::Setting))
 }
 
-fn does_not_fit(stop: &Stop<'_>) -> Report {
+fn does_not_fit(stop: &Stop<'_>, expected: Expected) -> Diagnostic {
     match first_token(stop.rest()) {
-        "" => Report::error(stop.next(0), "the text ends here"),
-        token => Report::error(stop.next(token.len()), format!("`{token}` does not fit here")),
+        "" => Diagnostic::new(stop.next(0), SyntaxKind::TextEnds { expected }),
+        token => {
+            let kind = SyntaxKind::DoesNotFit { token: token.to_owned(), expected };
+            Diagnostic::new(stop.next(token.len()), kind)
+        }
     }
 }
 
@@ -165,7 +158,7 @@ fn place(text: &str, error: &Error<Rule>) -> usize {
 }
 
 /// An item or property that begins with a word that none does.
-fn item(stop: &Stop<'_>) -> Option<Report> {
+fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
     let whole = stop.text.trim_start_matches(BLANK);
     let first = word(whole);
     if first.is_empty() {
@@ -175,33 +168,26 @@ fn item(stop: &Stop<'_>) -> Option<Report> {
     let place = stop.span(start, start + first.len());
     // A whole file comes with its header, an item without.
     if stop.offset == 0 && stop.at == start && !FILES.contains(&first) {
-        let report = Report::error(place, format!("a file does not begin with `{first}`"));
-        return Some(match nearest(first, FILES) {
-            Some(meant) => report.help(format!("did you mean `{meant}`?")),
-            None => report.help("write `tool Name { … }`, or `solid Name { … }` without an axis"),
-        });
+        let kind = SyntaxKind::UnknownFile { word: first.to_owned(), meant: nearest(first, FILES) };
+        return Some(Diagnostic::new(place, kind));
     }
     if !FILES.contains(&first) && !ITEMS.contains(&first) {
-        let report = Report::error(place, format!("no item begins with `{first}`"));
-        return Some(match (first, nearest(first, ITEMS.into_iter().chain(FILES))) {
-            ("depth" | "direction", _) => {
-                report.help(format!("`{first}:` belongs inside a `region`"))
-            }
-            (_, Some(meant)) => report.help(format!("did you mean `{meant}`?")),
-            _ => report
-                .help(format!("an item is one of {}", ITEMS.map(|i| format!("`{i}`")).join(", "))),
-        });
+        let kind = SyntaxKind::UnknownItem {
+            word: first.to_owned(),
+            meant: nearest(first, ITEMS.into_iter().chain(FILES)),
+            known: Names::new(ITEMS),
+        };
+        return Some(Diagnostic::new(place, kind));
     }
     let wrong = word(stop.rest());
     if first == "region" && !wrong.is_empty() && stop.before().contains('{') {
         let after = stop.rest()[wrong.len()..].trim_start_matches(BLANK);
         if after.starts_with(':') && !PROPERTIES.contains(&wrong) {
-            let report =
-                Report::error(stop.next(wrong.len()), format!("a region has no `{wrong}`"));
-            return Some(match nearest(wrong, PROPERTIES) {
-                Some(meant) => report.help(format!("did you mean `{meant}`?")),
-                None => report.help("a region says `depth`, `magnitude`, `direction`, `niceness`"),
-            });
+            let kind = SyntaxKind::UnknownProperty {
+                word: wrong.to_owned(),
+                meant: nearest(wrong, PROPERTIES),
+            };
+            return Some(Diagnostic::new(stop.next(wrong.len()), kind));
         }
     }
     None

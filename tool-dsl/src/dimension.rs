@@ -4,7 +4,7 @@ use std::fmt;
 
 /// What an expression measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Dimension {
+pub enum Dimension {
     /// A number without a unit; it fits any power of length.
     Bare,
     /// A power of length; exponents are sums of halves, exact in a double.
@@ -16,11 +16,11 @@ pub(super) enum Dimension {
 use Dimension::{Angle, Bare, Length};
 
 /// One unit of length.
-pub(super) const LENGTH: Dimension = Length(1.0);
+pub(crate) const LENGTH: Dimension = Length(1.0);
 
 impl Dimension {
     /// Of a sum, a difference, a minimum, two sides of a comparison.
-    pub(super) fn alike(self, other: Dimension) -> Option<Dimension> {
+    pub(crate) fn alike(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (Bare, Length(_)) => Some(other),
             (Length(_), Bare) => Some(self),
@@ -29,7 +29,7 @@ impl Dimension {
     }
 
     /// Of a product.
-    pub(super) fn times(self, other: Dimension) -> Option<Dimension> {
+    pub(crate) fn times(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (Bare, any) | (any, Bare) => Some(any),
             (Length(a), Length(b)) => Some(Length(a + b)),
@@ -38,7 +38,7 @@ impl Dimension {
     }
 
     /// Of a quotient.
-    pub(super) fn over(self, other: Dimension) -> Option<Dimension> {
+    pub(crate) fn over(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (any, Bare) => Some(any),
             (Bare, Length(b)) => Some(Length(-b)),
@@ -49,7 +49,7 @@ impl Dimension {
     }
 
     /// Of a power with an exponent given in halves.
-    pub(super) fn power(self, halves: i32) -> Option<Dimension> {
+    pub(crate) fn power(self, halves: i32) -> Option<Dimension> {
         match self {
             Bare => Some(Bare),
             Length(a) => Some(Length(a * f64::from(halves) / 2.0)),
@@ -58,7 +58,7 @@ impl Dimension {
     }
 
     /// Whether it will do where a length is wanted.
-    pub(super) fn is_length(self) -> bool {
+    pub(crate) fn is_length(self) -> bool {
         self == Bare || self == LENGTH
     }
 }

@@ -1,0 +1,100 @@
+//! Codes of the compiler's errors and warnings, explained.
+
+use crate::failure::Failure;
+use crate::output::Output;
+use serde::Serialize;
+use std::io::Write;
+use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, near};
+
+/// Prints what is known of a code, or lists all codes with their titles.
+pub(crate) fn explain(code: Option<&str>, json: bool) -> Result<(), Failure> {
+    let asked = match code {
+        None => None,
+        Some(code) => Some(entry(&code.to_uppercase()).ok_or_else(|| unknown(code))?),
+    };
+    let mut out = Output::rows();
+    match asked {
+        _ if json => {
+            let all = entries().filter(|row| asked.is_none_or(|asked| asked.code == row.code));
+            for entry in all {
+                serde_json::to_writer(&mut out, &Row::of(entry))?;
+                writeln!(out)?;
+            }
+        }
+        Some(entry) => one(entry, &mut out)?,
+        None => list(&mut out)?,
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// The failure for a code that there is none of, with those that are most like it.
+fn unknown(code: &str) -> Failure {
+    let near: Vec<&str> = near(&code.to_uppercase()).map(|entry| entry.code).collect();
+    Failure::Code { code: code.to_owned(), near: near.join("`, `") }
+}
+
+fn one(entry: &Entry, out: &mut Output) -> Result<(), Failure> {
+    writeln!(out, "{}[{}]: {}\n", severity(entry), entry.code, entry.title)?;
+    writeln!(out, "{}\n", entry.explanation)?;
+    match entry.remedies().collect::<Vec<_>>().as_slice() {
+        [remedy] => writeln!(out, "Remedy: {remedy}.\n")?,
+        remedies => {
+            writeln!(out, "Remedy, as the case may be:")?;
+            for remedy in remedies {
+                writeln!(out, "- {remedy}")?;
+            }
+            writeln!(out)?;
+        }
+    }
+    match entry.example {
+        Example::Text(text) => writeln!(out, "Example:\n\n{}", text.trim_end())?,
+        Example::Without(reason) => writeln!(out, "No example: {reason}.")?,
+    }
+    Ok(())
+}
+
+fn list(out: &mut Output) -> Result<(), Failure> {
+    for family in FAMILIES {
+        writeln!(out, "{}", family.title)?;
+        for entry in family.entries {
+            let warning = if entry.severity == Severity::Warning { " (warning)" } else { "" };
+            writeln!(out, "  {}  {}{warning}", entry.code, entry.title)?;
+        }
+    }
+    Ok(())
+}
+
+fn severity(entry: &Entry) -> &'static str {
+    match entry.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    }
+}
+
+/// A row of `--json`.
+#[derive(Serialize)]
+struct Row {
+    code: &'static str,
+    severity: &'static str,
+    title: &'static str,
+    explanation: &'static str,
+    remedies: Vec<String>,
+    example: Option<&'static str>,
+}
+
+impl Row {
+    fn of(entry: &Entry) -> Row {
+        Row {
+            code: entry.code,
+            severity: severity(entry),
+            title: entry.title,
+            explanation: entry.explanation,
+            remedies: entry.remedies().collect(),
+            example: match entry.example {
+                Example::Text(text) => Some(text),
+                Example::Without(_) => None,
+            },
+        }
+    }
+}

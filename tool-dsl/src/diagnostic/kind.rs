@@ -1,0 +1,78 @@
+//! All kinds, and the table of their codes.
+
+use super::Severity;
+use super::checks::CheckKind;
+use super::mounts::MountKind;
+use super::profile::ProfileKind;
+use super::regions::RegionKind;
+use super::spelling::SpellingKind;
+use super::syntax::SyntaxKind;
+use super::table::Entry;
+use super::values::ValueKind;
+
+/// The most edits between two codes that are like each other.
+const MOST_EDITS: usize = 2;
+
+/// A family of kinds, whose codes begin alike.
+#[derive(Clone, Copy, Debug)]
+pub struct Family {
+    /// The first characters of its codes.
+    pub prefix: &'static str,
+    /// The subject, in a few words.
+    pub title: &'static str,
+    /// Its kinds, by code.
+    pub entries: &'static [Entry],
+}
+
+macro_rules! families {
+    ($($family:ident),*) => {
+        /// The reason for a diagnostic, with its data.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Kind {
+            $(#[doc = concat!("See [`", stringify!($family), "`].")] $family($family)),*
+        }
+
+        /// All families, in the order of their codes.
+        pub const FAMILIES: &[Family] = &[$($family::TABLE),*];
+
+        impl Kind {
+            /// Returns the stable code, by which `touchoff explain` and `docs/errors.md` know the kind.
+            pub fn code(&self) -> &'static str {
+                match self { $(Kind::$family(kind) => kind.code()),* }
+            }
+
+            /// Returns the severity of all diagnostics of this kind.
+            pub fn severity(&self) -> Severity {
+                match self { $(Kind::$family(kind) => kind.severity()),* }
+            }
+
+            /// Returns the message, in the words of the domain.
+            pub fn message(&self) -> String {
+                match self { $(Kind::$family(kind) => kind.message()),* }
+            }
+
+            /// Returns the remedy.
+            pub fn help(&self) -> String {
+                match self { $(Kind::$family(kind) => kind.help()),* }
+            }
+        }
+    };
+}
+families!(SyntaxKind, SpellingKind, ValueKind, ProfileKind, RegionKind, MountKind, CheckKind);
+
+/// Returns all rows of the table, by code.
+pub fn entries() -> impl Iterator<Item = &'static Entry> {
+    FAMILIES.iter().flat_map(|family| family.entries)
+}
+
+/// Returns the row of a code.
+pub fn entry(code: &str) -> Option<&'static Entry> {
+    entries().find(|entry| entry.code == code)
+}
+
+/// Returns the rows whose codes are most like a code that there is none of: at most three, and none if nothing is near.
+pub fn near(code: &str) -> impl Iterator<Item = &'static Entry> {
+    let edits = |entry: &Entry| strsim::damerau_levenshtein(code, entry.code);
+    let least = entries().map(edits).min().filter(|edits| *edits <= MOST_EDITS);
+    entries().filter(move |entry| Some(edits(entry)) == least).take(3)
+}

@@ -1,0 +1,155 @@
+//! What the compiler says of a tool: errors and warnings that name the place, the reason and the remedy.
+//!
+//! A [`Diagnostic`] holds data only: a [`Kind`] with a stable code, and its places. The words of all kinds stand in one
+//! table, family by family, so that rewording one changes no decision. `docs/errors.md` is generated from it.
+
+mod checks;
+mod data;
+mod escape;
+mod kind;
+mod mounts;
+mod profile;
+mod refusal;
+mod regions;
+mod spelling;
+mod syntax;
+mod table;
+mod values;
+
+pub use checks::CheckKind;
+pub use data::{
+    Chain, Expected, Figure, Links, NameRemedy, NameStart, Names, Operation, ParamRemedy, Role,
+    Statement, Subject, SurfaceRemedy, figure, nearest,
+};
+pub use escape::escaped;
+pub(crate) use escape::is_hidden;
+pub use kind::{FAMILIES, Family, Kind, entries, entry, near};
+pub use mounts::MountKind;
+pub use profile::ProfileKind;
+pub use refusal::{MOST, Refusal, Reported, any_error};
+pub(crate) use refusal::{enough, readable, without_error};
+pub use regions::RegionKind;
+pub use spelling::SpellingKind;
+pub use syntax::SyntaxKind;
+pub use table::{Entry, Example};
+pub use values::ValueKind;
+
+pub use crate::dimension::Dimension;
+use crate::source::{Source, Sources, Span};
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
+use escape::{escaped_lines, harmless};
+use std::ops::Range;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing; code is emitted all the same.
+    Warning,
+    /// Nothing is emitted.
+    Error,
+}
+
+/// An error or a warning.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// Error or warning.
+    pub severity: Severity,
+    /// The reason.
+    pub kind: Kind,
+    /// The place.
+    pub span: Span,
+    /// A second culprit with its own word.
+    pub second: Option<(Span, String)>,
+    /// Evidence for the error that this one only follows from. It is not shown then.
+    pub(crate) caused_by: Option<Reported>,
+    /// The values of params that may have caused it, as they were given.
+    pub(crate) given: Box<[String]>,
+}
+
+impl Diagnostic {
+    /// Makes a diagnostic of a place, with the severity of its kind.
+    pub fn new(span: Span, kind: impl Into<Kind>) -> Diagnostic {
+        let kind = kind.into();
+        let severity = kind.severity();
+        Diagnostic { severity, kind, span, second: None, caused_by: None, given: Box::default() }
+    }
+
+    /// Returns the code of its kind.
+    pub fn code(&self) -> &'static str {
+        self.kind.code()
+    }
+
+    /// Returns the reason, in the words of the domain.
+    pub fn message(&self) -> String {
+        self.kind.message()
+    }
+
+    /// Returns the remedy, and the values of params that may be the cause.
+    pub fn help(&self) -> String {
+        let help = self.kind.help();
+        if self.given.is_empty() {
+            return help;
+        }
+        format!("{help}; given: {}", Names(self.given.to_vec()))
+    }
+
+    /// Marks it as one that only follows from another error, which is in the list; this one is not shown.
+    #[must_use]
+    pub(crate) fn caused_by(self, cause: Reported) -> Diagnostic {
+        Diagnostic { caused_by: Some(cause), ..self }
+    }
+
+    /// Adds a second place.
+    #[must_use]
+    pub fn and(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
+        self.second = Some((span, label.into()));
+        self
+    }
+
+    /// Moves it to a text that begins at `base`.
+    pub(crate) fn behind(mut self, base: usize) -> Diagnostic {
+        self.span = self.span.behind(base);
+        self.second = self.second.map(|(span, label)| (span.behind(base), label));
+        self
+    }
+
+    /// Renders code and message, the source's line with a caret, and the remedy. `styled` adds terminal colours.
+    pub fn render(&self, sources: &Sources, styled: bool) -> String {
+        let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
+        let level = match self.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let (source, span) = sources.locate(self.span);
+        let primary = AnnotationKind::Primary.span(visible(source, span));
+        let mut snippet = excerpt(source).annotation(primary);
+        let mut elsewhere = None;
+        if let Some((span, label)) = &self.second {
+            let (other, span) = sources.locate(*span);
+            let second =
+                AnnotationKind::Context.span(visible(other, span)).label(escaped_lines(label));
+            if std::ptr::eq(other, source) {
+                snippet = snippet.annotation(second);
+            } else {
+                elsewhere = Some(excerpt(other).annotation(second));
+            }
+        }
+        let title = level.primary_title(escaped_lines(&self.message())).id(self.code());
+        let mut group: Group<'_> = title.element(snippet);
+        if let Some(elsewhere) = elsewhere {
+            group = group.element(elsewhere);
+        }
+        group = group.element(Level::HELP.message(escaped_lines(&self.help())));
+        renderer.render(&[group])
+    }
+}
+
+fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
+    Snippet::source(harmless(&source.text)).path(escaped(&source.name))
+}
+
+/// What can be shown of a place: whole characters of the text.
+fn visible(source: &Source, span: Span) -> Range<usize> {
+    let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
+    start..source.text.ceil_char_boundary(span.end.min(source.text.len())).max(start)
+}

@@ -1,0 +1,3 @@
+tol Ball {
+    units mm;
+}

@@ -1,0 +1,9 @@
+tool Ball {
+    units mm;
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+}
+
+tool Other {
+    units mm;
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+}

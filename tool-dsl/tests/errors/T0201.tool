@@ -1,0 +1,5 @@
+tool Ball {
+    units mm;
+    curve nose = hypot(d, z - 3) - 3;
+    region ball where nsoe <= 0 { depth: -nose; }
+}

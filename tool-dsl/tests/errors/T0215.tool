@@ -1,0 +1,3 @@
+tool Ball {
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+}

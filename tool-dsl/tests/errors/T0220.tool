@@ -1,0 +1,5 @@
+tool Ball {
+    units mm;
+    let r = 1e80*1e80;
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+}

@@ -1,0 +1,9 @@
+tool Pin {
+    units mm;
+    profile {
+        start (0, 0);
+        line to (3, 0) as face;
+        arc to (3, 5) center (1, 2.5) concave as side;
+        line to (0, 5) as top;
+    }
+}

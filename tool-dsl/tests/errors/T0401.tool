@@ -1,0 +1,3 @@
+tool Ball {
+    units mm;
+}

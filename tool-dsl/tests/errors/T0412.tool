@@ -1,0 +1,4 @@
+tool Ball {
+    units mm;
+    region ball where hypot(d, z - 3) <= 3 { depth: 9 - d^2 - (z - 3)^2; }
+}

@@ -1,0 +1,6 @@
+tool Ball {
+    units mm;
+    curve low = z - 3;
+    bsp { low }
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+}

@@ -1,0 +1,4 @@
+tool Mill {
+    units mm;
+    mount "T0506/pin.tool" as pin cutting;
+}

@@ -1,0 +1,5 @@
+tool Mill {
+    units mm;
+    mount "T0508/pin.tool" as pin;
+    mount "T0508/pin.tool" as holder;
+}

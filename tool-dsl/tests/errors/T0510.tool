@@ -1,0 +1,4 @@
+tool Mill {
+    units mm;
+    mount "T0510/drawing.svg" as pin;
+}

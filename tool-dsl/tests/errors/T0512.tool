@@ -1,0 +1,4 @@
+tool Mill {
+    units mm;
+    mount "../other/pin.tool" as pin;
+}

@@ -1,0 +1,4 @@
+tool Mill {
+    units mm;
+    mount "T0513/latin.tool" as pin;
+}

@@ -1,0 +1,3 @@
+tool Pin {
+    units mm; // Fräser
+}

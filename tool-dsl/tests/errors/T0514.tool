@@ -1,0 +1,4 @@
+tool Mill {
+    units mm;
+    mount "T0514/ring.tool" as pin;
+}

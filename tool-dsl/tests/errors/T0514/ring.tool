@@ -1,0 +1,4 @@
+tool Ring {
+    units mm;
+    mount "ring.tool" as ring;
+}

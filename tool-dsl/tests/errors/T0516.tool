@@ -1,0 +1,4 @@
+tool Mill {
+    units mm;
+    mount "T0516/ball.tool" as ball;
+}

@@ -1,0 +1,4 @@
+tool Part {
+    units mm;
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+}

@@ -1,0 +1,8 @@
+tool Part {
+    units mm;
+    profile {
+        start (0, 0);
+        arc to (3, 3) center (0, 3) as ball cutting;
+        line to (3, 20), (0, 20) as side;
+    }
+}

@@ -1,0 +1,5 @@
+tool Ball {
+    units mm;
+    region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }
+    region far where hypot(d, z - 3) <= 3, z >= 30 { depth: z; }
+}
