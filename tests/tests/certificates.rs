@@ -242,7 +242,7 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
             counts[region] += 1;
         }
         for (region, facts) in proved.regions.iter().enumerate() {
-            let (bound, seen) = (facts.rounding[0], worst[region]);
+            let (bound, seen) = (facts.rounding, worst[region]);
             let place = format!("{name}, {}", tool.model.regions[region].name);
             // The reference has 256 bits.
             assert!(seen <= bound + 1e-60, "{place}: {seen:e} over {bound:e}");

@@ -36,7 +36,7 @@ struct ProvedRegion<'t> {
     niceness: [f64; 2],
     falls: bool,
     /// Of depth in f64 and in f32
-    rounding: [f64; 2],
+    rounding: f64,
     /// Between the direction and the steepest way down, if it is known
     aside_degrees: Option<[f64; 2]>,
     /// The largest such angle that is certain at a point, and the point in the tool's frame

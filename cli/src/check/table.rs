@@ -31,7 +31,7 @@ pub(crate) fn write(
             range(facts.depth),
             range(facts.steepness),
             range(niceness(facts)),
-            facts.rounding[0],
+            facts.rounding,
             kind(facts),
             direction(tool, facts),
         )?;

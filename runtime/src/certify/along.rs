@@ -1,21 +1,22 @@
-//! How deep a surface is at most on a motion, proved.
+//! The questions about motions: whether a tool stays clear, and how deep a surface is at most, proved.
 //!
 //! A sweep finds some place that is too deep, or proves that there is none. So the greatest depth is bounded by
 //! asking it again and again what is deeper than the deepest that is known; that is found by climbing, in
 //! time, from a few times of the motion and from where sweeps point. A sweep goes by time, and takes long
 //! about places that are just as deep as it asks: so it is asked last, and not more closely than it pays.
 
-use super::answer::{Along, Witness};
+use super::answer::{Along, Sweep, Witness};
 use super::body::Body;
 use super::containment::{Containment, Cores};
 use super::question::Question;
 use super::rounding;
 use super::sweep::{Stop, Sweeper, Task};
 use super::triangle::course::Goal;
-use super::work::{Setting, Work};
-use super::{Certifier, penetration};
+use super::work::{MARGIN, Setting, Work};
+use super::{Certifier, Touch, penetration};
 use crate::motion::Motion;
 use crate::tool::{Card, Shape};
+use std::slice;
 
 /// Returns the error bound of a point of the tool on a motion, in the tool's unit: `rounding` derives it.
 pub(super) fn error(setting: &Setting<'_>, motion: &Motion) -> f64 {
@@ -44,6 +45,92 @@ const PART: u32 = 16;
 const SHORTEST: f64 = 1e-12;
 
 impl Certifier<'_> {
+    /// Whether the tool stays clear of the part all along a motion, or no deeper in it than is
+    /// [allowed](Certifier::allow) by more than a tolerance, in the part's unit; one below what rounding
+    /// adds is taken as that.
+    ///
+    /// Undecided are a solid without an axis on a motion without [spin](Motion::with_spin), and tools and parts larger
+    /// than some 1e15 of the tool's unit.
+    ///
+    /// ```
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::certify::{Certifier, Facets, Sweep};
+    /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
+    /// touchoff::tool! {
+    ///     tool EndMill "12 mm across, 20 mm of it cut" {
+    ///         units mm;
+    ///         profile {
+    ///             start (0, 0);
+    ///             line to (6, 0) as face cutting;
+    ///             line to (6, 20) as flute cutting;
+    ///             line to (6, 60), (0, 60) as shank;
+    ///         }
+    ///         niceness cutting: 1;
+    ///     }
+    /// }
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let (low, high) = (Point3::new(0., -30., 0.), Point3::new(40., 30., 25.));
+    /// let wall = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    /// let pose = |y: f64, z: f64| Pose::from_axis(Point3::new(-4.0, y, z), Vector3::z());
+    /// let mut certifier = Certifier::new(&wall, &EndMill)?
+    ///     .allow("face", f64::INFINITY)?
+    ///     .allow("flute", f64::INFINITY)?;
+    /// // The flute cuts 2 mm into the wall, as high as that is; lower, the shank would rub.
+    /// let cut = Motion::new(&pose(-20.0, 6.0)?, &pose(20.0, 6.0)?)?;
+    /// assert_eq!(certifier.sweep_clear(&cut, 1e-6), Sweep::Clear);
+    /// let lower = Motion::new(&pose(-20.0, 6.0)?, &pose(20.0, 4.0)?)?;
+    /// assert!(matches!(certifier.sweep_clear(&lower, 1e-6), Sweep::Touching(at, _) if at >= 0.5));
+    /// # Ok(()) }
+    /// ```
+    pub fn sweep_clear(&mut self, motion: &Motion, tolerance: f64) -> Sweep {
+        if !places(self.card, motion) || self.setting.margin() > MARGIN {
+            return Sweep::Undecided(0.0);
+        }
+        let Certifier { setting, card, whole, rules, cores, budget, sweeper, .. } = self;
+        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
+        let error = self::error(setting, motion);
+        // Written so that what is not a number is no tolerance.
+        let tolerance = (16.0 * error).max(tolerance / setting.length);
+        let mut first: Option<Stop> = None;
+        // A margin that is no more than the tolerance asks for nothing.
+        for question in
+            rules.iter().filter(|rule| rule.limit >= 0.0 || rule.limit + tolerance < 0.0)
+        {
+            let limit = question.limit;
+            let task = Task { setting, question, motion, limit, error, tolerance };
+            let stop = sweeper.run(&task, *budget);
+            first = match (first, stop) {
+                (Some(first), Some(stop)) if stop.before(&first) => Some(stop),
+                (first, stop) => first.or(stop),
+            };
+        }
+        match first {
+            Some(Stop::Deeper { at, best }) => {
+                Sweep::Touching(at, setting.witness(&best, &motion.pose(at)))
+            }
+            Some(Stop::Spent { at }) => self.touches_from(motion, at),
+            None => match setting.containment((card, cores), &motion.pose(0.0), tolerance) {
+                Containment::Inside(surface) => Sweep::Inside(surface),
+                Containment::Outside => Sweep::Clear,
+                Containment::Unknown => Sweep::SurfaceOnly,
+                Containment::Undecided => Sweep::Undecided(0.0),
+            },
+        }
+    }
+
+    /// Looks for contact at some times of a motion after the one at which the budget was spent. Just before contact a sweep
+    /// takes the longest, and deep contact is found at once.
+    fn touches_from(&mut self, motion: &Motion, from: f64) -> Sweep {
+        for step in 1..=TIMES {
+            let at = from + (1.0 - from) * f64::from(step) / f64::from(TIMES);
+            if let Touch::Yes(witness) = self.touches(&motion.pose(at)) {
+                return Sweep::Touching(at, witness);
+            }
+        }
+        Sweep::Undecided(from)
+    }
+
     /// How deep a surface, by its place in the card's list, gets all along a motion where it is the nearest:
     /// whether deeper than it may be by more than a tolerance, where it is deepest as far as was found, and how
     /// deep at most. Both are in the part's unit; a tolerance below what rounding adds is taken as that. Below

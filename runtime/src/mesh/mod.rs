@@ -13,6 +13,7 @@ pub mod shapes;
 mod stl;
 mod stray;
 mod survey;
+mod topology;
 mod words;
 
 use std::collections::HashMap;
@@ -29,7 +30,7 @@ pub use read::{Shape, ShapeError};
 pub use stl::StlError;
 pub use stray::Stray;
 pub use survey::Survey;
-pub(crate) use survey::inverted;
+pub(crate) use topology::inverted;
 pub use words::Place;
 
 /// The largest coordinate a mesh may have, of either sign. Up to here areas and volumes, which

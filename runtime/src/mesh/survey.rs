@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use super::topology::{Edges, shells};
 use super::{Mesh, Sum, area_and_normal};
 use crate::unit::Unit;
 
@@ -200,125 +201,6 @@ impl fmt::Display for Survey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.findings().join("\n"))
     }
-}
-
-struct Edges {
-    open: usize,
-    crossed: usize,
-    shared: usize,
-}
-
-impl Edges {
-    /// Counts edges by sorting: all uses of an edge are put into a bucket by its lower vertex,
-    /// and each bucket, which holds a handful, is sorted by the higher one.
-    fn of(mesh: &Mesh) -> Edges {
-        let mut starts = vec![0usize; mesh.vertices().len() + 1];
-        for [from, to] in edge_uses(mesh) {
-            starts[from.min(to) as usize + 1] += 1;
-        }
-        for vertex in 1..starts.len() {
-            starts[vertex] += starts[vertex - 1];
-        }
-        let mut uses = vec![0u64; starts[starts.len() - 1]];
-        let mut free = starts.clone();
-        for [from, to] in edge_uses(mesh) {
-            let place = &mut free[from.min(to) as usize];
-            uses[*place] = u64::from(from.max(to)) << 1 | u64::from(from < to);
-            *place += 1;
-        }
-        let mut edges = Edges { open: 0, crossed: 0, shared: 0 };
-        for bucket in starts.windows(2) {
-            let bucket = &mut uses[bucket[0]..bucket[1]];
-            bucket.sort_unstable();
-            for edge in bucket.chunk_by(|a, b| a >> 1 == b >> 1) {
-                let upward = edge.iter().filter(|&&one| one & 1 == 1).count();
-                edges.open += usize::from(edge.len() % 2 == 1);
-                edges.crossed += usize::from(edge.len() % 2 == 0 && 2 * upward != edge.len());
-                edges.shared += usize::from(edge.len() > 2);
-            }
-        }
-        edges
-    }
-}
-
-/// The directed edges of all triangles but those that name a vertex twice: these have collapsed
-/// into an edge or a point, and what they would add cancels.
-fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
-    let whole = |[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
-    mesh.triangles().iter().filter(whole).flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-}
-
-/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece goes on across
-/// edges of two triangles only, so that pieces which touch in a vertex or along an edge are told apart.
-pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
-    let [low, high] = mesh.bounds();
-    let origin = nalgebra::center(&low, &high);
-    let mut parent: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
-    let mut uses: Vec<([u32; 2], u32)> = (0..)
-        .zip(mesh.triangles())
-        .flat_map(|(id, [a, b, c])| {
-            [[a, b], [b, c], [c, a]].map(|[x, y]| ([*x.min(y), *x.max(y)], id))
-        })
-        .collect();
-    uses.sort_unstable();
-    for edge in uses.chunk_by(|a, b| a.0 == b.0) {
-        if let [(_, one), (_, other)] = edge {
-            let [one, other] = [one, other].map(|id| root(&mut parent, *id));
-            parent[one.max(other) as usize] = one.min(other);
-        }
-    }
-    let mut volumes = vec![0.0; parent.len()];
-    for (id, corners) in (0..).zip(mesh.corners()) {
-        if let Some((share, normal)) = area_and_normal(&corners) {
-            let piece = root(&mut parent, id) as usize;
-            volumes[piece] += normal.dot(&(corners[0] - origin)) * share / 3.0;
-        }
-    }
-    (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
-}
-
-/// The shell of each vertex and how many there are, by union and find. A vertex that no triangle
-/// uses is in none, and its entry says nothing.
-fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
-    const UNUSED: u32 = u32::MAX;
-    let mut parent = vec![UNUSED; mesh.vertices().len()];
-    for triangle in mesh.triangles() {
-        for &vertex in triangle {
-            if parent[vertex as usize] == UNUSED {
-                parent[vertex as usize] = vertex;
-            }
-        }
-        let [a, b, c] = triangle.map(|vertex| root(&mut parent, vertex));
-        let least = a.min(b).min(c);
-        for vertex in [a, b, c] {
-            parent[vertex as usize] = least;
-        }
-    }
-    // A root is the lowest vertex of its shell, so it is numbered before the others.
-    let mut count = 0;
-    let mut shell_of = vec![0; parent.len()];
-    for vertex in 0..parent.len() {
-        if parent[vertex] == UNUSED {
-            continue;
-        }
-        let top = root(&mut parent, vertex as u32) as usize;
-        if top == vertex {
-            shell_of[vertex] = count;
-            count += 1;
-        } else {
-            shell_of[vertex] = shell_of[top];
-        }
-    }
-    (shell_of, count as usize)
-}
-
-fn root(parent: &mut [u32], mut vertex: u32) -> u32 {
-    while parent[vertex as usize] != vertex {
-        let above = parent[vertex as usize];
-        parent[vertex as usize] = parent[above as usize];
-        vertex = above;
-    }
-    vertex
 }
 
 /// `1 open edge`, `52,872 triangles`.

@@ -40,10 +40,8 @@ pub struct Depth {
     /// `L`: no depth is more than `L` times the distance to the surface, and depth changes by no more
     /// than `L` times the way. `None` if none is proved.
     pub lipschitz: Option<f64>,
-    /// How far rounding can take a computed depth from the true one of its region, in the file's unit.
+    /// A bound of the error of a computed depth against the true one of its region, in the file's unit.
     pub rounding: f64,
-    /// The same of one computed in `f32`, of a point given in `f32`.
-    pub rounding_single: f64,
 }
 
 /// Whether a tool looks the same however it is turned about z.

@@ -110,7 +110,7 @@ fn card(tool: &CheckedTool) -> Card {
         outline: model.outline().map(piece).collect(),
         depth: {
             let Bounds { least, lipschitz, rounding } = tool.bounds();
-            Depth { least, lipschitz, rounding: rounding[0], rounding_single: rounding[1] }
+            Depth { least, lipschitz, rounding }
         },
         digest: digest(tool),
     }

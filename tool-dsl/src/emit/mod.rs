@@ -1,6 +1,7 @@
 //! A checked tool to Rust: straight-line code without loops, recursion, tables or panics, in two
 //! forms of one plan. Emitting cannot fail, since everything is found before it.
 
+mod branches;
 mod code;
 mod dot;
 mod felt;
@@ -177,7 +178,7 @@ fn card(tool: &CheckedTool) -> TokenStream {
         }
     });
     let digest = Literal::u64_suffixed(digest(tool));
-    let [rounding, single] = tool.bounds().rounding.map(literal);
+    let rounding = literal(tool.bounds().rounding);
     let [least, lipschitz] =
         [tool.bounds().least, tool.bounds().lipschitz].map(|bound| match bound {
             Some(bound) => {
@@ -207,7 +208,7 @@ fn card(tool: &CheckedTool) -> TokenStream {
                 ::touchoff::Unit::#unit,
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
-                (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding, rounding_single: #single }),
+                (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
                 #digest,
             );
             &CARD

@@ -104,9 +104,8 @@ pub struct RegionFacts {
     /// Whether the direction is across an axis that the region touches, and so turns there by up to a
     /// half turn.
     pub on_axis: bool,
-    /// How far rounding can take the computed depth from its expression's true value, in the file's
-    /// unit: of `f64`, and of `f32`, each of a point that is given in that format.
-    pub rounding: [f64; 2],
+    /// A bound of the error of the computed depth against its expression's true value, in the file's unit.
+    pub rounding: f64,
 }
 
 impl RegionFacts {
@@ -123,7 +122,7 @@ impl RegionFacts {
         rises: None,
         singular: Vec::new(),
         on_axis: false,
-        rounding: [0.0; 2],
+        rounding: 0.0,
     };
 }
 
@@ -188,9 +187,9 @@ pub struct Bounds {
     pub least: Option<f64>,
     /// See [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
-    /// How far a computed depth, of `f64` and of `f32`, can be from one for which these bounds hold, in the file's
-    /// unit: by rounding, and by [`Certificate::slack`].
-    pub rounding: [f64; 2],
+    /// A bound of the distance of a computed depth from one for which these bounds hold, in the file's unit: rounding, and
+    /// [`Certificate::slack`].
+    pub rounding: f64,
 }
 
 impl Bounds {
@@ -213,7 +212,7 @@ impl Bounds {
             return (exact, diagnostics);
         }
         let [least, lipschitz] = [proved.least(), proved.lipschitz()];
-        let rounding = rounding.map(|rounding| rounding + proved.slack);
+        let rounding = rounding + proved.slack;
         (Bounds { least, lipschitz, rounding }, diagnostics)
     }
 }

@@ -3,8 +3,8 @@
 //! boxes.
 //!
 //! Let `u` be the unit roundoff, and let operands `a` and `b` err by `e u` and `f u`. Computed operands are at most `|a| + e u`
-//! and at least `|b| - f u`. A value that may be larger than the format's largest has no bound. Only underflow is left out,
-//! which adds less than 1e-38 of `f32` to an operation (1e-308 of `f64`):
+//! and at least `|b| - f u`. A value that may be larger than the largest double has no bound. Only underflow is left out,
+//! which adds less than 1e-308 to an operation:
 //!
 //! | operation | brings, in `u` | own rounding, in `u` |
 //! |---|---|---|
@@ -24,35 +24,30 @@ use crate::expr::{Coord, Graph, Id, Node};
 use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
-/// The unit roundoff of `f64` and of `f32`.
-const UNITS: [f64; 2] = [1.110_223_024_625_156_5e-16, 5.960_464_477_539_063e-8];
-/// The largest number of `f64` and of `f32`.
-const LARGEST: [f64; 2] = [f64::MAX, f32::MAX as f64];
+/// The unit roundoff.
+const UNIT: f64 = f64::EPSILON / 2.0;
 /// Covers the rounding of the error bounds themselves. No operation takes more than 16 roundings of positive terms beside those of an
 /// operand each, which lose half of this each at most.
 const KEPT: f64 = 1.0 + 16.0 * f64::EPSILON;
 
-/// A value over a box, and its error in unit roundoffs of `f64` and of `f32`.
+/// A value over a box, and its error in unit roundoffs.
 #[derive(Clone, Copy)]
 struct Rounded {
     value: Interval,
-    error: [f64; 2],
+    error: f64,
 }
 
-/// How far rounding can take any region's computed depth, of `f64` and of `f32`, from its true value, over
-/// the whole of a tool's box.
-pub(super) fn over(tool: &PlannedTool) -> [f64; 2] {
+/// Returns a bound of the error of any region's computed depth over the whole of a tool's box.
+pub(super) fn over(tool: &PlannedTool) -> f64 {
     let model = &tool.model;
     let depths = || model.regions.iter().map(|region| region.depth);
     let mut errors = Errors::new(&model.graph, model.domain, depths());
     let cell = tool.extent.cell();
-    depths()
-        .map(|depth| errors.over(depth, &cell))
-        .fold([0.0; 2], |most, error| [most[0].max(error[0]), most[1].max(error[1])])
+    depths().map(|depth| errors.over(depth, &cell)).fold(0.0, f64::max)
 }
 
 /// Errors of chosen nodes of a graph over one box after another. The coordinates x, y and z of a
-/// point are given without error in either format.
+/// point are given without error.
 pub(super) struct Errors<'g> {
     graph: &'g Graph,
     domain: Domain,
@@ -67,84 +62,67 @@ impl<'g> Errors<'g> {
         roots: impl IntoIterator<Item = Id>,
     ) -> Errors<'g> {
         let needed = roots.into_iter().map(|root| (root, graph.needed([root]))).collect();
-        let unknown = Rounded { value: EVERYTHING, error: [f64::INFINITY; 2] };
+        let unknown = Rounded { value: EVERYTHING, error: f64::INFINITY };
         Errors { graph, domain, needed, values: vec![unknown; graph.nodes().len()] }
     }
 
-    /// The largest error of a node over a box, computed in `f64` and in `f32`.
-    pub(super) fn over(&mut self, root: Id, cell: &Cell) -> [f64; 2] {
+    /// Returns a bound of the error of a node over a box.
+    pub(super) fn over(&mut self, root: Id, cell: &Cell) -> f64 {
         for &id in self.needed.get(&root).into_iter().flatten() {
             let Rounded { value, error } = self.node(id, cell);
-            let error = [0, 1].map(|format| {
-                let error = error[format] * KEPT;
-                let computed = value.abs().high + error * UNITS[format];
-                if computed <= LARGEST[format] { error } else { f64::INFINITY }
-            });
+            let error = error * KEPT;
+            let computed = value.abs().high + error * UNIT;
+            let error = if computed <= f64::MAX { error } else { f64::INFINITY };
             self.values[id.index()] = Rounded { value, error };
         }
-        let error = self.values[root.index()].error;
-        [0, 1].map(|format| error[format] * UNITS[format] * KEPT)
+        self.values[root.index()].error * UNIT * KEPT
     }
 
     fn node(&self, id: Id, cell: &Cell) -> Rounded {
         let v = |id: &Id| self.values[id.index()];
         let size = |value: Interval| value.abs().high;
         // An operation's own rounding, on what its operands bring.
-        let rounded = |value: Interval, brought: [f64; 2]| Rounded {
+        let rounded = |value: Interval, brought: f64| Rounded {
             value,
-            error: [0, 1].map(|k| brought[k] + (size(value) + brought[k] * UNITS[k])),
-        };
-        let both = |a: Rounded, b: Rounded, of: &dyn Fn(f64, f64, f64) -> f64| {
-            [0, 1].map(|k| of(a.error[k], b.error[k], UNITS[k]))
+            error: brought + (size(value) + brought * UNIT),
         };
         match self.graph.node(id) {
             Node::Const(number) => {
                 let value = Interval::about(number);
-                let near = number.to_f64();
-                let wide = if value.low == value.high { 0.0 } else { near.abs() };
-                // Rounded twice, to `f64` and to `f32`.
-                let twice = near.abs() * (1.0 + 2.0 * UNITS[0] / UNITS[1]);
-                let narrow =
-                    if wide == 0.0 && f64::from(near as f32) == near { 0.0 } else { twice };
-                Rounded { value, error: [wide, narrow] }
+                let exact = value.low == value.high;
+                Rounded { value, error: if exact { 0.0 } else { number.to_f64().abs() } }
             }
             Node::Coord(coord) => self.coordinate(*coord, cell),
             Node::Neg(a) => Rounded { value: v(a).value.negated(), ..v(a) },
             Node::Abs(a) => Rounded { value: v(a).value.abs(), ..v(a) },
             Node::Add(a, b) => {
                 let (a, b) = (v(a), v(b));
-                rounded(a.value.plus(b.value), both(a, b, &|e, f, _| e + f))
+                rounded(a.value.plus(b.value), a.error + b.error)
             }
             Node::Sub(a, b) => {
                 let (a, b) = (v(a), v(b));
-                rounded(a.value.plus(b.value.negated()), both(a, b, &|e, f, _| e + f))
+                rounded(a.value.plus(b.value.negated()), a.error + b.error)
             }
             Node::Mul(a, b) => {
                 let value = if a == b { v(a).value.square() } else { v(a).value.times(v(b).value) };
                 let (a, b) = (v(a), v(b));
-                let brought = both(a, b, &|e, f, unit| {
-                    let first = product(e, size(b.value)) + product(f, size(a.value));
-                    first + product(e, product(f, unit))
-                });
+                let first = product(a.error, size(b.value)) + product(b.error, size(a.value));
+                let brought = first + product(a.error, product(b.error, UNIT));
                 let exact = [a.value, b.value].iter().any(|factor| is_power_of_two(*factor));
                 if exact { Rounded { value, error: brought } } else { rounded(value, brought) }
             }
             Node::Div(a, b) | Node::Quotient(a, b) => {
                 let (a, b) = (v(a), v(b));
                 let value = a.value.times(b.value.reciprocal());
-                let least = b.value.abs().low;
-                let brought = both(a, b, &|e, f, unit| {
-                    let least = least - f * unit;
-                    let more = e + product(f, size(value));
-                    if least > 0.0 { more / least } else { f64::INFINITY }
-                });
-                rounded(value, brought)
+                let least = b.value.abs().low - b.error * UNIT;
+                let more = a.error + product(b.error, size(value));
+                rounded(value, if least > 0.0 { more / least } else { f64::INFINITY })
             }
             Node::Min(a, b) | Node::Max(a, b) => {
                 let smaller = matches!(self.graph.node(id), Node::Min(..));
                 let (a, b) = (v(a), v(b));
                 let value = if smaller { a.value.min(b.value) } else { a.value.max(b.value) };
-                Rounded { value, error: both(a, b, &|e, f, _| e.max(f)) }
+                Rounded { value, error: a.error.max(b.error) }
             }
             Node::Sqrt(a) => {
                 if let Some(parts) = self.graph.squares_of(*a) {
@@ -152,7 +130,7 @@ impl<'g> Errors<'g> {
                     let axis = || {
                         let value = cell.radius();
                         // Two roundings below the root are one of it.
-                        Rounded { value, error: [value.abs().high; 2] }
+                        Rounded { value, error: value.abs().high }
                     };
                     let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
                     let parts: Vec<Rounded> = parts.iter().map(part).collect();
@@ -160,23 +138,22 @@ impl<'g> Errors<'g> {
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();
                     // Squares and their sums are each right to one unit of themselves.
-                    let error = [0, 1].map(|k| {
-                        let brought = parts.iter().map(|part| part.error[k] * part.error[k]);
-                        let brought = brought.sum::<f64>().sqrt();
-                        let own = gamma(parts.len() as f64 / 2.0 + 1.0, UNITS[k]);
-                        brought + own * (size(value) + brought * UNITS[k])
-                    });
+                    let brought = parts.iter().map(|part| part.error * part.error);
+                    let brought = brought.sum::<f64>().sqrt();
+                    let own = gamma(parts.len() as f64 / 2.0 + 1.0);
+                    let error = brought + own * (size(value) + brought * UNIT);
                     return Rounded { value, error };
                 }
                 let a = v(a);
                 let value = a.value.sqrt();
-                let brought = |k: usize| match a.error[k] {
+                let least = a.value.low - a.error * UNIT;
+                let brought = match a.error {
                     0.0 => 0.0,
-                    error => error / (value.low + (a.value.low - error * UNITS[k]).max(0.0).sqrt()),
+                    // What may be computed to be below 0 may have no root.
+                    _ if least < 0.0 => f64::INFINITY,
+                    error => error / (value.low + least.sqrt()),
                 };
-                // What may be computed to be below 0 may have no root.
-                let lost = |k: usize| a.error[k] * UNITS[k] > a.value.low;
-                rounded(value, [0, 1].map(|k| if lost(k) { f64::INFINITY } else { brought(k) }))
+                rounded(value, brought)
             }
             Node::Select { low, high, then, other } => {
                 let (low, high) = (v(low).value, v(high).value);
@@ -184,38 +161,32 @@ impl<'g> Errors<'g> {
                     (true, _) => v(then),
                     (_, true) => v(other),
                     // Rounding may take the other side.
-                    _ => Rounded {
-                        value: v(then).value.hull(v(other).value),
-                        error: [f64::INFINITY; 2],
-                    },
+                    _ => {
+                        Rounded { value: v(then).value.hull(v(other).value), error: f64::INFINITY }
+                    }
                 }
             }
         }
     }
 
     fn coordinate(&self, coord: Coord, cell: &Cell) -> Rounded {
-        let given = |axis: usize| Rounded { value: cell.sides[axis], error: [0.0; 2] };
+        let given = |axis: usize| Rounded { value: cell.sides[axis], error: 0.0 };
         // Of x² + y² every operation rounds once; the root halves their error and adds its own.
-        let twice = |value: Interval| Rounded {
-            value,
-            error: UNITS.map(|unit| gamma(2.0, unit) * value.abs().high),
-        };
+        let twice = |value: Interval| Rounded { value, error: gamma(2.0) * value.abs().high };
         match coord {
             Coord::X if self.domain == Domain::Space => given(0),
             Coord::Y => given(1),
             Coord::Z => given(2),
             Coord::X | Coord::D => twice(cell.radius()),
             Coord::Q => twice(cell.squared_radius()),
-            Coord::Length | Coord::PerLength => {
-                Rounded { value: EVERYTHING, error: [f64::INFINITY; 2] }
-            }
+            Coord::Length | Coord::PerLength => Rounded { value: EVERYTHING, error: f64::INFINITY },
         }
     }
 }
 
 /// What so many roundings take from 1 or add to it at most, in unit roundoffs.
-fn gamma(count: f64, unit: f64) -> f64 {
-    count / (1.0 - count * unit)
+fn gamma(count: f64) -> f64 {
+    count / (1.0 - count * UNIT)
 }
 
 /// An error times a size, 0 if there is no error.
@@ -234,7 +205,7 @@ mod tests {
     use crate::number::Number;
 
     /// On the circle `d = 1` only the product of both factors' errors is left of `(d - 1)²`. A quotient by what may be
-    /// computed to be 0 may be anything, and so may a number that `f32` does not have.
+    /// computed to be 0 may be anything, and so may a number larger than all doubles.
     #[test]
     fn products_of_errors_count() {
         let mut graph = Graph::default();
@@ -245,17 +216,15 @@ mod tests {
         let quotient = graph.quotient(one, off);
         let mut errors = Errors::new(&graph, Domain::HalfPlane, [square, quotient]);
         let circle = Cell::half_plane(Interval::new(1.0, 1.0), ZERO);
-        let found = errors.over(square, &circle);
-        for (bound, unit) in found.into_iter().zip(UNITS) {
-            // `d` is computed to two units.
-            let most = (2.0 * unit) * (2.0 * unit);
-            assert!((most..2.0 * most).contains(&bound), "{bound:e}");
-        }
+        // `d` is computed to two units.
+        let most = (2.0 * UNIT) * (2.0 * UNIT);
+        let bound = errors.over(square, &circle);
+        assert!((most..2.0 * most).contains(&bound), "{bound:e}");
         let low = 1.0 + f64::EPSILON;
         let beside = Cell::half_plane(Interval::new(low, 1.5), ZERO);
-        assert_eq!(errors.over(quotient, &beside)[1], f64::INFINITY);
-        let far = Cell::half_plane(Interval::new(1e20, 1e20), ZERO);
-        let [double, single] = errors.over(square, &far);
-        assert!(double < 1e25 && single == f64::INFINITY, "{double:e}, {single:e}");
+        assert_eq!(errors.over(quotient, &beside), f64::INFINITY);
+        let far = |at: f64| Cell::half_plane(Interval::new(at, at), ZERO);
+        assert!(errors.over(square, &far(1e20)) < 1e25);
+        assert_eq!(errors.over(square, &far(1e160)), f64::INFINITY);
     }
 }

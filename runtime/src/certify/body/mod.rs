@@ -6,6 +6,7 @@ mod enclosed;
 pub(crate) mod feature;
 pub(crate) mod field;
 pub(crate) mod interior;
+mod offset;
 pub(crate) mod owners;
 pub(crate) mod section;
 
