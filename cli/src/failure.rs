@@ -8,6 +8,11 @@ use touchoff::{CloudError, ProgramError};
 pub(crate) const INTERRUPTED: u8 = 130;
 
 impl Failure {
+    /// Returns whether the words are those of the compiler, which begin with their severity.
+    pub(crate) fn is_rendered(&self) -> bool {
+        matches!(self, Failure::Tool(ToolError::Wrong(_)))
+    }
+
     /// The exit status: 2 where the options are wrong or an input cannot be taken as what was asked for, 1 for all
     /// else.
     pub(crate) fn status(&self) -> u8 {

@@ -66,10 +66,8 @@ fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
     match done {
         Ok(code) => code,
         Err(failure) => {
-            // A report of the compiler begins with its severity.
-            let words = failure.to_string();
-            let severity = if words.starts_with("error[") { "" } else { "error: " };
-            say!("{severity}{words}");
+            let severity = if failure.is_rendered() { "" } else { "error: " };
+            say!("{severity}{failure}");
             ExitCode::from(failure.status().max(failed))
         }
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 const POSES: usize = 2_000;
 const BLOCK: usize = 25;
 const PASSES: usize = 7;
-/// How closely depth is proved, mm.
+/// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-6;
 const QUESTIONS: [&str; 4] = ["wrench", "detect", "certified depth", "sweep"];
 const SCENES: [&str; 4] = ["outside", "inside", "hold", "apart"];

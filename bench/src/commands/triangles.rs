@@ -16,9 +16,9 @@ use touchoff_bench::peers::parry_contact::ParryContact;
 use touchoff_bench::race::clock::{self, Times};
 use touchoff_bench::race::contender::{Answer, Contender};
 
-/// How closely depth is proved, mm.
+/// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-9;
-/// How deep tools are in the scenes where many triangles are as deep, mm.
+/// Depth of tools in the scenes where many triangles are as deep, mm.
 const TIED: f64 = 0.1;
 
 /// Methods that say no depth.
@@ -152,7 +152,7 @@ impl Contender for Certified<'_> {
     }
 }
 
-/// Whether it is clear.
+/// The verdict of a pose.
 struct Cleared<'a>(Certifier<'a>);
 
 impl Contender for Cleared<'_> {
@@ -166,7 +166,7 @@ impl Contender for Cleared<'_> {
     }
 }
 
-/// Whether it stays clear on a way of a tool's radius: along the wall, in half of the poses swung by a
+/// The verdict of a way of a tool's radius: along the wall, in half of the poses swung by a
 /// tenth of a radian the while.
 struct Swept<'a>(Certifier<'a>);
 
@@ -245,7 +245,7 @@ fn row(
         times.average() / 1e3,
         time(times.longest()),
         times.cpu() / 1e3,
-        times.colliding().0,
+        times.colliding(),
         error.map_or("-".into(), |error| format!("{error:.0e}")),
     )
 }

@@ -7,9 +7,9 @@
 
 use super::formula;
 use super::points::{Point, points};
-use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
+use crate::race::contender::{Answer, Contender, Sums, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
-use touchoff::Pose;
+use touchoff::{Cloud, Pose};
 
 /// Every point in `f64`, with branches.
 pub struct Scalar {
@@ -20,8 +20,8 @@ pub struct Scalar {
 
 impl Scalar {
     /// Of a part's points.
-    pub fn new(piece: &Workpiece) -> Scalar {
-        let points = points(&piece.cloud);
+    pub fn new(cloud: &Cloud) -> Scalar {
+        let points = points(cloud);
         Scalar { at: points.iter().map(|point| point.at).collect(), points }
     }
 }
@@ -60,8 +60,8 @@ pub struct Lanes {
 
 impl Lanes {
     /// Of a part's points.
-    pub fn new(piece: &Workpiece) -> Lanes {
-        let points = points(&piece.cloud);
+    pub fn new(cloud: &Cloud) -> Lanes {
+        let points = points(cloud);
         let room = points.len().next_multiple_of(WIDTH);
         let at = [0, 1, 2].map(|axis| {
             let mut list: Vec<f32> = points.iter().map(|point| point.at[axis] as f32).collect();

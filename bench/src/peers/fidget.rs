@@ -8,13 +8,13 @@
 //! longer than all points together.
 
 use super::points::{Bounds, Tree};
-use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
+use crate::race::contender::{Answer, Contender, Sums, View};
 use fidget::context::Tree as Formula;
 use fidget::eval::{BulkEvaluator, Function, MathFunction, Tape, TracingEvaluator};
 use fidget::jit::{JitFloatSliceEval, JitFunction, JitGradSliceEval, JitIntervalEval};
 use fidget::types::{Grad, Interval};
 use fidget::var::Var;
-use touchoff::Pose;
+use touchoff::{Cloud, Pose};
 
 /// Points of a leaf, tried from 16 to 128 at 20,000 points.
 const LEAF: usize = 32;
@@ -45,7 +45,7 @@ impl Fidget {
     ///
     /// # Panics
     /// Never: the formula has all three coordinates.
-    pub fn new(piece: &Workpiece) -> Fidget {
+    pub fn new(cloud: &Cloud) -> Fidget {
         let mut context = fidget::Context::new();
         let node = context.import(&magnitude());
         let function = JitFunction::new(&context, &[node]).expect("a formula of x, y and z");
@@ -54,7 +54,7 @@ impl Fidget {
         let slopes = function.grad_slice_tape(Default::default());
         let (a, b, c) = (places(&interval), places(&values), places(&slopes));
         Fidget {
-            tree: Tree::new(&piece.cloud, LEAF, |bounds, _| bounds),
+            tree: Tree::new(cloud, LEAF, |bounds, _| bounds),
             interval: (JitIntervalEval::default(), interval, a),
             values: (JitFloatSliceEval::default(), values, b),
             slopes: (JitGradSliceEval::default(), slopes, c),

@@ -6,12 +6,12 @@
 
 use super::formula;
 use super::points::{Bounds, Point, order, points};
-use crate::race::contender::{Answer, Contender, Sums, View, Workpiece};
+use crate::race::contender::{Answer, Contender, Sums, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Vector;
 use parry3d::partitioning::{Bvh, BvhBuildStrategy};
-use touchoff::Pose;
+use touchoff::{Cloud, Pose};
 
 const BLOCK: usize = 64;
 const WIDTH: usize = 16;
@@ -33,8 +33,8 @@ pub struct ParryBvh {
 
 impl ParryBvh {
     /// Of a part's points.
-    pub fn new(piece: &Workpiece) -> ParryBvh {
-        let mut points = points(&piece.cloud);
+    pub fn new(cloud: &Cloud) -> ParryBvh {
+        let mut points = points(cloud);
         order(&mut points, BLOCK);
         let boxes: Vec<Aabb> = points
             .chunks(BLOCK)

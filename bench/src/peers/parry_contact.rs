@@ -64,8 +64,4 @@ impl Contender for ParryContact {
         let depth = found.map_or(0.0, |contact| -f64::from(contact.dist)).max(0.0);
         Answer { colliding: usize::from(found.is_some()), depth, wrench: None }
     }
-
-    fn feels_triangles(&self) -> bool {
-        true
-    }
 }

@@ -10,8 +10,8 @@
 
 use super::formula;
 use super::points::{Point, points};
-use crate::race::contender::{Answer, Contender, Sums, View, Workpiece, dot};
-use touchoff::Pose;
+use crate::race::contender::{Answer, Contender, Sums, View, dot};
+use touchoff::{Cloud, Pose};
 
 /// Most points of a leaf, tried from 4 to 32 at 20,000 points.
 const LEAF: usize = 16;
@@ -201,8 +201,8 @@ pub struct Thesis(Box<Node>);
 
 impl Thesis {
     /// Of a part's points.
-    pub fn new(piece: &Workpiece) -> Thesis {
-        Thesis(build(&mut points(&piece.cloud)))
+    pub fn new(cloud: &Cloud) -> Thesis {
+        Thesis(build(&mut points(cloud)))
     }
 }
 

@@ -26,7 +26,6 @@ pub struct Times {
     /// Odd blocks: every query, ns.
     single: Vec<u64>,
     colliding: usize,
-    most: usize,
 }
 
 impl Times {
@@ -57,14 +56,13 @@ impl Times {
         self.single.last().copied()
     }
 
-    /// Points inside, on average and most.
-    pub fn colliding(&self) -> (f64, usize) {
-        (self.colliding as f64 / self.poses().max(1) as f64, self.most)
+    /// Returns the average number of points inside.
+    pub fn colliding(&self) -> f64 {
+        self.colliding as f64 / self.poses().max(1) as f64
     }
 
     fn count(&mut self, answer: &Answer) {
         self.colliding += answer.colliding;
-        self.most = self.most.max(answer.colliding);
     }
 }
 
@@ -113,7 +111,6 @@ fn round(method: &mut dyn Contender, poses: &[Pose], together: bool, times: &mut
     times.cpu += cpu.elapsed();
     times.together += poses.len();
     times.colliding += counts.colliding;
-    times.most = times.most.max(counts.most);
 }
 
 /// Of how many pairs of blocks a method gets one.

@@ -1,7 +1,7 @@
 //! What every method has in common: it is asked at a pose and answers.
 
 use nalgebra::{Matrix3, Vector3};
-use touchoff::{Cloud, Mesh, Part, Pose};
+use touchoff::Pose;
 
 /// A method, ready to be asked at one pose after another.
 pub trait Contender {
@@ -10,11 +10,6 @@ pub trait Contender {
 
     /// What the tool feels at a pose.
     fn query(&mut self, pose: &Pose) -> Answer;
-
-    /// Whether it feels the part's triangles rather than its points.
-    fn feels_triangles(&self) -> bool {
-        false
-    }
 }
 
 /// What a method found. Force and torque about the tip are on the tool, in the world's frame, by
@@ -27,16 +22,6 @@ pub struct Answer {
     pub depth: f64,
     /// Force and torque, if the method has any.
     pub wrench: Option<[Vector3<f64>; 2]>,
-}
-
-/// The part, as the methods are given it.
-pub struct Workpiece {
-    /// Its triangles.
-    pub mesh: Mesh,
-    /// Points of it.
-    pub cloud: Cloud,
-    /// The same points in their tree.
-    pub part: Part,
 }
 
 /// A pose as three rows that turn the world's vectors into the tool's frame.

@@ -151,7 +151,7 @@ fn add_certified<'a>(
 
 fn add_peers(lineup: &mut Lineup<'_>, mesh: &Mesh, kinds: &[Kind], points: bool, triangles: bool) {
     if points && let Some(kind) = kinds.iter().find(|kind| kind.words == ["blue", CELLS]) {
-        peers::add_points(lineup, mesh, kind);
+        peers::add_points(lineup, kind);
     }
     if triangles {
         peers::add_triangles(lineup, mesh);

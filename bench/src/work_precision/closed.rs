@@ -113,7 +113,7 @@ impl Size<'_> {
         lineup.add_clouds(kinds, self.patch.cutter());
         let peers = self.patch.is_of_ball_or_flute() && self.plan.has_peers(self.from_last);
         if peers && let Some(kind) = kinds.iter().find(|kind| kind.words == ["blue", CELLS]) {
-            peers::add_points(lineup, self.mesh, kind);
+            peers::add_points(lineup, kind);
         }
     }
 

@@ -173,7 +173,7 @@ impl<'a> Lineup<'a> {
 }
 
 fn row(scene: &str, label: &Label, times: &Times, errors: Result<Errors, f64>) -> Row {
-    let (timed_colliding, _) = times.colliding();
+    let timed_colliding = times.colliding();
     let (missed, errors) = match errors {
         Ok(errors) => (errors.missed, Some(errors)),
         Err(alarms) => (alarms, None),

@@ -83,8 +83,4 @@ impl Contender for Proved<'_> {
         let colliding = usize::from(found.witness.is_some());
         Answer { colliding, depth: found.depth[1], wrench: None }
     }
-
-    fn feels_triangles(&self) -> bool {
-        true
-    }
 }

@@ -7,21 +7,16 @@ use touchoff::Mesh;
 mod built {
     use super::{Kind, Lineup, Mesh};
     use crate::peers::{brute, fidget, parry_bvh, parry_contact, thesis};
-    use crate::race::contender::{Contender, Workpiece};
+    use crate::race::contender::Contender;
     use crate::work_precision::row::Label;
 
-    fn piece(mesh: &Mesh, kind: &Kind) -> Workpiece {
-        Workpiece { mesh: mesh.clone(), cloud: kind.cloud.clone(), part: kind.part.clone() }
-    }
-
-    pub(super) fn points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
-        let piece = piece(mesh, kind);
+    pub(super) fn points(lineup: &mut Lineup<'_>, kind: &Kind) {
         let all: [Box<dyn Contender>; 5] = [
-            Box::new(brute::Scalar::new(&piece)),
-            Box::new(brute::Lanes::new(&piece)),
-            Box::new(thesis::Thesis::new(&piece)),
-            Box::new(parry_bvh::ParryBvh::new(&piece)),
-            Box::new(fidget::Fidget::new(&piece)),
+            Box::new(brute::Scalar::new(&kind.cloud)),
+            Box::new(brute::Lanes::new(&kind.cloud)),
+            Box::new(thesis::Thesis::new(&kind.cloud)),
+            Box::new(parry_bvh::ParryBvh::new(&kind.cloud)),
+            Box::new(fidget::Fidget::new(&kind.cloud)),
         ];
         for contender in all {
             lineup.add_of_the_thesis(kind.label(contender.name()), contender);
@@ -34,15 +29,15 @@ mod built {
     }
 }
 
-/// Those that ask points.
-pub(super) fn add_points(lineup: &mut Lineup<'_>, mesh: &Mesh, kind: &Kind) {
+/// Adds those that ask points.
+pub(super) fn add_points(lineup: &mut Lineup<'_>, kind: &Kind) {
     #[cfg(feature = "peers")]
-    built::points(lineup, mesh, kind);
+    built::points(lineup, kind);
     #[cfg(not(feature = "peers"))]
-    let _ = (lineup, mesh, kind);
+    let _ = (lineup, kind);
 }
 
-/// Those that ask the part's triangles: they know the solid, not the thesis's magnitudes.
+/// Adds those that ask the part's triangles: they know the solid, not the thesis's magnitudes.
 pub(super) fn add_triangles(lineup: &mut Lineup<'_>, mesh: &Mesh) {
     #[cfg(feature = "peers")]
     built::triangles(lineup, mesh);

@@ -2,7 +2,7 @@
 
 use touchoff::{Cloud, Mesh};
 
-/// How points are spread.
+/// A pattern of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
     /// Independently of each other: [`Cloud::random`].
