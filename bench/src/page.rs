@@ -85,6 +85,33 @@ mod tests {
     use super::*;
 
     #[test]
+    fn kept_pages_are_few_and_small_and_name_a_commit() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/measured");
+        let entries = std::fs::read_dir(folder).expect("the folder of pages");
+        let mut pages = 0;
+        let mut bytes = 0;
+        for entry in entries {
+            let path = entry.expect("a file").path();
+            bytes += path.metadata().expect("a file").len();
+            if path.extension().is_some_and(|end| end == "md") {
+                pages += 1;
+                let text = std::fs::read_to_string(&path).expect("a page");
+                let head = text.lines().nth(2).unwrap_or_default();
+                let rest = head.strip_prefix("*Made at commit ").unwrap_or_default();
+                let (commit, rest) = rest.split_once(" by `").unwrap_or_default();
+                assert!(
+                    commit.len() >= 7 && commit.bytes().all(|byte| byte.is_ascii_hexdigit()),
+                    "{}: {head}",
+                    path.display()
+                );
+                assert!(rest.contains("; covers `"), "{}: {head}", path.display());
+            }
+        }
+        assert!(0 < pages && pages <= 10, "{pages} pages");
+        assert!(bytes < 1_000_000, "{bytes} bytes");
+    }
+
+    #[test]
     fn a_page_has_title_head_line_and_sections_and_its_figures_beside_it() {
         let folder = tempfile::tempdir().expect("a folder");
         let sections = [("", "\nAll of them.\n\n"), ("Proofs", "By hand.")];

@@ -5,7 +5,9 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
 /// Width and height, pixels.
-const SIZE: (u32, u32) = (860, 560);
+const SIZE: (u32, u32) = (980, 540);
+/// Width of the plot itself; the legend stands to its right, where it covers no point.
+const PLOT: u32 = 770;
 
 /// Okabe and Ito's colours, which those who see fewer colours tell apart too, and darker ones.
 const COLOURS: [RGBColor; 10] = [
@@ -168,7 +170,8 @@ impl Plot {
         Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
         area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(area)
+        let (plot, legend) = area.split_horizontally(PLOT);
+        let mut chart = ChartBuilder::on(&plot)
             .caption(&self.title, ("sans-serif", 17))
             .margin(14)
             .x_label_area_size(42)
@@ -186,7 +189,7 @@ impl Plot {
             .bold_line_style(RGBColor(215, 215, 215))
             .draw()?;
         for (number, series) in self.series.iter().enumerate() {
-            let colour = COLOURS[series.look.unwrap_or(number) % COLOURS.len()];
+            let colour = self.colour(number);
             let style = colour.stroke_width(if series.bold { 3 } else { 1 });
             let size = if series.bold { 4 } else { 3 };
             let shown =
@@ -195,32 +198,60 @@ impl Plot {
                 series.points.iter().filter(shown).map(|[x, y]| (*x, *y)).collect();
             let filled = series.form != Form::Points;
             let marker = colour.mix(if filled { 1.0 } else { 0.7 }).filled();
-            let drawn = match series.form {
-                Form::Line => chart.draw_series(LineSeries::new(points.iter().copied(), style))?,
-                Form::Dashes => {
-                    chart.draw_series(DashedLineSeries::new(points.iter().copied(), 5, 4, style))?
+            match series.form {
+                Form::Line => {
+                    chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
                 }
-                Form::Points => chart.draw_series(
-                    points.iter().map(|p| TriangleMarker::new(*p, size + 1, marker)),
-                )?,
-            };
-            if !series.name.is_empty() {
-                drawn.label(&series.name).legend(move |(x, y)| {
-                    PathElement::new(vec![(x, y), (x + 18, y)], colour.stroke_width(3))
-                });
+                Form::Dashes => {
+                    chart.draw_series(DashedLineSeries::new(points.iter().copied(), 5, 4, style))?;
+                }
+                Form::Points => {
+                    let marks = points.iter().map(|p| TriangleMarker::new(*p, size + 1, marker));
+                    chart.draw_series(marks)?;
+                }
             }
             if series.form == Form::Line {
                 chart.draw_series(points.iter().map(|p| Circle::new(*p, size, marker)))?;
             }
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(190, 190, 190))
-            .label_font(("sans-serif", 12))
-            .draw()?;
+        self.legend(&legend)?;
         area.present()
+    }
+
+    /// Returns the colour of a series by its place in the plot.
+    fn colour(&self, number: usize) -> RGBColor {
+        COLOURS[self.series[number].look.unwrap_or(number) % COLOURS.len()]
+    }
+
+    /// Draws the names of the series beside their marks.
+    fn legend(
+        &self,
+        area: &DrawingArea<SVGBackend<'_>, Shift>,
+    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
+        let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty());
+        for (row, (number, series)) in (0..).zip(named) {
+            let colour = self.colour(number);
+            let y = 56 + 19 * row;
+            let dashes: &[[i32; 2]] = match series.form {
+                Form::Line => &[[0, 20]],
+                Form::Dashes => &[[0, 5], [8, 13], [16, 20]],
+                Form::Points => &[],
+            };
+            for [from, to] in dashes {
+                let width = if series.bold { 3 } else { 2 };
+                area.draw(&PathElement::new(
+                    [(*from, y), (*to, y)],
+                    colour.stroke_width(width),
+                ))?;
+            }
+            match series.form {
+                Form::Line => area.draw(&Circle::new((10, y), 3, colour.filled()))?,
+                Form::Dashes => {}
+                Form::Points => area.draw(&TriangleMarker::new((10, y), 5, colour.filled()))?,
+            }
+            area.draw_text(&series.name, &("sans-serif", 12).into_text_style(area), (28, y - 6))?;
+        }
+        Ok(())
     }
 }
 
@@ -251,7 +282,8 @@ mod tests {
                 .with(Series::dashes("", vec![[1.0, 1.0], [4.0, 1.0]]));
             let svg = plot.svg();
             assert_eq!(svg, plot.svg());
-            assert_eq!(svg.matches("<circle").count(), circles);
+            // One more stands in the legend.
+            assert_eq!(svg.matches("<circle").count(), circles + 1);
             assert!(svg.contains("a &lt; b") && svg.ends_with("</svg>\n") && !svg.contains("NaN"));
         }
     }

@@ -196,20 +196,6 @@ pub(crate) enum Failure {
         /// How many were looked at.
         all: usize,
     },
-    /// Some of what a folder holds of stages is not so any more; it was named.
-    #[error("{count} of what is kept is stale: `touchoff expand --stages` writes it anew")]
-    Stale {
-        /// How much.
-        count: usize,
-    },
-    /// A folder could not be read.
-    #[error("cannot read `{file}`: {source}; is it a folder, and may you read it?")]
-    Unreadable {
-        /// The folder.
-        file: String,
-        /// Why.
-        source: std::io::Error,
-    },
     /// A drawing is wanted in a form that there is none of.
     #[error("a drawing is an `.svg` or a `.png`, `{file}` is neither: write `-o {}`", .better.display())]
     Form {

@@ -1,6 +1,6 @@
 //! Tools as files: listing, looking over, expanding.
 
-use crate::arguments::Given;
+use crate::arguments::{Given, Stage};
 use crate::failure::Failure;
 use crate::output::{Output, show};
 use serde::Serialize;
@@ -135,11 +135,18 @@ pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<CheckedTool>, Fa
 }
 
 /// Prints files' Rust, or their plans as graphs.
-pub(crate) fn expand(files: &[PathBuf], plan: bool, given: &Given) -> Result<(), Failure> {
+pub(crate) fn expand(files: &[PathBuf], stage: Stage, given: &Given) -> Result<(), Failure> {
     let mut out = Output::lines();
     for file in files {
         let tool = checked(file, given)?;
-        write!(out, "{}", if plan { emit::dot(&tool) } else { emit::rust(&tool) })?;
+        let text = match stage {
+            Stage::Ast => emit::tree(&given.source(file)?),
+            Stage::Model => emit::model(&tool),
+            Stage::Regions => emit::regions(&tool),
+            Stage::Plan => emit::dot(&tool),
+            Stage::Rust => emit::rust(&tool),
+        };
+        write!(out, "{text}")?;
     }
     out.flush()?;
     Ok(())

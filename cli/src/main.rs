@@ -17,7 +17,6 @@ mod part;
 mod postures;
 mod program;
 mod run;
-mod stages;
 mod timing;
 mod verify;
 
@@ -43,13 +42,7 @@ fn main() -> ExitCode {
         Some(Command::Check { files, given }) => {
             return ended(check::check(&files, &given, arguments.json));
         }
-        Some(Command::Expand { files, stages: Some(folder), given, .. }) => {
-            stages::write(&folder, &files, &given)
-        }
-        Some(Command::Expand { files, check: Some(folder), given, .. }) => {
-            stages::check(&folder, &files, &given)
-        }
-        Some(Command::Expand { files, plan, given, .. }) => files::expand(&files, plan, &given),
+        Some(Command::Expand { files, stage, given }) => files::expand(&files, stage, &given),
         Some(Command::Explain { code }) => explain::explain(code.as_deref(), arguments.json),
         Some(Command::Fmt { check, files }) => fmt::fmt(&files, check, arguments.json),
         Some(Command::Draw { file, output, given }) => draw::draw(&file, output.as_deref(), &given),

@@ -2,7 +2,7 @@
 
 pub(crate) mod postures;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use nalgebra::Point3;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ const STATUSES: &str = "\
 Exit status:
   0  done; `verify` without findings, `check` without warnings
   1  failed, or something is wrong: findings of `verify`, errors of `check`, files that `fmt --check` would
-     change, stages that `expand --check` finds stale
+     change
   2  wrong options, an output that is also an input, or a program that `verify` could not check
   3  `check` only warns
 The status is the same if the reader of the output closes it early. Output that cannot be written, as on a full
@@ -97,20 +97,14 @@ pub(crate) enum Command {
         #[arg(required = true, value_name = "FILE.tool")]
         files: Vec<PathBuf>,
     },
-    /// Print the Rust that a `.tool` file becomes, or keep every stage of its way there.
+    /// Print the Rust that a `.tool` file becomes, or an earlier stage of its compilation.
     Expand {
-        /// The file; with `--stages` or `--check` as many as there are.
+        /// The files.
         #[arg(required = true, value_name = "FILE.tool")]
         files: Vec<PathBuf>,
-        /// Print the tree of splits in DOT, for Graphviz, instead of Rust.
-        #[arg(long)]
-        plan: bool,
-        /// Write every stage of each file, from its tree to its certificate, into this folder.
-        #[arg(long, value_name = "DIR", conflicts_with = "plan")]
-        stages: Option<PathBuf>,
-        /// Write nothing: name what this folder holds that is not so any more, and fail if there is any.
-        #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "stages"])]
-        check: Option<PathBuf>,
+        /// The stage to print.
+        #[arg(long, value_enum, default_value_t = Stage::Rust)]
+        stage: Stage,
         #[command(flatten)]
         given: Given,
     },
@@ -125,6 +119,21 @@ pub(crate) enum Command {
         #[command(flatten)]
         given: Given,
     },
+}
+
+/// A stage of a file's compilation.
+#[derive(ValueEnum, Clone, Copy)]
+pub(crate) enum Stage {
+    /// The syntax tree.
+    Ast,
+    /// Values, surfaces and regions, resolved.
+    Model,
+    /// The regions in the order of the tool's surfaces, with their sides.
+    Regions,
+    /// The tree of splits in DOT, for Graphviz.
+    Plan,
+    /// The Rust code.
+    Rust,
 }
 
 /// What a file's params are given.

@@ -1,10 +1,14 @@
 //! The program as a user meets it: what it prints, and how it refuses.
 
 mod bench;
+mod explain;
+mod fmt;
 mod haptic;
+mod measured;
 mod output;
 mod parts;
 mod postures;
+mod proofs;
 mod verify;
 
 use bench::{Bench, rows, shared, stderr, stdout, touchoff};

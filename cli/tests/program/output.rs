@@ -66,7 +66,7 @@ fn commands(bench: &Bench) -> Vec<(Vec<String>, i32)> {
         ("tools", 0),
         ("tools --json good.tool", 0),
         ("expand good.tool", 0),
-        ("expand --plan good.tool", 0),
+        ("expand --stage plan good.tool", 0),
         ("draw good.tool", 0),
         ("sweep --part PART --unit mm --tools D2Ball --directions 4", 0),
         ("haptic --part PART --unit mm --tool D2Ball --seconds 0.01", 0),
@@ -153,8 +153,6 @@ fn a_full_disk_leaves_old_files_and_no_others() {
     let tool = bench.write("good.tool", GOOD);
     let loose = GOOD.replace("    ", " ") + &"// a comment\n".repeat(400);
     let loose = bench.write("loose.tool", loose);
-    fs::create_dir(bench.folder.path().join("stages")).expect("a folder");
-    fs::create_dir(bench.folder.path().join("stages/good")).expect("a folder");
     let outputs = [
         "o.csv",
         "o.json",
@@ -163,17 +161,14 @@ fn a_full_disk_leaves_old_files_and_no_others() {
         "o.svg",
         "o.touchoff",
         "o.apt",
-        "stages/good/tree.txt",
     ];
     for name in outputs {
         bench.write(name, "old");
     }
-    let before =
-        || [content(bench.folder.path()), content(&bench.folder.path().join("stages/good"))];
+    let before = || content(bench.folder.path());
     let kept = before();
     let [csv, json, ply, png, svg, saved, apt] =
         ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"].map(place);
-    let stages = place("stages");
     let path = |to: &str| -> Vec<String> {
         ["path", &map, "--part", &part, "--tool", "D2Ball", "--stepover", "0.3", "--to", to]
             .map(str::to_owned)
@@ -190,7 +185,6 @@ fn a_full_disk_leaves_old_files_and_no_others() {
         words(&["draw", &tool, "-o", &svg]),
         words(&["draw", &tool, "-o", &png]),
         words(&["sample", "--part", &part, "--unit", "mm", "-o", &saved]),
-        words(&["expand", "--stages", &stages, &tool]),
         words(&["fmt", &loose]),
         words(&[
             "haptic",
@@ -235,9 +229,6 @@ fn an_output_that_is_an_input_is_refused() {
     let drawn = bench.write("tool.svg", GOOD);
     let [to_map, to_part, to_tool, to_saved] =
         ["y.csv", "part.csv", "tool.csv", "s.touchoff"].map(place);
-    let staged = place("stages/tree/tree.txt");
-    fs::create_dir_all(place("stages/tree")).expect("a folder");
-    fs::write(&staged, GOOD).expect("written");
     fs::hard_link(&map, &to_map).expect("a link");
     fs::hard_link(&part, &to_part).expect("a link");
     fs::hard_link(&tool, &to_tool).expect("a link");
@@ -245,11 +236,10 @@ fn an_output_that_is_an_input_is_refused() {
     let mounting =
         bench.write("mounting.tool", "tool Mounting { units mm; mount \"tool.svg\" as c; }");
     let kept = content(bench.folder.path());
-    let stages = place("stages");
     let haptic =
         ["haptic", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--seconds", "0.1"];
     let leads = ["path", &map, "--part", &part, "--tool"];
-    let commands: [&[&str]; 12] = [
+    let commands: [&[&str]; 11] = [
         &["draw", &mounting, "-o", &drawn],
         &["map", &map, "--to", &to_map],
         &["map", &map, "--part", &part, "--to", &to_part],
@@ -261,7 +251,6 @@ fn an_output_that_is_an_input_is_refused() {
         &["sweep", "--part", &part, "--unit", "mm", "--tools", "D2Ball", "--out", &part],
         &[&haptic[..], &["--device", "path", &path, "--record", &path]].concat(),
         &[&haptic[..], &["--postures", &map, "--record", &to_map]].concat(),
-        &["expand", "--stages", &stages, &staged],
     ];
     for command in commands {
         let output = touchoff(command);
@@ -270,7 +259,6 @@ fn an_output_that_is_an_input_is_refused() {
         assert!(said.contains("which is read: write to another file"), "{command:?}: {said}");
         assert!(output.stdout.is_empty() && content(bench.folder.path()) == kept, "{command:?}");
     }
-    assert_eq!(fs::read_to_string(&staged).expect("a file"), GOOD);
 }
 
 #[test]

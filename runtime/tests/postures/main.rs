@@ -2,6 +2,7 @@
 
 mod apart;
 mod judged;
+mod killed;
 mod led;
 mod recorded;
 mod swept;

@@ -1,0 +1,88 @@
+//! Where three pieces of a profile are as near, away from the axis, a zone has a corner. Turned about the axis this
+//! is a ring, and a triangle that the ring passes through may be deepest there: neither on an edge nor on its meridian.
+
+use super::{pose, soup, tool};
+use tool_dsl::source::Source;
+use touchoff::certify::{Certifier, Clear, Facets, Sweep};
+use touchoff::tool::Interpreted;
+use touchoff::{Mesh, Motion, Pose, Tool};
+
+/// A wall at y = 3 that is larger than the tool.
+fn wall() -> Mesh {
+    soup(&[[[-200.0, 3.0, -150.0], [200.0, 3.0, -150.0], [0.0, 3.0, 400.0]]])
+}
+
+fn upright() -> Pose {
+    pose([0.0; 3], [0.0, 0.0, 1.0])
+}
+
+/// The flute is at 10.5 from 0 to 9, between a face and a back: at (6, 4.5) all are 4.5 away.
+const DEEPEST: f64 = 4.5;
+
+#[test]
+fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
+    let facets = Facets::new(&wall());
+    let mut certifier = Certifier::new(&facets, tool("TSlot")).expect("a profile");
+    let found = certifier.deepest_on(1, &upright(), 1e-9);
+    let [low, high] = found.depth;
+    assert!(low <= DEEPEST && DEEPEST <= high, "{found:?}");
+}
+
+#[test]
+fn an_allowance_of_such_a_flute_is_not_passed_over() {
+    let facets = Facets::new(&wall());
+    let certifier = Certifier::new(&facets, tool("TSlot")).expect("a profile");
+    let mut certifier = ["face", "back", "neck", "shank"]
+        .into_iter()
+        .fold(certifier, |c, other| c.allow(other, f64::INFINITY).expect("a surface"));
+    let found = certifier.clear(&upright());
+    assert!(matches!(found, Clear::Touching(_)), "{found:?}");
+    let still = Motion::new(&upright(), &upright()).expect("one way");
+    let found = certifier.sweep_clear(&still, 0.0);
+    assert!(matches!(found, Sweep::Touching(..)), "{found:?}");
+}
+
+/// The corner's centre is at (4, 2), 2 from all of it, from the face and from the flute.
+#[test]
+fn a_corner_is_deepest_at_its_centre() {
+    let facets = Facets::new(&wall());
+    let mut certifier = Certifier::new(&facets, tool("BullNose")).expect("a profile");
+    let [low, high] = certifier.deepest_on(1, &upright(), 1e-9).depth;
+    assert!(low <= 2.0 && 2.0 <= high, "{low} to {high}");
+}
+
+fn interpreted(profile: &str) -> Interpreted {
+    let text = format!(
+        "tool Made {{ units mm; profile {{ start (0, 0); {profile} }} niceness cutting: 1; }}"
+    );
+    Interpreted::parse(&Source::new("made.tool", text)).expect("a tool")
+}
+
+/// Beside a wall at y = 2.
+fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
+    let mesh = soup(&[[[-100.0, 2.0, -50.0], [100.0, 2.0, -50.0], [0.0, 2.0, 150.0]]]);
+    let facets = Facets::new(&mesh);
+    let mut certifier = Certifier::new(&facets, tool).expect("a profile");
+    let known = tool.card().surfaces.iter().position(|known| known.name == surface);
+    certifier.deepest_on(known.expect("a surface"), &upright(), 1e-9).depth
+}
+
+#[test]
+fn a_seam_between_ties_belongs_to_both_its_sides() {
+    // The wall meets the circle (2, 2) where the flute's upper end is as far as the face.
+    let tool = interpreted(
+        "line to (5, 0) as face; line to (5, 2) as flute cutting; line to (5, 50), (0, 50) as shank;",
+    );
+    let [low, high] = deepest_on(&tool, "flute");
+    assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{low} to {high}");
+}
+
+#[test]
+fn a_reflex_corner_owns_as_far_as_what_it_ties_with() {
+    // Near (3, 2) the back owns by its corner, as far as the face is.
+    let tool = interpreted(
+        "line to (20, 0) as face; line to (20, 2) as rim cutting; line to (5, 2) as back; line to (5, 50), (0, 50) as neck;",
+    );
+    let [low, high] = deepest_on(&tool, "back");
+    assert!(low <= 2.0 && 2.0 <= high && high - low < 1e-8, "{low} to {high}");
+}

@@ -1,0 +1,54 @@
+//! `touchoff explain` as a user meets it.
+
+use super::bench::{stderr, stdout, touchoff};
+use std::process::Output;
+use tool_dsl::diagnostic::entries;
+
+fn explain(arguments: &[&str]) -> Output {
+    touchoff(&[&["explain"], arguments].concat())
+}
+
+#[test]
+fn a_code_is_explained_with_remedy_and_example() {
+    for code in ["T0203", "t0203"] {
+        let output = explain(&[code]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let said = stdout(&output);
+        assert!(said.starts_with("error[T0203]: name used above its definition\n"), "{said}");
+        assert!(said.contains("Remedy: move the definition up."), "{said}");
+        assert!(said.contains("Example:\n\ntool Ball {\n    units mm;\n"), "{said}");
+    }
+    let said = stdout(&explain(&["T0201"]));
+    assert!(said.contains("- did you mean `MEANT`?\n"), "{said}");
+    let said = stdout(&explain(&["T0692"]));
+    assert!(said.contains("No example: it is a defect of the compiler."), "{said}");
+}
+
+#[test]
+fn all_codes_are_listed_with_titles() {
+    let said = stdout(&explain(&[]));
+    for entry in entries() {
+        assert!(said.contains(&format!("  {}  {}", entry.code, entry.title)), "{}", entry.code);
+    }
+}
+
+#[test]
+fn an_unknown_code_names_the_nearest() {
+    let output = explain(&["T0299"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.starts_with("error: no code is called `T0299`: did you mean `T0"), "{said}");
+    assert!(output.stdout.is_empty());
+    let said = stderr(&explain(&["spindle"]));
+    assert!(said.contains("`touchoff explain` lists them"), "{said}");
+}
+
+#[test]
+fn rows_of_json_hold_the_same() {
+    let said = stdout(&explain(&["--json"]));
+    assert_eq!(said.lines().count(), entries().count());
+    let row: serde_json::Value =
+        serde_json::from_slice(&explain(&["T0203", "--json"]).stdout).expect("one object");
+    assert_eq!(row["code"], "T0203");
+    assert_eq!(row["remedies"][0], "move the definition up");
+}

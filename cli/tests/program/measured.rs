@@ -1,0 +1,68 @@
+//! `touchoff bench`: a row per method, for the built-in part and for one's own.
+
+use super::bench::{rows, stderr, touchoff};
+use serde_json::Value;
+use touchoff::Unit;
+use touchoff::mesh::shapes;
+
+/// Errors fall with points, no depth is off by more than its bound, and what is certified is within its tolerance.
+#[test]
+fn clouds_are_judged_by_certified_depth() {
+    let rows = rows(&touchoff(&["bench", "--quick", "--json"]));
+    let number =
+        |row: &Value, key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key}: {row}"));
+    let (clouds, certified): (Vec<_>, Vec<_>) =
+        rows.iter().partition(|row| row["method"] == "cloud");
+    assert_eq!([clouds.len(), certified.len()], [3, 3]);
+    for row in clouds.iter().chain(&certified) {
+        assert!(number(row, "p50_ns") > 0.0 && number(row, "p50_ns") <= number(row, "p99_ns"));
+        assert!(number(row, "worst_depth") <= number(row, "bound_depth") + 1e-9, "{row}");
+    }
+    let [few, many] = [clouds[0], clouds[2]];
+    for error in ["err_force", "err_torque", "worst_depth"] {
+        assert!(
+            0.0 < number(many, error) && number(many, error) < 0.5 * number(few, error),
+            "{error}"
+        );
+    }
+    assert!(certified.iter().all(|row| row["points"].is_null() && row["err_force"].is_null()));
+}
+
+/// A block of 6 by 6 by 2, and a ball with a diameter of 2 that goes 0.25 deep into its top: all answers are known.
+#[test]
+fn a_part_of_ones_own_is_measured() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let [low, high] = [[-3.0, -3.0, -2.0], [3.0, 3.0, 0.0]].map(nalgebra::Point3::from);
+    let mut bytes = Vec::new();
+    let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
+    block.write_stl(&mut bytes).expect("memory");
+    std::fs::write(file("block.stl"), bytes).expect("a writable folder");
+    let path: String =
+        (0..20).map(|k| format!("{},0,-0.25,0,0,1\n", 0.05 * f64::from(k))).collect();
+    std::fs::write(file("path.csv"), path).expect("a writable folder");
+    let (part, path) = (file("block.stl"), file("path.csv"));
+    let own =
+        ["bench", "--quick", "--part", &part, "--unit", "mm", "--tool", "D2Ball", "--path", &path];
+    let rows = rows(&touchoff(&[&own[..], &["--json"]].concat()));
+    let worst = rows[2]["worst_depth"].as_f64().expect("a number");
+    // 10,000 points on 120 mm² are some 0.1 mm apart: the deepest is 0.05²/2 less deep.
+    assert!((1e-6..5e-3).contains(&worst), "{worst}");
+    let output = touchoff(&own);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.starts_with("D2Ball at 20 poses, 12 triangles\nmethod"), "{text}");
+    assert_eq!(text.lines().count(), 8, "{text}");
+}
+
+#[test]
+fn what_is_asked_in_part_is_refused() {
+    for (arguments, words) in [
+        (&["bench", "--seed", "-1"][..], "--seed"),
+        (&["bench", "--part", "part.stl"][..], "--path"),
+        (&["bench", "--tool", "D2Ball"][..], "--part"),
+    ] {
+        let output = touchoff(arguments);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+}

@@ -1,0 +1,153 @@
+//! A process that records is killed at random moments: what it was told to be on the disk is there.
+//!
+//! Twenty times; as often as `TOUCHOFF_KILLS` says, if it is set.
+
+use nalgebra::Point3;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+use std::{env, fs, thread};
+use touchoff::mesh::shapes;
+use touchoff::postures::{Access, Identity, PostureMap, Record, Row, Rules};
+use touchoff::{Mesh, Unit};
+
+touchoff::tool! {
+    tool Ball "a ball" {
+        units mm;
+        profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+        niceness cutting: 1;
+    }
+}
+
+/// Where the process that is to be killed records, and its first batch.
+const MAP: &str = "TOUCHOFF_KILLED_MAP";
+const FIRST: &str = "TOUCHOFF_KILLED_FIRST";
+/// Triangles of a batch.
+const BATCH: u32 = 40;
+
+fn sphere() -> Mesh {
+    shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere")
+}
+
+fn identity() -> Identity {
+    let rules = Rules { tolerance: 0.01, niceness: 0.0, allowed: Vec::new() };
+    let identity = Identity::new(&sphere(), &[&Ball], rules).expect("rules");
+    identity.directions(vec![[0.0, 0.0, 1.0]; 600])
+}
+
+/// What batch `k` has of each of its triangles: a row that says which batch it is of.
+fn batch(k: u32, triangles: u32) -> Vec<(u32, Row)> {
+    let row = |triangle: u32| {
+        let record = Record {
+            tool: 0,
+            tip: Point3::new(f64::from(k), f64::from(triangle), 0.5).into(),
+            axis: [0.0, 0.0, 1.0],
+            niceness: f64::from(k),
+            depth: 0.001,
+            clearance: 2.0,
+        };
+        let directions = (0..10).map(|word| (u64::from(k) * word) >> 8).collect();
+        let access = Access { tool: 0, directions, stickout: Some(f64::from(triangle)) };
+        Row { best: vec![record], access: vec![access] }
+    };
+    (0..BATCH).map(|at| (k * 7 + at * 3) % triangles).map(|at| (at, row(at))).collect()
+}
+
+/// Records batch after batch and says so after each, until it is killed. Of itself it does nothing: the test
+/// beside it calls it.
+#[test]
+#[ignore = "the process that is killed"]
+fn records_until_it_is_killed() {
+    let (Ok(path), Ok(first)) = (env::var(MAP), env::var(FIRST)) else { return };
+    let map = PostureMap::open(path, &identity()).expect("a map");
+    let triangles = map.identity().part.triangles;
+    for k in first.parse().expect("a number").. {
+        map.record(&batch(k, triangles)).expect("recorded");
+        let mut out = std::io::stdout();
+        writeln!(out, "recorded {k}").and_then(|()| out.flush()).expect("said");
+    }
+}
+
+/// Lets a process record from a batch on until it said so often that one was recorded, and so long after that; the
+/// last batch that it said was.
+fn killed(path: &Path, first: u32, (said, after): (u32, Duration)) -> Option<u32> {
+    let mut child = Command::new(env::current_exe().expect("a path"))
+        .args(["--exact", "killed::records_until_it_is_killed", "--ignored", "--nocapture"])
+        .env(MAP, path)
+        .env(FIRST, first.to_string())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("a process");
+    let lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    let mut batches =
+        lines.map_while(Result::ok).filter_map(|line| line.split_once("recorded ")?.1.parse().ok());
+    let mut last = None;
+    for _ in 0..said {
+        last = batches.next();
+    }
+    thread::sleep(after);
+    child.kill().expect("killed");
+    child.wait().expect("over");
+    batches.last().or(last)
+}
+
+#[test]
+fn what_was_acknowledged_outlives_the_process() {
+    let kills = match env::var_os("TOUCHOFF_KILLS") {
+        None => 20,
+        Some(text) => match text.to_str().and_then(|text| text.parse().ok()) {
+            Some(kills) if kills > 0 => kills,
+            _ => panic!("TOUCHOFF_KILLS is {text:?}: give a whole number above 0"),
+        },
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("killed.postures");
+    let triangles = identity().part.triangles;
+    let mut random = Pcg64Mcg::seed_from_u64(1);
+    let mut known: Vec<Option<Row>> = vec![None; triangles as usize];
+    let (mut next, mut told, mut more, mut none) = (0, 0, 0, 0);
+    for kill in 0..kills {
+        // One of four while it begins a map, the others while it opens one or at any moment of a batch.
+        let anew = kill % 4 == 0;
+        if anew && path.exists() {
+            fs::remove_file(&path).expect("removed");
+        }
+        if anew {
+            known.fill(None);
+            next = 0;
+        }
+        let said = if anew { 0 } else { random.next_u32() % 10 };
+        let longest = if anew { 25_000 } else { 8_000 };
+        let after = Duration::from_micros(u64::from(random.next_u32() % longest));
+        let last = killed(&path, next, (said, after));
+        for k in next..last.map_or(next, |last| last + 1) {
+            batch(k, triangles).into_iter().for_each(|(at, row)| known[at as usize] = Some(row));
+            told += 1;
+        }
+        next = last.map_or(next, |last| last + 1);
+        if last.is_none() && !path.exists() {
+            none += 1;
+            continue;
+        }
+        let map = PostureMap::open(&path, &identity()).expect("it opens");
+        let rows: Vec<(u32, Row)> =
+            map.rows().expect("rows").map(|row| row.expect("whole")).collect();
+        let mut found: Vec<Option<Row>> = vec![None; triangles as usize];
+        rows.into_iter().for_each(|(at, row)| found[at as usize] = Some(row));
+        if found != known {
+            // One batch more was on the disk before that could be said: all of it.
+            let news = batch(next, triangles);
+            news.into_iter().for_each(|(at, row)| known[at as usize] = Some(row));
+            assert!(found == known, "kill {kill}, after batch {next}");
+            (next, more) = (next + 1, more + 1);
+        }
+    }
+    println!(
+        "{kills} kills, {none} before there was a map: {told} batches were acknowledged, all are there; \
+         {more} more are"
+    );
+    assert!(told >= kills, "{told} batches in {kills} processes");
+}

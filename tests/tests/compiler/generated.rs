@@ -1,0 +1,192 @@
+//! What the compiler writes for the tools of the library: the text of it as snapshots, and that it
+//! is straight-line code which cannot panic, cannot loop and is the same every time.
+//!
+//! After a change of the emitter: `INSTA_UPDATE=always cargo test -p touchoff-tests --test compiler generated`,
+//! and read the difference.
+
+use std::path::Path;
+use syn::visit::{self, Visit};
+use tool_dsl::source::Source;
+use tool_dsl::{compile, emit};
+use touchoff_tests::library::library;
+
+/// Methods that generated code may call: none panics, none is a libm function.
+const METHODS: [&str; 4] = ["sqrt", "abs", "of", "take"];
+/// Functions that it may call.
+const FUNCTIONS: [&str; 17] = [
+    "Enclosed::of",
+    "Some",
+    "Lane::of",
+    "Lane::le",
+    "Lane::lt",
+    "Lane::select",
+    "Lane::min",
+    "Lane::max",
+    "Lane::quotient",
+    "L::any",
+    "FeltLanes::nothing",
+    "Card::new",
+    "Piece::line",
+    "Piece::arc",
+    "Region::new",
+    "Slab::new",
+    "Surface::new",
+];
+
+/// The code for a tool of the library.
+fn generated(file: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
+    let source = Source::read(path).expect("the library has the file");
+    let tool = compile(&source).into_tool().expect("a tool of the library has no error");
+    emit::rust(&tool)
+}
+
+/// Collects what generated code must not have.
+#[derive(Default)]
+struct Refused(Vec<String>);
+
+impl Refused {
+    fn refuse(&mut self, what: &str, detail: impl Into<String>) {
+        self.0.push(format!("{what} {}", detail.into()));
+    }
+}
+
+impl<'ast> Visit<'ast> for Refused {
+    fn visit_expr(&mut self, expr: &'ast syn::Expr) {
+        use syn::Expr;
+        match expr {
+            Expr::ForLoop(_) | Expr::Loop(_) | Expr::While(_) => self.refuse("a loop", ""),
+            Expr::Index(_) => self.refuse("an index", ""),
+            Expr::Closure(_) => self.refuse("a closure", ""),
+            Expr::Unsafe(_) => self.refuse("unsafe code", ""),
+            Expr::Cast(_) => self.refuse("a cast", ""),
+            Expr::Try(_) | Expr::Return(_) | Expr::Break(_) => self.refuse("a jump", ""),
+            Expr::MethodCall(call) if !METHODS.contains(&call.method.to_string().as_str()) => {
+                self.refuse("the method", call.method.to_string());
+            }
+            Expr::Call(call) => {
+                let name = match &*call.func {
+                    Expr::Path(path) => {
+                        let words: Vec<String> =
+                            path.path.segments.iter().map(|part| part.ident.to_string()).collect();
+                        words.join("::")
+                    }
+                    _ => "no name".to_owned(),
+                };
+                if !FUNCTIONS.contains(&name.as_str()) {
+                    self.refuse("a call of", name);
+                }
+            }
+            _ => {}
+        }
+        visit::visit_expr(self, expr);
+    }
+
+    fn visit_macro(&mut self, invoked: &'ast syn::Macro) {
+        let name = invoked.path.segments.last().map(|part| part.ident.to_string());
+        self.refuse("the macro", name.unwrap_or_default());
+    }
+}
+
+#[test]
+fn every_tool_of_the_library_is_straight_line_code() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
+    let there = std::fs::read_dir(folder).expect("the library's folder");
+    let files = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut seen = 0;
+    for file in files.filter(|file| file.ends_with(".tool")) {
+        let tree = syn::parse_file(&generated(&file)).expect("generated code is Rust");
+        let mut refused = Refused::default();
+        refused.visit_file(&tree);
+        assert_eq!(refused.0, Vec::<String>::new(), "{file}");
+        seen += 1;
+    }
+    assert_eq!(seen, tools_library::TOOLS.len());
+}
+
+#[test]
+fn every_tool_of_the_library_has_a_feature() {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library");
+    let there = std::fs::read_dir(package.join("tools")).expect("the library's folder");
+    let files = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut tools: Vec<String> =
+        files.filter_map(|file| file.strip_suffix(".tool").map(str::to_owned)).collect();
+    tools.sort();
+    let manifest = std::fs::read_to_string(package.join("Cargo.toml")).expect("its manifest");
+    let features = manifest.lines().filter_map(|line| line.strip_suffix(" = []"));
+    let features: Vec<&str> = features.filter(|feature| *feature != "all").collect();
+    assert_eq!(features, tools);
+}
+
+/// The code of each tool as one line: which tools a change of the compiler reaches.
+#[test]
+fn digests_of_generated_code() {
+    let lines = library().into_iter().map(|source| {
+        let tool = compile(&source).into_tool().expect("a tool of the library has no error");
+        let code = emit::rust(&tool);
+        let digest = fnv(code.as_bytes());
+        format!("{} {} lines {digest:016x}\n", tool.model.name, code.lines().count())
+    });
+    let all: String = lines.collect();
+    insta::with_settings!({ omit_expression => true }, {
+        insta::assert_snapshot!("digests", all);
+    });
+}
+
+/// Fowler, Noll and Vo's hash, 1a: the same on every machine.
+fn fnv(bytes: &[u8]) -> u64 {
+    let next = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, next)
+}
+
+macro_rules! snapshots {
+    ($($test:ident),*) => {
+        $(#[test]
+        fn $test() {
+            let file = concat!(stringify!($test), ".tool");
+            let code = generated(file);
+            // A hash map's order, which is another every time, must not show.
+            assert_eq!(code, generated(file));
+            insta::with_settings!({ omit_expression => true }, {
+                insta::assert_snapshot!(stringify!($test), code);
+            });
+        })*
+    };
+}
+
+// As many as can be read: the thesis's solids, a cone, a torus in inches, an assembly, a block.
+snapshots!(
+    ball_er16,
+    block,
+    cylinder,
+    d2_ball,
+    fig_7_3,
+    fig_7_3_exact,
+    half_sphere_cylinder,
+    quarter_inch_flat,
+    tapered_ball,
+    unit_sphere
+);
+
+/// The check above sees what it looks for.
+#[test]
+fn what_is_refused() {
+    let bad = "fn f(x: [f64; 2]) -> f64 {
+        for _ in 0..2 {}
+        let g = |a: f64| a.sin();
+        unreachable!();
+        g(x[0]) + x[1].abs()
+    }";
+    let mut refused = Refused::default();
+    refused.visit_file(&syn::parse_file(bad).expect("this is Rust"));
+    let expected = [
+        "a loop ",
+        "a closure ",
+        "the method sin",
+        "the macro unreachable",
+        "a call of g",
+        "an index ",
+        "an index ",
+    ];
+    assert_eq!(refused.0, expected);
+}

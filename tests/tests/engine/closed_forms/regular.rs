@@ -1,0 +1,175 @@
+//! Midpoints of regular cells: weights are exact, errors fall as the cells' area.
+
+use super::{
+    Scene, UNIT, ball_in_a_plane, ball_on_a_ball, cap_height, figures, measure, side_in_a_bore,
+    side_in_a_plane,
+};
+use nalgebra::{Point3, Rotation3, Vector3};
+use std::f64::consts::TAU;
+use touchoff::{Cloud, Part};
+use touchoff_tests::oracle::draw::Draw;
+
+/// The largest error of a measurement, relative to the figures; across and torques to the thesis's force.
+fn error(scene: &Scene, part: &Part) -> f64 {
+    let (got, across) = measure(scene, part);
+    let want = figures(&scene.want);
+    let along = got.iter().zip(want).map(|(got, want)| (got / want - 1.0).abs());
+    along.fold((across / scene.want.force).abs(), f64::max)
+}
+
+/// Midpoints of `n × m` cells of the unit square, carried over by `at`, which gives point, normal and area per unit of the square.
+fn patch([n, m]: [u32; 2], at: impl Fn(f64, f64) -> (Point3<f64>, Vector3<f64>, f64)) -> Part {
+    let (mut points, mut normals, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..n {
+        for k in 0..m {
+            let s = (f64::from(i) + 0.5) / f64::from(n);
+            let t = (f64::from(k) + 0.5) / f64::from(m);
+            let (point, normal, area) = at(s, t);
+            points.push(point);
+            normals.push(normal);
+            weights.push(area / (f64::from(n) * f64::from(m)));
+        }
+    }
+    let ids = vec![0; points.len()];
+    Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
+}
+
+/// A square of the plane z = 0, `half` about `middle`, the material below, its cells turned by `turn`.
+fn plane(cells: [u32; 2], [wide, long]: [f64; 2], middle: [f64; 2], turn: f64) -> Part {
+    let (sin, cos) = turn.sin_cos();
+    patch(cells, |s, t| {
+        let (x, y) = (wide * (2.0 * s - 1.0), long * (2.0 * t - 1.0));
+        let p = Point3::new(middle[0] + cos * x - sin * y, middle[1] + sin * x + cos * y, 0.0);
+        (p, Vector3::z(), 4.0 * wide * long)
+    })
+}
+
+/// Errors at two resolutions, mean square over a few placements: at most `bounds`, and falling as the cells' area: the slope over the
+/// number of cells is -1 within `band`.
+fn converges(what: &str, bounds: [f64; 2], band: f64, error: impl Fn(u32, &mut Draw) -> f64) {
+    const PLACEMENTS: u32 = 6;
+    let cells = [120u32, 480];
+    let rms = cells.map(|n| {
+        let mut draw = Draw::new(u64::from(n));
+        let squares = (0..PLACEMENTS).map(|_| error(n, &mut draw).powi(2));
+        (squares.sum::<f64>() / f64::from(PLACEMENTS)).sqrt()
+    });
+    let slope = (rms[1] / rms[0]).ln() / (16f64).ln();
+    println!("{what}: {rms:?} slope {slope}");
+    assert!(rms[0] < bounds[0] && rms[1] < bounds[1], "{what}: {rms:?}");
+    assert!((slope + 1.0).abs() < band, "{what}: slope {slope}");
+}
+
+/// Ball, depth and tilt; the last no more than asin((r - h)/r), beyond which the shank touches.
+const BALLS: [(&str, f64, f64); 8] = [
+    ("UnitSphere", 0.1, 0.0),
+    ("UnitSphere", 0.5, 1.2),
+    ("UnitSphere", 0.9, 2.5),
+    ("Fig73Exact", 0.1, 0.35),
+    ("Fig73Exact", 0.3, 0.7),
+    ("Fig73", 0.3, 0.7),
+    ("D2Ball", 0.05, 1.2),
+    ("D2Ball", 0.5, 0.5),
+];
+
+#[test]
+fn cf1_a_ball_in_a_plane_regular() {
+    for (name, h, tilt) in BALLS {
+        let reach = 1.05 * (h * (2.0 - h)).sqrt();
+        converges(&format!("CF1 {name} {h} {tilt}"), [2e-5, 1e-6], 0.35, |n, draw| {
+            let middle = [draw.between(-3.0, 3.0), draw.between(-3.0, 3.0)];
+            let jitter = [0, 1].map(|k| middle[k] + 0.01 * reach * draw.between(-1.0, 1.0));
+            let part = plane([n, n], [reach; 2], middle, draw.between(0.0, TAU));
+            error(&ball_in_a_plane(name, h, tilt, jitter), &part)
+        });
+    }
+    // A million points.
+    let part = plane([1000, 1000], [0.75; 2], [0.003, -0.002], 0.4);
+    let found = error(&ball_in_a_plane("D2Ball", 0.3, 0.7, [0.0, 0.0]), &part);
+    println!("CF1, a million points: {found:e}");
+    assert!(found < 1e-6, "{found:e}");
+}
+
+/// Tool, radius, a depth, the middle of a stretch of its side, and half its length.
+const SIDES: [(&str, f64, f64, f64, f64); 6] = [
+    ("Cylinder", 2.0, 0.25, 3.0, 0.9),
+    ("Fig73Exact", 1.0, 0.3, 3.0, 1.0),
+    ("Fig73", 1.0, 0.1, 3.0, 1.5),
+    ("Fig73Exact", 3.0, 0.25, 8.1, 0.6),
+    ("D2Ball", 1.0, 0.5, 20.0, 10.0),
+    ("HalfSphereCylinder", 1.0, 0.2, 4.5, 1.0),
+];
+
+#[test]
+fn cf2_a_side_in_a_plane() {
+    for (name, radius, h, z, long) in SIDES {
+        let half = 1.1 * (h * (2.0 * radius - h)).sqrt();
+        converges(&format!("CF2 {name} {radius}"), [2e-4, 6e-6], 0.35, |n, draw| {
+            let turn = draw.between(0.0, TAU);
+            let slip = 0.02 * half * draw.between(-1.0, 1.0);
+            let middle = [-slip * turn.sin(), slip * turn.cos()];
+            // Along the tool nothing changes: a few cells do.
+            let part = plane([20, n], [long, half], middle, turn);
+            error(&side_in_a_plane(name, radius, h, z, long, turn), &part)
+        });
+    }
+}
+
+#[test]
+fn cf3_cf4_a_ball_on_a_ball_and_in_a_cavity() {
+    for (sigma, radius, h) in [(1.0, 4.0, 0.3), (1.0, 10.0, 0.1), (-1.0, 4.0, 0.3)] {
+        converges(&format!("CF3 {sigma} {radius}"), [1e-4, 6e-6], 0.35, |n, draw| {
+            let along = Vector3::new(draw.between(-1.0, 1.0), draw.between(-1.0, 1.0), 0.7);
+            let along = along.normalize();
+            let turn = Rotation3::rotation_between(&Vector3::z(), &along).expect("not opposite");
+            // The cap about the contact, equal areas by Archimedes: a circle a little wider, sliced by height and angle.
+            let (sin, cap) = (draw.between(0.0, TAU), 1.1 * cap_height(sigma, radius, h));
+            let part = patch([n, n], |s, t| {
+                let z = radius - s * cap;
+                let r = ((radius - z) * (radius + z)).sqrt();
+                let (y, x) = (t * TAU + sin).sin_cos();
+                let p = turn * Vector3::new(r * x, r * y, z);
+                (p.into(), sigma * p / radius, TAU * radius * cap)
+            });
+            error(&ball_on_a_ball(sigma, radius, h, along), &part)
+        });
+    }
+}
+
+#[test]
+fn cf5_a_side_in_a_bore() {
+    for (name, radius, h, z, long) in SIDES {
+        for bore in [1.04 * radius, 3.0 * radius] {
+            let h = h.min(bore - radius);
+            converges(&format!("CF5 {name} {radius} {bore}"), [1.5e-3, 1e-4], 0.35, |n, draw| {
+                let (at, slip) = (draw.between(0.0, TAU), draw.between(0.0, 1.0));
+                let part = patch([20, 4 * n], |s, t| {
+                    let (sin, cos) = (t * TAU + slip).sin_cos();
+                    let z = long * (2.0 * s - 1.0);
+                    let p = Point3::new(bore * cos, bore * sin, z);
+                    (p, Vector3::new(-cos, -sin, 0.0), TAU * bore * 2.0 * long)
+                });
+                error(&side_in_a_bore(name, radius, bore, h, z, long, at), &part)
+            });
+        }
+    }
+}
+
+/// The printed figures, with the signs of forces on the tool: up out of a plane, away from a ball, back from a bore's wall.
+#[test]
+fn the_printed_figures() {
+    let part = plane([700, 700], [0.5; 2], [0.0, 0.0], 0.3);
+    let scene = ball_in_a_plane("UnitSphere", 0.1, 0.2, [0.001, 0.002]);
+    let ([integral, force, ..], _) = measure(&scene, &part);
+    assert!((integral / 0.029_321_531_433_504_737 - 1.0).abs() < 1e-4, "{integral}");
+    assert!((force / 0.057_595_865_315_812_88 - 1.0).abs() < 1e-4, "{force}");
+    let scene = side_in_a_bore("Fig73Exact", 1.0, 3.0, 0.2, 3.0, 0.5, 0.0);
+    let part = patch([4, 8000], |s, t| {
+        let (sin, cos) = (t * TAU).sin_cos();
+        let p = Point3::new(3.0 * cos, 3.0 * sin, s - 0.5);
+        (p, Vector3::new(-cos, -sin, 0.0), 3.0 * TAU)
+    });
+    let ([integral, force, gradient, _], _) = measure(&scene, &part);
+    assert!((integral / 0.182_863_132_313_677_82 - 1.0).abs() < 1e-4, "{integral}");
+    assert!(force < 0.0 && gradient < 0.0, "{force} {gradient}");
+}

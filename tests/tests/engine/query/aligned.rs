@@ -1,0 +1,88 @@
+//! Poses that are aligned with the part to the last bit, and hardly not.
+
+use super::compare::{Case, tools};
+use super::parts;
+use nalgebra::{Point3, Vector3};
+use touchoff::{Part, Pose};
+
+/// A grid of points half a unit apart: on faces, axes, edges and splitting curves of the tools, all at once.
+fn grid(half: i32) -> Part {
+    let at = |i: i32| 0.5 * f64::from(i);
+    let mut points = Vec::new();
+    for i in -half..=half {
+        for j in -half..=half {
+            for k in -half..=half {
+                points.push(Point3::new(at(i), at(j), at(k)));
+            }
+        }
+    }
+    let count = points.len();
+    let normals = (0..count).map(|i| Vector3::ith(i % 3, if i % 2 == 0 { 1.0 } else { -1.0 }));
+    parts::of(points, normals.collect(), vec![0.25; count])
+}
+
+/// Quarter and half turns; half of them have rotations without rounding.
+fn quaternions() -> [[f64; 4]; 10] {
+    let s = std::f64::consts::FRAC_1_SQRT_2;
+    [
+        [0.0, 0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [0.5, 0.5, 0.5, 0.5],
+        [-0.5, 0.5, 0.5, 0.5],
+        [s, 0.0, 0.0, s],
+        [0.0, s, 0.0, -s],
+        [0.0, 0.0, s, s],
+        [s, s, 0.0, 0.0],
+    ]
+}
+
+fn tips() -> [Point3<f64>; 3] {
+    [Point3::origin(), Point3::new(0.5, -1.0, -2.0), Point3::new(0.25, 0.125, -3.0)]
+}
+
+#[test]
+fn quarter_and_half_turns() {
+    let part = grid(7);
+    for (tool, oracle) in tools() {
+        let mut case = Case::new(&part, tool, &*oracle);
+        let mut k = 0;
+        for tip in tips() {
+            let turns = quaternions().map(|q| Pose::from_quaternion(tip, q));
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let axes = axes.into_iter().flat_map(|axis| [axis, -axis]);
+            let axes = axes.map(|axis| Pose::from_axis(tip, axis));
+            for pose in turns.into_iter().chain(axes).map(|pose| pose.expect("a pose")) {
+                let before = case.seen.disputed;
+                assert!(case.check(&pose, k) > 0);
+                k += 1;
+                if pose.rotation().iter().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
+                    // Nothing is rounded: what is on the surface belongs to the tool on both sides.
+                    assert_eq!(case.seen.disputed, before, "{} {pose:?}", oracle.name());
+                }
+            }
+        }
+        println!("{}: {:?}", oracle.name(), case.seen);
+        assert!(case.seen.doubtful > 50);
+    }
+}
+
+#[test]
+fn hardly_tilted() {
+    let part = grid(7);
+    for (tool, oracle) in tools() {
+        let mut case = Case::new(&part, tool, &*oracle);
+        let mut k = 0;
+        for tilt in [1e-5, 1e-9, 1e-13, 1e-17, 1e-300] {
+            for up in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
+                for way in [Vector3::new(tilt, tilt, 0.0), Vector3::new(0.0, -tilt, tilt)] {
+                    let pose = Pose::from_axis(tips()[k % 3], up + way).expect("a pose");
+                    assert!(case.check(&pose, k) > 0);
+                    k += 1;
+                }
+            }
+        }
+        println!("{}: {:?}", oracle.name(), case.seen);
+    }
+}

@@ -1,0 +1,117 @@
+//! Any part, any tool, anywhere.
+
+use super::compare::{Case, tools};
+use super::{parts, poses};
+use nalgebra::{Point3, Vector3};
+use touchoff::{Part, Pose, Probe};
+use touchoff_tests::oracle::draw::Draw;
+
+/// Every tool about a part; fails unless some poses touch.
+fn all_tools(what: &str, part: &Part, count: usize) {
+    for (at, (tool, oracle)) in tools().into_iter().enumerate() {
+        let mut draw = Draw::new(31 + at as u64);
+        let mut case = Case::new(part, tool, &*oracle);
+        for k in 0..count {
+            case.check(&poses::about(part, &*oracle, k, &mut draw), k);
+        }
+        println!("{what} {}: {:?}", oracle.name(), case.seen);
+        assert!(5 * case.seen.touching > 2 * count, "{what} {}: {:?}", oracle.name(), case.seen);
+        assert_eq!(case.seen.disputed, 0);
+    }
+}
+
+#[test]
+fn surfaces() {
+    all_tools("tube", &parts::tube(4_000), 120);
+    all_tools("sphere", &parts::sphere(7.0, 4_000), 120);
+    all_tools("cuboid", &parts::cuboid(9.0, 4_000), 120);
+}
+
+/// Trees that are just full, just not, and one level more.
+#[test]
+fn counts_about_powers_of_sixteen() {
+    for count in [1, 2, 15, 16, 17, 255, 256, 257, 4095, 4096, 4097] {
+        let poses = if count > 1000 { 60 } else { 180 };
+        all_tools(&format!("soup of {count}"), &parts::soup(6.0, count, count as u64), poses);
+    }
+}
+
+#[test]
+fn a_point_again_and_again() {
+    for count in [1, 16, 100, 300] {
+        for at in [Point3::origin(), Point3::new(0.1, -70.3, 1e3)] {
+            all_tools(&format!("{count} times {at}"), &parts::identical(at, count), 120);
+        }
+    }
+}
+
+/// Points in a line and in a plane: boxes without a width.
+#[test]
+fn thin_parts() {
+    let mut draw = Draw::new(17);
+    let mut of = |keep: [f64; 3]| {
+        let points = (0..1000).map(|_| {
+            Point3::from(parts::vector(&mut draw, 20.0).component_mul(&Vector3::from(keep)))
+        });
+        parts::of(points.collect(), vec![Vector3::z(); 1000], vec![0.1; 1000])
+    };
+    for keep in [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 0.0], [1.0, 1e-7, 1e-13]] {
+        all_tools(&format!("{keep:?}"), &of(keep), 120);
+    }
+}
+
+/// Wholly inside a hollow box nothing is felt, nor wholly outside.
+#[test]
+fn clear_of_the_part() {
+    let part = parts::cuboid(120.0, 3_000);
+    let mut draw = Draw::new(5);
+    for (tool, oracle) in tools() {
+        let mut case = Case::new(&part, tool, &*oracle);
+        for k in 0..60 {
+            let inside = Point3::from(parts::vector(&mut draw, 15.0));
+            let outside = inside + 200.0 * parts::direction(&mut draw);
+            let farther = inside + 1e6 * parts::direction(&mut draw);
+            let [_, height] = oracle.extent();
+            let at = [inside, outside, farther][k % 3];
+            if (at - inside).norm() < 300.0 && k % 3 == 1 && at.coords.amax() < 130.0 + height {
+                continue;
+            }
+            let pose = poses::bringing(Vector3::zeros(), at, &mut draw);
+            assert_eq!(case.check(&pose, k), 0, "{}", oracle.name());
+        }
+    }
+}
+
+/// All of the part in the tool: every point counts.
+#[test]
+fn swallowed() {
+    for (tool, oracle) in tools() {
+        let part = parts::soup(0.2, 3_000, 3);
+        let mut case = Case::new(&part, tool, &*oracle);
+        let mut draw = Draw::new(6);
+        for k in 0..30 {
+            let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), &mut draw);
+            assert_eq!(case.check(&pose, k), 3_000);
+        }
+    }
+}
+
+/// A pose as far away as a pose may be: no contact, and no panic.
+#[test]
+fn at_the_end_of_the_world() {
+    let part = parts::soup(6.0, 500, 8);
+    for (tool, _) in tools() {
+        let mut probe = Probe::new(&part, tool);
+        for far in [1e20, 1e38, 1e39, 1e50, 1e60] {
+            for way in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
+                for axis in [Vector3::x(), Vector3::z(), Vector3::new(0.6, 0.0, -0.8)] {
+                    let pose = Pose::from_axis(Point3::from(far * way), axis).expect("a pose");
+                    assert!(!probe.detect(&pose), "{} {far:e} {way} {axis}", tool.card().name);
+                    let wrench = probe.wrench(&pose);
+                    assert_eq!((wrench.colliding, wrench.force.norm()), (0, 0.0));
+                    assert!(probe.contacts(&pose).is_empty());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! The same bits at every SIMD level, from a fresh probe and a used one, compiled or interpreted.
+
+use super::compare::{WAYS, tools};
+use super::{parts, poses};
+use std::path::Path;
+use touchoff::tool::Interpreted;
+use touchoff::{Level, Part, Pose, Probe, Tool};
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::draw::Draw;
+
+/// Every level of this machine.
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = vec![best, Level::baseline()];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        levels.extend(best.as_sse2().map(Level::Sse2));
+        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+        levels.extend(best.as_avx512().map(Level::Avx512));
+    }
+    levels
+}
+
+/// All that a probe says of a pose; every number so that no other has the same text, the sign of zeros included.
+fn said(probe: &mut Probe<'_>, pose: &Pose) -> String {
+    let (wrench, detected) = (probe.wrench(pose), probe.detect(pose));
+    format!("{wrench:?} {detected} {:?}", probe.contacts(pose))
+}
+
+/// Parts small and large, full leaves and not.
+fn parts() -> Vec<Part> {
+    vec![parts::soup(6.0, 37, 1), parts::tube(3_000), parts::cuboid(9.0, 4_097)]
+}
+
+/// Poses about a part.
+fn some(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
+    let mut draw = Draw::new(seed);
+    (0..count).map(|k| poses::about(part, oracle, k, &mut draw)).collect()
+}
+
+#[test]
+fn at_every_level() {
+    let levels = levels();
+    println!("{levels:?}");
+    for part in parts() {
+        for (tool, oracle) in tools() {
+            for (k, pose) in some(&part, &*oracle, 60, 2).iter().enumerate() {
+                let (law, weights) = WAYS[k % 6];
+                let at = |level: &Level| {
+                    let probe = Probe::new(&part, tool).law(law).weights(weights);
+                    said(&mut probe.level(*level), pose)
+                };
+                let best = at(&levels[0]);
+                for level in &levels[1..] {
+                    assert_eq!(best, at(level), "{} {level:?}", oracle.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn fresh_and_used() {
+    for part in parts() {
+        for (tool, oracle) in tools() {
+            let mut used = Probe::new(&part, tool);
+            for (k, pose) in some(&part, &*oracle, 1_000, 3).iter().enumerate() {
+                match k % 3 {
+                    0 => drop(used.wrench(pose)),
+                    1 => drop(used.contacts(pose).len()),
+                    _ => drop(used.detect(pose)),
+                }
+            }
+            for pose in &some(&part, &*oracle, 40, 4) {
+                let fresh = said(&mut Probe::new(&part, tool), pose);
+                assert_eq!(fresh, said(&mut used, pose), "{}", oracle.name());
+            }
+        }
+    }
+}
+
+/// Detecting first, so that the evaluator finds nothing of an earlier question.
+#[test]
+fn whatever_was_asked_first() {
+    let part = parts::tube(3_000);
+    for (tool, oracle) in tools() {
+        for pose in &some(&part, &*oracle, 60, 5) {
+            let mut probe = Probe::new(&part, tool);
+            let detected = probe.detect(pose);
+            let listed = probe.contacts(pose).len();
+            let wrench = probe.wrench(pose);
+            assert_eq!((listed, listed > 0), (wrench.colliding, detected));
+            assert_eq!(
+                format!("{wrench:?}"),
+                format!("{:?}", Probe::new(&part, tool).wrench(pose))
+            );
+        }
+    }
+}
+
+#[test]
+fn compiled_and_interpreted() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools");
+    let oracles = touchoff_tests::oracle::all();
+    let files = std::fs::read_dir(folder).expect("the library's folder");
+    let files = files.map(|file| file.expect("a file").path());
+    let mut seen = 0;
+    for file in files.filter(|path| path.extension().is_some_and(|end| end == "tool")) {
+        let interpreted = Interpreted::load(file).expect("a tool");
+        let name = &interpreted.card().name;
+        let tool = tools_library::find(name).expect("compiled too");
+        let oracle = oracles.iter().find(|oracle| oracle.name() == *name).expect("it has one");
+        assert_eq!(interpreted.card(), tool.card());
+        seen += 1;
+        for part in parts() {
+            for (k, pose) in some(&part, &**oracle, 60, 6).iter().enumerate() {
+                let (law, weights) = WAYS[k % 6];
+                let by = |tool| said(&mut Probe::new(&part, tool).law(law).weights(weights), pose);
+                assert_eq!(by(tool), by(&interpreted), "{name}");
+            }
+        }
+    }
+    assert_eq!(seen, tools_library::TOOLS.len());
+}

@@ -1,0 +1,133 @@
+//! Far from the world's origin, tiny and huge: the tree keeps its points relative to themselves.
+
+use super::compare::{Case, tools};
+use super::{parts, poses};
+use nalgebra::{Point3, Vector3};
+use touchoff::{Part, Pose, Probe};
+use touchoff_tests::oracle::draw::Draw;
+
+/// Coordinates that are multiples of 2^-10, so that sums with 2^40 are exact.
+fn on_a_grid(p: Point3<f64>) -> Point3<f64> {
+    p.map(|c| (c * 1024.0).round() / 1024.0)
+}
+
+fn moved(part: &Part, by: Vector3<f64>) -> Part {
+    let tree = part.tree();
+    let places = 0..tree.len();
+    parts::of(
+        places.clone().map(|i| on_a_grid(tree.point(i)) + by).collect(),
+        places.clone().map(|i| tree.normal(i).into()).collect(),
+        places.map(|i| tree.weight(i)).collect(),
+    )
+}
+
+/// Part and pose moved together, by what loses no bit, feel the same to the last bit.
+#[test]
+fn moved_without_a_trace() {
+    let part = parts::tube(2_000);
+    let here = moved(&part, Vector3::zeros());
+    for power in [10, 20, 30, 40] {
+        let by = 2f64.powi(power) * Vector3::new(1.0, -1.0, 0.5);
+        let there = moved(&part, by);
+        for (tool, oracle) in tools() {
+            let mut draw = Draw::new(21);
+            for k in 0..30 {
+                let pose = poses::about(&here, &*oracle, k, &mut draw);
+                let tip = on_a_grid(pose.tip());
+                if tip.coords.amax() > 1024.0 {
+                    continue;
+                }
+                let axis = pose.axis();
+                let at = |tip| Pose::from_axis(tip, axis).expect("a pose");
+                let a = Probe::new(&here, tool).wrench(&at(tip));
+                let mut b = Probe::new(&there, tool).wrench(&at(tip + by));
+                if let Some(deepest) = &mut b.deepest {
+                    let point = a.deepest.expect("as deep").point;
+                    assert!((deepest.point - by - point).amax() <= 2f64.powi(power - 51));
+                    deepest.point = point;
+                }
+                assert_eq!(a, b, "{} 2^{power}", oracle.name());
+            }
+        }
+    }
+}
+
+/// Moved by anything, all differences are those of the points' own last bits.
+#[test]
+fn moved_far_away() {
+    for far in [1e3, 1e6, 1e9, 1e12] {
+        let by = far * Vector3::new(1.0, -0.7, 0.3);
+        let part = parts::carried(&parts::tube_mesh(), 2_000, |p| p + by);
+        for (tool, oracle) in tools() {
+            let mut draw = Draw::new(22);
+            let mut case = Case::new(&part, tool, &*oracle);
+            for k in 0..48 {
+                case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
+            }
+            println!("{far:e} {}: {:?}", oracle.name(), case.seen);
+            assert!(case.seen.touching > 20);
+        }
+    }
+}
+
+/// Parts from a billionth of the tool to a billion times it, all of them felt somewhere.
+#[test]
+fn tiny_and_huge_parts() {
+    for size in [1e-30, 1e-9, 1e-4, 1e-2, 1e2, 1e4, 1e6, 1e9, 1e15, 1e30] {
+        let part = parts::soup(size, 2_000, 23);
+        for (tool, oracle) in tools() {
+            let mut draw = Draw::new(24);
+            let mut case = Case::new(&part, tool, &*oracle);
+            for k in 0..24 {
+                case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
+            }
+            println!("{size:e} {}: {:?}", oracle.name(), case.seen);
+            assert!(case.seen.touching > 8, "{size:e} {}", oracle.name());
+        }
+    }
+}
+
+/// Half the points within the tool's reach, half strewn over a part up to 1e12 times larger: one tree spans both.
+#[test]
+fn a_small_tool_on_a_large_part() {
+    for size in [1e3, 1e5, 1e8, 1e12] {
+        for off in [0.0, 0.6 * size] {
+            let mut draw = Draw::new(25);
+            let here = Point3::new(off, -off, 0.5 * off);
+            let close =
+                (0..1_000).map(|_| here + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
+            let wide = (0..1_000).map(|_| Point3::from(parts::vector(&mut draw, size)));
+            let points: Vec<_> = close.into_iter().chain(wide).collect();
+            let normals = (0..2_000).map(|_| parts::direction(&mut draw)).collect();
+            let part = parts::of(points, normals, vec![0.3; 2_000]);
+            for (tool, oracle) in tools() {
+                let mut case = Case::new(&part, tool, &*oracle);
+                for k in 0..24 {
+                    let [_, height] = oracle.extent();
+                    let own = Vector3::new(0.0, 0.0, draw.between(0.0, height));
+                    let at = here + parts::vector(&mut draw, 4.0);
+                    case.check(&poses::bringing(own, at, &mut draw), k);
+                }
+                println!("{size:e} at {off:e} {}: {:?}", oracle.name(), case.seen);
+                assert!(case.seen.touching > 12, "{size:e} {}", oracle.name());
+            }
+        }
+    }
+}
+
+/// Coordinates about the smallest numbers there are.
+#[test]
+fn denormal_parts() {
+    for size in [5e-324, 1e-310, 1e-300, 1e-150] {
+        let points = [0.0, 1.0, 2.0, -3.0, 5.0].map(|k| Point3::new(k * size, -k * size, size));
+        let part = parts::of(points.to_vec(), vec![Vector3::x(); 5], vec![1.0; 5]);
+        for (tool, oracle) in tools() {
+            let mut case = Case::new(&part, tool, &*oracle);
+            let mut draw = Draw::new(26);
+            for k in 0..12 {
+                let own = Vector3::new(0.3, 0.2, 0.7);
+                assert_eq!(case.check(&poses::bringing(own, Point3::origin(), &mut draw), k), 5);
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Points so close to the tool's surface and splitting curves that only margins keep them: every one that belongs to the tool must be
+//! found, however large the part that it lies on.
+
+use super::compare::{Case, Seen, tools};
+use super::{parts, poses};
+use nalgebra::{Point3, Vector3};
+use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::{Oracle, moved};
+
+/// Points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, carried to a pose, among others over a part of `size`.
+fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
+    let (tool, oracle) = tools().swap_remove(tool_at);
+    let mut draw = Draw::new(seed);
+    let here = Point3::from(off * parts::direction(&mut draw));
+    let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
+    let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut draw)
+        .into_iter()
+        .map(|q| pose.tip() + pose.rotation() * q)
+        .collect();
+    points.extend((0..500).map(|_| Point3::from(parts::vector(&mut draw, size))));
+    let normals = points.iter().map(|_| parts::direction(&mut draw)).collect();
+    let count = points.len();
+    let part = parts::of(points, normals, vec![0.01; count]);
+    let mut case = Case::new(&part, tool, &*oracle);
+    for k in 0..6 {
+        case.check(&pose, k);
+    }
+    case.seen
+}
+
+fn own_points(oracle: &dyn Oracle, draw: &mut Draw) -> Vec<Vector3<f64>> {
+    let mut points = Vec::new();
+    for p in oracle.curve_points().into_iter().flatten() {
+        for power in [0, -15, -14, -13, -12, -11, -9, -7, -6, -5, -3] {
+            let step = if power == 0 { 0.0 } else { 10f64.powi(power) };
+            let step = draw.direction().map(|c| step * c);
+            let angle = draw.between(0.0, std::f64::consts::TAU);
+            points.push(moved(oracle, p, step, angle).into());
+        }
+    }
+    points
+}
+
+#[test]
+fn on_the_surface_and_the_curves() {
+    for at in 0..tools().len() {
+        for (seed, (size, off)) in
+            (1..).zip([(10.0, 0.0), (1e3, 5e2), (1e5, 9e4), (1e8, 3e7), (1e11, 1e11)])
+        {
+            let seen = skin(at, size, off, seed);
+            println!("{} {size:e}: {seen:?}", tools()[at].1.name());
+            assert!(seen.contacts > 1_000, "{seen:?}");
+        }
+    }
+}
+
+/// A part of one point is kept to the last bit: on the surface, and 1e-15 to 1e-3 off.
+#[test]
+fn one_point_at_a_time() {
+    for (tool, oracle) in tools() {
+        let mut draw = Draw::new(43);
+        let mut seen = Seen::default();
+        for (k, own) in own_points(&*oracle, &mut draw).into_iter().enumerate() {
+            let at = [0.0, 0.0, 1e2, 1e5][k % 4] * parts::direction(&mut draw);
+            let pose = poses::bringing(own, Point3::from(at), &mut draw);
+            let part = parts::identical(Point3::from(at), 1);
+            let mut case = Case::new(&part, tool, &*oracle);
+            case.check(&pose, k);
+            seen.contacts += case.seen.contacts;
+            seen.doubtful += case.seen.doubtful;
+            seen.disputed += case.seen.disputed;
+        }
+        println!("one point, {}: {seen:?}", oracle.name());
+        assert!(seen.contacts > 300 && seen.doubtful > 100, "{seen:?}");
+    }
+}
+
+/// Points outside the tool by a little: none is felt. Inside by a little: all are.
+#[test]
+fn a_hair_to_either_side() {
+    for (tool, oracle) in tools() {
+        let mut draw = Draw::new(41);
+        for size in [1e2, 1e4, 1e6] {
+            for hair in [1e-3, 1e-6, 1e-8] {
+                let here = Point3::from(0.3 * size * parts::direction(&mut draw));
+                let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
+                // Where a step along the outward slope of the signed distance leads to, if it is the wanted distance off.
+                let mut both = [Vec::new(), Vec::new()];
+                for p in oracle.curve_points().into_iter().flatten() {
+                    let angle = draw.between(0.0, std::f64::consts::TAU);
+                    for turn in 0..8 {
+                        let (up, out) = (f64::from(turn) * std::f64::consts::FRAC_PI_4).sin_cos();
+                        let way = if oracle.revolved() { [out, 0.0, up] } else { draw.direction() };
+                        let q = moved(&*oracle, p, way.map(|c| hair * c), angle);
+                        let off = oracle.signed_distance(q);
+                        if off.abs() > 0.3 * hair && off.abs() < 2.0 * hair {
+                            let q = Vector3::from(q);
+                            both[usize::from(off < 0.0)].push(pose.tip() + pose.rotation() * q);
+                        }
+                    }
+                }
+                for (points, inside) in both.into_iter().zip([false, true]) {
+                    let count = points.len();
+                    assert!(count > 50, "{} {count}", oracle.name());
+                    // Corners of the part, clear of the tool, make the tree as large as it should be.
+                    let all = points.into_iter().chain([-size, size].map(|c| Point3::new(c, c, c)));
+                    let normals = vec![Vector3::z(); count + 2];
+                    let part = parts::of(all.collect(), normals, vec![1.0; count + 2]);
+                    let mut case = Case::new(&part, tool, &*oracle);
+                    let found = case.check(&pose, 0);
+                    // The last leaf reaches to a corner, and its points are kept to 2^-24 of that.
+                    if 1e-6 * size < hair {
+                        assert_eq!(found, if inside { count } else { 0 }, "{}", oracle.name());
+                    }
+                    assert_eq!(case.seen.disputed, 0);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Poses at random.
+
+use super::parts::{direction, vector};
+use nalgebra::{Point3, Vector3};
+use touchoff::{Part, Pose};
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::draw::Draw;
+
+/// Any orientation at all.
+pub(crate) fn quaternion(draw: &mut Draw) -> [f64; 4] {
+    loop {
+        let v = [0; 4].map(|_| draw.between(-1.0, 1.0));
+        let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
+        if (0.01..=1.0).contains(&norm) {
+            return v.map(|c| c / norm);
+        }
+    }
+}
+
+/// The tool turned at random, its own point `in_tool` brought to `at`.
+pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, draw: &mut Draw) -> Pose {
+    let turned = Pose::from_quaternion(Point3::origin(), quaternion(draw)).expect("a pose");
+    Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion_of(&turned)).expect("a pose")
+}
+
+fn quaternion_of(pose: &Pose) -> [f64; 4] {
+    let q = pose.isometry().rotation.coords;
+    [q.x, q.y, q.z, q.w]
+}
+
+/// A pose about a part: one in eight far off, the others with some point of the part in the tool or hardly outside.
+pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Draw) -> Pose {
+    let tree = part.tree();
+    let point = tree.point(draw.bits() as usize % tree.len());
+    let [width, height] = oracle.extent();
+    if k % 8 == 7 {
+        let far = draw.between(1.0, 4.0) * 10f64.powi(draw.bits() as i32 & 3);
+        return bringing(vector(draw, height), point + far * height * direction(draw), draw);
+    }
+    if !oracle.revolved() {
+        // Of a box about it a solid may fill little: somewhere near a face or a splitting surface.
+        let curves = oracle.curve_points();
+        let curve = &curves[draw.bits() as usize % curves.len()];
+        let own = Vector3::from(curve[draw.bits() as usize % curve.len()]);
+        return bringing(own + vector(draw, 0.02 * height), point, draw);
+    }
+    let around = direction(draw);
+    let d = 1.05 * width * draw.between(0.0, 1.0);
+    let z = draw.between(-0.05, 1.05) * height;
+    let d = d / around.x.hypot(around.y).max(1e-9);
+    bringing(Vector3::new(d * around.x, d * around.y, z), point, draw)
+}

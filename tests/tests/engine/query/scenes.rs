@@ -1,0 +1,47 @@
+//! The scenes that figures are quoted on.
+
+use super::compare::{Case, Seen, tools};
+use super::parts;
+use touchoff::scenes::Path;
+
+/// Every pose of a path cut into `poses`, felt by every tool.
+fn along(path: Path, count: usize, poses: usize) -> Seen {
+    let part = parts::tube(count);
+    let mut fig73 = Seen::default();
+    for (tool, oracle) in tools() {
+        let mut case = Case::new(&part, tool, &*oracle);
+        // The scenes are the thesis's tool's; of the others some poses suffice.
+        let step = if oracle.name() == "Fig73" { 1 } else { 5 };
+        for k in (0..poses).step_by(step) {
+            case.check(&path.pose(k, poses), k / step);
+        }
+        println!("{} {count} {}: {:?}", path.name(), oracle.name(), case.seen);
+        assert_eq!(case.seen.disputed, 0);
+        if step == 1 {
+            fig73 = case.seen;
+        }
+    }
+    fig73
+}
+
+#[test]
+fn a_thousand_points() {
+    for path in Path::ALL {
+        along(path, 1_000, 600);
+    }
+}
+
+#[test]
+fn five_thousand_points() {
+    for path in Path::ALL {
+        along(path, 5_000, 240);
+    }
+}
+
+#[test]
+fn twenty_thousand_points() {
+    for path in Path::ALL {
+        let seen = along(path, 20_000, 120);
+        assert!(seen.contacts > 5 * seen.poses, "{path:?} hardly touches: {seen:?}");
+    }
+}

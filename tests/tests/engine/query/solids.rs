@@ -1,0 +1,145 @@
+//! Solids without an axis at full poses, where contacts are known in closed form.
+
+use super::{parts, poses};
+use nalgebra::{Point3, Vector3};
+use tools_library::{Block, LBracket};
+use touchoff::mesh::shapes;
+use touchoff::{Law, Part, Pose, Probe, Unit};
+use touchoff_tests::oracle::draw::Draw;
+
+/// A plane of z = 0 in a pose's own frame, 60 by 60 in squares of a quarter, facing up.
+fn plane(pose: &Pose) -> Part {
+    let spots = (0..240).flat_map(|i| (0..240).map(move |k| (i, k)));
+    let along = |k: i32| f64::from(k) / 4.0 - 29.875;
+    let points: Vec<_> = spots
+        .map(|(i, k)| pose.tip() + pose.rotation() * Vector3::new(along(i), along(k), 0.0))
+        .collect();
+    let count = points.len();
+    parts::of(points, vec![pose.rotation() * Vector3::z(); count], vec![1.0 / 16.0; count])
+}
+
+fn anywhere(draw: &mut Draw) -> Pose {
+    let tip = Point3::from(parts::vector(draw, 100.0));
+    Pose::from_quaternion(tip, poses::quaternion(draw)).expect("a pose")
+}
+
+/// A pose moved by a step of its own frame.
+fn shifted(pose: &Pose, step: Vector3<f64>) -> Pose {
+    let mut isometry = pose.isometry();
+    isometry.translation.vector += pose.rotation() * step;
+    Pose::try_from(isometry).expect("a pose")
+}
+
+/// The block pressed `h` deep into a plane: the depth is `h`, but for a hipped rim of 45°, so that
+/// `∫ m dA = h w l - h² (w + l) + 4 h³/3`; only what is nearest to the underside pushes up.
+#[test]
+fn a_block_on_a_plane() {
+    let mut draw = Draw::new(91);
+    let (w, l) = (40.0, 30.0);
+    for k in 0..8 {
+        let there = if k == 0 {
+            Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose")
+        } else {
+            anywhere(&mut draw)
+        };
+        let part = plane(&there);
+        for h in [0.5, 1.5, 4.0] {
+            let pose = shifted(&there, Vector3::new(0.0, 0.0, -h));
+            let mut probe = Probe::new(&part, &Block).law(Law::Gradient);
+            let felt = probe.wrench(&pose);
+            assert!(probe.detect(&pose));
+            assert!((felt.depth() - h).abs() < 1e-5, "{} at {h}", felt.depth());
+            let integral = h * w * l - h * h * (w + l) + 4.0 * h.powi(3) / 3.0;
+            assert!((felt.integral / integral - 1.0).abs() < 1e-3, "{} {integral}", felt.integral);
+            let up = h * (w - 2.0 * h) * (l - 2.0 * h);
+            let push = there.rotation().transpose() * felt.force;
+            assert!((push.z / up - 1.0).abs() < 0.03, "{push} {up}");
+            // All but the points of the hips themselves, which may fall to either side, cancels.
+            assert!(push.xy().norm() < 0.01 * up && felt.torque.norm() < 0.1 * up, "{push} {up}");
+        }
+        let clear = shifted(&there, Vector3::new(0.0, 0.0, 1e-3));
+        assert!(!Probe::new(&part, &Block).detect(&clear));
+    }
+}
+
+/// A pin in the bracket's hole, turned with it: clear while it is thinner than the hole, and as
+/// deep in its wall all round as it is thicker.
+#[test]
+fn a_pin_in_the_hole_of_a_bracket() {
+    let mut draw = Draw::new(92);
+    for _ in 0..6 {
+        let pose = anywhere(&mut draw);
+        for (radius, depth) in [(3.2, None), (3.4, Some(0.1)), (4.0, Some(0.7))] {
+            let points: Vec<_> = (0..20_000)
+                .map(|_| {
+                    let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
+                    let z = draw.between(1.0, 5.0);
+                    let own = Vector3::new(10.0 + radius * cos, radius * sin, z);
+                    pose.tip() + pose.rotation() * own
+                })
+                .collect();
+            let count = points.len();
+            let part = parts::of(points, vec![Vector3::z(); count], vec![1.0; count]);
+            let mut probe = Probe::new(&part, &LBracket);
+            let contacts = probe.contacts(&pose);
+            assert_eq!(contacts.len(), if depth.is_some() { count } else { 0 });
+            for contact in contacts {
+                assert!((contact.depth - depth.unwrap_or_default()).abs() < 1e-5, "{contact:?}");
+                let out =
+                    contact.point - pose.tip() - pose.rotation() * Vector3::new(10.0, 0.0, 0.0);
+                let along = pose.axis().dot(&out) * pose.axis();
+                assert!((contact.direction + (out - along) / radius).norm() < 1e-5);
+            }
+        }
+    }
+}
+
+/// Against every point of a mesh's cloud, one after the other, with the bracket's surfaces by name.
+#[test]
+fn a_bracket_around_a_rail() {
+    let rail = shapes::cuboid(
+        Point3::new(-3.5, -40.0, 6.5),
+        Point3::new(3.5, 40.0, 30.0),
+        Unit::Millimetre,
+    );
+    let part = Part::from_mesh(&rail.expect("a box"), 40_000, 3).expect("a part");
+    let mut probe = Probe::new(&part, &LBracket);
+    let at = |x: f64, z: f64| Pose::from_quaternion(Point3::new(x, 0.0, z), [0.0, 0.0, 0.0, 1.0]);
+    // Standing clear, then against the inner face, then lifted into the upper one.
+    assert!(!probe.detect(&at(0.0, 0.0).expect("a pose")));
+    let mut surfaces = |x: f64, z: f64| {
+        let contacts = probe.contacts(&at(x, z).expect("a pose")).to_vec();
+        let name =
+            |k: usize| &*tools_library::find("LBracket").expect("there").card().surfaces[k].name;
+        let deepest = contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
+        let mut names: Vec<String> = contacts.iter().map(|c| name(c.surface).to_owned()).collect();
+        names.sort();
+        names.dedup();
+        (names, deepest)
+    };
+    let (names, deepest) = surfaces(1.5, 0.0);
+    assert!(
+        names.contains(&"inner".to_owned()) && (deepest - 1.0).abs() < 1e-3,
+        "{names:?} {deepest}"
+    );
+    let (names, deepest) = surfaces(0.0, 1.0);
+    assert!(
+        names.contains(&"inner".to_owned()) && (deepest - 0.5).abs() < 1e-3,
+        "{names:?} {deepest}"
+    );
+}
+
+/// Without an axis the spin matters: a pose from an axis is not one for a solid, and says so.
+#[test]
+fn the_spin_matters() {
+    let there = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose");
+    let point = Point3::new(18.0, 0.0, 5.0);
+    let part = parts::identical(point, 1);
+    let mut probe = Probe::new(&part, &Block);
+    assert!(there.is_full() && probe.detect(&there));
+    let half = 0.5f64.sqrt();
+    let turned = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, half, half]).expect("a pose");
+    assert!(turned.is_full() && !probe.detect(&turned));
+    let axial = Pose::from_axis(Point3::origin(), Vector3::z()).expect("a pose");
+    assert!(!axial.is_full());
+}

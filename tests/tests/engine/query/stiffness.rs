@@ -1,0 +1,104 @@
+//! The derivative of what is felt against differences of what is felt.
+
+use super::compare::tools;
+use super::{parts, poses};
+use nalgebra::{Matrix6, Point3, Rotation3, UnitQuaternion, Vector3, Vector6};
+use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
+use touchoff_tests::haptics::{block, tool, upright};
+use touchoff_tests::library::read;
+use touchoff_tests::oracle::Oracle;
+use touchoff_tests::oracle::draw::Draw;
+
+/// How far the tool is moved and turned for a difference.
+const STEP: f64 = 1e-6;
+
+/// A pose moved by the first three and turned by the last three about a point of the tool.
+fn moved(pose: &Pose, centre: Point3<f64>, step: &Vector6<f64>) -> Pose {
+    let about = pose.tip() + pose.rotation() * centre.coords;
+    let turn = Rotation3::from_scaled_axis(Vector3::new(step[3], step[4], step[5]));
+    let way = Vector3::new(step[0], step[1], step[2]);
+    let tip = about + way + turn * (pose.tip() - about);
+    let rotation = turn * Rotation3::from_matrix_unchecked(*pose.rotation());
+    let q = UnitQuaternion::from_rotation_matrix(&rotation).coords;
+    Pose::from_quaternion(tip, [q.x, q.y, q.z, q.w]).expect("a pose")
+}
+
+fn both(wrench: &Wrench) -> Vector6<f64> {
+    let Wrench { force: f, torque: t, .. } = wrench;
+    Vector6::new(f.x, f.y, f.z, t.x, t.y, t.z)
+}
+
+/// Minus the wrench's central differences.
+fn differences(probe: &mut Probe<'_>, pose: &Pose, centre: Point3<f64>) -> Matrix6<f64> {
+    let mut matrix = Matrix6::zeros();
+    for axis in 0..6 {
+        let mut step = Vector6::zeros();
+        step[axis] = STEP;
+        let [ahead, behind] =
+            [step, -step].map(|step| both(&probe.wrench(&moved(pose, centre, &step))));
+        matrix.set_column(axis, &((behind - ahead) / (2.0 * STEP)));
+    }
+    matrix
+}
+
+/// How far apart they are, of the matrix's own size, at poses about a part: sorted.
+fn apart(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) -> Vec<f64> {
+    let mut draw = Draw::new(31);
+    let centre = Point3::new(0.3, -0.2, 1.5);
+    let mut probe = Probe::new(part, tool).law(law).centre(centre);
+    let mut apart = Vec::new();
+    for k in 0..60 {
+        let pose = poses::about(part, oracle, k, &mut draw);
+        let found = probe.stiffness(&pose);
+        assert_eq!(found.wrench, probe.wrench(&pose));
+        if found.wrench.colliding > 0 {
+            let expected = differences(&mut probe, &pose, centre);
+            apart.push((found.matrix - expected).norm() / expected.norm());
+        } else {
+            assert_eq!(found.matrix, Matrix6::zeros());
+        }
+    }
+    apart.sort_by(f64::total_cmp);
+    apart
+}
+
+/// Where a point changes its region within a step, differences are of no use; so little of them is asked.
+#[test]
+fn it_is_what_differences_come_to() {
+    let part = parts::soup(6.0, 1_500, 5);
+    for (tool, oracle) in tools() {
+        for law in [Law::Gradient, Law::Thesis, Law::Facing] {
+            let apart = apart(&part, tool, &*oracle, law);
+            assert!(apart.len() >= 20, "{}: {}", oracle.name(), apart.len());
+            let most = apart[apart.len() * 9 / 10];
+            assert!(most < 1e-6, "{}, {law}: {most:e} of {apart:?}", oracle.name());
+        }
+    }
+}
+
+#[test]
+fn an_interpreted_tool_has_the_same() {
+    let part = parts::soup(6.0, 1_500, 6);
+    for (tool, oracle) in tools() {
+        let (interpreted, _) = read(oracle.name());
+        let mut draw = Draw::new(32);
+        let mut compiled = Probe::new(&part, tool).law(Law::Gradient);
+        let mut read = Probe::new(&part, &interpreted as &dyn Tool).law(Law::Gradient);
+        for k in 0..30 {
+            let pose = poses::about(&part, &*oracle, k, &mut draw);
+            let [one, other] = [compiled.stiffness(&pose), read.stiffness(&pose)];
+            let off = (one.matrix - other.matrix).norm();
+            assert!(off <= 1e-12 * one.matrix.norm(), "{}: {off:e}", oracle.name());
+        }
+    }
+}
+
+/// A flat end in a plane: a spring by the area, and torques that tip it back.
+#[test]
+fn a_flat_face_is_a_spring() {
+    let plane = block(200_000);
+    let mut probe = Probe::new(&plane, tool("Flat")).law(Law::Gradient);
+    let found = probe.stiffness(&upright(-1e-3));
+    let area = found.wrench.force.z / 1e-3;
+    assert!((found.matrix[(2, 2)] / area - 1.0).abs() < 1e-3, "{} {area}", found.matrix);
+}

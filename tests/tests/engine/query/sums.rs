@@ -1,0 +1,108 @@
+//! What a wrench says of its own rounding, against sums in 256 bits of the same contacts.
+
+use super::compare::{WAYS, tools};
+use super::{parts, poses};
+use nalgebra::{Point3, Vector3};
+use touchoff::{Contact, Law, Pose, Probe};
+use touchoff_tests::oracle::big::Big;
+use touchoff_tests::oracle::draw::Draw;
+
+type Triple = [Big; 3];
+
+fn big(v: Vector3<f64>) -> Triple {
+    [v.x, v.y, v.z].map(Big::exactly)
+}
+
+fn cross(a: &Triple, b: &Triple) -> Triple {
+    let part = |i: usize, j: usize| &(&a[i] * &b[j]) - &(&a[j] * &b[i]);
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+fn add(sum: &mut Triple, more: &Triple) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum = &*sum + more;
+    }
+}
+
+fn off(sum: &Triple, found: Vector3<f64>) -> f64 {
+    let parts = [0, 1, 2].map(|axis| (&sum[axis] - &Big::exactly(found[axis])).to_f64());
+    Vector3::from(parts).norm()
+}
+
+/// Force, torque about the tip, the sum of weights times magnitudes, and that times the arm.
+fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64; 2]) {
+    let mut sums = [(); 2].map(|()| [(); 3].map(|()| Big::zero()));
+    let mut sizes = [0.0; 2];
+    for contact in contacts {
+        let way = match law {
+            Law::Gradient => big(contact.gradient),
+            Law::Facing if contact.normal.dot(&contact.direction) > 0.0 => continue,
+            _ => {
+                let (n, u) = (big(contact.normal), big(contact.direction));
+                [0, 1, 2].map(|axis| &n[axis] - &u[axis])
+            }
+        };
+        let push = &Big::exactly(contact.weight) * &Big::exactly(contact.magnitude);
+        let force = way.map(|part| &push * &part);
+        let arm = contact.point - tip;
+        add(&mut sums[1], &cross(&big(arm), &force));
+        add(&mut sums[0], &force);
+        let size = push.to_f64() * contact.gradient.norm().max(1.0);
+        sizes[0] += size;
+        sizes[1] += size * (arm.norm() + contact.point.coords.norm());
+    }
+    (sums, sizes)
+}
+
+#[test]
+fn sums_keep_the_rounding_that_is_stated() {
+    // What lists of contacts lose themselves: directions turned to the world and rounded, weights multiplied
+    // and rounded, places rounded at the world's coordinates.
+    const LISTED: f64 = 16.0 * f64::EPSILON;
+    let (mut touching, mut tightest) = (0, f64::INFINITY);
+    for part in [parts::soup(6.0, 2_000, 1), parts::tube(6_000)] {
+        for (tool, oracle) in tools() {
+            let mut draw = Draw::new(17);
+            for k in 0..60 {
+                let pose: Pose = poses::about(&part, &*oracle, k, &mut draw);
+                let (law, weights) = WAYS[k % 6];
+                let mut probe = Probe::new(&part, tool).law(law).weights(weights);
+                let wrench = probe.wrench(&pose);
+                let ([force, torque], sizes) = sums(probe.contacts(&pose), law, pose.tip());
+                if wrench.colliding == 0 {
+                    continue;
+                }
+                touching += 1;
+                let stated = wrench.rounding;
+                let [by_force, by_torque] =
+                    [off(&force, wrench.force), off(&torque, wrench.torque)];
+                assert!(by_force <= stated.force + LISTED * sizes[0], "{by_force:e} {stated:?}");
+                assert!(by_torque <= stated.torque + LISTED * sizes[1], "{by_torque:e} {stated:?}");
+                // Some hundred units of roundoff, not more.
+                let all = sizes[0] + wrench.integral;
+                assert!(stated.force <= 1e-13 * all * (1.0 + wrench.colliding as f64 / 100.0));
+                tightest = tightest.min(stated.force / by_force);
+            }
+        }
+    }
+    println!("{touching} contacts; the least that stands over what is lost: {tightest:.1} times");
+    assert!(touching > 200);
+}
+
+/// About another point than the tip, and of several parts that stand where they stand.
+#[test]
+fn a_centre_far_away_is_in_it() {
+    let part = parts::tube(6_000);
+    let (tool, oracle) = tools().swap_remove(0);
+    let centre = Point3::new(300.0, -200.0, 1000.0);
+    let mut draw = Draw::new(4);
+    for k in 0..40 {
+        let pose = poses::about(&part, &*oracle, k, &mut draw);
+        let mut probe = Probe::new(&part, tool).centre(centre);
+        let wrench = probe.wrench(&pose);
+        let about = pose.tip() + pose.rotation() * centre.coords;
+        let ([_, torque], [size, _]) = sums(probe.contacts(&pose), Law::Thesis, about);
+        let lost = off(&torque, wrench.torque);
+        assert!(lost <= wrench.rounding.torque + 64.0 * f64::EPSILON * 1100.0 * size, "{lost:e}");
+    }
+}
