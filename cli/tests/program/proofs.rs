@@ -17,6 +17,7 @@ fn library() -> Vec<PathBuf> {
     let entries =
         std::fs::read_dir(tools).expect("the library").map(|entry| entry.expect("a file"));
     let mut tools: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    tools.retain(|path| path.is_file());
     tools.sort();
     tools
 }
@@ -39,9 +40,9 @@ fn certificates_of_the_library() {
 fn stages_of_a_tool() {
     let ball = [workspace().join("tools-library/tools/ball.tool")];
     for (stage, has) in [
-        ("ast", "Fixed D2Ball"),
+        ("ast", "HalfPlane Ball Some("),
         ("model", "unit mm"),
-        ("regions", "region shank"),
+        ("regions", "region ball as ball"),
         ("plan", "digraph"),
         ("rust", "impl Evaluators for Ball"),
     ] {

@@ -10,7 +10,7 @@ use tool_dsl::compile;
 use tool_dsl::diagnostic::{Diagnostic, Severity};
 use tool_dsl::source::Source;
 
-const PAGE: &str = include_str!("../../docs/language.md");
+const PAGE: &str = include_str!("../../../docs/language.md");
 const WORD: &str = "// error: ";
 
 struct Example {
