@@ -203,7 +203,12 @@ impl Plot {
                     chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
                 }
                 Form::Dashes => {
-                    chart.draw_series(DashedLineSeries::new(points.iter().copied(), 5, 4, style))?;
+                    chart.draw_series(DashedLineSeries::new(
+                        points.iter().copied(),
+                        5,
+                        4,
+                        style,
+                    ))?;
                 }
                 Form::Points => {
                     let marks = points.iter().map(|p| TriangleMarker::new(*p, size + 1, marker));
@@ -239,10 +244,7 @@ impl Plot {
             };
             for [from, to] in dashes {
                 let width = if series.bold { 3 } else { 2 };
-                area.draw(&PathElement::new(
-                    [(*from, y), (*to, y)],
-                    colour.stroke_width(width),
-                ))?;
+                area.draw(&PathElement::new([(*from, y), (*to, y)], colour.stroke_width(width)))?;
             }
             match series.form {
                 Form::Line => area.draw(&Circle::new((10, y), 3, colour.filled()))?,

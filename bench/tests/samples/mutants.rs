@@ -137,7 +137,7 @@ fn what_passes_keeps_its_bounds() {
     assert!(refused > 50 && bounded > 10, "{refused} {jumps} {bounded} {open}");
 }
 
-/// A sample of `docs/measured/mutants.md`, of every tool.
+/// A sample of `docs/measured/proofs.md`, of every tool.
 #[test]
 fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
     // A source stays on its thread.

@@ -153,15 +153,7 @@ fn a_full_disk_leaves_old_files_and_no_others() {
     let tool = bench.write("good.tool", GOOD);
     let loose = GOOD.replace("    ", " ") + &"// a comment\n".repeat(400);
     let loose = bench.write("loose.tool", loose);
-    let outputs = [
-        "o.csv",
-        "o.json",
-        "o.ply",
-        "o.png",
-        "o.svg",
-        "o.touchoff",
-        "o.apt",
-    ];
+    let outputs = ["o.csv", "o.json", "o.ply", "o.png", "o.svg", "o.touchoff", "o.apt"];
     for name in outputs {
         bench.write(name, "old");
     }

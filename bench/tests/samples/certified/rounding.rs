@@ -1,4 +1,4 @@
-//! Depths of single triangles that rounding hurts, beside the truth in 256 bits: a sample of `docs/measured/rounding.md`.
+//! Depths of single triangles that rounding hurts, beside the truth in 256 bits: a sample of `docs/measured/certified.md`.
 
 use touchoff_bench::rounding::cases::Family;
 use touchoff_bench::rounding::{Rounding, Row};

@@ -60,7 +60,8 @@ fn files_that_mount_themselves() {
 
 #[test]
 fn a_file_that_is_compiled_is_in_the_ring() {
-    let tools = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compiler/mounts/tools/ring_b.tool");
+    let tools =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compiler/mounts/tools/ring_b.tool");
     let compiled = compile(&Source::read(tools).expect("a file beside these tests"));
     let said = said(&compiled);
     assert!(said.contains("`ring_b.tool` mounts itself"), "{said}");
