@@ -158,6 +158,10 @@ fn poses() -> impl Strategy<Value = Vec<(Pose, bool)>> {
     )
 }
 
+/// How far reading moves an axis, in each coordinate: normalising errs by 3.5 u (2.5 u of the norm, u of the quotient), making the
+/// rotation orthonormal moves it by half of 6 u and rounds once. That is 7.5 u, and u is half of this ε.
+const READ: f64 = 4.0 * f64::EPSILON;
+
 proptest! {
     #[test]
     fn what_is_read_is_what_was_written(poses in poses(), inches in any::<Option<bool>>()) {
@@ -174,16 +178,16 @@ proptest! {
             prop_assert_eq!(one.rapid, other.rapid);
             for pose in [&other.pose, &row.pose] {
                 prop_assert!(same_bits(one.pose.tip(), pose.tip()));
-                prop_assert!((one.pose.axis() - pose.axis()).amax() <= f64::EPSILON);
+                prop_assert!((one.pose.axis() - pose.axis()).amax() <= READ);
             }
         }
-        // What was read once is written the same, but for that last unit of an axis.
+        // What was read once is written the same, but for that rounding of an axis.
         let again = Program::parse(apt(&read, &Heading { part: "A", cutter: None }), "again");
         let again = again.expect("it is a program");
         for (one, other) in read.stops.iter().zip(&again.stops) {
             prop_assert_eq!((one.line, one.rapid), (other.line, other.rapid));
             prop_assert!(same_bits(one.pose.tip(), other.pose.tip()));
-            prop_assert!((one.pose.axis() - other.pose.axis()).amax() <= f64::EPSILON);
+            prop_assert!((one.pose.axis() - other.pose.axis()).amax() <= READ);
         }
     }
 
