@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Races this version of the runtime against another, in one process, in turns:
+# Times this version of the runtime against another, interleaved in one process:
 #   scripts/race.sh COMMIT
-# Prints the time of a wrench, a yes or no, a certified depth and a sweep on each scene, of blocks of 25 poses the fastest of
-# seven passes, and its ratio to the other version's.
+# Prints the mean time per pose of a wrench, a contact test, a certified depth and a certified motion on each scene, and
+# its ratio to the other version's. Each block of 25 poses counts with the fastest of seven passes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 other=$(git rev-parse --verify "$1^{commit}")
@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 race=$folder/race
 mkdir -p "$race/src" "$folder/other"
 git archive "$other" | tar -x -C "$folder/other"
-# Packages of one name must differ by version.
+# Packages with the same name must differ in version.
 sed -i 's/"0\.1\.0"/"0.0.9"/g' "$folder/other/Cargo.toml"
 cp scripts/race/main.rs "$race/src/main.rs"
 cat > "$race/Cargo.toml" <<END

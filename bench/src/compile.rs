@@ -1,4 +1,4 @@
-//! What a tool costs: the splits of its plan, the operations of its code, the time to compile it.
+//! Cost of a tool: splits of its plan, operations of its code, and compile time.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -8,11 +8,11 @@ use tool_dsl::plan::Tree;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, emit};
 use touchoff_tests::library::{folder, library};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Points at which splits are counted.
+/// Number of points at which splits are counted.
 const TRIES: usize = 100_000;
-/// How close to the surface the shell's points are, as a part of the tool's largest radius.
+/// Distance from the surface of the points in the shell, as a fraction of the tool's largest radius.
 const SHELL: f64 = 0.02;
 
 /// Cutter, nut, holder and spindle: 30 segments.
@@ -24,31 +24,31 @@ const ASSEMBLY: &str = r#"tool Assembly30 "12 mm bull nose end mill, ER32, HSK-A
     mount "holders/spindle_a63.tool" as spindle at z = 131.5;
 }"#;
 
-/// Every tool of the library, and the assembly of 30 segments.
+/// Returns the sources of all library tools, and of the assembly of 30 segments.
 ///
 /// # Panics
 /// If the library's folder cannot be read.
 pub fn sources() -> Vec<Source> {
     let mut sources = library();
-    sources.push(Source::new("Assembly30", ASSEMBLY).held_by(folder().join("assembly.tool")));
+    sources.push(Source::new("Assembly30", ASSEMBLY).with_path(folder().join("assembly.tool")));
     sources
 }
 
-/// Seconds from a text to its tokens, of several times.
+/// Times from source text to tokens, s, over several runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// The best, which other work on the machine disturbs least.
+    /// The shortest, which other load on the machine disturbs least.
     pub best: f64,
     /// The median.
     pub median: f64,
-    /// The worst.
+    /// The longest.
     pub worst: f64,
 }
 
-/// Times how long a tool takes from its text to tokens.
+/// Times the compilation of a tool from source text to tokens, `count` times but at least once.
 ///
 /// # Panics
-/// If it has an error.
+/// If the tool has an error.
 pub fn times(source: &Source, count: usize) -> Times {
     let mut all: Vec<f64> = (0..count.max(1))
         .map(|_| {
@@ -64,29 +64,29 @@ pub fn times(source: &Source, count: usize) -> Times {
     Times { best: all[0], median: all[all.len() / 2], worst: all[all.len() - 1] }
 }
 
-/// What a tool is made of.
+/// Size statistics of a compiled tool.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// The tool.
+    /// The tool's name.
     pub name: String,
-    /// Its regions.
+    /// Number of regions.
     pub regions: usize,
-    /// Segments of its profile, if it has one.
+    /// Number of profile segments, if the tool has a profile.
     pub segments: Option<usize>,
-    /// Curves that bound regions, inside or outside.
+    /// Number of curves that bound regions, inside or outside.
     pub curves: usize,
-    /// Tests in the tree of owners.
+    /// Number of tests in the tree of owners.
     pub tests: usize,
-    /// Tests that one point meets, on average: within 2 % of the largest radius from the surface, and anywhere in the box.
+    /// Mean number of tests per point: within 2 % of the largest radius from the surface, and in the tool's box.
     pub splits: [f64; 2],
-    /// Operations of the code for lanes, by evaluator.
+    /// Number of operations in the lane code, by evaluator.
     pub operations: BTreeMap<String, usize>,
 }
 
-/// Takes a tool to pieces.
+/// Compiles a tool and collects its statistics.
 ///
 /// # Panics
-/// If it has an error.
+/// If the tool has an error.
 pub fn parts(source: &Source) -> Parts {
     let tool = compile(source).into_tool().expect("a tool of the library");
     let regions = &tool.model.regions;
@@ -104,10 +104,10 @@ pub fn parts(source: &Source) -> Parts {
 
 fn splits(tool: &CheckedTool) -> [f64; 2] {
     let mut tree = Walked::new(tool);
-    let mut draw = Draw::new(4);
+    let mut draw = Rng::new(4);
     let (radius, low, high) = (tool.extent.radius, tool.extent.low, tool.extent.high);
     let shell = SHELL * radius;
-    // A step of the shell's thickness along d or z leaves the tool or enters it.
+    // A point is near the surface if a step of the shell's thickness along d or z changes inside to outside or back.
     let steps = [[shell, 0.0], [-shell, 0.0], [0.0, shell], [0.0, -shell]];
     let mut means = [(0, 0); 2];
     for _ in 0..TRIES {
@@ -123,7 +123,7 @@ fn splits(tool: &CheckedTool) -> [f64; 2] {
     means.map(|(count, sum): (usize, usize)| sum as f64 / count.max(1) as f64)
 }
 
-/// The tree of owners, walked as the nested code does.
+/// The tree of owners, traversed as the nested code does.
 struct Walked<'t> {
     tool: &'t CheckedTool,
     curves: Evaluator<'t>,
@@ -135,7 +135,7 @@ impl<'t> Walked<'t> {
         Walked { tool, curves: Evaluator::new(&tool.model.graph, curves) }
     }
 
-    /// Whether a point is inside, and how many tests it meets.
+    /// Returns whether a point is inside, and the number of tests on its path.
     fn walk(&mut self, [d, z]: [f64; 2]) -> (bool, usize) {
         self.curves.set(At::meridian(d, z));
         let (mut tree, mut met) = (&self.tool.plan.owner, 0);
@@ -153,7 +153,7 @@ impl<'t> Walked<'t> {
     }
 }
 
-/// Counts arithmetic, comparisons and selects in each function for lanes.
+/// Counts arithmetic, comparisons and selects in an expression tree.
 #[derive(Default)]
 struct Count(usize);
 
@@ -161,7 +161,7 @@ impl<'ast> Visit<'ast> for Count {
     fn visit_expr(&mut self, expr: &'ast syn::Expr) {
         let one = match expr {
             syn::Expr::Binary(_) => true,
-            // A literal's sign is none.
+            // The sign of a literal is not an operation.
             syn::Expr::Unary(unary) => !matches!(*unary.expr, syn::Expr::Lit(_)),
             syn::Expr::MethodCall(call) => call.method != "of",
             syn::Expr::Call(call) => {

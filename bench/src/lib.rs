@@ -1,5 +1,5 @@
-//! The laboratory: the measurements behind the commands of the program, other methods to race against, and the pages that
-//! are written. Nothing that a user installs depends on it.
+//! Measurement library: the measurements behind the commands of `touchoff-bench`, the other methods that are timed for
+//! comparison, and the writers of the pages in `docs/measured`. No package that a user installs depends on it.
 
 pub mod certified;
 pub mod compile;

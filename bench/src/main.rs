@@ -1,4 +1,4 @@
-//! The program that measures. A command makes a page of figures in `docs/measured`, with its drawings beside it:
+//! The measurement program. Each command writes a page of measurements and its drawings to `docs/measured`:
 //!
 //! ```sh
 //! cargo run --release -p touchoff-bench -- NAME [options]
@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use touchoff_bench::page::Page;
 
-/// Measures Touchoff, and writes pages of figures.
+/// Measures Touchoff and writes pages of measurements.
 #[derive(Parser)]
 #[command(after_help = "\
 Exit status:
@@ -23,7 +23,8 @@ Exit status:
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Folder for the page and its drawings, which replace those that are there [default: `docs/measured` of the repository].
+    /// Output folder for the page and its drawings; existing files are replaced [default: `docs/measured` of the
+    /// repository].
     #[arg(long, global = true, value_name = "DIR")]
     to: Option<PathBuf>,
 }
@@ -43,7 +44,7 @@ enum Command {
 }
 
 impl Command {
-    /// Measures, and returns the page if the command makes one.
+    /// Runs the measurement. Returns the page, or `None` if the command makes none.
     fn run(&self) -> Result<Option<Page>, Box<dyn Error>> {
         match self {
             Command::Accuracy(command) => command.run(),
@@ -73,7 +74,7 @@ fn main() -> ExitCode {
 fn measure(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = arguments.to.clone().unwrap_or_else(|| root.join("docs/measured"));
-    // A folder that cannot be made is known before hours are spent.
+    // Measurements take hours: create the folder first, so that an unusable one is reported at once.
     let named = |error| format!("{}: {error}", folder.display());
     std::fs::create_dir_all(&folder).map_err(named)?;
     let start = Instant::now();
@@ -88,7 +89,7 @@ fn measure(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     Ok(code)
 }
 
-/// Returns the command that makes the same page, without the folder that it goes to.
+/// Returns the command line that makes the same page, without the `--to` option.
 fn command() -> String {
     let features = if cfg!(feature = "peers") { " --features peers" } else { "" };
     let mut command = vec![format!("cargo run --release -p touchoff-bench{features} --")];

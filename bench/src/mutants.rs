@@ -1,4 +1,4 @@
-//! Tools broken in one place each after they were compiled, and what is proved of them then.
+//! Mutation tests of the proofs: compiled tools with one defect each, and the certificates of the mutants.
 
 use tool_dsl::diagnostic::any_error;
 use tool_dsl::expr::Id;
@@ -6,14 +6,14 @@ use tool_dsl::expr::value::{At, Evaluator};
 use tool_dsl::number::Number;
 use tool_dsl::plan::{PlannedTool, Tree};
 use tool_dsl::prove::Certificate;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Points at which a broken tool is compared with the whole one.
+/// Number of points at which a mutant is compared with the original tool.
 const POINTS: usize = 20_000;
-/// Depths that differ by less than that part of the tool's size are the same.
+/// Relative difference, in units of the tool's size, below which two depths count as equal.
 const SAME: f64 = 1e-5;
 
-/// What is broken.
+/// The kinds of defects.
 pub const KINDS: [&str; 10] = [
     "a depth's sign",
     "a depth's constant",
@@ -27,38 +27,39 @@ pub const KINDS: [&str; 10] = [
     "a curve's slope",
 ];
 
-/// A broken tool.
+/// A tool with one defect.
 pub struct Mutant {
-    /// Which of [`KINDS`].
+    /// Index into [`KINDS`].
     pub kind: usize,
-    /// Where it is broken.
+    /// Description of the location of the defect.
     pub place: String,
-    /// The tool.
+    /// The defective tool.
     pub tool: PlannedTool,
 }
 
-/// The evidence that a mutant is broken.
+/// The evidence that a mutant is defective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Caught {
     /// An error.
     Error,
-    /// A warning that a proof does not come to its end.
+    /// A warning, while some part of the proof is undecided.
     Open,
-    /// A warning of something that is proved.
+    /// A warning, with no part of the proof undecided.
     Warning,
-    /// Only a comparison with the certificate of the whole tool, which no user has.
+    /// Only a difference from the certificate of the original tool, which no user has.
     Compared,
-    /// Nothing.
+    /// No evidence.
     Not,
 }
 
-/// A tool broken so often, each kind in turn, each in a random place.
+/// Returns up to `count` mutants of a tool. The kinds of defects take turns, and each defect has a random location. A
+/// mutant is left out if the tool has no location for it.
 pub fn mutants(tool: &PlannedTool, count: usize, seed: u64) -> Vec<Mutant> {
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     (0..count).filter_map(|k| mutant(tool, k % KINDS.len(), &mut draw)).collect()
 }
 
-fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Draw) -> Option<Mutant> {
+fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Rng) -> Option<Mutant> {
     let mut tool = whole.clone();
     let size = tool.extent.scale();
     let mut pick = |count: usize| (draw.bits() % count.max(1) as u64) as usize;
@@ -77,11 +78,11 @@ fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Draw) -> Option<Mutant> {
             let factor = graph.number(number(25.4));
             own.depth = graph.mul(factor, own.depth);
         }
-        3 => own.course.0 = own.course.0.map(|part| graph.neg(part)),
+        3 => own.raw_direction.0 = own.raw_direction.0.map(|part| graph.neg(part)),
         4 => {
-            // By a right angle in the half plane, by exchange in space.
-            let [x, y, z] = own.course.0;
-            own.course.0 = [z, y, graph.neg(x)];
+            // Turns the direction by a right angle in the half plane, or exchanges components in space.
+            let [x, y, z] = own.raw_direction.0;
+            own.raw_direction.0 = [z, y, graph.neg(x)];
         }
         5 => tool.plan.owner = leaves(&tool.plan.owner, &|owner| owner.filter(|o| *o != region)),
         6 => {
@@ -89,8 +90,9 @@ fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Draw) -> Option<Mutant> {
                 .checked_rem(tool.model.regions.len())
                 .filter(|other| *other != region)?;
             place = format!("{place} as {}", tool.model.regions[other].name);
-            let felt = |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
-            tool.plan.owner = leaves(&tool.plan.owner, &felt);
+            let evaluation =
+                |owner: Option<usize>| owner.map(|o| if o == region { other } else { o });
+            tool.plan.owner = leaves(&tool.plan.owner, &evaluation);
         }
         7 => {
             let mut split = pick(tool.plan.owner.tests());
@@ -115,7 +117,7 @@ fn mutant(whole: &PlannedTool, kind: usize, draw: &mut Draw) -> Option<Mutant> {
     Some(Mutant { kind, place, tool })
 }
 
-/// A tree with other owners.
+/// Returns the tree with the owner of each leaf mapped.
 fn leaves(
     tree: &Tree<Option<usize>>,
     owner: &impl Fn(Option<usize>) -> Option<usize>,
@@ -131,7 +133,7 @@ fn leaves(
     }
 }
 
-/// A tree with the sides of one split exchanged, after so many others.
+/// Returns the tree with the two sides of one split exchanged. `left` is the number of that split in preorder.
 fn turned(tree: &Tree<Option<usize>>, left: &mut usize) -> Tree<Option<usize>> {
     let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
     let here = *left == 0;
@@ -142,48 +144,48 @@ fn turned(tree: &Tree<Option<usize>>, left: &mut usize) -> Tree<Option<usize>> {
     Tree::Split { curve: *curve, strict: *strict, below, above }
 }
 
-/// At a point: the depth, and the direction before it was made a unit vector.
+/// The depth at a point, and the direction before normalisation.
 type Felt = (f64, [f64; 3]);
 
-fn felt(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Felt> {
+fn evaluation(tool: &PlannedTool, at: &mut Evaluator<'_>, [x, y, z]: [f64; 3]) -> Option<Felt> {
     at.set(At::point(x, y, z));
     let owner = *tool.plan.owner.at(&|curve: usize| at.get(tool.model.curves[curve].value));
     let region = &tool.model.regions[owner?];
-    Some((at.get(region.depth), region.course.0.map(|part| at.get(part))))
+    Some((at.get(region.depth), region.raw_direction.0.map(|part| at.get(part))))
 }
 
 fn evaluator(tool: &PlannedTool) -> Evaluator<'_> {
-    let felt = |region: &tool_dsl::model::Region| -> Vec<Id> {
-        region.course.0.into_iter().chain([region.depth]).collect()
+    let evaluation = |region: &tool_dsl::model::Region| -> Vec<Id> {
+        region.raw_direction.0.into_iter().chain([region.depth]).collect()
     };
     let model = &tool.model;
     let curves = model.curves.iter().map(|curve| curve.value);
-    Evaluator::new(&model.graph, model.regions.iter().flat_map(felt).chain(curves))
+    Evaluator::new(&model.graph, model.regions.iter().flat_map(evaluation).chain(curves))
 }
 
-/// Whether a broken tool is another solid, has another depth or another direction anywhere.
+/// Returns whether a mutant differs from the original in solid, depth or direction at any of `POINTS` random points.
 pub fn changes(whole: &PlannedTool, broken: &PlannedTool, seed: u64) -> bool {
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     let (mut before, mut after) = (evaluator(whole), evaluator(broken));
     let sides = whole.extent.cell().sides;
     let slack = SAME * whole.extent.scale();
     (0..POINTS).any(|_| {
         let p = sides.map(|side| draw.between(side.low, side.high));
-        match (felt(whole, &mut before, p), felt(broken, &mut after, p)) {
+        match (evaluation(whole, &mut before, p), evaluation(broken, &mut after, p)) {
             (None, None) => false,
             (Some((a, u)), Some((b, v))) => {
                 let dot: f64 = u.iter().zip(v).map(|(u, v)| u * v).sum();
                 let long = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
                 (a - b).abs() > slack || dot < 0.999 * long(u) * long(v)
             }
-            // Beside the surface rounding decides.
+            // Within rounding of the surface, inside and outside may differ.
             (one, other) => one.or(other).is_some_and(|(depth, _)| depth.abs() > slack),
         }
     })
 }
 
-/// Returns the evidence that a tool is broken: the reports of its own certificate, or else a difference from that of the
-/// whole tool. The whole tool must have no report.
+/// Returns the evidence that a tool is defective: the diagnostics of its own certificate, or else a difference from the
+/// certificate of the original tool. The original must have no diagnostics.
 pub fn caught(whole: &Certificate, mutant: &PlannedTool) -> Caught {
     let broken = Certificate::of(mutant);
     let reports = broken.diagnostics(mutant);
@@ -195,11 +197,12 @@ pub fn caught(whole: &Certificate, mutant: &PlannedTool) -> Caught {
         certificate
             .regions
             .iter()
-            .map(|region| region.aside.map_or(0.0, |aside| aside.high))
+            .map(|region| region.direction_error.map_or(0.0, |aside| aside.high))
             .collect()
     };
     let off = aside(whole).into_iter().zip(aside(&broken)).any(|(a, b)| b > a + 1e-6);
-    let bounds = same(whole.least(), broken.least()) && same(whole.lipschitz(), broken.lipschitz());
+    let bounds = same(whole.lower_slope(), broken.lower_slope())
+        && same(whole.lipschitz(), broken.lipschitz());
     if any_error(&reports) {
         Caught::Error
     } else if reports.is_empty() {

@@ -1,48 +1,49 @@
-//! Pages of figures: a head line of commit, command, machine and covered paths, and the text and files below it.
+//! Pages of measurements: a head line with commit, command, machine and covered paths, and sections with figures.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use touchoff::AtomicFile;
 
-/// A page of figures, and the files that belong to it.
+/// A page of measurements and the files that belong to it.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
-    /// The stem of its file's name in `docs/measured`.
+    /// The file name in `docs/measured`, without extension.
     pub name: &'static str,
     /// The title.
     pub title: &'static str,
-    /// The paths of the repository whose code the figures vouch for.
+    /// The paths in the repository that the measurements depend on.
     pub covers: &'static [&'static str],
     /// The sections below the head line, in order.
     pub sections: Vec<Section>,
-    /// Drawings: names and contents.
+    /// The drawings: file names and contents.
     pub figures: Vec<(String, String)>,
 }
 
 /// A section of a page.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
-    /// The heading; empty for text that stands under the page's title.
+    /// The heading; empty for text directly under the page's title.
     pub title: &'static str,
     /// The Markdown below the heading.
     pub body: String,
-    /// The bars and contracts that were not kept, in words.
+    /// One line of text per missed threshold or violated contract.
     pub missed: Vec<String>,
 }
 
 impl Page {
-    /// Returns where the page lies in a folder.
+    /// Returns the path of the page in a folder.
     pub fn path(&self, folder: &Path) -> PathBuf {
         folder.join(format!("{}.md", self.name))
     }
 
-    /// Returns the bars and contracts that were not kept.
+    /// Returns the missed thresholds and violated contracts of all sections.
     pub fn missed(&self) -> impl Iterator<Item = &String> {
         self.sections.iter().flat_map(|section| &section.missed)
     }
 
-    /// Writes the page and its figures into a folder, which is made; `command` is what made them.
+    /// Writes the page and its figures into a folder, which is created if it does not exist. `command` is the command
+    /// line to state in the head line.
     ///
     /// # Errors
     /// If the folder or a file cannot be written.
@@ -63,8 +64,8 @@ impl Page {
     }
 }
 
-/// Returns the head line of a page: by which `command` its figures were made, at which commit, on which machine, and
-/// which paths of the repository they depend on. A commit ends with `-dirty` where files differ from it.
+/// Returns the head line of a page: the commit, the `command`, the machine, and the repository paths that the
+/// measurements depend on. A commit ends with `-dirty` if the working tree differs from it.
 fn made(command: &str, covers: &[&str]) -> String {
     let git = Command::new("git").args(["describe", "--always", "--dirty", "--exclude=*"]).output();
     let commit = git.ok().and_then(|output| String::from_utf8(output.stdout).ok());

@@ -1,15 +1,15 @@
-//! Plots as SVG: lines and points over linear or logarithmic axes, by `plotters`.
+//! SVG plots of lines and points over linear or logarithmic axes, drawn by `plotters`.
 
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
-/// Width and height, pixels.
+/// Width and height of the image, pixels.
 const SIZE: (u32, u32) = (980, 540);
-/// Width of the plot itself; the legend stands to its right, where it covers no point.
+/// Width of the plot area, pixels. The legend is to its right, where it covers no point.
 const PLOT: u32 = 770;
 
-/// Okabe and Ito's colours, which those who see fewer colours tell apart too, and darker ones.
+/// Okabe and Ito's palette, which colour-blind readers can tell apart, and some darker colours.
 const COLOURS: [RGBColor; 10] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -23,7 +23,7 @@ const COLOURS: [RGBColor; 10] = [
     RGBColor(127, 127, 127),
 ];
 
-/// A plot: two axes and what is drawn between them.
+/// A plot: two axes and the series between them.
 #[derive(Clone, Debug)]
 pub struct Plot {
     title: String,
@@ -31,14 +31,14 @@ pub struct Plot {
     series: Vec<Series>,
 }
 
-/// An axis: its title, and whether equal steps are equal quotients.
+/// An axis: its title, and whether it is logarithmic.
 #[derive(Clone, Debug)]
 pub struct Axis {
     title: String,
     log: bool,
 }
 
-/// Points that belong together, and how they are drawn.
+/// A sequence of points and its drawing style.
 #[derive(Clone, Debug)]
 pub struct Series {
     name: String,
@@ -56,22 +56,22 @@ enum Form {
 }
 
 impl Axis {
-    /// Returns an axis on which equal steps are equal differences.
+    /// Returns a linear axis.
     pub fn linear(title: impl Into<String>) -> Axis {
         Axis { title: title.into(), log: false }
     }
 
-    /// Returns an axis on which equal steps are equal quotients.
+    /// Returns a logarithmic axis.
     pub fn log(title: impl Into<String>) -> Axis {
         Axis { title: title.into(), log: true }
     }
 
-    /// Returns whether a value has a place on the axis.
+    /// Returns whether the axis can show a value: it must be finite, and positive on a logarithmic axis.
     fn shows(&self, value: f64) -> bool {
         value.is_finite() && (!self.log || value > 0.0)
     }
 
-    /// Returns the stretch that holds all values, with some room at its ends.
+    /// Returns a range that contains all values the axis can show, with a margin at both ends.
     fn span(&self, values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
         let ends = values.filter(|value| self.shows(*value)).fold(None, |ends, value| {
             let [low, high] = ends.unwrap_or([value; 2]);
@@ -87,23 +87,23 @@ impl Axis {
 }
 
 impl Series {
-    /// Returns points, each joined to the next. Series without a name are not in the legend.
+    /// Returns a polyline with a marker at each point. A series without a name is not in the legend.
     pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
         Series { name: name.into(), points, form: Form::Line, look: None, bold: false }
     }
 
-    /// Returns a dashed line.
+    /// Returns a dashed line without markers.
     pub fn dashes(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
         Series { form: Form::Dashes, ..Series::line(name, points) }
     }
 
-    /// Returns points alone.
+    /// Returns separate points.
     pub fn points(name: impl Into<String>, points: Vec<[f64; 2]>) -> Series {
         Series { form: Form::Points, ..Series::line(name, points) }
     }
 
-    /// Returns the series with the colour of that number, instead of that of its place in the plot: the same thing looks the same
-    /// in every plot.
+    /// Returns the series with colour number `look` instead of the colour of its index in the plot. A method can thus
+    /// have the same colour in every plot.
     #[must_use]
     pub fn look(self, look: usize) -> Series {
         Series { look: Some(look), ..self }
@@ -117,28 +117,28 @@ impl Series {
 }
 
 impl Plot {
-    /// Returns an empty plot over its axes, the one to the right and the one upward.
+    /// Returns an empty plot with a horizontal and a vertical axis.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Plot {
         Plot { title: title.into(), axes: [x, y], series: Vec::new() }
     }
 
-    /// Returns the plot with one more series, over those that are there.
+    /// Returns the plot with one more series, drawn over the existing ones.
     #[must_use]
     pub fn with(mut self, series: Series) -> Plot {
         self.series.push(series);
         self
     }
 
-    /// Returns whether there is no point in it.
+    /// Returns whether no series has a point.
     pub fn is_empty(&self) -> bool {
         self.series.iter().all(|series| series.points.is_empty())
     }
 
-    /// Returns the plot as an SVG file, the same bytes for the same numbers. A point that the axes cannot show (0 on a logarithmic one) is left
-    /// out.
+    /// Returns the plot as an SVG file; equal input gives equal bytes. Points that the axes cannot show, such as 0 on a
+    /// logarithmic axis, are left out.
     ///
     /// # Panics
-    /// Never: a text in memory can be written.
+    /// Never: writing to a string in memory cannot fail.
     pub fn svg(&self) -> String {
         let mut svg = String::new();
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -223,12 +223,12 @@ impl Plot {
         area.present()
     }
 
-    /// Returns the colour of a series by its place in the plot.
+    /// Returns the colour of the series with this index.
     fn colour(&self, number: usize) -> RGBColor {
         COLOURS[self.series[number].look.unwrap_or(number) % COLOURS.len()]
     }
 
-    /// Draws the names of the series beside their marks.
+    /// Draws the legend: the name of each named series beside its mark.
     fn legend(
         &self,
         area: &DrawingArea<SVGBackend<'_>, Shift>,
@@ -257,7 +257,7 @@ impl Plot {
     }
 }
 
-/// Returns a number at a tick, short.
+/// Returns a short tick label for a number.
 fn label(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -284,7 +284,7 @@ mod tests {
                 .with(Series::dashes("", vec![[1.0, 1.0], [4.0, 1.0]]));
             let svg = plot.svg();
             assert_eq!(svg, plot.svg());
-            // One more stands in the legend.
+            // The legend has one more circle.
             assert_eq!(svg.matches("<circle").count(), circles + 1);
             assert!(svg.contains("a &lt; b") && svg.ends_with("</svg>\n") && !svg.contains("NaN"));
         }

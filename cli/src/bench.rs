@@ -1,5 +1,5 @@
-//! `touchoff bench`: run time against error of one part, tool and path. Clouds of more and more points are judged by what is
-//! certified of the triangles, and by a cloud with more points than any of them.
+//! `touchoff bench`: run time against error of one part, tool and path. Clouds of more and more points are compared
+//! with certified depths of the triangles, and with a cloud of more points than any of them.
 
 use crate::arguments::Bench;
 use crate::failure::Failure;
@@ -11,45 +11,45 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path as File;
 use std::time::Instant;
-use touchoff::certify::{Certifier, Facets};
-use touchoff::mesh::Shape;
-use touchoff::scenes::{Path, tube};
+use touchoff::certify::{Certifier, TriangleBvh};
+use touchoff::mesh::Geometry;
+use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Cloud, Mesh, Part, Pose, Probe, Tool, Unit, Wrench};
 
-/// Points of the clouds, and of the one whose forces the others are judged by.
+/// Sizes of the clouds, and of the reference cloud for forces and torques.
 const POINTS: [usize; 6] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000];
 const REFERENCE: usize = 1_000_000;
-/// The same of a quick run.
+/// Number of these sizes in a quick run, and its reference.
 const QUICK: usize = 3;
 const QUICK_REFERENCE: usize = 100_000;
-/// Tolerances of certified depth, as fractions of the tool's length or diameter.
+/// Tolerances of certified depth, as fractions of the tool's length or diameter, whichever is larger.
 const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
-/// Poses that a path is thinned to.
+/// Largest number of poses, to which a longer path is thinned.
 const POSES: usize = 1_000;
 
-/// A part, a tool, and the poses that are asked.
+/// A part, a tool, and the poses of the queries.
 struct Case<'t> {
     mesh: Mesh,
     tool: &'t dyn Tool,
     poses: Vec<Pose>,
 }
 
-/// The wrench at every pose, the sorted times of the queries, and the bound that is stated for depths.
+/// The wrench at every pose, the sorted times of the queries in ns, and the stated bound on errors of depth.
 struct Answers {
     wrenches: Vec<Wrench>,
     times: Vec<u64>,
     bound: Option<f64>,
 }
 
-/// A method: queries on a cloud, or certified depth.
+/// The measurements of a method: queries on a cloud, or certified depth.
 #[derive(Debug, Serialize)]
 struct Row {
     method: &'static str,
-    /// Points of the cloud.
+    /// Number of points of the cloud.
     points: Option<usize>,
     /// The tolerance of certified depth, in the part's unit.
     tolerance: Option<f64>,
-    /// Times of single queries: the median, and what 99 of 100 do not exceed.
+    /// Times of single queries: median and 99th percentile.
     p50_ns: u64,
     p99_ns: u64,
     /// Errors of force and torque: root mean squares over the poses, relative to those of the reference.
@@ -61,7 +61,7 @@ struct Row {
     bound_depth: Option<f64>,
 }
 
-/// Measures, and prints a row per method.
+/// Measures all methods, and prints one row per method.
 pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
     let found = wanted.tool.as_ref().map(|name| Found::find(name, &wanted.given)).transpose()?;
     if found.is_none() && !wanted.given.is_none() {
@@ -75,7 +75,7 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
         if wanted.quick { (&POINTS[..QUICK], QUICK_REFERENCE) } else { (&POINTS[..], REFERENCE) };
     let mut out = Output::lines();
     if !json {
-        let (tool, unit) = (&case.tool.card().name, case.mesh.unit());
+        let (tool, unit) = (&case.tool.info().name, case.mesh.unit());
         writeln!(
             out,
             "{tool} at {} poses, {} triangles",
@@ -87,11 +87,11 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
             "method          points   tolerance   p50 µs   p99 µs    force   torque  depth ({unit})  bound ({unit})"
         )?;
     }
-    let card = case.tool.card();
-    let [low, high] = card.reach();
-    let size = (high - low).max(2.0 * card.radius()) * card.unit.to(case.mesh.unit());
-    let facets = Facets::new(&case.mesh);
-    let certified = match Certifier::new(&facets, case.tool) {
+    let info = case.tool.info();
+    let [low, high] = info.reach();
+    let size = (high - low).max(2.0 * info.radius()) * info.unit.factor_to(case.mesh.unit());
+    let bvh = TriangleBvh::new(&case.mesh);
+    let certified = match Certifier::new(&bvh, case.tool) {
         Ok(mut certifier) => {
             Vec::from(TOLERANCES.map(|part| certified(&case, &mut certifier, part * size)))
         }
@@ -115,36 +115,37 @@ pub(crate) fn bench(wanted: &Bench, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The tube and the tool of the thesis's figures.
+/// Returns the tube and the tool of the thesis's figures.
 fn built_in() -> Case<'static> {
-    let poses = (0..POSES).map(|k| Path::Outside.pose(k, POSES)).collect();
+    let poses = (0..POSES).map(|k| ScenePath::Outside.pose(k, POSES)).collect();
     Case { mesh: tube(), tool: &tools_library::Fig73Exact, poses }
 }
 
 fn own<'t>(part: &File, unit: Unit, tool: &'t dyn Tool, path: &File) -> Result<Case<'t>, Failure> {
-    let program = program::read(path, tool.card(), unit)?;
+    let program = program::read(path, tool.info(), unit)?;
     let file = part.display().to_string();
-    let Shape::Mesh(mesh) = Shape::read(part, unit)? else {
+    let Geometry::Mesh(mesh) = Geometry::read(part, unit)? else {
         return Err(Failure::NoTriangles { file, what: "touchoff bench" });
     };
-    for finding in mesh.survey().findings() {
+    for finding in mesh.diagnostics().findings() {
         say!("{file}: {finding}");
     }
-    let step = program.stops.len().div_ceil(POSES).max(1);
-    let poses = program.stops.iter().step_by(step).map(|stop| stop.pose).collect();
+    let step = program.locations.len().div_ceil(POSES).max(1);
+    let poses = program.locations.iter().step_by(step).map(|stop| stop.pose).collect();
     Ok(Case { mesh, tool, poses })
 }
 
 impl Case<'_> {
-    /// Asks a cloud of so many points at every pose.
+    /// Queries a cloud of `points` points at every pose.
     fn wrenches(&self, points: usize, seed: u64) -> Result<Answers, Failure> {
-        let part = Part::new(&Cloud::blue(&self.mesh, points, seed)?, self.mesh.survey());
+        let part =
+            Part::new(&Cloud::blue_noise(&self.mesh, points, seed)?, self.mesh.diagnostics());
         let mut probe = Probe::new(&part, self.tool);
         let (wrenches, times) = timed(&self.poses, |pose| probe.wrench(pose));
-        Ok(Answers { wrenches, times, bound: probe.unseen() })
+        Ok(Answers { wrenches, times, bound: probe.sampling_error_bound() })
     }
 
-    /// Measures a cloud beside the true forces and depths.
+    /// Measures a cloud against the reference's forces and depths.
     fn cloud(
         &self,
         points: usize,
@@ -175,7 +176,7 @@ impl Case<'_> {
     }
 }
 
-/// Measures certified depth, and returns the middles of its intervals.
+/// Measures certified depth, and returns the midpoints of its intervals.
 fn certified(case: &Case<'_>, certifier: &mut Certifier<'_>, tolerance: f64) -> (Row, Vec<f64>) {
     let (found, times) = timed(&case.poses, |pose| certifier.deepest(pose, tolerance).depth);
     let row = Row {
@@ -192,7 +193,7 @@ fn certified(case: &Case<'_>, certifier: &mut Certifier<'_>, tolerance: f64) -> 
     (row, found.into_iter().map(|[low, high]| 0.5 * (low + high)).collect())
 }
 
-/// Asks at every pose, once each after some to warm up, and returns the answers and the sorted times.
+/// Queries every pose once after a warm-up, and returns the answers and the sorted times in ns.
 fn timed<R>(poses: &[Pose], mut ask: impl FnMut(&Pose) -> R) -> (Vec<R>, Vec<u64>) {
     const WARM: usize = 50;
     for pose in poses.iter().rev().take(WARM) {
@@ -210,7 +211,7 @@ fn timed<R>(poses: &[Pose], mut ask: impl FnMut(&Pose) -> R) -> (Vec<R>, Vec<u64
     (found, times)
 }
 
-/// The time that a fraction of the queries do not exceed.
+/// Returns a quantile of sorted times; 0 if there are none.
 fn part(times: &[u64], fraction: f64) -> u64 {
     let last = times.len().saturating_sub(1);
     times.get((fraction * last as f64).round() as usize).copied().unwrap_or_default()

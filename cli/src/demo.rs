@@ -8,10 +8,10 @@ use serde::Serialize;
 use std::io::Write;
 use std::time::Instant;
 use tools_library::Fig73;
-use touchoff::scenes::{POSES, Path, tube};
+use touchoff::scenes::{POSES, ScenePath, tube};
 use touchoff::{Cloud, Part, Pose, Probe};
 
-/// What the thesis printed for a row: contacts (average and most), µs (average). 250 MHz R10000.
+/// The thesis's values of a row: contacts (average and maximum) and query time (average, µs) on a 250 MHz R10000.
 struct Printed {
     points: usize,
     outside: (f64, u32, f64),
@@ -48,8 +48,10 @@ pub(crate) fn demo(json: bool) -> Result<(), Failure> {
     }
     let mut rows = Vec::new();
     for printed in &TABLE_7_1 {
-        let part = Part::from_cloud(&Cloud::random(&mesh, printed.points, 1)?);
-        for (path, thesis) in [(Path::Outside, &printed.outside), (Path::Inside, &printed.inside)] {
+        let part = Part::from_cloud(&Cloud::uniform(&mesh, printed.points, 1)?);
+        for (path, thesis) in
+            [(ScenePath::Outside, &printed.outside), (ScenePath::Inside, &printed.inside)]
+        {
             progress.set_message(format!("{} points, {}", printed.points, path.name()));
             let row = measure(&part, path, &progress);
             if json {
@@ -67,10 +69,10 @@ pub(crate) fn demo(json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn measure(part: &Part, path: Path, progress: &ProgressBar) -> Row {
+fn measure(part: &Part, path: ScenePath, progress: &ProgressBar) -> Row {
     let poses: Vec<Pose> = (0..POSES).map(|k| path.pose(k, POSES)).collect();
     let mut probe = Probe::new(part, &Fig73);
-    // The first queries find their memory.
+    // Warm-up: the first queries allocate their memory.
     for pose in poses.iter().step_by(POSES / 100) {
         probe.wrench(pose);
     }
@@ -78,10 +80,10 @@ fn measure(part: &Part, path: Path, progress: &ProgressBar) -> Row {
     let (mut sum, mut most) = (0, 0);
     for (done, pose) in poses.iter().enumerate() {
         let start = Instant::now();
-        let felt = probe.wrench(pose);
+        let evaluation = probe.wrench(pose);
         times.push(nanoseconds(start.elapsed()));
-        sum += felt.colliding;
-        most = most.max(felt.colliding);
+        sum += evaluation.colliding;
+        most = most.max(evaluation.colliding);
         if done % 1_000 == 999 {
             progress.inc(1_000);
         }

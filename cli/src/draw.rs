@@ -1,6 +1,6 @@
-//! A tool's drawing, as SVG or in pixels.
+//! `touchoff draw`: a tool's drawing as SVG or PNG.
 
-use crate::arguments::Given;
+use crate::arguments::ParamArguments;
 use crate::failure::Failure;
 use crate::files;
 use crate::output::{Output, refuse_inputs, write_file};
@@ -10,12 +10,16 @@ use std::io::Write;
 use std::path::Path;
 use tool_dsl::draw::{Lettering, svg};
 
-/// Pixels to one unit of the drawing, fine enough to print; fewer if the whole would need too many.
+/// Pixels per unit of the drawing, fine enough to print; fewer if the image would have more pixels than `MOST`.
 const PIXELS: f32 = 2.0;
 const MOST: f32 = 5e7;
 
 /// Draws a file's tool into another file, or on standard output.
-pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<(), Failure> {
+pub(crate) fn draw(
+    file: &Path,
+    output: Option<&Path>,
+    given: &ParamArguments,
+) -> Result<(), Failure> {
     let Some(output) = output else {
         let mut out = Output::bytes();
         writeln!(out, "{}", drawing(file, given)?)?;
@@ -34,12 +38,12 @@ pub(crate) fn draw(file: &Path, output: Option<&Path>, given: &Given) -> Result<
     write_file(output, bytes)
 }
 
-fn drawing(file: &Path, given: &Given) -> Result<String, Failure> {
+fn drawing(file: &Path, given: &ParamArguments) -> Result<String, Failure> {
     let tool = files::checked(file, given)?;
     svg(&tool, Lettering::Strokes).ok_or_else(|| Failure::NoAxis(tool.model.name.clone()))
 }
 
-/// An SVG without text elements as a PNG.
+/// Renders an SVG without text elements as a PNG.
 fn png(svg: &str) -> Result<Vec<u8>, Failure> {
     let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
     let tree = Tree::from_str(svg, &Options::default()).map_err(|error| pixels(&error))?;

@@ -1,4 +1,4 @@
-//! Codes of the compiler's errors and warnings, explained.
+//! `touchoff explain`: explanations of the compiler's error and warning codes.
 
 use crate::failure::Failure;
 use crate::output::Output;
@@ -6,7 +6,10 @@ use serde::Serialize;
 use std::io::Write;
 use tool_dsl::diagnostic::{Entry, Example, FAMILIES, Severity, entries, entry, near};
 
-/// Prints what is known of a code, or lists all codes with their titles.
+/// Prints the explanation of a code, or lists all codes with their titles.
+///
+/// # Errors
+/// [`Failure::Code`] if there is no such code.
 pub(crate) fn explain(code: Option<&str>, json: bool) -> Result<(), Failure> {
     let asked = match code {
         None => None,
@@ -28,7 +31,7 @@ pub(crate) fn explain(code: Option<&str>, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The failure for a code that there is none of, with those that are most like it.
+/// Returns the failure for an unknown code, with the codes most like it.
 fn unknown(code: &str) -> Failure {
     let near: Vec<&str> = near(&code.to_uppercase()).map(|entry| entry.code).collect();
     Failure::Code { code: code.to_owned(), near: near.join("`, `") }
@@ -72,7 +75,7 @@ fn severity(entry: &Entry) -> &'static str {
     }
 }
 
-/// A row of `--json`.
+/// The row of a code in `--json`.
 #[derive(Serialize)]
 struct Row {
     code: &'static str,

@@ -1,20 +1,20 @@
-//! Why the program fails, said once at its end.
+//! Failures of the program, reported once at its end.
 
 use touchoff::mesh::MeshError;
 use touchoff::tool::ToolError;
 use touchoff::{CloudError, ProgramError};
 
-/// The exit status of a session that a signal ended, as shells have it.
+/// The exit status of a session that a signal ended, by the shells' convention.
 pub(crate) const INTERRUPTED: u8 = 130;
 
 impl Failure {
-    /// Returns whether the words are those of the compiler, which begin with their severity.
+    /// Returns whether the message is the compiler's own, which begins with its severity.
     pub(crate) fn is_rendered(&self) -> bool {
         matches!(self, Failure::Tool(ToolError::Wrong(_)))
     }
 
-    /// The exit status: 2 where the options are wrong or an input cannot be taken as what was asked for, 1 for all
-    /// else.
+    /// Returns the exit status: 2 if the options are wrong or an input cannot be used as requested, [`INTERRUPTED`]
+    /// after a signal, 1 for all else.
     pub(crate) fn status(&self) -> u8 {
         match self {
             Failure::IsInput { .. } | Failure::Program(_) | Failure::NoInside { .. } => 2,
@@ -39,32 +39,32 @@ pub(crate) enum Failure {
     /// No diagnostic has such a code.
     #[error("no code is called `{code}`: {}", near_codes(near))]
     Code {
-        /// The code that was asked for.
+        /// The requested code.
         code: String,
-        /// The codes that are most like it.
+        /// The codes most like it.
         near: String,
     },
     /// A signal ended a session.
     #[error("the session was interrupted: all of it until then was kept")]
     Interrupted,
-    /// Nobody speaks for a SpaceMouse.
+    /// The daemon of a SpaceMouse cannot be reached.
     #[error("{socket}: {source}: is `spacenavd` running?")]
     Spacenav {
-        /// Where it would listen.
+        /// The daemon's socket.
         socket: &'static str,
-        /// Why not.
+        /// The reason.
         source: std::io::Error,
     },
     /// The system has no such core.
     #[error(transparent)]
-    Core(#[from] touchoff::haptic::Refused),
-    /// A part of what was to be kept of a session was not; the reason was said when it happened.
+    Core(#[from] touchoff::haptic::RealtimeError),
+    /// A recording of the session is incomplete; the reason was reported when it happened.
     #[error("not all of the session was kept: make room, and record it again")]
     NotKept,
-    /// A number that the haptic loop cannot run with.
+    /// A setting is out of range for the haptic loop.
     #[error(transparent)]
     Setting(#[from] touchoff::haptic::SettingError),
-    /// A path does not say which way it goes.
+    /// The motion between two poses of a path is ambiguous.
     #[error(transparent)]
     Motion(touchoff::MotionError),
     /// The path could not be read.
@@ -73,49 +73,49 @@ pub(crate) enum Failure {
     /// The tool could not be loaded.
     #[error(transparent)]
     Tool(#[from] ToolError),
-    /// What was asked to be proved cannot be.
+    /// The requested proof is not possible.
     #[error(transparent)]
-    Uncertified(#[from] touchoff::certify::Uncertified),
+    Uncertified(#[from] touchoff::certify::NotCertifiable),
     /// A program could not be checked.
     #[error(transparent)]
     Verify(#[from] touchoff::verify::VerifyError),
     /// A sweep could not be done.
     #[error(transparent)]
     Sweep(#[from] touchoff::postures::sweep::SweepError),
-    /// Rules mean nothing.
+    /// The rules of a sweep are invalid.
     #[error(transparent)]
     Rules(#[from] touchoff::postures::RulesError),
     /// A posture map could not be read or written.
     #[error(transparent)]
     Map(#[from] touchoff::postures::MapError),
-    /// Nothing can be recorded of a session.
+    /// A session cannot be recorded.
     #[error(transparent)]
     Recorder(#[from] touchoff::postures::RecorderError),
-    /// There is no path.
+    /// No path could be planned.
     #[error(transparent)]
     Path(#[from] touchoff::postures::path::PathError),
     /// A program could not be written.
     #[error(transparent)]
     Write(#[from] touchoff::program::WriteError),
-    /// A map is written in a form that there is none of.
+    /// No format of a map has this file extension.
     #[error("a map is written as `.csv`, `.json`, `.ply` or `.png`, `{file}` is none of them")]
     MapForm {
-        /// What was asked for.
+        /// The requested file.
         file: String,
     },
-    /// A program is written in a form that there is none of.
+    /// No format of a program has this file extension.
     #[error("a program is written as `.apt` or `.csv`, `{file}` is neither")]
     ProgramForm {
-        /// What was asked for.
+        /// The requested file.
         file: String,
     },
-    /// A form of a map that shows the part.
+    /// The requested output shows the part, which was not given.
     #[error("`{file}` shows the part: give it with `--part`")]
     WantsPart {
         /// The file.
         file: String,
     },
-    /// A map of another part.
+    /// The map belongs to another part.
     #[error("{map} is of another part than {part}: give the mesh that was swept")]
     OtherPart {
         /// The map.
@@ -123,7 +123,7 @@ pub(crate) enum Failure {
         /// The part.
         part: String,
     },
-    /// A tool that a map does not have.
+    /// The map does not have this tool.
     #[error(
         "{map} has no `{tool}`, or that of another version: sweep with it first, into another map"
     )]
@@ -135,33 +135,33 @@ pub(crate) enum Failure {
     },
     /// The part's file could not be read.
     #[error(transparent)]
-    Shape(#[from] touchoff::mesh::ShapeError),
+    Shape(#[from] touchoff::mesh::GeometryError),
     /// A saved part could not be opened or written.
     #[error(transparent)]
     Saved(#[from] touchoff::SavedError),
-    /// A saved part is told by its name.
+    /// The file's extension is not that of a saved part.
     #[error("saved parts are told by their name: write `-o {}` instead of `{file}`", .better.display())]
     SavedName {
-        /// What was asked for.
+        /// The requested file.
         file: String,
-        /// A name that would do.
+        /// A suitable name.
         better: std::path::PathBuf,
     },
-    /// It is not known what is inside a part.
+    /// The inside of the part is unknown.
     #[error("{file}: {}; mend the mesh, or give `--surface-only`", crate::part::NO_INSIDE)]
     NoInside {
         /// The part.
         file: String,
     },
-    /// What is asked for wants a mesh.
+    /// The request needs a mesh.
     #[error("`{what}` is for meshes: {file} has points and no triangles")]
     NoTriangles {
         /// The part.
         file: String,
-        /// What was asked for.
+        /// The request.
         what: &'static str,
     },
-    /// Nothing is proved of how a tool's depth grows.
+    /// No bound on the growth of the tool's depth is proved.
     #[error(
         "how fast depth grows in `{0}` is not proved (`touchoff check` says why), so no number of points \
          has a tolerance: give `--points`"
@@ -172,42 +172,42 @@ pub(crate) enum Failure {
         "no tool is called `{name}`{meant}: `touchoff tools` lists them; a file's name ends in `.tool`"
     )]
     UnknownTool {
-        /// What was asked for.
+        /// The requested name.
         name: String,
         /// `; did you mean …?`, or nothing.
         meant: String,
     },
-    /// What is compiled has its values.
+    /// `--set` was given, but no `.tool` file.
     #[error("`--set` is for `.tool` files: {0}")]
     NothingToSet(&'static str),
     /// Some `.tool` files have errors, which were shown.
     #[error("{wrong} of {all} files {} errors", if *.wrong == 1 { "has" } else { "have" })]
     Files {
-        /// How many have errors.
+        /// Number of files with errors.
         wrong: usize,
-        /// How many were looked at.
+        /// Number of files checked.
         all: usize,
     },
-    /// Some `.tool` files would be changed by `fmt`; they were named.
+    /// Some `.tool` files would be changed by `fmt`; their names were printed.
     #[error("{changed} of {all} files would change: `touchoff fmt` lays them out")]
     Unformatted {
-        /// How many would change.
+        /// Number of files that would change.
         changed: usize,
-        /// How many were looked at.
+        /// Number of files checked.
         all: usize,
     },
-    /// A drawing is wanted in a form that there is none of.
+    /// No format of a drawing has this file extension.
     #[error("a drawing is an `.svg` or a `.png`, `{file}` is neither: write `-o {}`", .better.display())]
     Form {
-        /// What was asked for.
+        /// The requested file.
         file: String,
-        /// A name that would do.
+        /// A suitable name.
         better: std::path::PathBuf,
     },
-    /// A shape without an axis has no section that shows it whole.
+    /// A solid without an axis has no section that shows it whole.
     #[error("`{0}` is a solid without an axis: only tools are drawn")]
     NoAxis(String),
-    /// A drawing could not be made into pixels.
+    /// A drawing could not be rasterised.
     #[error("the drawing could not be made a PNG: {0}; an `.svg` needs no pixels")]
     Pixels(String),
     /// An output is also an input.
@@ -223,7 +223,7 @@ pub(crate) enum Failure {
     Unwritable {
         /// The file.
         file: String,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
     /// Standard output could not be written.
@@ -234,7 +234,7 @@ pub(crate) enum Failure {
     Json(#[from] serde_json::Error),
 }
 
-/// The remedy for a code that there is none of.
+/// Returns the remedy for an unknown code.
 fn near_codes(near: &str) -> String {
     match near {
         "" => "`touchoff explain` lists them".to_owned(),

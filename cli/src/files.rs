@@ -1,6 +1,6 @@
-//! Tools as files: listing, looking over, expanding.
+//! `.tool` files: listing, loading, expanding.
 
-use crate::arguments::{Given, Stage};
+use crate::arguments::{ParamArguments, Stage};
 use crate::failure::Failure;
 use crate::output::{Output, show};
 use serde::Serialize;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use tool_dsl::diagnostic::escaped;
 use tool_dsl::{CheckedTool, compile_with, emit};
 use tools_library::TOOLS;
-use touchoff::tool::{Card, Interpreted, Shape};
+use touchoff::tool::{Interpreted, Symmetry, ToolInfo};
 use touchoff::{Escaped, Tool, Unit};
 
 #[derive(Serialize)]
@@ -21,7 +21,7 @@ struct Listed<'a> {
     low: f64,
     high: f64,
     radius: f64,
-    /// From where to where a solid reaches along x and along y.
+    /// The extent of a solid along x and along y.
     #[serde(skip_serializing_if = "Option::is_none")]
     across: Option<[[f64; 2]; 2]>,
     surfaces: Vec<ListedSurface<'a>>,
@@ -35,53 +35,53 @@ struct ListedSurface<'a> {
 }
 
 impl<'a> Listed<'a> {
-    fn of(card: &'a Card) -> Listed<'a> {
-        let [low, high] = card.reach();
+    fn of(info: &'a ToolInfo) -> Listed<'a> {
+        let [low, high] = info.reach();
         Listed {
-            name: &card.name,
-            title: &card.title,
-            unit: card.unit.word(),
+            name: &info.name,
+            title: &info.title,
+            unit: info.unit.symbol(),
             low,
             high,
-            radius: card.radius(),
-            across: match card.shape {
-                Shape::Revolved => None,
-                Shape::Solid { across } => Some(across),
+            radius: info.radius(),
+            across: match info.symmetry {
+                Symmetry::Revolved => None,
+                Symmetry::Solid { across } => Some(across),
             },
-            surfaces: card
+            surfaces: info
                 .surfaces
                 .iter()
                 .map(|s| ListedSurface { name: &s.name, cutting: s.cutting })
                 .collect(),
-            regions: card.regions.iter().map(|region| &*region.name).collect(),
+            regions: info.regions.iter().map(|region| &*region.name).collect(),
         }
     }
 }
 
-/// Lists the compiled tools, or those of files.
-pub(crate) fn tools(files: &[PathBuf], given: &Given, json: bool) -> Result<(), Failure> {
+/// Lists the compiled tools, or the tools of files.
+pub(crate) fn tools(files: &[PathBuf], given: &ParamArguments, json: bool) -> Result<(), Failure> {
     let files: Vec<Interpreted> =
         files.iter().map(|file| load(file, given)).collect::<Result<_, _>>()?;
-    let cards: Vec<&Card> = match files.as_slice() {
-        [] if given.is_none() => TOOLS.iter().map(|tool| tool.card()).collect(),
+    let cards: Vec<&ToolInfo> = match files.as_slice() {
+        [] if given.is_none() => TOOLS.iter().map(|tool| tool.info()).collect(),
         [] => return Err(Failure::NothingToSet("name one")),
-        files => files.iter().map(Tool::card).collect(),
+        files => files.iter().map(Tool::info).collect(),
     };
     let mut out = Output::lines();
-    for card in cards {
+    for info in cards {
         if json {
-            serde_json::to_writer(&mut out, &Listed::of(card))?;
+            serde_json::to_writer(&mut out, &Listed::of(info))?;
             writeln!(out)?;
         } else {
-            writeln!(out, "{:<20} {:<5} {}", card.name, card.unit.word(), Escaped(&card.title))?;
+            writeln!(out, "{:<20} {:<5} {}", info.name, info.unit.symbol(), Escaped(&info.title))?;
         }
     }
     out.flush()?;
     Ok(())
 }
 
-/// The tool of a file; what was to be warned of is said.
-fn load(file: &Path, given: &Given) -> Result<Interpreted, Failure> {
+/// Loads the tool of a file, and prints its warnings.
+fn load(file: &Path, given: &ParamArguments) -> Result<Interpreted, Failure> {
     let tool = Interpreted::parse_with(&given.source(file)?, &given.sources())?;
     if !tool.warnings().is_empty() {
         say!("{}", tool.warnings());
@@ -96,8 +96,11 @@ pub(crate) enum Found {
 }
 
 impl Found {
-    /// Finds what `--tool` says.
-    pub(crate) fn find(name: &OsStr, given: &Given) -> Result<Found, Failure> {
+    /// Finds the tool that `--tool` names.
+    ///
+    /// # Errors
+    /// If there is no such tool, its file cannot be loaded, or a compiled tool is given values.
+    pub(crate) fn find(name: &OsStr, given: &ParamArguments) -> Result<Found, Failure> {
         if Path::new(name).extension().is_some_and(|extension| extension == "tool") {
             return Ok(Found::File(Box::new(load(Path::new(name), given)?)));
         }
@@ -109,7 +112,7 @@ impl Found {
             let distance = |known: &str| {
                 strsim::damerau_levenshtein(&known.to_lowercase(), &name.to_lowercase())
             };
-            let known = TOOLS.iter().map(|tool| &*tool.card().name);
+            let known = TOOLS.iter().map(|tool| &*tool.info().name);
             let nearest = known.min_by_key(|known| distance(known));
             let meant = nearest.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
             Failure::UnknownTool { name: escaped(name).into_owned(), meant }
@@ -124,8 +127,11 @@ impl Found {
     }
 }
 
-/// A file's tool; what there is to say of the file is said.
-pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<CheckedTool>, Failure> {
+/// Compiles the tool of a file, and shows its diagnostics.
+///
+/// # Errors
+/// If the file cannot be read or has errors.
+pub(crate) fn checked(file: &Path, given: &ParamArguments) -> Result<Box<CheckedTool>, Failure> {
     let source = given.source(file)?;
     let compiled = compile_with(&source, &given.sources());
     for diagnostic in compiled.diagnostics() {
@@ -134,8 +140,12 @@ pub(crate) fn checked(file: &Path, given: &Given) -> Result<Box<CheckedTool>, Fa
     compiled.into_tool().ok_or(Failure::Files { wrong: 1, all: 1 })
 }
 
-/// Prints files' Rust, or their plans as graphs.
-pub(crate) fn expand(files: &[PathBuf], stage: Stage, given: &Given) -> Result<(), Failure> {
+/// Prints the Rust code of files, or an earlier stage of their compilation.
+pub(crate) fn expand(
+    files: &[PathBuf],
+    stage: Stage,
+    given: &ParamArguments,
+) -> Result<(), Failure> {
     let mut out = Output::lines();
     for file in files {
         let tool = checked(file, given)?;
@@ -152,17 +162,17 @@ pub(crate) fn expand(files: &[PathBuf], stage: Stage, given: &Given) -> Result<(
     Ok(())
 }
 
-/// What a file's name ends in, in small letters.
+/// Returns a file's extension in lower case.
 pub(crate) fn ending(file: &Path) -> Option<String> {
     file.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
 }
 
-/// A length with its unit.
+/// Formats a length with its unit.
 pub(crate) fn length(value: f64, unit: Unit) -> String {
     format!("{} {unit}", figure(value, unit))
 }
 
-/// A length to a tenth of a micrometre, or what comes near it in its unit.
+/// Formats a length to a tenth of a micrometre, or about as finely in its unit.
 pub(crate) fn figure(value: f64, unit: Unit) -> String {
     let decimals = match unit {
         Unit::Millimetre => 4,

@@ -1,4 +1,4 @@
-//! Tools as files: how they are laid out.
+//! `touchoff fmt`: the layout of `.tool` files.
 
 use crate::failure::Failure;
 use crate::output::{Output, show};
@@ -10,8 +10,9 @@ use tool_dsl::format::format;
 use tool_dsl::source::{LONGEST, Source, Sources};
 use touchoff::AtomicFile;
 
-/// Lays files out in place, or only names those that would change. A file with errors of syntax
-/// stays as it is. With `json` there is one object per file on standard output.
+/// Formats files in place, or with `check` only names those that would change. A file with syntax errors stays as
+/// it is. With `json`, writes one object per file to standard output, except for formatted text that goes there
+/// itself.
 pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Failure> {
     let (mut wrong, mut changed) = (0, 0);
     for file in files {
@@ -40,7 +41,7 @@ pub(crate) fn fmt(files: &[PathBuf], check: bool, json: bool) -> Result<(), Fail
 #[derive(Serialize)]
 struct Row<'f> {
     file: Cow<'f, str>,
-    /// True if the file was only looked at.
+    /// True if the file was only checked.
     check: bool,
     outcome: Outcome,
 }
@@ -48,11 +49,11 @@ struct Row<'f> {
 #[derive(Clone, Copy, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Outcome {
-    /// Laid out as it should be.
+    /// The layout is the standard one.
     Same,
-    /// It was, or with `--check` would be, written anew.
+    /// The file was rewritten, or with `--check` would be.
     Changed,
-    /// With errors, which are on standard error.
+    /// The file has errors, which are on standard error.
     Wrong,
 }
 
@@ -103,7 +104,7 @@ fn is_piped(file: &Path) -> bool {
     file == Path::new("-")
 }
 
-/// The text on standard input, as long as a file's may be: a longer one is cut behind that, and refused for its
+/// Reads standard input. A text longer than a file's may be is cut one byte beyond that, and later refused for its
 /// length.
 fn standard_input() -> io::Result<Source> {
     let mut bytes = Vec::new();

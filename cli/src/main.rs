@@ -1,4 +1,4 @@
-//! The `touchoff` program: words for people over the libraries.
+//! The `touchoff` program: a command line for the libraries.
 
 #[macro_use]
 mod output;
@@ -54,7 +54,7 @@ fn ended(done: Result<ExitCode, failure::Failure>) -> ExitCode {
     ended_or(done, 1)
 }
 
-/// `failed` is the least exit status of a failure.
+/// Reports a failure and returns its exit status, which is `failed` or higher.
 fn ended_or(done: Result<ExitCode, failure::Failure>, failed: u8) -> ExitCode {
     match done {
         Ok(code) => code,

@@ -1,4 +1,4 @@
-//! Outputs: standard output, standard error, and the files that may be written.
+//! Outputs: standard output, standard error, and files.
 
 use crate::failure::Failure;
 use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
@@ -7,37 +7,37 @@ use tool_dsl::diagnostic::Diagnostic;
 use tool_dsl::source::{Source, Sources};
 use touchoff::{AtomicFile, EscapedLines};
 
-/// Standard output.
+/// A writer to standard output.
 ///
-/// A reader that has enough and closes it is no failure: what is written from then on goes nowhere, and the command
-/// goes on to its verdict. Any other failure is one, such as a full disk; [`Write::flush`] at the end of a command
-/// brings out the last of them.
+/// A reader that closes the pipe early is no failure: later output is discarded, and the command goes on to its
+/// verdict. Any other error is a failure, such as a full disk; [`Write::flush`] at the end of a command reports the
+/// last of them.
 ///
-/// Control characters are escaped, so that no name in a file is obeyed by a terminal.
+/// Control characters are escaped, except in raw bytes, so that a terminal does not obey names from files.
 pub(crate) struct Output {
     out: Buffered,
     escaped: bool,
 }
 
 enum Buffered {
-    /// Line by line, so that lines of standard error come between them in their order.
+    /// Line by line, so that lines on standard error keep their order among them.
     Lines(StdoutLock<'static>),
     /// In blocks.
     Blocks(BufWriter<StdoutLock<'static>>),
 }
 
 impl Output {
-    /// For lines of text and of JSON.
+    /// Returns an output for lines of text and of JSON.
     pub(crate) fn lines() -> Output {
         Output { out: Buffered::Lines(io::stdout().lock()), escaped: true }
     }
 
-    /// For very many lines.
+    /// Returns an output for very many lines.
     pub(crate) fn rows() -> Output {
         Output { out: Buffered::Blocks(BufWriter::new(io::stdout().lock())), escaped: true }
     }
 
-    /// For a file's content, byte for byte.
+    /// Returns an output for a file's content, byte for byte.
     pub(crate) fn bytes() -> Output {
         Output { escaped: false, ..Output::rows() }
     }
@@ -56,7 +56,7 @@ impl Write for Output {
         if !self.escaped || bytes.iter().all(is_plain) {
             return open_or(self.out().write(bytes), bytes.len());
         }
-        // Callers write whole characters; what is none passes as it is.
+        // Callers write whole characters; bytes that are not UTF-8 pass unchanged.
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text,
             Err(wrong) if wrong.valid_up_to() > 0 => {
@@ -73,7 +73,7 @@ impl Write for Output {
     }
 }
 
-/// The outcome of writing, or `gone` if nobody reads any more.
+/// Returns the outcome of writing, or `gone` if the reader has closed the pipe.
 fn open_or<T>(written: io::Result<T>, gone: T) -> io::Result<T> {
     match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(gone),
@@ -81,8 +81,8 @@ fn open_or<T>(written: io::Result<T>, gone: T) -> io::Result<T> {
     }
 }
 
-/// A line on standard error, its control characters escaped; where that cannot be written, nobody is there to be
-/// told.
+/// Prints a line on standard error, with its control characters escaped. Write errors are ignored, as there is no
+/// other place to report them.
 macro_rules! say {
     ($($words:tt)*) => {{
         use std::io::Write as _;
@@ -91,28 +91,28 @@ macro_rules! say {
     }};
 }
 
-/// Shows a diagnostic of the compiler on standard error, in colours where that is a terminal.
+/// Shows a diagnostic of the compiler on standard error, in colours if that is a terminal.
 pub(crate) fn show(diagnostic: &Diagnostic, sources: &Sources) {
     let plain = diagnostic.render(sources, false);
     let escaped = EscapedLines(&plain).to_string();
-    // Colours are control characters too: they are left out where there are others.
+    // Colours are control characters too, so they are left out if the text has others.
     let colours = io::stderr().is_terminal() && escaped == plain;
     let shown = if colours { diagnostic.render(sources, true) } else { escaped };
     let _ = writeln!(io::stderr(), "{shown}\n");
 }
 
-/// Writes a whole file, in place of an old one once it is on the disk.
+/// Writes a whole file, which replaces an old one once it is on the disk.
 pub(crate) fn write_file(file: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Failure> {
     AtomicFile::write(file, bytes).map_err(|source| unwritable(file, source))
 }
 
-/// The failure to write a file.
+/// Returns the failure to write a file.
 pub(crate) fn unwritable(file: &Path, source: io::Error) -> Failure {
     Failure::Unwritable { file: file.display().to_string(), source }
 }
 
-/// Refuses outputs that are inputs, before anything is written: the same file under any name, by links too, and files
-/// that a tool's file mounts.
+/// Refuses outputs that are inputs, before anything is written. Files are compared, not names, so that links are
+/// found; files that a tool's file mounts are inputs too.
 ///
 /// # Errors
 /// [`Failure::IsInput`] for the first of them.
@@ -120,7 +120,7 @@ pub(crate) fn refuse_inputs<'a>(
     outputs: impl IntoIterator<Item = &'a Path>,
     inputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
-    // What is not there is no input.
+    // A file that does not exist yet is no input.
     let outputs: Vec<&Path> = outputs.into_iter().filter(|output| output.is_file()).collect();
     if outputs.is_empty() {
         return Ok(());
@@ -136,7 +136,7 @@ pub(crate) fn refuse_inputs<'a>(
     Ok(())
 }
 
-/// The files that a tool's file mounts, as far as it can be read.
+/// Returns the files that a tool's file mounts, as far as they can be read.
 fn mounted(tool: &Path) -> Vec<PathBuf> {
     if tool.extension().is_none_or(|extension| extension != "tool") {
         return Vec::new();
@@ -146,7 +146,7 @@ fn mounted(tool: &Path) -> Vec<PathBuf> {
     compiled.sources.all().iter().filter_map(|source| source.path().map(Path::to_owned)).collect()
 }
 
-/// Returns whether two paths lead to one regular file that is there.
+/// Returns whether two paths lead to the same existing regular file.
 #[cfg(unix)]
 fn is_same_file(one: &Path, other: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;

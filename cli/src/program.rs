@@ -1,34 +1,42 @@
-//! Programs: read and compared with tool and unit; where one is beside the part, and what of it was passed over.
+//! Programs: reading, checks against tool and unit, position relative to the part, and ignored words.
 
 use crate::failure::Failure;
 use crate::files::{figure, length};
 use nalgebra::Point3;
 use std::collections::BTreeMap;
 use std::path::Path;
-use touchoff::tool::Card;
-use touchoff::verify::{Approach, Report};
+use touchoff::tool::ToolInfo;
+use touchoff::verify::{Approach, VerifyReport};
 use touchoff::{Program, Unit};
 
 /// Reads a program for a tool and a part in that unit.
-pub(crate) fn read(path: &Path, card: &Card, unit: Unit) -> Result<Program, Failure> {
+///
+/// # Errors
+/// If it cannot be read, or its unit, poses or cutter do not fit.
+pub(crate) fn read(path: &Path, info: &ToolInfo, unit: Unit) -> Result<Program, Failure> {
     let program = Program::read(path)?;
     program.check_unit(unit)?;
-    program.check_poses(card)?;
-    if let Some(line) = program.check_cutter(card, unit)? {
+    program.check_poses(info)?;
+    if let Some(line) = program.check_cutter(info, unit)? {
         say!(
             "{}:{line}: CUTTER is not compared: it cannot describe `{}`",
             path.display(),
-            card.name
+            info.name
         );
     }
     Ok(program)
 }
 
-/// Prints the boxes of part and program, how near the tool comes, and what was passed over.
-pub(crate) fn print(report: &Report, program: &Program, unit: Unit) {
-    let Approach { part, program: tips, distance, line, diameter, keeps } = report.approach;
+/// Prints the boxes of part and program, the nearest approach of the tool, and the ignored words.
+pub(crate) fn print(report: &VerifyReport, program: &Program, unit: Unit) {
+    let Approach { part, program: tips, distance, line, diameter, proved_clearance: keeps } =
+        report.approach;
     say!("part: {} in {unit}", extent(part, unit));
-    say!("program: {} positions, tips in {} in {unit}", program.stops.len(), extent(tips, unit));
+    say!(
+        "program: {} positions, tips in {} in {unit}",
+        program.locations.len(),
+        extent(tips, unit)
+    );
     match (distance, keeps) {
         (0.0, _) => say!("nearest approach: it touches, line {line}"),
         (_, None) => say!("nearest approach: {} or less, line {line}", length(distance, unit)),
@@ -42,7 +50,7 @@ pub(crate) fn print(report: &Report, program: &Program, unit: Unit) {
     passed_over(program);
 }
 
-/// Says which words were passed over, and how often.
+/// Prints the words that were ignored, and how often each occurs.
 pub(crate) fn passed_over(program: &Program) {
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for (_, word) in &program.ignored {
@@ -57,7 +65,7 @@ pub(crate) fn passed_over(program: &Program) {
     }
 }
 
-/// A box from corner to corner.
+/// Formats a box by its two corners.
 fn extent([low, high]: [Point3<f64>; 2], unit: Unit) -> String {
     let corner = |p: Point3<f64>| {
         let [x, y, z] = [p.x, p.y, p.z].map(|part| figure(part, unit));

@@ -1,4 +1,4 @@
-//! A tool along a path: a row a pose, a summary at the end.
+//! `touchoff run`: a tool along a path. Prints one row per pose, and a summary.
 
 use crate::arguments::Run;
 use crate::failure::Failure;
@@ -12,8 +12,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::time::Instant;
-use touchoff::certify::{Certifier, Facets, Penetration};
-use touchoff::tool::Card;
+use touchoff::certify::{Certifier, Penetration, TriangleBvh};
+use touchoff::tool::ToolInfo;
 use touchoff::{Contact, Part, Probe, Program, Unit, Wrench};
 
 #[derive(Serialize)]
@@ -22,7 +22,7 @@ struct Row<'a> {
     line: usize,
     colliding: usize,
     depth: f64,
-    /// What no place of the surface is deeper than, where that is proved.
+    /// Upper bound on the depth of the whole surface, if one is proved.
     depth_bound: Option<f64>,
     force: [f64; 3],
     torque: [f64; 3],
@@ -31,36 +31,36 @@ struct Row<'a> {
     energy: f64,
     ns: u64,
     law: String,
-    /// The deepest point of each surface in contact.
+    /// The greatest depth per surface in contact.
     surfaces: BTreeMap<&'a str, f64>,
     #[serde(flatten)]
     certified: Option<Certified<'a>>,
 }
 
-/// What is proved of a pose.
+/// Proved results at a pose.
 #[derive(Serialize)]
 struct Certified<'a> {
-    /// Between what the depth of the part's triangles lies.
+    /// An interval that contains the depth of the part's triangles.
     deepest: [f64; 2],
-    /// The triangle that is deepest, if one is inside.
+    /// The deepest triangle, if one is inside the tool.
     triangle: Option<u32>,
-    /// The surface of the tool that is nearest to it there.
+    /// The tool's surface nearest to it there.
     surface: Option<&'a str>,
-    /// Whether the tool is wholly inside the material, where no triangle shows it; null where that is unknown.
+    /// True if the tool is wholly inside the material, which no triangle shows; null if that is unknown.
     inside: Option<bool>,
 }
 
 impl<'a> Certified<'a> {
-    fn new(found: &Penetration, inside: Option<bool>, card: &'a Card) -> Certified<'a> {
+    fn new(found: &Penetration, inside: Option<bool>, info: &'a ToolInfo) -> Certified<'a> {
         Certified {
             deepest: found.depth,
             triangle: found.witness.map(|witness| witness.triangle),
-            surface: found.witness.map(|witness| &*card.surfaces[witness.surface].name),
+            surface: found.witness.map(|witness| &*info.surfaces[witness.surface].name),
             inside,
         }
     }
 
-    /// For people: what is proved, as far as figures differ.
+    /// Formats the proved depth for people, as one number if both bounds print alike.
     fn shown(&self, unit: Unit) -> String {
         if self.inside == Some(true) {
             return "wholly inside the material".to_owned();
@@ -77,22 +77,22 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
     let unit = wanted.part.unit;
-    let program = program::read(&wanted.path, tool.card(), unit)?;
-    let Loaded { part, mesh, prove } = part::load(&wanted.part, Some(tool.card()), Fine::Proof)?;
+    let program = program::read(&wanted.path, tool.info(), unit)?;
+    let Loaded { part, mesh, prove } = part::load(&wanted.part, Some(tool.info()), Fine::Proof)?;
     let certify = [wanted.certify, prove].into_iter().flatten().reduce(f64::min);
-    let facets = match (certify, &mesh) {
-        (Some(tolerance), Some(mesh)) => Some((Facets::new(mesh), tolerance)),
+    let bvh = match (certify, &mesh) {
+        (Some(tolerance), Some(mesh)) => Some((TriangleBvh::new(mesh), tolerance)),
         (Some(_), None) => {
             let file = wanted.part.part.display().to_string();
             return Err(Failure::NoTriangles { file, what: "--certify" });
         }
         (None, _) => None,
     };
-    let mut certifier = match &facets {
-        Some((facets, tolerance)) => Some((Certifier::new(facets, tool)?, *tolerance)),
+    let mut certifier = match &bvh {
+        Some((bvh, tolerance)) => Some((Certifier::new(bvh, tool)?, *tolerance)),
         None => None,
     };
-    about(wanted, &part, &program, tool.card());
+    about(wanted, &part, &program, tool.info());
     part::about(&part, Some(tool), unit);
 
     let mut out = Output::rows();
@@ -101,19 +101,19 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
         writeln!(out, "    line  points   depth ({unit})  {proved}by surface")?;
     }
     let mut probe = Probe::new(&part, tool)
-        .law(wanted.law)
-        .weights(wanted.weights)
-        .centre(wanted.center.unwrap_or(Point3::origin()));
-    let proved = part.tree().cover().is_some_and(|cover| cover.proved);
-    let unseen = probe.unseen().filter(|_| proved);
+        .with_law(wanted.law)
+        .with_weights(wanted.weights)
+        .with_centre(wanted.center.unwrap_or(Point3::origin()));
+    let proved = part.tree().covering_radius().is_some_and(|cover| cover.proved);
+    let unseen = probe.sampling_error_bound().filter(|_| proved);
     let mut summary = Summary::default();
-    for (index, stop) in program.stops.iter().enumerate() {
+    for (index, stop) in program.locations.iter().enumerate() {
         let start = Instant::now();
-        let felt = probe.wrench(&stop.pose);
+        let evaluation = probe.wrench(&stop.pose);
         let ns = nanoseconds(start.elapsed());
-        let contacts = if felt.colliding > 0 { probe.contacts(&stop.pose) } else { &[] };
-        let surfaces = by_surface(contacts, tool.card());
-        summary.add(stop.line, &felt, &surfaces, ns);
+        let contacts = if evaluation.colliding > 0 { probe.contacts(&stop.pose) } else { &[] };
+        let surfaces = by_surface(contacts, tool.info());
+        summary.add(stop.line, &evaluation, &surfaces, ns);
         let certified = certifier.as_mut().map(|(certifier, tolerance)| {
             let start = Instant::now();
             let found = certifier.deepest(&stop.pose, *tolerance);
@@ -123,16 +123,16 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
                 None => certifier.is_buried(&stop.pose),
             };
             summary.certify(stop.line, (&found, inside), ns);
-            Certified::new(&found, inside, tool.card())
+            Certified::new(&found, inside, tool.info())
         });
         if json {
-            let seen = unseen.map(|unseen| felt.depth() + unseen);
+            let seen = unseen.map(|unseen| evaluation.depth() + unseen);
             let proved = certified.as_ref().map(|certified| certified.deepest[1]);
             let bound = [seen, proved].into_iter().flatten().reduce(f64::min);
-            let row = row((index, stop.line), (&felt, bound), ns, surfaces, certified);
+            let row = row((index, stop.line), (&evaluation, bound), ns, surfaces, certified);
             serde_json::to_writer(&mut out, &row)?;
             writeln!(out)?;
-        } else if felt.colliding > 0
+        } else if evaluation.colliding > 0
             || certified.as_ref().is_some_and(|c| c.triangle.is_some() || c.inside == Some(true))
         {
             let proved = certified.map(|c| format!("{}; ", c.shown(unit)));
@@ -140,38 +140,38 @@ pub(crate) fn run(wanted: &Run, json: bool) -> Result<(), Failure> {
                 .iter()
                 .map(|(name, depth)| format!("{name} {}", figure(*depth, unit)))
                 .collect();
-            let depth = figure(felt.depth(), unit);
-            let (line, points) = (stop.line, felt.colliding);
+            let depth = figure(evaluation.depth(), unit);
+            let (line, points) = (stop.line, evaluation.colliding);
             let (proved, each) = (proved.unwrap_or_default(), each.join(", "));
             writeln!(out, "{line:>8} {points:>7} {depth:>12}  {proved}{each}")?;
         }
     }
     out.flush()?;
     summary.print(unit);
-    if facets.is_some_and(|(facets, _)| !facets.has_inside()) {
+    if bvh.is_some_and(|(bvh, _)| !bvh.has_inside()) {
         say!("{NO_INSIDE}");
     }
     Ok(())
 }
 
-/// What was loaded.
-fn about(wanted: &Run, part: &Part, program: &Program, card: &Card) {
+/// Prints a description of the input.
+fn about(wanted: &Run, part: &Part, program: &Program, info: &ToolInfo) {
     program::passed_over(program);
     say!(
         "{} on {} points, {} poses; law {}, weights {}, lengths in {}",
-        card.name,
+        info.name,
         part.tree().len(),
-        program.stops.len(),
+        program.locations.len(),
         wanted.law,
         wanted.weights,
         wanted.part.unit,
     );
 }
 
-fn by_surface<'a>(contacts: &[Contact], card: &'a Card) -> BTreeMap<&'a str, f64> {
+fn by_surface<'a>(contacts: &[Contact], info: &'a ToolInfo) -> BTreeMap<&'a str, f64> {
     let mut surfaces = BTreeMap::new();
     for contact in contacts {
-        let deepest: &mut f64 = surfaces.entry(&*card.surfaces[contact.surface].name).or_default();
+        let deepest: &mut f64 = surfaces.entry(&*info.surfaces[contact.surface].name).or_default();
         *deepest = deepest.max(contact.depth);
     }
     surfaces
@@ -179,7 +179,7 @@ fn by_surface<'a>(contacts: &[Contact], card: &'a Card) -> BTreeMap<&'a str, f64
 
 fn row<'a>(
     (pose, line): (usize, usize),
-    (felt, depth_bound): (&Wrench, Option<f64>),
+    (evaluation, depth_bound): (&Wrench, Option<f64>),
     ns: u64,
     surfaces: BTreeMap<&'a str, f64>,
     certified: Option<Certified<'a>>,
@@ -188,55 +188,55 @@ fn row<'a>(
     Row {
         pose,
         line,
-        colliding: felt.colliding,
-        depth: felt.depth(),
+        colliding: evaluation.colliding,
+        depth: evaluation.depth(),
         depth_bound,
-        force: parts(felt.force),
-        torque: parts(felt.torque),
-        niceness: felt.niceness,
-        integral: felt.integral,
-        energy: felt.energy,
+        force: parts(evaluation.force),
+        torque: parts(evaluation.torque),
+        niceness: evaluation.niceness,
+        integral: evaluation.integral,
+        energy: evaluation.energy,
         ns,
-        law: felt.law.to_string(),
+        law: evaluation.law.to_string(),
         surfaces,
         certified,
     }
 }
 
-/// What the whole path came to.
+/// Summary of the whole path.
 #[derive(Default)]
 struct Summary {
     poses: usize,
     in_contact: usize,
     /// Depth and line of the deepest pose.
     deepest: Option<(f64, usize)>,
-    /// Poses in contact, depth and line of the deepest, for each surface.
+    /// Per surface: number of poses in contact, greatest depth and its line.
     surfaces: BTreeMap<String, (usize, f64, usize)>,
     times: Vec<u64>,
     proved: Option<Proved>,
 }
 
-/// What was proved along the path.
+/// Proved results along the path.
 #[derive(Default)]
 struct Proved {
     in_contact: usize,
-    /// Poses at which the tool is wholly inside the material, and the line of the first.
+    /// Number of poses at which the tool is wholly inside the material, and the line of the first.
     inside: (usize, usize),
-    /// Between what the greatest depth lies, and its line.
+    /// An interval that contains the greatest depth, and its line.
     deepest: ([f64; 2], usize),
     times: Vec<u64>,
 }
 
 impl Summary {
-    fn add(&mut self, line: usize, felt: &Wrench, surfaces: &BTreeMap<&str, f64>, ns: u64) {
+    fn add(&mut self, line: usize, evaluation: &Wrench, surfaces: &BTreeMap<&str, f64>, ns: u64) {
         self.poses += 1;
         self.times.push(ns);
-        if felt.colliding == 0 {
+        if evaluation.colliding == 0 {
             return;
         }
         self.in_contact += 1;
-        if self.deepest.is_none_or(|(depth, _)| felt.depth() > depth) {
-            self.deepest = Some((felt.depth(), line));
+        if self.deepest.is_none_or(|(depth, _)| evaluation.depth() > depth) {
+            self.deepest = Some((evaluation.depth(), line));
         }
         for (name, depth) in surfaces {
             let entry = self.surfaces.entry((*name).to_owned()).or_insert((0, -1.0, line));

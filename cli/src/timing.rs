@@ -1,8 +1,8 @@
-//! What many timings come to.
+//! Statistics of times.
 
 use std::time::Duration;
 
-/// Average, median, 99th percentile and longest, in nanoseconds.
+/// Average, median, 99th percentile and maximum, in nanoseconds.
 pub(crate) struct Timing {
     pub(crate) avg: f64,
     pub(crate) p50: u64,
@@ -11,7 +11,10 @@ pub(crate) struct Timing {
 }
 
 impl Timing {
-    /// Of some timings, at least one; they are sorted on the way.
+    /// Computes the statistics of times, which it sorts.
+    ///
+    /// # Panics
+    /// Panics if there are no times.
     pub(crate) fn of(all: &mut [u64]) -> Timing {
         all.sort_unstable();
         let at = |part: f64| all[((all.len() - 1) as f64 * part).round() as usize];
@@ -20,7 +23,7 @@ impl Timing {
     }
 }
 
-/// A duration in whole nanoseconds.
+/// Returns a duration in whole nanoseconds, `u64::MAX` if it is longer.
 pub(crate) fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

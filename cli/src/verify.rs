@@ -1,4 +1,5 @@
-//! A program held to a part: a line a finding, as compilers print them, a summary at the end.
+//! `touchoff verify`: a program checked against a part. Prints one line per finding, as compilers do, and a
+//! summary.
 
 use crate::arguments::Verify;
 use crate::failure::Failure;
@@ -11,14 +12,14 @@ use serde::Serialize;
 use std::io::Write;
 use std::process::ExitCode;
 use touchoff::Unit;
-use touchoff::certify::{Facets, Witness};
-use touchoff::tool::{Card, Shape};
-use touchoff::verify::{Finding, Kind, Report, Verifier};
+use touchoff::certify::{TriangleBvh, Witness};
+use touchoff::tool::{Symmetry, ToolInfo};
+use touchoff::verify::{Finding, FindingKind, Verifier, VerifyReport};
 
-/// The exit status where something is found.
+/// The exit status if there are findings.
 const FOUND: u8 = 1;
 
-/// The exit status where nothing could be checked, as that of wrong options.
+/// The exit status if nothing could be checked, the same as for wrong options.
 pub(crate) const NOT_CHECKED: u8 = 2;
 
 /// One finding.
@@ -26,16 +27,16 @@ pub(crate) const NOT_CHECKED: u8 = 2;
 struct Row<'a> {
     file: &'a str,
     line: usize,
-    /// The line that the motion begins at.
+    /// The line at which the motion begins.
     from: Option<usize>,
-    /// The stop that it ends at, from 0.
+    /// The index of the cutter location at which it ends, from 0.
     stop: usize,
     rapid: bool,
-    /// The part of the way, from 0 to 1.
+    /// The fraction of the motion, from 0 to 1.
     part: f64,
     tip: [f64; 3],
     axis: [f64; 3],
-    /// Of a solid without an axis, whose axis does not place it: `qx, qy, qz, qw`.
+    /// For a solid without an axis, whose pose needs the spin: `qx, qy, qz, qw`.
     #[serde(skip_serializing_if = "Option::is_none")]
     quaternion: Option<[f64; 4]>,
     kind: &'static str,
@@ -47,7 +48,7 @@ struct Row<'a> {
     place: Option<Place>,
 }
 
-/// What a finding measures.
+/// The measurements of a finding.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Measured {
@@ -55,7 +56,7 @@ enum Measured {
     Near { margin: f64, distance: [f64; 2], least: f64 },
 }
 
-/// Where on the part.
+/// A point on the part.
 #[derive(Serialize)]
 struct Place {
     triangle: u32,
@@ -69,33 +70,33 @@ impl Place {
 }
 
 impl<'a> Row<'a> {
-    fn of(found: &Finding, card: &'a Card, file: &'a str) -> Row<'a> {
+    fn of(found: &Finding, info: &'a ToolInfo, file: &'a str) -> Row<'a> {
         let (kind, measured, place) = match found.kind {
-            Kind::Deep { allowed, depth, most, through, witness, .. } => {
+            FindingKind::Deep { allowed, depth, most, through, witness, .. } => {
                 let deep = Measured::Deep { allowed, depth, most, through };
                 ("deep", Some(deep), Some(Place::of(&witness)))
             }
-            Kind::Near { margin, distance, least, witness, .. } => {
+            FindingKind::Near { margin, distance, least, witness, .. } => {
                 let near = Measured::Near { margin, distance, least };
                 ("near", Some(near), Some(Place::of(&witness)))
             }
-            Kind::Inside { .. } => ("inside", None, None),
-            Kind::Undecided { .. } => ("undecided", None, None),
-            Kind::Ambiguous(_) => ("ambiguous", None, None),
+            FindingKind::Inside { .. } => ("inside", None, None),
+            FindingKind::Undecided { .. } => ("undecided", None, None),
+            FindingKind::Ambiguous(_) => ("ambiguous", None, None),
         };
-        let surface = found.kind.surface().map(|surface| &card.surfaces[surface]);
+        let surface = found.kind.surface().map(|surface| &info.surfaces[surface]);
         let (tip, axis): (Point3<f64>, Vector3<f64>) = (found.pose.tip(), found.pose.axis());
-        let quaternion = match card.shape {
-            Shape::Revolved => None,
-            Shape::Solid { .. } => Some(found.pose.isometry().rotation.coords.into()),
+        let quaternion = match info.symmetry {
+            Symmetry::Revolved => None,
+            Symmetry::Solid { .. } => Some(found.pose.to_isometry().rotation.coords.into()),
         };
         Row {
             file,
             line: found.line,
             from: found.from,
-            stop: found.stop,
+            stop: found.location,
             rapid: found.rapid,
-            part: found.part,
+            part: found.time,
             tip: tip.into(),
             axis: axis.into(),
             quaternion,
@@ -108,42 +109,42 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Holds a program to a part.
+/// Checks a program against a part, and returns the exit status.
 pub(crate) fn verify(wanted: &Verify, json: bool) -> Result<ExitCode, Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let unit = wanted.mesh.unit;
-    let program = program::read(&wanted.program, found.tool().card(), unit)?;
+    let program = program::read(&wanted.program, found.tool().info(), unit)?;
     program.check_motions()?;
     let mesh = part::mesh(&wanted.mesh.part, unit, "verify")?;
-    let facets = Facets::new(&mesh);
-    let mut verifier = Verifier::new(&facets, found.tool())?.tolerance(wanted.tolerance)?;
+    let bvh = TriangleBvh::new(&mesh);
+    let mut verifier = Verifier::new(&bvh, found.tool())?.with_tolerance(wanted.tolerance)?;
     if let Some(resolution) = wanted.resolution {
-        verifier = verifier.resolution(resolution)?;
+        verifier = verifier.with_resolution(resolution)?;
     }
     for (surface, allowed) in &wanted.allow {
-        verifier = verifier.allow(surface, *allowed)?;
+        verifier = verifier.with_allowance(surface, *allowed)?;
     }
     let report = verifier.check(&program)?;
     let file = wanted.program.display().to_string();
-    let card = verifier.card();
+    let info = verifier.info();
     let mut out = Output::rows();
     for finding in &report.findings {
         if json {
-            serde_json::to_writer(&mut out, &Row::of(finding, card, &file))?;
+            serde_json::to_writer(&mut out, &Row::of(finding, info, &file))?;
             writeln!(out)?;
         } else {
-            let (line, said) = (finding.line, shown(finding, card, unit));
+            let (line, said) = (finding.line, shown(finding, info, unit));
             writeln!(out, "{file}:{line}: {said}")?;
         }
     }
     out.flush()?;
     program::print(&report, &program, unit);
-    say!("{}", summary(&report, card, unit));
+    say!("{}", summary(&report, info, unit));
     Ok(ExitCode::from(status(&report, wanted)))
 }
 
-/// The exit status: why there is no verdict is said.
-fn status(report: &Report, wanted: &Verify) -> u8 {
+/// Returns the exit status, and reports why there is no verdict.
+fn status(report: &VerifyReport, wanted: &Verify) -> u8 {
     let mut status = if report.findings.is_empty() { 0 } else { FOUND };
     if !report.inside_known {
         if wanted.surface_only {
@@ -153,7 +154,7 @@ fn status(report: &Report, wanted: &Verify) -> u8 {
             status = NOT_CHECKED;
         }
     }
-    if report.nothing_restricted {
+    if report.unrestricted {
         say!(
             "not verified: no surface of the tool can be deeper than it may be by more than the resolution; lower \
              `--tolerance`, `--allow` or `--resolution`"
@@ -170,19 +171,19 @@ fn status(report: &Report, wanted: &Verify) -> u8 {
     status
 }
 
-/// A finding for people.
-fn shown(found: &Finding, card: &Card, unit: Unit) -> String {
-    let name = |surface: usize| &*card.surfaces[surface].name;
+/// Formats a finding for people.
+fn shown(found: &Finding, info: &ToolInfo, unit: Unit) -> String {
+    let name = |surface: usize| &*info.surfaces[surface].name;
     let at = match found.from {
-        Some(from) => format!("{:.2} of the way from line {from}", found.part),
+        Some(from) => format!("{:.2} of the way from line {from}", found.time),
         None => "where the program begins".to_owned(),
     };
     let at = if found.rapid { format!("{at}, in rapid traverse") } else { at };
     match &found.kind {
-        Kind::Deep { surface, through: true, witness, .. } => {
+        FindingKind::Deep { surface, through: true, witness, .. } => {
             format!("{} goes right through triangle {}, {at}", name(*surface), witness.triangle)
         }
-        Kind::Deep { surface, depth: [low, high], most, witness, .. } => {
+        FindingKind::Deep { surface, depth: [low, high], most, witness, .. } => {
             let more = if most > high && found.from.is_some() {
                 format!(", nowhere on it more than {}", fine(*most, unit))
             } else {
@@ -191,33 +192,34 @@ fn shown(found: &Finding, card: &Card, unit: Unit) -> String {
             let (name, depth) = (name(*surface), between(*low, *high, unit));
             format!("{name} is {depth} {unit} deep in triangle {}, {at}{more}", witness.triangle)
         }
-        Kind::Near { surface, margin, distance: [low, high], witness, .. } => format!(
+        FindingKind::Near { surface, margin, distance: [low, high], witness, .. } => format!(
             "{} is {} {unit} from triangle {}, not {margin}, {at}",
             name(*surface),
             between(*low, *high, unit),
             witness.triangle,
         ),
-        Kind::Inside { surface: None } => {
+        FindingKind::Inside { surface: None } => {
             format!("the tool is wholly inside the material, {at}")
         }
-        Kind::Inside { surface: Some(surface) } => {
+        FindingKind::Inside { surface: Some(surface) } => {
             format!("{} is inside the material, where no triangle is, {at}", name(*surface))
         }
-        Kind::Undecided { surface } => format!(
+        FindingKind::Undecided { surface } => format!(
             "whether {} is too deep is not decided, beginning {at}: try a larger `--resolution`",
             name(*surface)
         ),
-        Kind::Ambiguous(error) => format!("{error}; only this stop was checked"),
+        FindingKind::Ambiguous(error) => format!("{error}; only this stop was checked"),
     }
 }
 
-/// From where to where, as far as figures differ.
+/// Formats an interval, as one number if both ends print alike.
 fn between(low: f64, high: f64, unit: Unit) -> String {
     let [low, high] = [low, high].map(|value| fine(value, unit));
     if low == high { high } else { format!("{low} to {high}") }
 }
 
-/// A length as elsewhere, or with its power of ten where that would leave little of it.
+/// Formats a length as elsewhere, or with an exponent if it is small and would keep fewer than two digits other
+/// than 0.
 fn fine(value: f64, unit: Unit) -> String {
     let shown = figure(value, unit);
     let digits = shown.chars().filter(|c| ('1'..='9').contains(c)).count();
@@ -228,8 +230,8 @@ fn fine(value: f64, unit: Unit) -> String {
     }
 }
 
-/// What all findings came to: of each surface how many, and its deepest.
-fn summary(report: &Report, card: &Card, unit: Unit) -> String {
+/// Summarises all findings: per surface, their number and the deepest.
+fn summary(report: &VerifyReport, info: &ToolInfo, unit: Unit) -> String {
     let motions = report.motions;
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let count = report.findings.len();
@@ -237,10 +239,10 @@ fn summary(report: &Report, card: &Card, unit: Unit) -> String {
         return format!("no findings in {motions} motion{}", plural(motions));
     }
     let mut each = Vec::new();
-    for (index, surface) in card.surfaces.iter().enumerate() {
+    for (index, surface) in info.surfaces.iter().enumerate() {
         let of = || report.findings.iter().filter(|found| found.kind.surface() == Some(index));
         let deepest = of().filter_map(|found| match found.kind {
-            Kind::Deep { depth, .. } => Some((depth[1], found.line)),
+            FindingKind::Deep { depth, .. } => Some((depth[1], found.line)),
             _ => None,
         });
         let deepest = deepest.max_by(|(one, _), (other, _)| one.total_cmp(other));
@@ -251,10 +253,11 @@ fn summary(report: &Report, card: &Card, unit: Unit) -> String {
             each.push(format!("{} {}{deepest}", surface.name, of().count()));
         }
     }
-    let count_of =
-        |is: fn(&Kind) -> bool| report.findings.iter().filter(|found| is(&found.kind)).count();
-    let inside = count_of(|kind| *kind == Kind::Inside { surface: None });
-    let ambiguous = count_of(|kind| matches!(kind, Kind::Ambiguous(_)));
+    let count_of = |is: fn(&FindingKind) -> bool| {
+        report.findings.iter().filter(|found| is(&found.kind)).count()
+    };
+    let inside = count_of(|kind| *kind == FindingKind::Inside { surface: None });
+    let ambiguous = count_of(|kind| matches!(kind, FindingKind::Ambiguous(_)));
     for (word, count) in [("wholly inside", inside), ("ambiguous", ambiguous)] {
         if count > 0 {
             each.push(format!("{word} {count}"));

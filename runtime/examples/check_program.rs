@@ -1,10 +1,10 @@
-//! A finishing pass held to the finished part: `cargo run --release -p touchoff --example check_program`.
+//! A finishing pass checked against the part: `cargo run --release -p touchoff --example check_program`.
 
 use nalgebra::Point3;
 use std::io::Write;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::verify::{Kind, Verifier};
+use touchoff::verify::{FindingKind, Verifier};
 use touchoff::{Program, Unit};
 
 touchoff::tool! {
@@ -21,8 +21,8 @@ touchoff::tool! {
     }
 }
 
-/// Along a wall, 30 mm high, whose face is x = 0: one point is 0.05 mm in it, and the retract is not high
-/// enough to go across: both its ends are clear, the way between them is not.
+/// A pass along a wall 30 mm high with its face at x = 0. One point is 0.05 mm in the wall. The retract is not
+/// high enough to cross it: both ends of that motion are clear, and the motion between them is not.
 const PROGRAM: &str = "\
 PARTNO/WALL
 UNITS/MM
@@ -42,23 +42,24 @@ FINI
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (low, high) = (Point3::new(0.0, -60.0, 0.0), Point3::new(20.0, 60.0, 30.0));
-    let wall = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    let wall = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
     let program = Program::parse(PROGRAM, "wall.apt")?;
-    // 0.01 mm is as good as right, and the holder keeps 1 mm.
-    let verifier = Verifier::new(&wall, &EndMill)?.tolerance(0.01)?.allow("holder", -1.0)?;
+    // Allow 0.01 mm everywhere, and keep the holder 1 mm away.
+    let verifier =
+        Verifier::new(&wall, &EndMill)?.with_tolerance(0.01)?.with_allowance("holder", -1.0)?;
     let report = verifier.check(&program)?;
-    let name = |surface: usize| &*verifier.card().surfaces[surface].name;
+    let name = |surface: usize| &*verifier.info().surfaces[surface].name;
     let mut out = std::io::stdout().lock();
     for found in &report.findings {
-        write!(out, "wall.apt:{}: at {:.2} of the way, ", found.line, found.part)?;
+        write!(out, "wall.apt:{}: at {:.2} of the way, ", found.line, found.time)?;
         match found.kind {
-            Kind::Deep { surface, depth: [low, high], witness, .. } => writeln!(
+            FindingKind::Deep { surface, depth: [low, high], witness, .. } => writeln!(
                 out,
                 "{} is {low:.4} to {high:.4} mm deep in triangle {}",
                 name(surface),
                 witness.triangle
             )?,
-            Kind::Near { surface, distance: [low, high], .. } => {
+            FindingKind::Near { surface, distance: [low, high], .. } => {
                 writeln!(out, "{} is {low:.4} to {high:.4} mm away", name(surface))?;
             }
             other => writeln!(out, "{other:?}")?,

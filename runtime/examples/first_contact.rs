@@ -1,4 +1,4 @@
-//! A ball cutter lowered onto a block: `cargo run --release -p touchoff --example first_contact`.
+//! Lowers a ball cutter onto a block: `cargo run --release -p touchoff --example first_contact`.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
@@ -14,14 +14,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for step in 0..5 {
         let tip = Point3::new(0.0, 0.0, 0.1 - 0.1 * f64::from(step));
         let pose = Pose::from_axis(tip, Vector3::z())?;
-        let felt = probe.wrench(&pose);
+        let evaluation = probe.wrench(&pose);
         println!(
             "tip at {:5.2}: {:4} points, {:.3} mm deep, pushed up by {:.4}, niceness {:?}",
             tip.z,
-            felt.colliding,
-            felt.depth(),
-            felt.force.z,
-            felt.niceness,
+            evaluation.colliding,
+            evaluation.depth(),
+            evaluation.force.z,
+            evaluation.niceness,
         );
         if let Some(depths) = summary(probe.contacts(&pose), |contact| contact.depth) {
             println!("               mean depth {:.3} mm", depths.mean);

@@ -1,11 +1,12 @@
-//! A hand presses a ball onto a block for three seconds, a thousand times a second, while another thread looks on:
-//! `cargo run --release --features haptic --example haptic_loop`.
+//! Simulates a hand that presses a ball onto a block for three seconds at 1000 cycles per second, while another
+//! thread watches: `cargo run --release --features haptic --example haptic_loop`.
 
 use nalgebra::{Point3, Vector3};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use touchoff::haptic::{
-    Device, Hand, Limits, Monotonic, Realtime, Session, Settings, Tremor, run, watched,
+    Device, DeviceLimits, MonotonicClock, Realtime, Session, SessionSettings, SimulatedHand,
+    Tremor, run, state_channel,
 };
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Unit};
@@ -15,30 +16,30 @@ touchoff::include_tool!("examples/ball.tool");
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (low, high) = (Point3::new(-20., -20., -10.), Point3::new(20., 20., 0.));
     let part = Part::from_mesh(&shapes::cuboid(low, high, Unit::Millimetre)?, 20_000, 1)?;
-    let probe = Probe::new(&part, &Ball).law(Law::Gradient);
+    let probe = Probe::new(&part, &Ball).with_law(Law::Gradient);
 
     let (rate, cycles) = (1000.0, 3000);
     let tremor = Tremor { size: 0.02, frequency: 10.0, seed: 1 };
     let upright = |z| Pose::from_axis(Point3::new(0.0, 0.0, z), Vector3::z());
     let (over, into) = (upright(1.0)?, upright(-2.0)?);
     let wish = move |time: f64| if time.fract() < 0.5 { over } else { into };
-    let mut hand = Hand::new(Limits::default(), rate, wish)?.trembling(&tremor)?;
-    let mut session = Session::new(probe, &Settings::new(rate), hand.limits())?;
+    let mut hand = SimulatedHand::new(DeviceLimits::default(), rate, wish)?.with_tremor(&tremor)?;
+    let mut session = Session::new(probe, &SessionSettings::new(rate), hand.limits())?;
 
-    let (mut watch, mut latest, samples) = watched(10_000);
+    let (mut watch, mut latest, samples) = state_channel(10_000);
     let stop = AtomicBool::new(false);
     let report = std::thread::scope(|scope| {
         let looped = scope.spawn(|| {
-            for refused in (Realtime { priority: Some(80), core: None, locked: true }).ask() {
+            for refused in (Realtime { priority: Some(80), core: None, locked: true }).apply() {
                 eprintln!("{refused}");
             }
-            let clock = &mut Monotonic::new(Duration::from_micros(60));
+            let clock = &mut MonotonicClock::new(Duration::from_micros(60));
             run((&mut session, &mut hand), (clock, cycles), &mut watch, &stop)
         });
         while !looped.is_finished() {
             std::thread::sleep(Duration::from_millis(250));
             if let Some(state) = latest.read() {
-                let (tip, force) = (state.tool.tip(), state.push.force);
+                let (tip, force) = (state.tool.tip(), state.wrench_on_hand.force);
                 println!("tip at {:.3} mm, {:.3} N up", tip.z, force.z);
             }
         }
@@ -48,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "{} cycles, {} missed, half of them within {:.1} µs; {} states recorded",
         report.cycles,
         report.missed,
-        report.took.value_at_quantile(0.5) as f64 / 1e3,
+        report.durations.value_at_quantile(0.5) as f64 / 1e3,
         samples.count(),
     );
     Ok(())

@@ -1,14 +1,16 @@
-//! A hand leads a tool along a block and leans it this way and that; what stands well there is kept, triangle by
+//! Leads a tool along a sphere by hand, leaning it back and forth, and keeps the acceptable postures per
 //! triangle: `cargo run --release --features haptic,postures --example posture_map`.
 
 use nalgebra::{Point3, Vector3};
 use std::fs::File;
 use std::io::BufWriter;
 use std::sync::atomic::AtomicBool;
-use touchoff::certify::Facets;
-use touchoff::haptic::{Limits, Scripted, Session, Settings, Unhurried, run, watched};
+use touchoff::certify::TriangleBvh;
+use touchoff::haptic::{
+    DeviceLimits, ScriptedDevice, Session, SessionSettings, SimulatedClock, run, state_channel,
+};
 use touchoff::mesh::shapes;
-use touchoff::postures::{Identity, PostureMap, Recorder, Rules, colour};
+use touchoff::postures::{MapIdentity, PostureMap, Recorder, Rules, colormap};
 use touchoff::{Part, Pose, Probe, Unit};
 
 touchoff::tool! {
@@ -26,18 +28,18 @@ touchoff::tool! {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mesh = shapes::sphere(20.0, 3, Unit::Millimetre)?;
-    let (part, facets) = (Part::from_mesh(&mesh, 50_000, 1)?, Facets::new(&mesh));
+    let (part, bvh) = (Part::from_mesh(&mesh, 50_000, 1)?, TriangleBvh::new(&mesh));
 
-    // The ball may be 0.05 mm deep; shank and holder not at all.
+    // The ball may be 0.05 mm deep; shank and holder may not be in the part.
     let rules = Rules { tolerance: 0.05, niceness: 0.5, allowed: Vec::new() };
-    let identity = Identity::new(&mesh, &[&BallMill], rules)?;
+    let identity = MapIdentity::new(&mesh, &[&BallMill], rules)?;
     let folder = tempfile::tempdir()?;
     let map = PostureMap::open(folder.path().join("sphere.postures"), &identity)?;
 
-    // A device that plays a way round the sphere, the ball 0.05 mm in it at most.
-    let limits = Limits { force: 1e3, stiffness: 1e3, ..Limits::default() };
+    // A device that plays a motion around the sphere, with the ball at most 0.05 mm in it.
+    let limits = DeviceLimits { force: 1e3, stiffness: 1e3, ..DeviceLimits::default() };
     let (rate, cycles) = (1000.0, 20_000);
-    let mut device = Scripted::new(limits, |cycle| {
+    let mut device = ScriptedDevice::new(limits, |cycle| {
         let time = cycle as f64 / rate;
         let (sin, cos) = (3.0 * time).sin_cos();
         let high = 0.1 * time - 1.0;
@@ -47,16 +49,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let tip = Point3::from(out * (20.0 + 3.0 - 0.05) - axis * 3.0);
         Ok(Pose::from_axis(tip, axis)?)
     });
-    let mut session = Session::new(Probe::new(&part, &BallMill), &Settings::new(rate), limits)?;
+    let mut session =
+        Session::new(Probe::new(&part, &BallMill), &SessionSettings::new(rate), limits)?;
 
-    let (mut watch, _, mut samples) = watched(cycles as usize);
+    let (mut watch, _, mut samples) = state_channel(cycles as usize);
     let (report, recorded) = std::thread::scope(|scope| {
-        // The watch goes with the thread: when it is dropped, the recorder knows that all is over.
+        // The publisher moves into the thread. When it is dropped, the recorder knows that the loop is over.
         let looped = scope.spawn(move || {
-            let (clock, stop) = (&mut Unhurried::default(), AtomicBool::new(false));
+            let (clock, stop) = (&mut SimulatedClock::default(), AtomicBool::new(false));
             run((&mut session, &mut device), (clock, cycles), &mut watch, &stop)
         });
-        let recorded = Recorder::new(&map, (&part, &facets), &BallMill)
+        let recorded = Recorder::new(&map, (&part, &bvh), &BallMill)
             .map_err(Box::<dyn std::error::Error>::from)
             .and_then(|mut recorder| Ok(recorder.follow(&mut samples)?));
         (looped.join().expect("the loop panics at nothing"), recorded)
@@ -74,6 +77,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let text = std::fs::read_to_string(&csv)?;
     text.lines().take(4).for_each(|line| println!("{line}"));
     let ply = File::create(folder.path().join("sphere.ply"))?;
-    map.write_ply(&mut BufWriter::new(ply), &mesh, colour)?;
+    map.write_ply(&mut BufWriter::new(ply), &mesh, colormap)?;
     Ok(())
 }

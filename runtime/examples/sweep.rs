@@ -1,4 +1,5 @@
-//! Two tools tried at every triangle of a tube, and a path of one of them over what it reaches.
+//! Tries two tools at every triangle of a tube, and plans a path of one of them over the triangles that it
+//! reaches.
 //!
 //! ```sh
 //! cargo run --release -p touchoff --features postures --example sweep
@@ -6,9 +7,9 @@
 
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
-use touchoff::certify::Facets;
-use touchoff::postures::path::{Pattern, path};
-use touchoff::postures::sweep::{Sweep, Tally};
+use touchoff::certify::TriangleBvh;
+use touchoff::postures::path::{Pattern, plan_path};
+use touchoff::postures::sweep::{PostureSweep, SweepStats};
 use touchoff::postures::{Directions, Rules};
 use touchoff::verify::Verifier;
 use touchoff::{Program, Tool, Unit, mesh::shapes};
@@ -41,20 +42,25 @@ touchoff::tool! {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let tube = shapes::tube(3.0, 5.0, 13.0, 72, 8, Unit::Millimetre)?;
-    let facets = Facets::new(&tube);
+    let bvh = TriangleBvh::new(&tube);
     let tools: [&dyn Tool; 2] = [&Slim, &Stout];
     let directions = Directions::spread(100);
     let rules = Rules { tolerance: 0.02, niceness: 0.0, allowed: Vec::new() };
-    let sweep =
-        Sweep::new((&tube, &facets), tools.to_vec(), &directions, rules.clone(), NonZeroU16::MIN)?;
+    let sweep = PostureSweep::new(
+        (&tube, &bvh),
+        tools.to_vec(),
+        &directions,
+        rules.clone(),
+        NonZeroU16::MIN,
+    )?;
 
-    let mut tally = Tally::default();
+    let mut tally = SweepStats::default();
     let mut best = [0; 2];
-    // From where the slim tool reaches each triangle.
+    // Directions from which the slim tool reaches each triangle.
     let mut access = vec![Vec::new(); tube.triangles().len()];
     let all: Vec<usize> = (0..sweep.batches()).collect();
     let _: ControlFlow<()> = sweep.run(&all, |batch| {
-        tally += batch.tally;
+        tally += batch.stats;
         for (triangle, row) in batch.rows {
             if let Some(record) = row.best.first() {
                 best[usize::from(record.tool)] += 1;
@@ -67,10 +73,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("of {} triangles Slim is best at {}, Stout at {}", access.len(), best[0], best[1]);
 
     let pattern = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 0.5 };
-    let led = path((&tube, &facets), (&Slim, &rules), (&directions, &access), &pattern)?;
-    println!("a path of {} stops, {} of them on the surface", led.stops.len(), led.places);
-    let program = Program::new("tube", Some(Unit::Millimetre), led.stops)?;
-    let report = Verifier::new(&facets, &Slim)?.tolerance(rules.tolerance)?.check(&program)?;
+    let led = plan_path((&tube, &bvh), (&Slim, &rules), (&directions, &access), &pattern)?;
+    println!(
+        "a path of {} stops, {} of them on the surface",
+        led.locations.len(),
+        led.contact_points
+    );
+    let program = Program::new("tube", Some(Unit::Millimetre), led.locations)?;
+    let report = Verifier::new(&bvh, &Slim)?.with_tolerance(rules.tolerance)?.check(&program)?;
     println!("{} findings", report.findings.len());
     Ok(())
 }

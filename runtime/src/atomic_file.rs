@@ -1,23 +1,23 @@
-//! Files that are written whole or not at all.
+//! Files that are written completely or not at all.
 
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A file that takes its name when it is whole.
+/// A file that replaces its target only when it is complete.
 ///
-/// Bytes go to a temporary file in the target's folder. [`AtomicFile::commit`] brings them to the disk and renames:
-/// who reads the target finds all of the old content or all of the new. Dropped before that, the temporary is
-/// removed and the target is as it was.
+/// Bytes are written to a temporary file in the target's folder. [`AtomicFile::commit`] synchronises it
+/// to the disk and renames it: a reader of the target finds either all of the old content or all of the
+/// new. If the value is dropped before that, the temporary file is removed and the target is unchanged.
 ///
-/// - A new file has the permissions of any new file (the umask holds), a replaced one keeps its own. A file that may
-///   not be written is not replaced either.
-/// - A link keeps leading to its file, which is replaced.
-/// - What is no regular file, such as a device or a pipe, is written to directly; so are standard output and standard
-///   error by their names in `/dev` and `/proc`.
-/// - Temporaries are named `.touchoff-….tmp` and are locked while their writer lives. Those that a killed process left
-///   in the folder are removed here.
+/// - A new file has the permissions of any new file (the umask applies); a replaced file keeps its own.
+///   A file without write permission is not replaced either.
+/// - A symbolic link is kept, and the file it points to is replaced.
+/// - Targets that are not regular files, such as devices or pipes, are written directly. The same holds
+///   for standard output and standard error by their names in `/dev` and `/proc`.
+/// - Temporary files are named `.touchoff-….tmp` and are locked while their writer lives. Temporary
+///   files left in the folder by killed processes are removed.
 ///
 /// ```
 /// # use std::io::Write;
@@ -34,7 +34,7 @@ use tempfile::NamedTempFile;
 #[derive(Debug)]
 pub struct AtomicFile {
     out: BufWriter<Sink>,
-    /// Where the temporary goes; empty of what is written to directly.
+    /// The target path; empty if the file is written directly.
     target: PathBuf,
 }
 
@@ -70,7 +70,7 @@ impl Write for AtomicFile {
     }
 }
 
-/// Names of temporaries begin and end in these.
+/// Prefix and suffix of the names of temporary files.
 const PREFIX: &str = ".touchoff-";
 const SUFFIX: &str = ".tmp";
 
@@ -78,8 +78,8 @@ impl AtomicFile {
     /// Begins a file.
     ///
     /// # Errors
-    /// A folder that is not there or may not be written, a target that may not be written or is a folder, and
-    /// whatever else the file system says.
+    /// Fails if the folder does not exist or is not writable, if the target is not writable or is a
+    /// folder, and for any other error of the file system.
     pub fn create(path: impl AsRef<Path>) -> io::Result<AtomicFile> {
         let path = path.as_ref();
         let direct =
@@ -94,7 +94,7 @@ impl AtomicFile {
             Err(error) => return Err(error),
         };
         if old.is_some() {
-            // Opened, not written: a file that may not be written is refused here, and a folder too.
+            // Open without writing, to refuse a file that is not writable, or a folder.
             OpenOptions::new().write(true).open(path)?;
         }
         let target = followed(path)?;
@@ -110,25 +110,25 @@ impl AtomicFile {
     /// Writes a whole file.
     ///
     /// # Errors
-    /// Those of [`AtomicFile::create`] and [`AtomicFile::commit`].
+    /// Returns the errors of [`AtomicFile::create`] and [`AtomicFile::commit`].
     pub fn write(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
         let mut file = AtomicFile::create(path)?;
         file.write_all(bytes.as_ref())?;
         file.commit()
     }
 
-    /// Brings the file to the disk and gives it its name.
+    /// Synchronises the file to the disk and renames it to its target.
     ///
     /// # Errors
-    /// What the file system says, above all that there is no room; then the target is as it was.
+    /// Returns the errors of the file system, above all for lack of space; the target is then unchanged.
     pub fn commit(self) -> io::Result<()> {
         self.finish(|temporary, target| temporary.persist(target).map_err(|failed| failed.error))
     }
 
-    /// [`AtomicFile::commit`] for a file that must be new.
+    /// Commits a file like [`AtomicFile::commit`], if its target does not exist.
     ///
     /// # Errors
-    /// `AlreadyExists` if there is a file of that name by now, which is left as it is.
+    /// `AlreadyExists` if there is a file of that name by now; that file is unchanged.
     pub fn commit_new(self) -> io::Result<()> {
         let persist = |temporary: NamedTempFile, target: &Path| {
             temporary.persist_noclobber(target).map_err(|failed| failed.error)
@@ -145,7 +145,8 @@ impl AtomicFile {
             Sink::Temporary(temporary) => {
                 temporary.as_file().sync_all()?;
                 persist(temporary, &self.target)?;
-                // The name too; where folders cannot be synchronised, the system does it in its own time.
+                // Synchronise the folder entry too. Where folders cannot be synchronised, the system
+                // writes it in its own time.
                 #[cfg(unix)]
                 let _ = File::open(folder_of(&self.target)).and_then(|folder| folder.sync_all());
                 Ok(())
@@ -161,9 +162,9 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Returns what a path's links lead to, which need not be there.
+/// Resolves a path's symbolic links. The final target need not exist.
 fn followed(path: &Path) -> io::Result<PathBuf> {
-    /// As many as Linux follows.
+    /// The limit of Linux.
     const LINKS: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..LINKS {
@@ -175,8 +176,8 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::new(io::ErrorKind::InvalidInput, "too many links lead on from it"))
 }
 
-/// Standard output or standard error, if a path names one of them. The same open file, so that what is written
-/// stands behind what was written to the stream before.
+/// Returns standard output or standard error, if a path names one of them. The result shares the open
+/// file, so new output follows the output already written to the stream.
 #[cfg(unix)]
 fn standard_stream(path: &Path) -> Option<io::Result<File>> {
     use std::os::fd::AsFd;
@@ -197,33 +198,34 @@ fn standard_stream(_: &Path) -> Option<io::Result<File>> {
     None
 }
 
-/// A new file in a folder, locked so that nobody takes it for abandoned.
+/// Creates a temporary file in a folder, locked so that no process treats it as abandoned.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     {
-        // As of any new file: the system takes away what the user wants no one to do.
+        // As for any new file: the umask removes the permissions that the user excludes.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    /// More often than chance and a few other processes would have it.
+    /// More often than chance and a few other processes require.
     const TRIES: usize = 16;
     for _ in 0..TRIES {
-        // Without the temporary's name, which nobody asked for.
+        // Omit the name of the temporary file from the error: it means nothing to the user.
         let file = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
         match file.as_file().try_lock() {
-            // Another process took it for abandoned before it was locked, and removes it.
+            // Another process took the file for abandoned before it was locked, and removes it.
             Err(TryLockError::WouldBlock) => {}
             Ok(()) if !file.path().exists() => {}
-            // Not every file system has locks; where there are none, nothing is taken for abandoned.
+            // Not every file system supports locks; without them no file is treated as abandoned.
             Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
         }
     }
     Err(io::Error::other("temporary files there are removed as soon as they are made"))
 }
 
-/// Removes the temporaries of a folder whose writers are gone. What cannot be removed stays.
+/// Removes the temporary files of a folder whose writers have ended. Files that cannot be removed
+/// remain.
 fn remove_abandoned(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
@@ -239,14 +241,14 @@ fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Gives a new file what an old one has: its permissions and, where the system lets, its owner.
+/// Copies the permissions of an old file to a new one and, where the system allows it, the owner.
 fn keep(new: &File, old: &Metadata) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{MetadataExt, fchown};
         let own = new.metadata()?;
         if (own.uid(), own.gid()) != (old.uid(), old.gid()) {
-            // Before the permissions: it takes some of them away.
+            // Change the owner before the permissions, since it clears some of them.
             let _ = fchown(new, Some(old.uid()), Some(old.gid()));
         }
     }

@@ -1,12 +1,12 @@
-//! Text from files and file names, made safe to show.
+//! Escaping of text from files and file names for display.
 
 use std::fmt::{self, Display, Formatter, Write};
 
-/// Text without the characters that a terminal obeys: control characters (C0, C1, delete) and those that change
-/// the direction of writing are shown as `\u001b`, four hexadecimal digits of their code, as JSON writes them. A
-/// line break is one of them, so the text stays in its line.
+/// Text without the characters that a terminal interprets. Control characters (C0, C1, delete) and
+/// characters that change the direction of writing are shown as `\u001b`, with four hexadecimal digits
+/// of their code as in JSON. Line breaks are escaped too, so the text stays on one line.
 ///
-/// Everything that comes from a file or names one goes through here before it is shown.
+/// All text from a file, and every file name, is escaped before it is shown.
 ///
 /// ```
 /// assert_eq!(touchoff::Escaped("a\u{1b}[2J\nb").to_string(), r"a\u001b[2J\u000ab");
@@ -26,7 +26,7 @@ impl Display for Escaped<'_> {
     }
 }
 
-/// [`Escaped`] for whole lines: line breaks and tabs stay.
+/// [`Escaped`] for whole lines: line breaks and tabs are kept.
 ///
 /// ```
 /// assert_eq!(touchoff::EscapedLines("a\u{7f}\n").to_string(), "a\\u007f\n");
@@ -45,8 +45,9 @@ impl Display for EscapedLines<'_> {
     }
 }
 
-/// Returns whether a terminal acts on a character instead of showing it: controls, and the marks, embeddings, overrides and
-/// isolates of Unicode's bidirectional algorithm (UAX 9, section 2).
+/// Returns whether a terminal interprets a character instead of showing it. These are control
+/// characters, and the marks, embeddings, overrides and isolates of Unicode's bidirectional algorithm
+/// (UAX 9, section 2).
 fn is_obeyed(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -1,20 +1,21 @@
-//! Files as they are read: regular ones, up to a size.
+//! Reading input files: regular files up to a maximum size.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The most bytes of a file that are read, 16 GiB: some 300 million triangles.
+/// Maximum size of a file in bytes, 16 GiB: some 300 million triangles of binary STL.
 pub(crate) const MOST_BYTES: u64 = 1 << 34;
 
-/// Opens a regular file of [`MOST_BYTES`] at most, and returns it with its length.
+/// Opens a regular file of at most [`MOST_BYTES`] bytes and returns it with its length.
 ///
 /// # Errors
-/// What the system says; a directory, a pipe, a socket or a device, which may be without end; a longer file.
+/// Returns the errors of the operating system. Refuses a longer file, and a directory, a pipe, a socket
+/// or a device, whose content may be endless.
 pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
     let refused = |what: String| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
     let irregular = || refused("it is no regular file".to_owned());
-    // Asked first: to open a pipe is to wait for its writer.
+    // Check before opening: opening a pipe waits for its writer.
     if !fs::metadata(&path)?.is_file() {
         return irregular();
     }
@@ -29,10 +30,10 @@ pub(crate) fn open(path: impl AsRef<Path>) -> io::Result<(File, u64)> {
     }
 }
 
-/// Reads a regular file as [`open`] opens it, as long as it was then.
+/// Reads a regular file, up to the length it had when [`open`] opened it.
 ///
 /// # Errors
-/// As of [`open`], and a file that there is no memory for.
+/// Returns the errors of [`open`], and `OutOfMemory` if the file does not fit into memory.
 pub(crate) fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     let (file, length) = open(path)?;
     let mut bytes = Vec::new();
@@ -67,7 +68,7 @@ mod tests {
                 assert_eq!(refused(path), "it is no regular file");
             }
         }
-        // A file of holes takes no room on the disk.
+        // A sparse file takes no room on the disk.
         File::create(&path).and_then(|file| file.set_len(MOST_BYTES + 1)).expect("a long file");
         assert!(refused(&path).contains("17179869185 bytes, more than the 17179869184"));
     }

@@ -1,9 +1,12 @@
-//! Full-body haptics for 5-axis machining: what a cutting tool feels of a workpiece, at any pose.
+//! Contact between a cutting tool and a workpiece at any pose, for 5-axis machining: haptics, certified
+//! interference, postures and program verification.
 //!
 //! A tool is written in a small language and compiled by [`include_tool!`], [`tool!`] or
-//! [`tool_library!`] into straight-line code. A [`Part`] is a mesh made into a weighted point
-//! cloud in a tree. A [`Probe`] brings them together: [`Probe::detect`], [`Probe::deepest`],
-//! [`Probe::posture`], [`Probe::wrench`], [`Probe::contacts`].
+//! [`tool_library!`] into straight-line code. A [`Part`] is a mesh sampled as a weighted point cloud, in
+//! a bounding volume hierarchy. A [`Probe`] evaluates a tool at the points of a part: [`Probe::detect`],
+//! [`Probe::deepest`], [`Probe::posture`], [`Probe::wrench`], [`Probe::contacts`]. [`certify`] proves
+//! bounds for all points of the triangles, [`verify`] checks programs, and the features `haptic` and
+//! `postures` add the haptic loop and posture maps.
 //!
 //! ```
 //! use touchoff::{Part, Pose, Probe, Unit, mesh::shapes};
@@ -33,52 +36,52 @@
 #[doc = include_str!("../../README.md")]
 struct Readme;
 
-// Generated code names this crate `::touchoff`, here as elsewhere.
+// Generated code refers to this crate as `::touchoff`, also inside the crate itself.
 extern crate self as touchoff;
 
 mod atomic_file;
 mod bvh;
 pub mod certify;
 pub mod cloud;
-mod cores;
 mod escape;
 #[cfg(feature = "haptic")]
 pub mod haptic;
 mod input;
+mod keywords;
 pub mod mesh;
 mod motion;
+mod parallel;
 mod part;
+mod point_bvh;
 mod pose;
 #[cfg(feature = "postures")]
 pub mod postures;
 mod probe;
 pub mod program;
-mod saved;
 mod scene;
 pub mod scenes;
+mod storage;
 pub mod tool;
-mod tree;
 mod unit;
 pub mod verify;
-mod words;
 
 pub use atomic_file::AtomicFile;
-pub use cloud::{Cloud, CloudError, Cover, Sampling};
+pub use cloud::{Cloud, CloudError, CoveringRadius, SamplingMethod};
 pub use escape::{Escaped, EscapedLines};
 pub use fearless_simd::Level;
-pub use mesh::{Mesh, MeshError, StlError, Survey};
+pub use keywords::ParseEnumError;
+pub use mesh::{Mesh, MeshDiagnostics, MeshError, StlError};
 pub use motion::{Motion, MotionError};
 pub use part::{Part, PartError};
+pub use point_bvh::PointBvh;
 pub use pose::{AXIS_TOLERANCE, FARTHEST_TIP, Pose, PoseError};
 pub use probe::{
-    BudgetError, Contact, Deepest, Graded, GradedWrench, Law, Posture, Probe, Rounding, Stiffness,
-    Summary, Weights, Wrench, summary,
+    BudgetError, Contact, DeepestPoint, Law, LodProbe, LodWrench, Posture, Probe, Stiffness,
+    Summary, Weights, Wrench, WrenchRounding, summary,
 };
-pub use program::{Program, ProgramError, Stop};
-pub use saved::SavedError;
+pub use program::{CutterLocation, Program, ProgramError};
 pub use scene::{PartId, Scene, SceneError, ToolId};
+pub use storage::SavedError;
 pub use tool::Tool;
 pub use tool_macros::{include_tool, tool, tool_library};
-pub use tree::Tree;
-pub use unit::{Unit, UnknownUnit};
-pub use words::UnknownWord;
+pub use unit::{ParseUnitError, Unit};

@@ -1,28 +1,28 @@
-//! How a tool goes from one pose to another.
+//! Motions of a tool from one pose to another.
 
 use crate::pose::{Pose, orthonormal};
 use nalgebra::{Matrix3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
-/// A tool's motion from one pose to another at even speed, the tip along a straight line.
+/// A motion of a tool from one pose to another at constant speed, with the tip on a straight line.
 ///
-/// [`Motion::new`] turns the axis about the normal of both axes (spherical interpolation), as a 5-axis program means
-/// it. The spin about the axis is chosen: a tool of revolution does not depend on it. [`Motion::with_spin`] turns the
-/// whole frame about one fixed axis.
+/// [`Motion::new`] rotates the axis about the common normal of both axes (spherical interpolation), as a
+/// 5-axis program means it. The spin about the axis is chosen arbitrarily, since a tool of revolution
+/// does not depend on it. [`Motion::with_spin`] rotates the whole frame about one fixed axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     tip: Point3<f64>,
     way: Vector3<f64>,
-    /// The rotation at the start of the turning frame, whose second column is the axis of the turn.
+    /// The initial rotation of the rotating frame, whose second column is the axis of rotation.
     start: Matrix3<f64>,
-    /// The rotation from the tool's frame to the turning frame, if they differ: then the spin is known.
+    /// The rotation from the tool frame to the rotating frame, if they differ; the spin is then known.
     frame: Option<Matrix3<f64>>,
     angle: f64,
 }
 
-/// Two poses between which the motion is ambiguous.
+/// Reasons why a motion between two poses is ambiguous.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
-    /// The axes are opposite.
+    /// The axes are antiparallel.
     #[error("start and end axes are opposite, so the way between is ambiguous: add a pose between")]
     Opposite,
     /// The rotations differ by half a turn.
@@ -30,21 +30,22 @@ pub enum MotionError {
         "start and end differ by half a turn, so the way between is ambiguous: add a pose between"
     )]
     HalfTurn,
-    /// A pose was made from its axis alone.
+    /// A pose was built from its axis alone.
     #[error(
         "a pose from an axis has no spin, which a solid without an axis needs: give a quaternion"
     )]
     NoSpin,
 }
 
-/// Angles that differ from half a turn by less are ambiguous: rounding decides which way they go.
+/// Angles closer to half a turn than this are ambiguous: rounding would decide the direction of
+/// rotation.
 const OPPOSITE: f64 = 1e-9;
 
 impl Motion {
-    /// Creates the motion that turns the axis along the shorter great circle.
+    /// Creates the motion that rotates the axis along the shorter great circle.
     ///
     /// # Errors
-    /// [`MotionError::Opposite`] if the axes are opposite.
+    /// [`MotionError::Opposite`] if the axes are antiparallel.
     pub fn new(from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
         let (first, last) = (from.axis(), to.axis());
         let (sine, cosine) = (first.cross(&last), first.dot(&last));
@@ -53,10 +54,11 @@ impl Motion {
             return Err(MotionError::Opposite);
         }
         let way = to.tip() - from.tip();
-        // What does not turn is seen from where it goes.
+        // Without a rotation of the axis, the displacement defines the frame.
         let across = if size > f64::MIN_POSITIVE.sqrt() { sine } else { first.cross(&way) };
-        // A product across the axis has no part along it. One that has is rounding: made perpendicular, what
-        // is left of it would be rounding again, and the three columns no rotation.
+        // An exact cross product with the axis is perpendicular to it. One that is not consists of
+        // rounding: its perpendicular remainder would be rounding again, and the three columns would not
+        // form a rotation.
         let second = across - first * first.dot(&across);
         let start = match Unit::try_new(second, 0.5 * across.norm()) {
             Some(second) => Matrix3::from_columns(&[second.cross(&first), *second, first]),
@@ -66,13 +68,14 @@ impl Motion {
         Ok(Motion { tip: from.tip(), way, start, frame: None, angle: size.atan2(cosine) })
     }
 
-    /// Creates the motion that turns the tool's frame about one axis by less than half a turn, as the spherical
-    /// interpolation of quaternions does. A solid without an axis needs it. The axis of a tool of revolution goes
-    /// along a circle that depends on the spins of both poses; [`Motion::new`] ignores them.
+    /// Creates the motion that rotates the tool frame about one axis by less than half a turn, as the
+    /// spherical interpolation of quaternions does. A solid without an axis needs it. The axis of a tool
+    /// of revolution then moves along a circle that depends on the spins of both poses, which
+    /// [`Motion::new`] ignores.
     ///
     /// # Errors
-    /// [`MotionError::NoSpin`] if a pose is not [full](Pose::is_full), [`MotionError::HalfTurn`] if the rotations differ
-    /// by half a turn.
+    /// [`MotionError::NoSpin`] if a pose has no [spin](Pose::has_spin), [`MotionError::HalfTurn`] if the
+    /// rotations differ by half a turn.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -83,25 +86,26 @@ impl Motion {
     /// let motion = Motion::with_spin(&Pose::default(), &turned)?;
     /// let middle = motion.pose(0.5);
     /// assert!((middle.rotation().column(0) - Vector3::new(half, half, 0.0)).norm() < 1e-15);
-    /// assert!(middle.is_full() && (middle.tip().x - 1.0).abs() < 1e-15);
+    /// assert!(middle.has_spin() && (middle.tip().x - 1.0).abs() < 1e-15);
     /// # Ok(()) }
     /// ```
     pub fn with_spin(from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
-        if !from.is_full() || !to.is_full() {
+        if !from.has_spin() || !to.has_spin() {
             return Err(MotionError::NoSpin);
         }
-        // The turn in the tool's frame. A quaternion of a rotation matrix is accurate for all angles (Shepperd, 1978).
+        // The rotation in the tool frame. Shepperd's conversion of a rotation matrix to a quaternion is
+        // accurate for all angles (1978).
         let turn = Rotation3::from_matrix_unchecked(from.rotation().transpose() * to.rotation());
         let turn = UnitQuaternion::from_rotation_matrix(&turn);
         let (sine, cosine) = (turn.imag(), turn.w);
         if cosine.abs() < OPPOSITE {
             return Err(MotionError::HalfTurn);
         }
-        // The square of what is shorter is no number, and a turn by it is none.
+        // The square of a shorter vector underflows, and its rotation is zero.
         let axis = Unit::try_new(sine * cosine.signum(), f64::MIN_POSITIVE.sqrt());
         let turn = if axis.is_some() { 2.0 * sine.norm().atan2(cosine.abs()) } else { 0.0 };
         let axis = axis.unwrap_or(Vector3::y_axis());
-        // Two directions across the axis, by any frame that has it.
+        // Two directions perpendicular to the axis, from any frame that contains it.
         let across = Pose::from_axis(Point3::origin(), *axis).map_err(|_| MotionError::HalfTurn)?;
         let [first, second] = [0, 1].map(|k| Vector3::from(across.rotation().column(k)));
         let columns = Matrix3::from_columns(&[second, *axis, first]);
@@ -114,10 +118,11 @@ impl Motion {
         })
     }
 
-    /// Returns the pose at a fraction of the motion, from 0 to 1; outside, that of the nearer end.
+    /// Returns the pose at a fraction of the motion, from 0 to 1. Fractions outside are clamped to the
+    /// nearer end.
     ///
     /// # Panics
-    /// If the fraction is NaN, where there is no pose.
+    /// Panics if the fraction is NaN.
     pub fn pose(&self, part: f64) -> Pose {
         assert!(!part.is_nan(), "NaN is no part of a motion: give a number from 0 to 1");
         let part = part.clamp(0.0, 1.0);
@@ -131,28 +136,29 @@ impl Motion {
         }
     }
 
-    /// Returns whether the spin about the tool's axis is known, so that the motion moves a solid without an axis.
-    pub fn is_full(&self) -> bool {
+    /// Returns whether the spin about the tool axis is known, so that the motion applies to a solid
+    /// without an axis.
+    pub fn has_spin(&self) -> bool {
         self.frame.is_some()
     }
 
-    /// Returns the axis of the turn in the tool's frame, a unit vector that stays the same all along. Of
-    /// [`Motion::new`] it is y: the spin is chosen so.
-    pub(crate) fn turns_about(&self) -> Vector3<f64> {
+    /// Returns the axis of rotation in the tool frame, a unit vector that is constant over the motion.
+    /// For [`Motion::new`] it is y, by the choice of the spin.
+    pub(crate) fn rotation_axis(&self) -> Vector3<f64> {
         self.frame.map_or(Vector3::y(), |frame| frame.row(1).transpose())
     }
 
-    /// Where the tip begins, in the world.
+    /// Returns the initial position of the tip, in the world frame.
     pub fn start(&self) -> Point3<f64> {
         self.tip
     }
 
-    /// How the tip goes, in the world.
-    pub fn way(&self) -> Vector3<f64> {
+    /// Returns the displacement of the tip over the motion, in the world frame.
+    pub fn displacement(&self) -> Vector3<f64> {
         self.way
     }
 
-    /// By how much the axis turns, or with spin the frame, in radians.
+    /// Returns the angle by which the axis rotates, or the frame if the spin is known, in radians.
     pub fn angle(&self) -> f64 {
         self.angle
     }
@@ -161,12 +167,12 @@ impl Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::off;
+    use crate::pose::orthonormality_error;
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// Neighbouring axes and plunges along the axis: the cross product that the frame is built on is rounding
-    /// and nothing else, and may point along the axis itself.
+    /// Tests neighbouring axes and plunges along the axis. There the cross product that defines the
+    /// frame consists of rounding only, and may point along the axis itself.
     #[test]
     fn every_pose_of_a_motion_has_a_rotation() {
         let mut random = Pcg64Mcg::seed_from_u64(1);
@@ -175,7 +181,7 @@ mod tests {
         let mut judge = |from: &Pose, to: &Pose| {
             let motion = Motion::new(from, to).expect("axes that are not opposite");
             for part in [0.0, 0.5, 1.0] {
-                worst = worst.max(off(motion.pose(part).rotation()));
+                worst = worst.max(orthonormality_error(motion.pose(part).rotation()));
             }
         };
         for k in 0..1_000_000 {
@@ -188,11 +194,13 @@ mod tests {
             judge(&from, &Pose::from_axis(tip, nudged).expect("an axis"));
             judge(&from, &Pose::from_axis(tip + from.axis() * uniform(), axis).expect("an axis"));
         }
-        // 6u of the rotation, and 3u of its judge. Built on rounding along the axis it was forty.
+        // 6u from the rotation and 3u from the check itself. A frame built on rounding along the axis
+        // gave forty.
         assert!(worst <= 4.5 * f64::EPSILON, "{worst:e}");
     }
 
-    /// Against nalgebra's own interpolation of quaternions; short turns, long ones, and nearly half a turn.
+    /// Compares with nalgebra's interpolation of quaternions, for short rotations, long ones, and nearly
+    /// half a turn.
     #[test]
     fn a_motion_with_spin_is_that_of_quaternions() {
         let mut random = Pcg64Mcg::seed_from_u64(2);
@@ -214,11 +222,11 @@ mod tests {
             }
             let part = 0.5 + 0.5 * uniform();
             let pose = motion.pose(part);
-            rotations = rotations.max(off(pose.rotation()));
+            rotations = rotations.max(orthonormality_error(pose.rotation()));
             let turned = UnitQuaternion::from_axis_angle(&axis, part * angle);
             let wanted = (first * turned).to_rotation_matrix();
             worst = worst.max((pose.rotation() - wanted.matrix()).abs().max());
-            let about = motion.turns_about();
+            let about = motion.rotation_axis();
             assert!((pose.rotation() * about - from.rotation() * about).norm() < 4e-15);
         }
         assert!(rotations <= 4.5 * f64::EPSILON, "{rotations:e}");

@@ -1,97 +1,109 @@
-//! The workpiece, ready to be felt.
+//! The workpiece, prepared for queries.
 
-use crate::cloud::{Cloud, CloudError, Cover, check_place, unit_normal};
-use crate::mesh::{Mesh, Shape, ShapeError, Survey};
+use crate::cloud::{Cloud, CloudError, CoveringRadius, check_place, unit_normal};
+use crate::mesh::{Geometry, GeometryError, Mesh, MeshDiagnostics};
+use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
-use crate::probe::{BudgetError, Graded, Law, Probe};
-use crate::tool::{Senses, Tool};
-use crate::tree::Tree;
+use crate::probe::{BudgetError, Law, LodProbe, Probe};
+use crate::tool::{BatchEvaluator, Tool};
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
-/// The coarsest level of a part has as many points at least.
+/// Minimum number of points of a part's coarsest level.
 const FEWEST: usize = 100;
 
-/// A part: its points in their tree, and what was found out about its mesh.
+/// A part: its points in a bounding volume hierarchy, and the diagnostics of its mesh.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// The finest first; each of the others has some of the points of the one before.
-    pub(crate) levels: Vec<Tree>,
+    /// The levels of detail, the finest first; each level has a subset of the points of the level
+    /// before.
+    pub(crate) levels: Vec<PointBvh>,
     pub(crate) unit: Unit,
-    pub(crate) survey: Option<Survey>,
+    pub(crate) survey: Option<MeshDiagnostics>,
 }
 
-/// A part that could not be made.
+/// Reasons why a part could not be built.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     /// The file could not be read.
     #[error(transparent)]
-    Shape(#[from] ShapeError),
-    /// The cloud could not be made.
+    Geometry(#[from] GeometryError),
+    /// The cloud could not be built.
     #[error(transparent)]
     Cloud(#[from] CloudError),
 }
 
 impl Part {
-    /// A part from a mesh in STL, PLY or OBJ, whose lengths are in `unit`, its points as
-    /// [`Part::from_mesh`] spreads them; or from points with normals in PLY, all of them, as
-    /// [`Cloud::from_points`] takes them.
+    /// Reads a part from a file whose lengths are in `unit`. A mesh in STL, PLY or OBJ is sampled as by
+    /// [`Part::from_mesh`]; points with normals in PLY are all used, as by [`Cloud::from_points`].
+    ///
+    /// # Errors
+    /// Fails if the file cannot be read or the cloud cannot be built.
     pub fn read(
         path: impl AsRef<Path>,
         unit: Unit,
         points: usize,
         seed: u64,
     ) -> Result<Part, PartError> {
-        Ok(match Shape::read(path, unit)? {
-            Shape::Mesh(mesh) => Part::from_mesh(&mesh, points, seed)?,
-            Shape::Points(points) => Part::from_cloud(&Cloud::from_points(points, unit)?),
+        Ok(match Geometry::read(path, unit)? {
+            Geometry::Mesh(mesh) => Part::from_mesh(&mesh, points, seed)?,
+            Geometry::Points(points) => Part::from_cloud(&Cloud::from_points(points, unit)?),
         })
     }
 
-    /// A part from a mesh: `points` points spread evenly over the surface ([`Cloud::blue`]), the
-    /// same for the same `seed`.
+    /// Builds a part from a mesh, with `points` points spread evenly over the surface
+    /// ([`Cloud::blue_noise`]). Equal seeds give equal parts.
+    ///
+    /// # Errors
+    /// See [`Cloud::blue_noise`].
     pub fn from_mesh(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
-        Ok(Part::new(&Cloud::blue(mesh, points, seed)?, mesh.survey()))
+        Ok(Part::new(&Cloud::blue_noise(mesh, points, seed)?, mesh.diagnostics()))
     }
 
-    /// A part from a cloud on a mesh, and what was found out about that.
-    pub fn new(cloud: &Cloud, survey: Survey) -> Part {
+    /// Builds a part from a cloud on a mesh and the mesh's diagnostics.
+    pub fn new(cloud: &Cloud, survey: MeshDiagnostics) -> Part {
         Part { survey: Some(survey), ..Part::from_cloud(cloud) }
     }
 
-    /// A part as [`Part::from_mesh`] makes it, with coarser levels: each has a quarter of the points of
-    /// the one before, spread as evenly, with weights and a cover of their own, down to some hundred.
-    /// [`Graded`](crate::Graded) chooses among them; all else asks the finest.
-    pub fn detailed(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
-        let mut cloud = Cloud::blue(mesh, points, seed)?;
-        let mut part = Part::new(&cloud, mesh.survey());
+    /// Builds a part as [`Part::from_mesh`] does, with coarser levels of detail. Each has a quarter of
+    /// the points of the level before, spread as evenly, with its own weights and covering radius, down
+    /// to some hundred points. [`LodProbe`](crate::LodProbe) chooses among them; all other queries use
+    /// the finest.
+    ///
+    /// # Errors
+    /// See [`Cloud::blue_noise`].
+    pub fn with_lods(mesh: &Mesh, points: usize, seed: u64) -> Result<Part, CloudError> {
+        let mut cloud = Cloud::blue_noise(mesh, points, seed)?;
+        let mut part = Part::new(&cloud, mesh.diagnostics());
         while cloud.len() >= 4 * FEWEST {
-            cloud = cloud.thinned(mesh, cloud.len() / 4);
-            part.levels.push(Tree::new(&cloud));
+            cloud = cloud.decimated(mesh, cloud.len() / 4);
+            part.levels.push(PointBvh::new(&cloud));
         }
         Ok(part)
     }
 
-    /// A part from a cloud.
+    /// Builds a part from a cloud, without mesh diagnostics.
     pub fn from_cloud(cloud: &Cloud) -> Part {
-        Part { levels: vec![Tree::new(cloud)], unit: cloud.unit(), survey: None }
+        Part { levels: vec![PointBvh::new(cloud)], unit: cloud.unit(), survey: None }
     }
 
-    /// Takes away what is inside a tool at a pose: the points that are deeper than what the cloud cannot
-    /// see ([`Probe::unseen`]); how many, of all levels. The tree is not built anew.
+    /// Removes the points inside a tool at a pose, namely those deeper than the sampling error bound
+    /// ([`Probe::sampling_error_bound`]). Returns the number of points removed from all levels. The tree
+    /// is not rebuilt.
     ///
-    /// A place of the surface that is left has its nearest point where that was: if it had been taken
-    /// away, the place would be inside the tool as well. So the cover holds for what is left of the
-    /// surface. Of what is gone the points on its rim stay, no deeper than that; the new surface that a
-    /// cut leaves has no points, and no question knows of it. Of a coarse level that sees less than the
-    /// tool is deep nothing is taken. Where it is not known how steep depth is, or what the cover is, all
-    /// points inside are taken, and no cover is known any more.
+    /// The nearest point of every remaining surface point is still there: if it had been removed, the
+    /// surface point would be inside the tool as well. The covering radius therefore holds for the
+    /// remaining surface. Points near the rim of the removed surface remain, no deeper than the bound.
+    /// The new surface left by a cut has no points, and no query knows of it. A coarse level whose bound
+    /// exceeds the tool's depth loses no points. If the bound is unknown, because the tool has no
+    /// Lipschitz constant or the cloud no covering radius, all points inside are removed and the
+    /// covering radius becomes unknown.
     pub fn cut(&mut self, tool: &dyn Tool, pose: &Pose) -> usize {
         let mut taken = 0;
         for tree in &mut self.levels {
             let mut probe = Probe::of(tree, self.unit, tool);
-            let unseen = probe.unseen();
+            let unseen = probe.sampling_error_bound();
             let places = probe.deeper(pose, unseen.unwrap_or(-1.0));
             taken += places.len();
             if places.is_empty() {
@@ -105,14 +117,15 @@ impl Part {
         taken
     }
 
-    /// Moves points and turns their unit normals, as `to` says for a point and its normal; the tree is
-    /// not built anew, so queries get slower as neighbours part. Weights stay.
+    /// Moves points and rotates their unit normals, as `to` returns for a point and its normal. The tree
+    /// is not rebuilt, so queries get slower as neighbours move apart. Weights are unchanged.
     ///
-    /// The cover grows by twice how far the farthest point goes, which bounds it if no place between the
-    /// points goes farther: that is the caller's word, so it counts as estimated from then on.
+    /// The covering radius grows by twice the largest displacement of a point. This is a bound if no
+    /// surface point between the points moves farther, which only the caller can know, so the radius
+    /// counts as estimated afterwards.
     ///
     /// # Errors
-    /// A place or a normal that is none; nothing has moved then.
+    /// Fails for an invalid position or normal; no point has moved then.
     pub fn displace(
         &mut self,
         mut to: impl FnMut(Point3<f64>, Vector3<f64>) -> (Point3<f64>, Vector3<f64>),
@@ -133,7 +146,7 @@ impl Part {
             self.levels.iter_mut().zip(&moved).filter(|(_, moved)| !moved.is_empty())
         {
             let farthest = tree.put(moved);
-            tree.cover = tree.cover.map(|Cover { radius, .. }| Cover {
+            tree.cover = tree.cover.map(|CoveringRadius { radius, .. }| CoveringRadius {
                 radius: radius + 2.0 * farthest,
                 proved: false,
             });
@@ -141,11 +154,11 @@ impl Part {
         Ok(())
     }
 
-    /// The same part in another unit: its numbers are multiplied, its points and its tree stay.
+    /// Converts the part to another unit: its numbers are multiplied, its points and its tree remain.
     #[must_use]
-    pub fn to(mut self, unit: Unit) -> Part {
+    pub fn converted_to(mut self, unit: Unit) -> Part {
         if unit != self.unit {
-            let factor = self.unit.to(unit);
+            let factor = self.unit.factor_to(unit);
             self.levels.iter_mut().for_each(|tree| tree.scale_by(factor));
             self.survey = self.survey.map(|survey| survey.to(unit));
             self.unit = unit;
@@ -153,45 +166,46 @@ impl Part {
         self
     }
 
-    /// The points in their tree, the finest first.
-    pub(crate) fn levels(&self) -> &[Tree] {
+    /// Returns the trees of all levels, the finest first.
+    pub(crate) fn levels(&self) -> &[PointBvh] {
         &self.levels
     }
 
-    /// The points in their tree: of several levels the finest.
-    pub fn tree(&self) -> &Tree {
+    /// Returns the tree of the finest level.
+    pub fn tree(&self) -> &PointBvh {
         &self.levels[0]
     }
 
-    /// The unit of every length of the part.
+    /// Returns the unit of every length of the part.
     pub fn unit(&self) -> Unit {
         self.unit
     }
 
-    /// What the mesh is like: closed, oriented, how large. `None` for a part made of points.
-    pub fn survey(&self) -> Option<&Survey> {
+    /// Returns the diagnostics of the mesh, or `None` for a part built from points alone.
+    pub fn diagnostics(&self) -> Option<&MeshDiagnostics> {
         self.survey.as_ref()
     }
 }
 
-impl<'a, T: Senses + ?Sized> Probe<'a, T> {
-    /// A probe with the thesis's law, area weights and the tip for a compliance centre.
+impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
+    /// Creates a probe with the thesis's law, area weights and the tip as compliance centre.
     pub fn new(part: &'a Part, tool: &'a T) -> Probe<'a, T> {
         Probe::of(part.tree(), part.unit(), tool)
     }
 }
 
-impl<'a, T: Senses + ?Sized> Graded<'a, T> {
-    /// A tool beside a part, with a budget of nodes a query, and a law.
+impl<'a, T: BatchEvaluator + ?Sized> LodProbe<'a, T> {
+    /// Creates a probe for a tool and a part with levels of detail, with a budget of nodes per query and
+    /// a law.
     ///
     /// # Errors
-    /// A budget that is not enough for the coarsest level wherever the tool is.
+    /// Fails if the budget is too small for the coarsest level at some pose of the tool.
     pub fn new(
         part: &'a Part,
         tool: &'a T,
         budget: usize,
         law: Law,
-    ) -> Result<Graded<'a, T>, BudgetError> {
-        Graded::of(part.levels().iter().rev(), part.unit(), (tool, budget, law))
+    ) -> Result<LodProbe<'a, T>, BudgetError> {
+        LodProbe::of(part.levels().iter().rev(), part.unit(), (tool, budget, law))
     }
 }

@@ -1,51 +1,55 @@
-//! Where a tool is: its tip, and which way it stands.
+//! Tool poses: the position of the tip and the orientation of the tool.
 
 use crate::mesh::LARGEST_COORDINATE;
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
-/// How far the norm of a given axis may be from 1: published programs round their axes to four
-/// digits, and anything further off is a mistake in the data.
+/// Largest deviation of a given axis's norm from 1: published programs round their axes to four digits,
+/// and anything further off is a mistake in the data.
 pub const AXIS_TOLERANCE: f64 = 1e-3;
 
-/// The largest coordinate of a composed pose's tip: a thousand times the largest that may be given, which two poses that
-/// were given never reach.
+/// Largest coordinate of a composed pose's tip: a thousand times the largest coordinate that may be
+/// given. Composing two given poses never reaches it.
 pub const FARTHEST_TIP: f64 = 1e3 * LARGEST_COORDINATE;
 
-/// A tool's pose in the world: the map from the tool's frame (tip at the origin, +z from the tip
-/// to the spindle) to the part's, both in the part's unit of length. Of a solid without an axis
-/// what is called its tip is the origin of its file.
+/// A tool's pose in the world: the map from the tool frame (tip at the origin, +z from the tip to the
+/// spindle) to the part's frame, both in the part's unit of length. For a solid without an axis, the
+/// "tip" is the origin of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     rotation: Matrix3<f64>,
     tip: Point3<f64>,
-    /// Whether the spin about the axis was given.
+    /// `true` if the spin about the axis was given.
     full: bool,
 }
 
-/// A pose that cannot be one.
+/// Reasons why a pose is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PoseError {
-    /// A coordinate is NaN, infinite, or beyond what a part's may be.
+    /// A coordinate is NaN, infinite, or beyond the largest one allowed.
     #[error("the pose has a coordinate that is not a number within {LARGEST_COORDINATE:e}")]
     NotFinite,
-    /// The axis, or the quaternion, has no direction to take.
+    /// The norm of the axis or the quaternion is not 1 within the tolerance.
     #[error("the {what} has norm {norm}: give a unit vector (within {AXIS_TOLERANCE} of 1)")]
     NotUnit {
         /// `axis` or `quaternion`.
         what: &'static str,
-        /// The norm that was found.
+        /// The norm found.
         norm: f64,
     },
 }
 
 impl Pose {
-    /// A pose from the tip and the unit vector from the tip to the spindle, as in a 5-axis
-    /// program's `x,y,z,i,j,k`. The spin about the axis, which no axisymmetric tool feels, is
-    /// chosen by the branch-free frame of Duff et al., *Building an orthonormal basis, revisited*
-    /// (JCGT 2017), accurate for every axis.
+    /// Builds a pose from the tip and the unit vector from the tip to the spindle, as in a 5-axis
+    /// program's `x,y,z,i,j,k`. The spin about the axis does not affect axisymmetric tools. It is chosen
+    /// by the branch-free frame of Duff et al., *Building an orthonormal basis, revisited* (JCGT 2017),
+    /// which is accurate for every axis.
     ///
-    /// An axis whose norm is within [`AXIS_TOLERANCE`] of 1 is normalised, another refused. Such a
-    /// pose is not [full](Pose::is_full): it does not place a solid without an axis.
+    /// An axis whose norm is within [`AXIS_TOLERANCE`] of 1 is normalised. The pose has no
+    /// [spin](Pose::has_spin), so it does not place a solid without an axis.
+    ///
+    /// # Errors
+    /// [`PoseError::NotUnit`] if the axis's norm is outside the tolerance, [`PoseError::NotFinite`] if a
+    /// component is not finite or a coordinate of the tip is beyond [`LARGEST_COORDINATE`].
     pub fn from_axis(tip: Point3<f64>, axis: Vector3<f64>) -> Result<Pose, PoseError> {
         let axis = unit("axis", [axis.x, axis.y, axis.z, 0.0])?;
         let [x, y, z, _] = axis;
@@ -58,8 +62,8 @@ impl Pose {
         Pose::finite(orthonormal(rotation), tip, false)
     }
 
-    /// A pose from the tip and a quaternion `(x, y, z, w)` that turns the tool's frame into the
-    /// world's. Its norm is held to the same tolerance as an axis.
+    /// Builds a pose from the tip and a quaternion `(x, y, z, w)` that rotates the tool frame to the
+    /// world frame. The tolerance of its norm and the errors are those of [`Pose::from_axis`].
     pub fn from_quaternion(tip: Point3<f64>, quaternion: [f64; 4]) -> Result<Pose, PoseError> {
         let [x, y, z, w] = unit("quaternion", quaternion)?;
         let rotation = Matrix3::new(
@@ -84,42 +88,45 @@ impl Pose {
         }
     }
 
-    /// Creates a pose from a matrix that is a rotation but for rounding; `full` if its spin is known.
+    /// Creates a pose from a matrix that is a rotation except for rounding; `full` states that its spin
+    /// is known.
     pub(crate) fn turned(rotation: Matrix3<f64>, tip: Point3<f64>, full: bool) -> Pose {
         Pose { rotation: orthonormal(rotation), tip, full }
     }
 
-    /// Whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`]. A
-    /// tool's answers do not depend on it; those of a solid without an axis do, so that only a
-    /// full pose means something for it.
-    pub fn is_full(&self) -> bool {
+    /// Returns whether the spin about the axis was given, rather than chosen by [`Pose::from_axis`].
+    /// Results for a tool of revolution do not depend on it. Results for a solid without an axis do, so
+    /// it needs a pose with spin.
+    pub fn has_spin(&self) -> bool {
         self.full
     }
 
-    /// Where the tip is, in the world.
+    /// Returns the tip's position, in the world frame.
     pub fn tip(&self) -> Point3<f64> {
         self.tip
     }
 
-    /// The unit vector from the tip to the spindle, in the world.
+    /// Returns the unit vector from the tip to the spindle, in the world frame.
     pub fn axis(&self) -> Vector3<f64> {
         self.rotation.column(2).into()
     }
 
-    /// The rotation from the tool's frame to the world's; its columns are the tool's x, y and z.
+    /// Returns the rotation from the tool frame to the world frame. Its columns are the tool's x, y and
+    /// z.
     pub fn rotation(&self) -> &Matrix3<f64> {
         &self.rotation
     }
 
-    /// The same pose after a motion of the world: `motion ∘ self`. So `step.then(&pose)` is the pose
-    /// after a step in the tool's own frame.
+    /// Returns the pose after a motion of the world: `motion ∘ self`. Hence `step.then(&pose)` is the
+    /// pose after a step in the tool's own frame.
     ///
-    /// However many motions follow each other, the rotation stays one: `RᵀR` differs from the identity
-    /// by at most 3 ε in every entry, as in every pose. What is left of rounding turns it like a random walk; but a motion
-    /// that comes back to where it began is rounded the same time and again, some 3e-17 rad each.
+    /// The rotation remains a rotation after any number of compositions: `RᵀR` differs from the identity
+    /// by at most 3 ε in every entry, as in every pose. The remaining rounding rotates it like a random
+    /// walk. A motion that returns to its start is rounded in the same way each time, by some 3e-17 rad.
     ///
     /// # Panics
-    /// If the tip gets out of [`FARTHEST_TIP`]: a certifier's answer about such a pose would mean nothing.
+    /// Panics if the tip leaves [`FARTHEST_TIP`]: a certifier's answer for such a pose would be
+    /// meaningless.
     ///
     /// ```
     /// # use nalgebra::{Point3, Vector3};
@@ -139,33 +146,38 @@ impl Pose {
         Pose { rotation, tip: near(tip), full: self.full && motion.full }
     }
 
-    /// The same pose shifted in the world.
+    /// Returns the pose translated by a displacement in the world frame.
     ///
     /// # Errors
-    /// If that is no place for a part.
-    pub fn shifted(&self, way: Vector3<f64>) -> Result<Pose, PoseError> {
+    /// [`PoseError::NotFinite`] if a coordinate of the new tip is not finite or beyond the largest one
+    /// allowed.
+    pub fn translated(&self, way: Vector3<f64>) -> Result<Pose, PoseError> {
         Pose::finite(self.rotation, self.tip + way, self.full)
     }
 
-    /// Turned by a rotation, its tip carried to there.
+    /// Returns the pose rotated by `turn`, with its tip at `tip`.
     ///
     /// # Errors
-    /// If the tip is not within the bounds of a pose, or the turn is no rotation.
+    /// Fails if the tip is out of bounds or `turn` is not a rotation.
     #[cfg(feature = "haptic")]
-    pub(crate) fn carried(&self, turn: Matrix3<f64>, tip: Point3<f64>) -> Result<Pose, PoseError> {
+    pub(crate) fn rotated_to(
+        &self,
+        turn: Matrix3<f64>,
+        tip: Point3<f64>,
+    ) -> Result<Pose, PoseError> {
         let rotation = orthonormal(turn * self.rotation);
-        match off(&rotation) {
+        match orthonormality_error(&rotation) {
             off if off <= ORTHONORMAL => Pose::finite(rotation, tip, self.full),
             _ => Err(PoseError::NotFinite),
         }
     }
 
-    /// The same pose seen from where something else stands: `place⁻¹ ∘ self`, the difference of the
-    /// tips first. Its rotation stays one as that of [`Pose::then`] does.
+    /// Returns the pose relative to the frame `place`: `place⁻¹ ∘ self`, with the difference of the tips
+    /// taken first. The rotation remains a rotation as in [`Pose::then`].
     ///
     /// # Panics
-    /// If the tip gets out of [`FARTHEST_TIP`].
-    pub fn seen_from(&self, place: &Pose) -> Pose {
+    /// Panics if the tip leaves [`FARTHEST_TIP`].
+    pub fn relative_to(&self, place: &Pose) -> Pose {
         if *place == Pose::default() {
             return *self;
         }
@@ -174,14 +186,14 @@ impl Pose {
         Pose { rotation: orthonormal(back * self.rotation), tip: near(tip), full: self.full }
     }
 
-    /// The same pose as nalgebra's isometry.
-    pub fn isometry(&self) -> Isometry3<f64> {
+    /// Returns the pose as nalgebra's isometry.
+    pub fn to_isometry(&self) -> Isometry3<f64> {
         let rotation = nalgebra::Rotation3::from_matrix_unchecked(self.rotation);
         Isometry3::from_parts(self.tip.into(), nalgebra::UnitQuaternion::from(rotation))
     }
 }
 
-/// A tip that is not farther than [`FARTHEST_TIP`].
+/// Returns the tip after checking that it is within [`FARTHEST_TIP`].
 fn near(tip: Point3<f64>) -> Point3<f64> {
     assert!(
         tip.iter().all(|part| part.abs() <= FARTHEST_TIP),
@@ -190,32 +202,33 @@ fn near(tip: Point3<f64>) -> Point3<f64> {
     tip
 }
 
-/// The largest entry of `RᵀR - I` in a rotation. A certifier's bounds hold for rotations that are off
-/// by rounding; a matrix that is farther off was not made by this module.
+/// Largest entry of `RᵀR - I` in a valid rotation. A certifier's bounds hold for rotations with rounding
+/// errors; a matrix farther off was not made by this module.
 #[cfg(feature = "haptic")]
 const ORTHONORMAL: f64 = 1e-9;
 
-/// Returns the largest entry of `RᵀR - I`, NaN if any is NaN.
+/// Returns the largest magnitude in `RᵀR - I`, or NaN if any entry is NaN.
 #[cfg(any(test, feature = "haptic"))]
-pub(crate) fn off(rotation: &Matrix3<f64>) -> f64 {
+pub(crate) fn orthonormality_error(rotation: &Matrix3<f64>) -> f64 {
     let off = rotation.transpose() * rotation - Matrix3::identity();
     off.iter().fold(0.0, |most, part| if part.abs() <= most { most } else { part.abs() })
 }
 
-/// Returns a rotation `Q` beside a matrix `R` that is one but for rounding: `QᵀQ` differs from the identity by at most 6u in
-/// every entry, `u = ε/2`, and `Q` from `R` by half of `|I − RᵀR|`.
+/// Corrects the rounding of a matrix `R` that is nearly a rotation. The result `Q` has `QᵀQ` within 6u
+/// of the identity in every entry, with `u = ε/2`, and differs from `R` by half of `|I − RᵀR|`.
 ///
-/// This is a step of Newton's method toward the nearest rotation, `R + R E/2` with `E = I − RᵀR`. Let `E` have entries below
-/// 1e-9. An exact step leaves its square. Entries of `RᵀR` are sums of three products, whose sizes add up to 1 at most,
-/// and err by 3u (Cauchy and Schwarz); the difference from the identity is exact (Sterbenz). So the computed `E` errs by 3u,
-/// and `QᵀQ` by as much. Rounding `R E/2` is of second order. Rounding the last sum changes an entry of `Q` by u of its
-/// size, and `QᵀQ` by 2u. That is 5u, and second order takes less than another.
+/// This is a Newton step toward the nearest rotation, `R + R E/2` with `E = I − RᵀR`. Let `E` have
+/// entries below 1e-9. An exact step leaves its square. Entries of `RᵀR` are sums of three products,
+/// whose magnitudes add up to at most 1, and err by 3u (Cauchy and Schwarz); the difference from the
+/// identity is exact (Sterbenz). The computed `E` therefore errs by 3u, and `QᵀQ` by as much. Rounding
+/// `R E/2` is of second order. Rounding the last sum changes an entry of `Q` by u of its magnitude, and
+/// `QᵀQ` by 2u. The total is 5u, and second-order terms add less than another u.
 pub(crate) fn orthonormal(product: Matrix3<f64>) -> Matrix3<f64> {
     let off = Matrix3::identity() - product.transpose() * product;
     product + product * off * 0.5
 }
 
-/// At the origin, unturned.
+/// Returns the pose at the origin without rotation.
 impl Default for Pose {
     fn default() -> Pose {
         Pose { rotation: Matrix3::identity(), tip: Point3::origin(), full: true }
@@ -231,7 +244,7 @@ impl TryFrom<Isometry3<f64>> for Pose {
     }
 }
 
-/// Normalises what is within tolerance of a unit vector.
+/// Normalises a vector whose norm is within the tolerance.
 fn unit(what: &'static str, v: [f64; 4]) -> Result<[f64; 4], PoseError> {
     if !v.iter().all(|c| c.is_finite()) {
         return Err(PoseError::NotFinite);
@@ -250,8 +263,8 @@ mod tests {
 
     const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-    /// Each entrance to a pose refuses what is no rotation or no place, and all it accepts are rotations to
-    /// within rounding, however large the error within its tolerance.
+    /// Checks that every constructor refuses matrices that are not rotations and invalid positions. All
+    /// accepted poses are rotations to within rounding, however large the error within the tolerance.
     #[test]
     fn every_entrance_refuses_what_is_no_pose() {
         let origin = Point3::origin();
@@ -267,7 +280,7 @@ mod tests {
                 let (tip, axis) = (Point3::new(x, y, z), Vector3::new(x, y, z));
                 assert_eq!(Pose::from_axis(origin, axis), Err(PoseError::NotFinite));
                 assert_eq!(Pose::from_axis(tip, Vector3::z()), Err(PoseError::NotFinite));
-                assert_eq!(Pose::default().shifted(axis), Err(PoseError::NotFinite));
+                assert_eq!(Pose::default().translated(axis), Err(PoseError::NotFinite));
             }
         }
         for size in [0.0, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 1e200] {
@@ -282,7 +295,10 @@ mod tests {
                 let turned = [0.1, 0.7, -0.1, sign * 0.7].map(|c| c * size);
                 let quaternion = Pose::from_quaternion(origin, turned);
                 for pose in [axis, quaternion] {
-                    assert!(off(pose.expect("within tolerance").rotation()) <= 4.0 * f64::EPSILON);
+                    assert!(
+                        orthonormality_error(pose.expect("within tolerance").rotation())
+                            <= 4.0 * f64::EPSILON
+                    );
                 }
             }
         }
@@ -302,22 +318,22 @@ mod tests {
     fn poses_as_far_apart_as_they_may_be_given_compose() {
         let [a, b] = [-LARGEST_COORDINATE, LARGEST_COORDINATE]
             .map(|c| Pose::from_axis(Point3::new(c, c, c), Vector3::x()).expect("a pose"));
-        assert!(a.seen_from(&b).then(&b).tip().iter().all(|part| part.is_finite()));
+        assert!(a.relative_to(&b).then(&b).tip().iter().all(|part| part.is_finite()));
     }
 
-    /// A turn that is NaN, or drifted away from a rotation, makes no pose.
+    /// Checks that a NaN matrix, or one that has drifted away from a rotation, gives no pose.
     #[cfg(feature = "haptic")]
     #[test]
     fn what_is_carried_by_no_rotation_is_refused() {
         let (pose, origin) = (Pose::default(), Point3::origin());
         let scaled = |by: f64| Matrix3::identity() * by;
-        assert!(pose.carried(scaled(1.0), origin).is_ok());
-        // Newton's step mends what is off by less than the root of the tolerance.
-        assert!(pose.carried(scaled(1.0 + 1e-6), origin).is_ok());
+        assert!(pose.rotated_to(scaled(1.0), origin).is_ok());
+        // The Newton step corrects errors below the square root of the tolerance.
+        assert!(pose.rotated_to(scaled(1.0 + 1e-6), origin).is_ok());
         for turn in [scaled(f64::NAN), scaled(1.01), scaled(0.0), scaled(f64::INFINITY)] {
-            assert_eq!(pose.carried(turn, origin), Err(PoseError::NotFinite));
+            assert_eq!(pose.rotated_to(turn, origin), Err(PoseError::NotFinite));
         }
         let nowhere = Point3::new(0.0, f64::NAN, 0.0);
-        assert_eq!(pose.carried(scaled(1.0), nowhere), Err(PoseError::NotFinite));
+        assert_eq!(pose.rotated_to(scaled(1.0), nowhere), Err(PoseError::NotFinite));
     }
 }

@@ -1,15 +1,15 @@
-//! Several parts, fixtures and tools in one world, each where it was put last.
+//! A scene of several parts, fixtures and tools in one world.
 //!
-//! A pair of which neither moved since it was asked last has its answer still; one that is far apart is left
-//! after some thirty operations.
+//! If neither member of a pair has moved since its last query, the stored answer is returned. A pair
+//! that is far apart is rejected after some thirty operations.
 
 use crate::part::Part;
 use crate::pose::Pose;
-use crate::probe::{Deepest, Law, Probe, Weights, Wrench};
+use crate::probe::{DeepestPoint, Law, Probe, Weights, Wrench};
 use crate::tool::Tool;
 use crate::unit::Unit;
 
-/// Parts and tools in one world.
+/// Parts and tools in one world frame.
 ///
 /// ```
 /// use touchoff::{Part, Pose, Scene, Unit, mesh::shapes};
@@ -29,7 +29,7 @@ use crate::unit::Unit;
 ///
 /// scene.move_tool(ball, Pose::from_axis(Point3::new(10.0, 10.0, 19.5), Vector3::z())?);
 /// assert!(scene.wrench(ball).force.z > 0.0);
-/// assert_eq!(scene.between(ball, clamp).colliding, 0);
+/// assert_eq!(scene.pair_wrench(ball, clamp).colliding, 0);
 /// assert_eq!(scene.deepest(ball).map(|(part, _)| part), Some(work));
 /// # Ok(()) }
 /// ```
@@ -38,66 +38,67 @@ pub struct Scene<'a> {
     law: Law,
     weights: Weights,
     parts: Vec<(&'a Part, Pose)>,
-    tools: Vec<Held<'a>>,
+    tools: Vec<SceneTool<'a>>,
 }
 
-/// A part of a scene.
+/// The id of a part in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PartId(usize);
 
-/// A tool of a scene.
+/// The id of a tool in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ToolId(usize);
 
-/// A part that a scene cannot take.
+/// A part whose unit differs from the scene's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the part is in {part} and the scene in {scene}: convert it by `Part::to`")]
 pub struct SceneError {
     /// The part's unit.
     pub part: Unit,
-    /// The scene's.
+    /// The scene's unit.
     pub scene: Unit,
 }
 
-/// A tool, where it is, and what it feels of every part.
-struct Held<'a> {
+/// A tool, its pose, and its contact with every part.
+struct SceneTool<'a> {
     tool: &'a dyn Tool,
     pose: Pose,
     beside: Vec<Pair<'a>>,
 }
 
-/// A tool beside a part, and what was felt last.
+/// A tool and a part, with the last wrench.
 struct Pair<'a> {
     probe: Probe<'a>,
-    /// Pose and answer in the part's frame.
-    felt: Option<(Pose, Wrench)>,
+    /// The pose and the wrench in the part's frame.
+    evaluations: Option<(Pose, Wrench)>,
 }
 
 impl<'a> Scene<'a> {
-    /// An empty scene, whose poses and answers are in `unit`, with the thesis's law and area weights.
+    /// Creates an empty scene whose poses and results are in `unit`, with the thesis's law and area
+    /// weights.
     pub fn new(unit: Unit) -> Scene<'a> {
         let (law, weights) = (Law::default(), Weights::default());
         Scene { unit, law, weights, parts: Vec::new(), tools: Vec::new() }
     }
 
-    /// With another force law, for tools that are added from now on.
+    /// Sets the force law for tools that are added from now on.
     #[must_use]
-    pub fn law(mut self, law: Law) -> Scene<'a> {
+    pub fn with_law(mut self, law: Law) -> Scene<'a> {
         self.law = law;
         self
     }
 
-    /// With other weights, for tools that are added from now on.
+    /// Sets the weights for tools that are added from now on.
     #[must_use]
-    pub fn weights(mut self, weights: Weights) -> Scene<'a> {
+    pub fn with_weights(mut self, weights: Weights) -> Scene<'a> {
         self.weights = weights;
         self
     }
 
-    /// Puts a part where its own frame is `place`.
+    /// Adds a part; `place` is the pose of its frame in the world.
     ///
     /// # Errors
-    /// A part in another unit than the scene's.
+    /// Fails if the part's unit differs from the scene's.
     pub fn add_part(&mut self, part: &'a Part, place: Pose) -> Result<PartId, SceneError> {
         if part.unit() != self.unit {
             return Err(SceneError { part: part.unit(), scene: self.unit });
@@ -109,16 +110,16 @@ impl<'a> Scene<'a> {
         Ok(PartId(self.parts.len() - 1))
     }
 
-    /// Adds a tool, its tip at the origin and its axis along z until it is moved. Its unit may be
-    /// another than the scene's.
+    /// Adds a tool, with its tip at the origin and its axis along z until it is moved. Its unit may
+    /// differ from the scene's.
     pub fn add_tool(&mut self, tool: &'a dyn Tool) -> ToolId {
         let pair = |(part, _): &(&'a Part, Pose)| Pair::new(part, tool, self.law, self.weights);
         let beside = self.parts.iter().map(pair).collect();
-        self.tools.push(Held { tool, pose: Pose::default(), beside });
+        self.tools.push(SceneTool { tool, pose: Pose::default(), beside });
         ToolId(self.tools.len() - 1)
     }
 
-    /// Moves a part as a whole; its tree is not touched.
+    /// Moves a part as a whole; its tree is unchanged.
     pub fn move_part(&mut self, part: PartId, place: Pose) {
         self.parts[part.0].1 = place;
     }
@@ -128,24 +129,24 @@ impl<'a> Scene<'a> {
         self.tools[tool.0].pose = pose;
     }
 
-    /// The first part that a tool touches.
+    /// Returns the first part that a tool touches.
     pub fn detect(&mut self, tool: ToolId) -> Option<PartId> {
         let held = &mut self.tools[tool.0];
         let pairs = held.beside.iter_mut().zip(&self.parts).enumerate();
         let mut touched = pairs.filter_map(|(index, (pair, (_, place)))| {
-            pair.probe.detect(&held.pose.seen_from(place)).then_some(PartId(index))
+            pair.probe.detect(&held.pose.relative_to(place)).then_some(PartId(index))
         });
         touched.next()
     }
 
-    /// What a tool feels of one part, in the world's frame.
-    pub fn between(&mut self, tool: ToolId, part: PartId) -> Wrench {
+    /// Returns the contact wrench between a tool and one part, in the world frame.
+    pub fn pair_wrench(&mut self, tool: ToolId, part: PartId) -> Wrench {
         let held = &mut self.tools[tool.0];
         held.beside[part.0].wrench(&held.pose, &self.parts[part.0].1)
     }
 
-    /// What a tool feels of all parts together, in the world's frame. The triangle of its deepest point
-    /// is one of the part's that [`Scene::deepest`] names.
+    /// Returns the contact wrench of a tool with all parts together, in the world frame. The triangle id
+    /// of its deepest point belongs to the part that [`Scene::deepest`] returns.
     pub fn wrench(&mut self, tool: ToolId) -> Wrench {
         let held = &mut self.tools[tool.0];
         let mut total = Wrench::nothing(self.law, self.weights);
@@ -155,10 +156,10 @@ impl<'a> Scene<'a> {
         total
     }
 
-    /// The part that a tool is deepest in, and where.
-    pub fn deepest(&mut self, tool: ToolId) -> Option<(PartId, Deepest)> {
+    /// Returns the part that a tool is deepest in, and the deepest point.
+    pub fn deepest(&mut self, tool: ToolId) -> Option<(PartId, DeepestPoint)> {
         let held = &mut self.tools[tool.0];
-        let mut most: Option<(PartId, Deepest)> = None;
+        let mut most: Option<(PartId, DeepestPoint)> = None;
         for (index, (pair, (_, place))) in held.beside.iter_mut().zip(&self.parts).enumerate() {
             let Some(deepest) = pair.wrench(&held.pose, place).deepest else { continue };
             if most.is_none_or(|(_, most)| deepest.depth > most.depth) {
@@ -171,17 +172,20 @@ impl<'a> Scene<'a> {
 
 impl<'a> Pair<'a> {
     fn new(part: &'a Part, tool: &'a dyn Tool, law: Law, weights: Weights) -> Pair<'a> {
-        Pair { probe: Probe::new(part, tool).law(law).weights(weights), felt: None }
+        Pair {
+            probe: Probe::new(part, tool).with_law(law).with_weights(weights),
+            evaluations: None,
+        }
     }
 
     fn wrench(&mut self, pose: &Pose, place: &Pose) -> Wrench {
-        let relative = pose.seen_from(place);
-        match &self.felt {
-            Some((last, felt)) if *last == relative => felt.turned(place),
+        let relative = pose.relative_to(place);
+        match &self.evaluations {
+            Some((last, evaluations)) if *last == relative => evaluations.turned(place),
             _ => {
-                let felt = self.probe.wrench(&relative);
-                self.felt = Some((relative, felt));
-                felt.turned(place)
+                let evaluations = self.probe.wrench(&relative);
+                self.evaluations = Some((relative, evaluations));
+                evaluations.turned(place)
             }
         }
     }

@@ -1,10 +1,10 @@
-//! The scenes that figures are quoted on: poses of the tool of Ho (1999), fig. 7.3, about a tube.
+//! Benchmark scenes: poses of the tool of Ho (1999), fig. 7.3, around a tube.
 //!
-//! The tube stands on z = 0 about the z axis, inner radius [`INNER`], outer [`OUTER`], height
-//! [`HEIGHT`], in mm. With `c` the centre of the tool's ball (radius [`BALL`]) and `a` the unit
-//! vector from the spindle to the tip, the pose is tip `c + a`, axis `−a`. Angles are in radians,
-//! `u = k/n`, `n̂ = (cos φ, sin φ, 0)`, and `δ(u) = δ₀ (1 + 0.9 sin 130u)` is how deep the ball
-//! enters: one δ₀ serves every number of points, so that collisions grow in proportion to it.
+//! The tube stands on z = 0 about the z axis, with inner radius [`INNER`], outer radius [`OUTER`] and
+//! height [`HEIGHT`], in mm. With `c` the centre of the tool's ball (radius [`BALL`]) and `a` the unit
+//! vector from the spindle to the tip, the pose has tip `c + a` and axis `−a`. Angles are in radians, `u
+//! = k/n`, and `n̂ = (cos φ, sin φ, 0)`. The ball penetrates by `δ(u) = δ₀ (1 + 0.9 sin 130u)`. One δ₀
+//! serves every number of points, so that collisions grow in proportion to it.
 
 use crate::mesh::Mesh;
 use crate::mesh::shapes;
@@ -21,18 +21,18 @@ pub const OUTER: f64 = 5.0;
 pub const HEIGHT: f64 = 13.116;
 /// Radius of the tool's ball, and distance from its centre to the tip, mm.
 pub const BALL: f64 = 1.0;
-/// How many poses of a path the figures are measured on.
+/// Number of poses of a path in the published measurements.
 pub const POSES: usize = 10_000;
 
-/// The tube as a mesh, so finely divided that it is flatter than the true cylinders by no more
-/// than 2.4e-5 mm, a five hundredth of how deep the paths go.
+/// Returns the tube as a mesh. It deviates from the true cylinders by at most 2.4e-5 mm, a
+/// five-hundredth of the paths' depths.
 pub fn tube() -> Mesh {
     shapes::tube(INNER, OUTER, HEIGHT, 1024, 1, Unit::Millimetre).expect("a tube by construction")
 }
 
 /// A path of the tool along the tube.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Path {
+pub enum ScenePath {
     /// The ball winds up the outer wall, then the side of the cutter runs along the top edge.
     Outside,
     /// The cutter runs about the bore.
@@ -41,37 +41,37 @@ pub enum Path {
     Hold,
 }
 
-impl Path {
-    /// Every path.
-    pub const ALL: [Path; 3] = [Path::Outside, Path::Inside, Path::Hold];
+impl ScenePath {
+    /// All paths.
+    pub const ALL: [ScenePath; 3] = [ScenePath::Outside, ScenePath::Inside, ScenePath::Hold];
 
-    /// The word for it: `outside`, `inside` or `hold`.
+    /// Returns the path's keyword: `outside`, `inside` or `hold`.
     pub const fn name(self) -> &'static str {
         match self {
-            Path::Outside => "outside",
-            Path::Inside => "inside",
-            Path::Hold => "hold",
+            ScenePath::Outside => "outside",
+            ScenePath::Inside => "inside",
+            ScenePath::Hold => "hold",
         }
     }
 
-    /// Pose `k` of the `n` that the path is cut into, in mm; `k < n`.
+    /// Returns pose `k` of the `n` poses of the path, in mm; `k < n`.
     pub fn pose(self, k: usize, n: usize) -> Pose {
         let u = fraction(k, n);
         match self {
-            Path::Outside if u < 0.6 => on_the_wall(u),
-            Path::Outside => over_the_edge(u),
-            Path::Inside => in_the_bore(u),
-            Path::Hold => in_the_rim(u),
+            ScenePath::Outside if u < 0.6 => on_the_wall(u),
+            ScenePath::Outside => over_the_edge(u),
+            ScenePath::Inside => in_the_bore(u),
+            ScenePath::Hold => in_the_rim(u),
         }
     }
 }
 
-/// Pose `k` of `n` with the ball at distance `gap` (mm) from the outer wall, so that nothing
-/// touches: `φ = 10πu`, `c = (6 + gap) n̂ + (0, 0, 1.5 + 10u)`,
-/// `a = −n̂ cos 0.4 + (−sin φ, cos φ, 0) sin 0.4`.
+/// Returns pose `k` of `n` with the ball at distance `gap` (mm) from the outer wall, so that nothing
+/// touches: `φ = 10πu`, `c = (6 + gap) n̂ + (0, 0, 1.5 + 10u)`, `a = −n̂ cos 0.4 + (−sin φ, cos φ, 0)
+/// sin 0.4`.
 ///
 /// # Panics
-/// If `gap` is NaN or infinite.
+/// Panics if `gap` is NaN or infinite.
 pub fn apart(gap: f64, k: usize, n: usize) -> Pose {
     let u = fraction(k, n);
     let phi = 10.0 * PI * u;
@@ -79,9 +79,9 @@ pub fn apart(gap: f64, k: usize, n: usize) -> Pose {
     stand(at(OUTER + BALL + gap, phi, 1.5 + 10.0 * u), a)
 }
 
-/// First 60 % of outside, `v = u/0.6`: `φ = 10πv`, `z = 1.5 + 10v`, tilt `τ = 0.5 + 0.45 sin 23v`,
-/// `ψ = 17v`, `t = (−sin φ cos ψ, cos φ cos ψ, sin ψ)`; `c = (6 − δ) n̂ + (0, 0, z)`,
-/// `a = −n̂ cos τ + t sin τ`.
+/// Returns a pose of the first 60 % of outside. With `v = u/0.6`: `φ = 10πv`, `z = 1.5 + 10v`, tilt `τ =
+/// 0.5 + 0.45 sin 23v`, `ψ = 17v`, `t = (−sin φ cos ψ, cos φ cos ψ, sin ψ)`; `c = (6 − δ) n̂ + (0, 0,
+/// z)`, `a = −n̂ cos τ + t sin τ`.
 fn on_the_wall(u: f64) -> Pose {
     let v = u / 0.6;
     let phi = 10.0 * PI * v;
@@ -92,9 +92,9 @@ fn on_the_wall(u: f64) -> Pose {
     stand(at(OUTER + BALL - outside_depth(u), phi, 1.5 + 10.0 * v), a)
 }
 
-/// Last 40 % of outside, `v = (u − 0.6)/0.4`: `φ = 6πv`,
-/// `c = ((6 − 0.3δ) n̂, H − 2 − 1.5 sin 19v)`,
-/// `a ∝ (0.03 sin(31v) cos φ − 0.02 sin φ, 0.03 sin(31v) sin φ + 0.02 cos φ, −1)`.
+/// Returns a pose of the last 40 % of outside. With `v = (u − 0.6)/0.4`: `φ = 6πv`, `c = ((6 − 0.3δ) n̂,
+/// H − 2 − 1.5 sin 19v)`, `a ∝ (0.03 sin(31v) cos φ − 0.02 sin φ, 0.03 sin(31v) sin φ + 0.02 cos φ,
+/// −1)`.
 fn over_the_edge(u: f64) -> Pose {
     let v = (u - 0.6) / 0.4;
     let phi = 6.0 * PI * v;
@@ -103,7 +103,8 @@ fn over_the_edge(u: f64) -> Pose {
     stand(at(OUTER + BALL - 0.3 * outside_depth(u), phi, z), lean - Vector3::z())
 }
 
-/// `φ = 16πu`, `c = ((2 + δ) n̂, H − 2.3 − 1.4 sin 19u)`, `a ∝ (0.002 sin(31u) n̂, −1)`.
+/// Returns a pose of inside: `φ = 16πu`, `c = ((2 + δ) n̂, H − 2.3 − 1.4 sin 19u)`, `a ∝ (0.002 sin(31u)
+/// n̂, −1)`.
 fn in_the_bore(u: f64) -> Pose {
     let phi = 16.0 * PI * u;
     let lean = 0.002 * (31.0 * u).sin() * radial(phi);
@@ -111,8 +112,8 @@ fn in_the_bore(u: f64) -> Pose {
     stand(at(INNER - BALL + depth(0.0124, u), phi, z), lean - Vector3::z())
 }
 
-/// `φ = 50πu`, tilt `τ = 12° · sin(35.4πu)`, `c = ((1.2 + 0.9 sin 15.8πu) n̂,
-/// H − 6.5 − 2.5 cos 6.6πu)`, `a = (sin τ n̂, −cos τ)`.
+/// Returns a pose of hold: `φ = 50πu`, tilt `τ = 12° · sin(35.4πu)`, `c = ((1.2 + 0.9 sin 15.8πu) n̂, H
+/// − 6.5 − 2.5 cos 6.6πu)`, `a = (sin τ n̂, −cos τ)`.
 fn in_the_rim(u: f64) -> Pose {
     let phi = 50.0 * PI * u;
     let tilt = 12f64.to_radians() * (35.4 * PI * u).sin();
@@ -125,32 +126,32 @@ fn outside_depth(u: f64) -> f64 {
     depth(0.0536, u)
 }
 
-/// `δ(u)` for its `δ₀`, mm.
+/// Returns the penetration `δ(u)` for its `δ₀`, mm.
 fn depth(mean: f64, u: f64) -> f64 {
     mean * (1.0 + 0.9 * (130.0 * u).sin())
 }
 
-/// `k/n`, finite for every `n`.
+/// Returns `k/n`, finite for every `n`.
 fn fraction(k: usize, n: usize) -> f64 {
     k as f64 / n.max(1) as f64
 }
 
-/// `n̂`, away from the tube's axis.
+/// Returns `n̂`, the direction away from the tube's axis.
 fn radial(phi: f64) -> Vector3<f64> {
     Vector3::new(phi.cos(), phi.sin(), 0.0)
 }
 
-/// Around the tube's axis.
+/// Returns the direction around the tube's axis.
 fn tangential(phi: f64) -> Vector3<f64> {
     Vector3::new(-phi.sin(), phi.cos(), 0.0)
 }
 
-/// A point in cylinder coordinates.
+/// Returns a point from cylindrical coordinates.
 fn at(radius: f64, phi: f64, z: f64) -> Point3<f64> {
     Point3::from(radius * radial(phi) + z * Vector3::z())
 }
 
-/// The pose whose ball is centred at `c` and whose axis runs along `a` from spindle to tip.
+/// Returns the pose whose ball is centred at `c` and whose axis runs along `a` from spindle to tip.
 fn stand(c: Point3<f64>, a: Vector3<f64>) -> Pose {
     let a = a.normalize();
     Pose::from_axis(c + BALL * a, -a).expect("a path's points are finite and its axes unit vectors")
@@ -160,13 +161,13 @@ fn stand(c: Point3<f64>, a: Vector3<f64>) -> Pose {
 mod tests {
     use super::*;
 
-    /// Centre of the ball and its distance from the tube's axis.
+    /// Returns the centre of the ball and its distance from the tube's axis.
     fn ball(pose: &Pose) -> (Point3<f64>, f64) {
         let c = pose.tip() + pose.axis() * BALL;
         (c, c.x.hypot(c.y))
     }
 
-    fn poses(path: Path) -> impl Iterator<Item = (f64, Pose)> {
+    fn poses(path: ScenePath) -> impl Iterator<Item = (f64, Pose)> {
         (0..POSES).map(move |k| (k as f64 / POSES as f64, path.pose(k, POSES)))
     }
 
@@ -174,27 +175,27 @@ mod tests {
         (found - expected).abs() < 1e-12
     }
 
-    /// Tips and axes worked out from the formulas apart from this code.
+    /// Compares with tips and axes computed from the formulas independently of this code.
     #[test]
     fn poses_are_the_formulas() {
         for (found, tip, axis) in [
             (
-                Path::Outside.pose(3400, POSES),
+                ScenePath::Outside.pose(3400, POSES),
                 [2.038912176828, -4.795871649479, 7.032875449389],
                 [0.929078210311, -0.344838497422, 0.133791217277],
             ),
             (
-                Path::Outside.pose(8700, POSES),
+                ScenePath::Outside.pose(8700, POSES),
                 [5.933005861199, 0.959934092413, 9.732910713775],
                 [-0.02279593158, -0.02384880051, 0.999455641946],
             ),
             (
-                Path::Inside.pose(3400, POSES),
+                ScenePath::Inside.pose(3400, POSES),
                 [-0.377201285261, -1.977358384369, 9.569748856274],
                 [-0.000336539485, -0.00176420176, 0.999998387165],
             ),
             (
-                Path::Hold.pose(3400, POSES),
+                ScenePath::Hold.pose(3400, POSES),
                 [-0.395425722494, 0.0, 3.815506768873],
                 [0.023634385123, 0.0, 0.999720668907],
             ),
@@ -211,7 +212,7 @@ mod tests {
 
     #[test]
     fn the_ball_enters_the_outer_wall_by_delta() {
-        for (u, pose) in poses(Path::Outside) {
+        for (u, pose) in poses(ScenePath::Outside) {
             let delta = 0.0536 * (1.0 + 0.9 * (130.0 * u).sin());
             let entered = if u < 0.6 { delta } else { 0.3 * delta };
             assert!(near(ball(&pose).1, OUTER + BALL - entered), "{u}");
@@ -220,7 +221,7 @@ mod tests {
 
     #[test]
     fn the_ball_enters_the_bore_by_delta() {
-        for (u, pose) in poses(Path::Inside) {
+        for (u, pose) in poses(ScenePath::Inside) {
             let (c, radius) = ball(&pose);
             assert!(near(radius, INNER - BALL + 0.0124 * (1.0 + 0.9 * (130.0 * u).sin())));
             assert!((HEIGHT - 3.7 - 1e-9..=HEIGHT - 0.9 + 1e-9).contains(&c.z));
@@ -230,7 +231,8 @@ mod tests {
 
     #[test]
     fn the_holder_tilts_by_twelve_degrees_at_most() {
-        let steepest = poses(Path::Hold).map(|(_, pose)| pose.axis().z.acos()).fold(0.0, f64::max);
+        let steepest =
+            poses(ScenePath::Hold).map(|(_, pose)| pose.axis().z.acos()).fold(0.0, f64::max);
         assert!((steepest.to_degrees() - 12.0).abs() < 1e-3);
     }
 
@@ -243,7 +245,7 @@ mod tests {
 
     #[test]
     fn no_poses_are_no_division_by_zero() {
-        for path in Path::ALL {
+        for path in ScenePath::ALL {
             assert_eq!(path.pose(0, 0), path.pose(0, 1), "{}", path.name());
         }
     }

@@ -1,9 +1,9 @@
-//! Units of length: a tool states one, a part is loaded with one, nothing is guessed.
+//! Units of length. Every tool and every part states its unit; none is guessed.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// A unit of length, by the words that `.tool` files and the program use.
+/// A unit of length, with the symbol that `.tool` files and the program use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "postures", derive(serde::Serialize, serde::Deserialize))]
 pub enum Unit {
@@ -16,7 +16,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// How many millimetres one of this unit is.
+    /// Returns the length of one unit in millimetres.
     pub const fn millimetres(self) -> f64 {
         match self {
             Unit::Millimetre => 1.0,
@@ -25,13 +25,14 @@ impl Unit {
         }
     }
 
-    /// The factor that turns a length in `self` into one in `other`; exactly 1 when they agree.
-    pub fn to(self, other: Unit) -> f64 {
+    /// Returns the factor that converts a length in `self` to one in `other`; exactly 1 if the units are
+    /// equal.
+    pub fn factor_to(self, other: Unit) -> f64 {
         self.millimetres() / other.millimetres()
     }
 
-    /// The word for it: `mm`, `inch` or `m`.
-    pub const fn word(self) -> &'static str {
+    /// Returns the unit's symbol: `mm`, `inch` or `m`.
+    pub const fn symbol(self) -> &'static str {
         match self {
             Unit::Millimetre => "mm",
             Unit::Inch => "inch",
@@ -42,22 +43,22 @@ impl Unit {
 
 impl fmt::Display for Unit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.word())
+        f.write_str(self.symbol())
     }
 }
 
-/// A word that is no unit.
+/// A word that is not the symbol of a unit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is not a unit: write `mm`, `inch` or `m`")]
-pub struct UnknownUnit(pub String);
+pub struct ParseUnitError(pub String);
 
 impl FromStr for Unit {
-    type Err = UnknownUnit;
+    type Err = ParseUnitError;
 
-    fn from_str(word: &str) -> Result<Unit, UnknownUnit> {
+    fn from_str(word: &str) -> Result<Unit, ParseUnitError> {
         [Unit::Millimetre, Unit::Inch, Unit::Metre]
             .into_iter()
-            .find(|unit| unit.word() == word)
-            .ok_or_else(|| UnknownUnit(word.to_owned()))
+            .find(|unit| unit.symbol() == word)
+            .ok_or_else(|| ParseUnitError(word.to_owned()))
     }
 }

@@ -1,8 +1,8 @@
-//! Programs that are written and read again.
+//! Programs that are written and read back.
 
 use nalgebra::{Point3, Vector3};
 use proptest::prelude::*;
-use touchoff::program::{Cutter, Heading, Program, WriteError};
+use touchoff::program::{AptHeader, Cutter, Program, WriteError};
 use touchoff::tool::Tool;
 use touchoff::{Pose, Unit};
 
@@ -62,7 +62,7 @@ fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
 }
 
-fn apt(program: &Program, heading: &Heading<'_>) -> String {
+fn apt(program: &Program, heading: &AptHeader<'_>) -> String {
     let mut out = Vec::new();
     program.write_apt(&mut out, heading).expect("it can be written");
     String::from_utf8(out).expect("UTF-8")
@@ -74,7 +74,7 @@ fn csv(program: &Program) -> String {
     String::from_utf8(out).expect("UTF-8")
 }
 
-/// How far two poses' rotations are apart in any entry.
+/// Returns the largest difference between the entries of two poses' rotations.
 fn turned(one: &Pose, other: &Pose) -> f64 {
     (one.rotation() - other.rotation()).amax()
 }
@@ -90,8 +90,8 @@ fn a_program_is_written_as_people_write_it() {
         (pose([1e-7, -2.0, 1e9], [0.6, 0.0, 0.8]), false),
     ];
     let program = Program::new("made", Some(Unit::Inch), poses).expect("two poses");
-    let cutter = Cutter::of(Flat.card(), Unit::Inch);
-    let text = apt(&program, &Heading { part: "WALL $ 1; 2", cutter });
+    let cutter = Cutter::of(Flat.info(), Unit::Inch);
+    let text = apt(&program, &AptHeader { part: "WALL $ 1; 2", cutter });
     assert_eq!(
         text,
         "PARTNO/WALL $ 1; 2\nUNITS/INCHES\nMULTAX/ON\nCUTTER/0.47244094488188976,0\nRAPID\n\
@@ -104,27 +104,27 @@ fn a_program_is_written_as_people_write_it() {
     );
     let read = Program::parse(&text, "again.cl").expect("it is a program");
     assert_eq!(read.ignored, [(1, "PARTNO".to_owned())]);
-    assert_eq!(read.check_cutter(Flat.card(), Unit::Inch).expect("the same"), None);
+    assert_eq!(read.check_cutter(Flat.info(), Unit::Inch).expect("the same"), None);
     assert_eq!(read.unit, Some(Unit::Inch));
-    assert_eq!(read.stops.iter().map(|stop| stop.line).collect::<Vec<_>>(), [6, 7]);
+    assert_eq!(read.locations.iter().map(|stop| stop.line).collect::<Vec<_>>(), [6, 7]);
 }
 
 #[test]
 fn what_apt_cannot_say_is_refused() {
     let here = [(pose([0.0; 3], [0.0, 0.0, 1.0]), false)];
     let metre = Program::new("made", Some(Unit::Metre), here).expect("a pose");
-    let error = metre.write_apt(&mut Vec::new(), &Heading::default()).expect_err("no such unit");
+    let error = metre.write_apt(&mut Vec::new(), &AptHeader::default()).expect_err("no such unit");
     assert_eq!(
         error.to_string(),
         "APT-CL has no word for m: write the program in mm or inch, or as a table"
     );
     let program = Program::new("made", None, here).expect("a pose");
     for part in ["A\nGOTO/1,2,3", "A\r", "\u{1b}[2J"] {
-        let heading = Heading { part, cutter: None };
+        let heading = AptHeader { part, cutter: None };
         let error = program.write_apt(&mut Vec::new(), &heading).expect_err("no line");
         assert!(matches!(error, WriteError::Part { .. }), "{error}");
     }
-    assert!(!apt(&program, &Heading::default()).contains("UNITS"));
+    assert!(!apt(&program, &AptHeader::default()).contains("UNITS"));
     let error = Program::new("made", None, []).expect_err("no pose").to_string();
     assert!(error.starts_with("made: holds no position"), "{error}");
     let inch = Program::new("made", Some(Unit::Inch), here).expect("a pose");
@@ -134,7 +134,7 @@ fn what_apt_cannot_say_is_refused() {
 
 #[test]
 fn cutters_are_described_where_two_numbers_do() {
-    let mm = |tool: &dyn Tool| Cutter::of(tool.card(), Unit::Millimetre);
+    let mm = |tool: &dyn Tool| Cutter::of(tool.info(), Unit::Millimetre);
     assert_eq!(mm(&Ball), Some(Cutter { diameter: 6.0, corner: 3.0 }));
     assert_eq!(mm(&Flat), Some(Cutter { diameter: 12.0, corner: 0.0 }));
     assert_eq!(mm(&Cone), None);
@@ -167,24 +167,24 @@ proptest! {
     fn what_is_read_is_what_was_written(poses in poses(), inches in any::<Option<bool>>()) {
         let unit = inches.map(|inches| if inches { Unit::Inch } else { Unit::Millimetre });
         let made = Program::new("made", unit, poses).expect("a pose at least");
-        let text = apt(&made, &Heading { part: "A", cutter: None });
+        let text = apt(&made, &AptHeader { part: "A", cutter: None });
         prop_assert!(text.lines().all(|line| line.len() <= 72), "{}", text);
         let read = Program::parse(&text, "again").expect("it is a program");
         prop_assert_eq!(read.unit, unit);
         prop_assert_eq!(&read.ignored, &[(1, "PARTNO".to_owned())]);
         let table = Program::parse(csv(&made), "again").expect("it is a table");
-        prop_assert_eq!((read.stops.len(), table.stops.len()), (made.stops.len(), made.stops.len()));
-        for ((one, other), row) in made.stops.iter().zip(&read.stops).zip(&table.stops) {
+        prop_assert_eq!((read.locations.len(), table.locations.len()), (made.locations.len(), made.locations.len()));
+        for ((one, other), row) in made.locations.iter().zip(&read.locations).zip(&table.locations) {
             prop_assert_eq!(one.rapid, other.rapid);
             for pose in [&other.pose, &row.pose] {
                 prop_assert!(same_bits(one.pose.tip(), pose.tip()));
                 prop_assert!((one.pose.axis() - pose.axis()).amax() <= READ);
             }
         }
-        // What was read once is written the same, but for that rounding of an axis.
-        let again = Program::parse(apt(&read, &Heading { part: "A", cutter: None }), "again");
+        // A program that was read once is written the same, except for that rounding of an axis.
+        let again = Program::parse(apt(&read, &AptHeader { part: "A", cutter: None }), "again");
         let again = again.expect("it is a program");
-        for (one, other) in read.stops.iter().zip(&again.stops) {
+        for (one, other) in read.locations.iter().zip(&again.locations) {
             prop_assert_eq!((one.line, one.rapid), (other.line, other.rapid));
             prop_assert!(same_bits(one.pose.tip(), other.pose.tip()));
             prop_assert!((one.pose.axis() - other.pose.axis()).amax() <= READ);
@@ -200,8 +200,8 @@ proptest! {
         });
         let Ok(made) = Program::new("made", None, full.map(|pose| (pose, false))) else { return Ok(()) };
         let read = Program::parse(csv(&made), "again").expect("it is a table");
-        for (one, other) in made.stops.iter().zip(&read.stops) {
-            prop_assert!(other.pose.is_full());
+        for (one, other) in made.locations.iter().zip(&read.locations) {
+            prop_assert!(other.pose.has_spin());
             prop_assert!(turned(&one.pose, &other.pose) < 1e-14);
         }
     }

@@ -1,4 +1,4 @@
-//! Two versions of one library in one process: `scripts/race.sh`.
+//! Times two versions of the library in one process; run by `scripts/race.sh`.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -11,22 +11,22 @@ const TOLERANCE: f64 = 1e-6;
 const QUESTIONS: [&str; 4] = ["wrench", "detect", "certified depth", "sweep"];
 const SCENES: [&str; 4] = ["outside", "inside", "hold", "apart"];
 
-/// One version: its part, and the time of a block of poses.
+/// Defines the module of one version: its part, and the time per block of poses.
 macro_rules! version {
     ($name:ident, $touchoff:ident, $tools:ident) => {
         mod $name {
             use super::*;
-            use $touchoff::certify::{Certifier, Facets};
-            use $touchoff::scenes::{Path, apart, tube};
+            use $touchoff::certify::{Certifier, TriangleBvh};
+            use $touchoff::scenes::{ScenePath, apart, tube};
             use $touchoff::{Cloud, Motion, Part, Pose, Probe};
 
             pub fn part(count: usize) -> &'static Part {
-                let cloud = Cloud::random(&tube(), count, 1).expect("points of a tube");
+                let cloud = Cloud::uniform(&tube(), count, 1).expect("points of a tube");
                 Box::leak(Box::new(Part::from_cloud(&cloud)))
             }
 
             pub fn poses(scene: usize) -> Vec<Pose> {
-                let pose = |k| match Path::ALL.get(scene) {
+                let pose = |k| match ScenePath::ALL.get(scene) {
                     Some(path) => path.pose(k, POSES),
                     None => apart(0.5, k, POSES),
                 };
@@ -34,8 +34,8 @@ macro_rules! version {
             }
 
             pub fn certifier() -> Certifier<'static> {
-                let facets: &'static Facets = Box::leak(Box::new(Facets::new(&tube())));
-                Certifier::new(facets, &$tools::Fig73Exact).expect("a tool with a profile")
+                let bvh: &'static TriangleBvh = Box::leak(Box::new(TriangleBvh::new(&tube())));
+                Certifier::new(bvh, &$tools::Fig73Exact).expect("a tool with a profile")
             }
 
             pub struct Racer {
@@ -48,7 +48,7 @@ macro_rules! version {
             impl Racer {
                 pub fn new(part: &'static Part, scene: usize) -> Racer {
                     let poses = poses(scene);
-                    // Poses of a path are near each other, so their axes are not opposite.
+                    // Successive poses of a path are close, so their axes are not antiparallel.
                     let motion = |pair: &[Pose]| Motion::new(&pair[0], &pair[1]).expect("a motion");
                     let motions: Vec<Motion> = poses.windows(2).map(motion).collect();
                     Racer {
@@ -59,7 +59,7 @@ macro_rules! version {
                     }
                 }
 
-                /// ns a pose.
+                /// Returns the mean time per pose, ns.
                 pub fn time(&mut self, question: usize, block: usize) -> f64 {
                     let Racer { probe, certifier, poses, motions } = self;
                     let poses = &poses[block * BLOCK..(block + 1) * BLOCK];
@@ -72,7 +72,7 @@ macro_rules! version {
                             2 => _ = black_box(certifier.deepest(pose, TOLERANCE)),
                             _ => {
                                 let motion = &motions[(block * BLOCK + k).min(motions.len() - 1)];
-                                _ = black_box(certifier.sweep_clear(black_box(motion), TOLERANCE));
+                                _ = black_box(certifier.check_motion(black_box(motion), TOLERANCE));
                             }
                         }
                     }
@@ -92,7 +92,7 @@ fn main() {
         let parts = (then::part(count), now::part(count));
         for (scene, name) in SCENES.into_iter().enumerate() {
             let mut racers = (then::Racer::new(parts.0, scene), now::Racer::new(parts.1, scene));
-            // Proofs ask the triangles, whatever the points.
+            // Certified queries use the triangles, so they do not depend on the number of points.
             let asked = if count == 20_000 { &QUESTIONS[..] } else { &QUESTIONS[..2] };
             for (question, word) in asked.iter().enumerate() {
                 let mut best = vec![[f64::MAX; 2]; POSES / BLOCK];

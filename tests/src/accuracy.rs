@@ -1,25 +1,26 @@
-//! How exact compiled evaluators are, point by point against 256 bits.
+//! Measures the accuracy of compiled evaluators, point by point against 256 bits.
 //!
-//! Both forms are asked, for one point and for lanes; they have to have the same bits, and their error is measured once.
+//! Both forms are evaluated, the one for a single point and the one for lanes. They must have the same bits, so
+//! their error is measured once.
 
 use super::points::points;
 use crate::oracle::big::Big;
 use crate::oracle::reference::{At, Reference};
 use crate::oracle::restated::{self, Restated};
 use crate::oracle::{Meridian, Nearest, Oracle};
-use touchoff::tool::{Ask, Card, Felt, Points};
+use touchoff::tool::{Evaluations, Outputs, PointBatch, ToolInfo};
 use touchoff::{Level, Tool};
 
-/// Nearer to the surface than so many ulp(S), either side is right; and so of two owners.
+/// Distance in ulp(S) from the surface, or between two owners, within which either answer is right.
 pub const DOUBT: f64 = 2.0;
 
-/// Points that are evaluated at a time.
+/// Number of points that are evaluated at a time.
 const CHUNK: usize = 1 << 15;
 
-/// The largest error of one kind, and where it is.
+/// The largest error of one kind, and its point.
 #[derive(Clone, Debug, Default)]
 pub struct Worst {
-    /// How large.
+    /// The error.
     pub error: f64,
     /// The point, and the region that the evaluator gave it.
     pub place: Option<([f64; 3], String)>,
@@ -32,13 +33,13 @@ impl Worst {
         }
     }
 
-    /// The place to the last bit.
+    /// Formats the point to the last bit.
     pub fn exactly(&self) -> String {
         let place = self.place.as_ref();
         place.map_or_else(String::new, |(p, region)| format!("`{region}` at {p:?}"))
     }
 
-    /// The place for people: region, d and z.
+    /// Formats the point for people: region, d and z.
     pub fn shown(&self) -> String {
         let Some((p, region)) = &self.place else { return String::new() };
         let [d, z] = Meridian::of(*p).dz;
@@ -46,12 +47,12 @@ impl Worst {
     }
 }
 
-/// Something that must not happen, how often it does, and the worst case.
+/// Something that must not happen: its number of occurrences, and the worst case.
 #[derive(Clone, Debug, Default)]
 pub struct Wrong {
-    /// How often.
+    /// Number of occurrences.
     pub count: usize,
-    /// By how many ulp(S) the point is beyond doubt.
+    /// The worst case, in ulp(S).
     pub worst: Worst,
 }
 
@@ -62,39 +63,40 @@ impl Wrong {
     }
 }
 
-/// What is found out about a tool.
+/// Results for a tool.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    /// The tool.
+    /// The tool's name.
     pub name: String,
-    /// The word for its unit.
+    /// The symbol of its unit.
     pub unit: &'static str,
     /// The next power of two above its largest coordinate, S.
     pub scale: f64,
-    /// Points looked at, and how many the tool has.
+    /// Number of points evaluated.
     pub points: usize,
-    /// Points that the tool has.
+    /// Number of points that the evaluator takes for inside.
     pub inside: usize,
-    /// In ulp(S).
+    /// Error of the depth, in ulp(S).
     pub depth: Worst,
     /// Points on the wrong side, beyond 2 ulp(S).
     pub sides: Wrong,
     /// Points whose owner is farther than the nearest by more than 2 ulp(S).
     pub owners: Wrong,
-    /// Of the direction's length, in ε.
+    /// Error of the direction's length, in ε.
     pub length: Worst,
-    /// Of the direction, over 8 ε max(1, S/ρ).
+    /// Error of the direction, over 8 ε max(1, S/ρ).
     pub direction: Worst,
-    /// Of the distance outside, in ulp(S); 0 if the tool only has a bound of it.
+    /// Error of the distance outside, in ulp(S); 0 if the tool only has a bound of it.
     pub clearance: Worst,
-    /// Points at which lanes have other bits than one point has.
+    /// Number of points at which the lanes and the form for a single point differ in a bit.
     pub unlike: usize,
-    /// Numbers that are not finite, depths and nicenesses below 0.
+    /// Number of points with a number that is not finite, a depth or niceness below 0, or a region without an
+    /// owner.
     pub senseless: usize,
 }
 
 impl Row {
-    /// What misses the contract: section 1 of the accuracy reference.
+    /// Returns the violations of the contract, section 1 of the accuracy reference.
     pub fn missed(&self) -> Vec<String> {
         let mut missed = Vec::new();
         let mut bar = |what: &str, worst: &Worst, bound: f64| {
@@ -123,7 +125,7 @@ impl Row {
     }
 }
 
-/// The tools of the library that are profiles, with their restatements.
+/// Returns the tools of the library that are profiles, with their restatements.
 pub fn tools() -> Vec<(&'static dyn Tool, Restated)> {
     let restated = restated::all().into_iter();
     restated.filter_map(|tool| Some((tools_library::find(tool.name)?, tool))).collect()
@@ -134,32 +136,33 @@ pub fn measure(tool: &dyn Tool, restated: &Restated, count: usize, seed: u64) ->
     let (oracle, reference) = (Nearest::new(restated), Reference::new(restated));
     let points = points(&oracle, count, seed);
     let scale = reference.scale();
-    let card = tool.card();
+    let info = tool.info();
     let mut row = Row {
-        name: card.name.to_string(),
-        unit: card.unit.word(),
+        name: info.name.to_string(),
+        unit: info.unit.symbol(),
         scale,
         points: points.len(),
         ..Row::default()
     };
-    let judge = Judge::new(tool, &reference, &oracle);
+    let judge = PointChecker::new(tool, &reference, &oracle);
     for chunk in points.chunks(CHUNK) {
-        let mut list = Points::default();
+        let mut list = PointBatch::default();
         chunk.iter().for_each(|p| list.push(*p));
         let [one, lanes] = [Level::baseline(), Level::new()].map(|level| {
-            let mut felt = Felt::default();
-            tool.evaluate(level, Ask::EVERYTHING, &list, 1.0, &mut felt);
-            felt
+            let mut evaluation = Evaluations::default();
+            tool.evaluate(level, Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
+            evaluation
         });
         for (i, p) in chunk.iter().enumerate() {
             row.unlike += usize::from(bits(&one, i) != bits(&lanes, i));
-            row.see(*p, &judge.judge(*p, &one, i), card);
+            row.see(*p, &judge.judge(*p, &one, i), info);
         }
     }
     row
 }
 
-/// Which owners of the oracle each region of a card is: of its name, or all of its surface.
+/// Returns the oracle's owners for each region of a tool: those of its name, or else all of the surface of that
+/// name.
 pub fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
     let (names, surfaces) = (oracle.regions(), oracle.surfaces());
     let surfaces: Vec<&str> = surfaces.map(|(surface, _)| surface).collect();
@@ -170,88 +173,97 @@ pub fn owners(tool: &dyn Tool, oracle: &Nearest) -> Vec<Vec<usize>> {
         none if none.is_empty() => places(&surfaces, name),
         some => some,
     };
-    tool.card().regions.iter().map(|region| of(&region.name)).collect()
+    tool.info().regions.iter().map(|region| of(&region.name)).collect()
 }
 
-/// Whether a point is inside by what is felt.
-pub fn inside(felt: &Felt, i: usize) -> bool {
-    felt.inside[i / 8] >> (i % 8) & 1 == 1
+/// Returns whether point `i` of an evaluation is inside.
+pub fn inside(evaluation: &Evaluations, i: usize) -> bool {
+    evaluation.inside[i / 8] >> (i % 8) & 1 == 1
 }
 
-/// All that is felt at a point.
-fn numbers(felt: &Felt, i: usize) -> Option<[f64; 7]> {
-    inside(felt, i).then(|| {
-        let [x, y, z] = [0, 1, 2].map(|k| felt.direction[k][i]);
-        [felt.region[i], felt.depth[i], felt.magnitude[i], felt.niceness[i], x, y, z]
+/// Returns region, depth, magnitude, niceness and direction at point `i`; `None` outside.
+fn numbers(evaluation: &Evaluations, i: usize) -> Option<[f64; 7]> {
+    inside(evaluation, i).then(|| {
+        let [x, y, z] = [0, 1, 2].map(|k| evaluation.direction[k][i]);
+        [
+            evaluation.region[i],
+            evaluation.depth[i],
+            evaluation.magnitude[i],
+            evaluation.niceness[i],
+            x,
+            y,
+            z,
+        ]
     })
 }
 
-/// The bits of everything that is felt at a point; `None` outside.
-pub fn bits(felt: &Felt, i: usize) -> Option<[u64; 10]> {
-    numbers(felt, i).map(|n| {
-        let g = [0, 1, 2].map(|k| felt.gradient[k][i]);
+/// Returns the bits of all outputs at point `i`; `None` outside.
+pub fn bits(evaluation: &Evaluations, i: usize) -> Option<[u64; 10]> {
+    numbers(evaluation, i).map(|n| {
+        let g = [0, 1, 2].map(|k| evaluation.gradient[k][i]);
         [n[0], n[1], n[2], n[3], n[4], n[5], n[6], g[0], g[1], g[2]].map(f64::to_bits)
     })
 }
 
-/// What is right about a tool: the one statement of the contract, for whoever has points to be judged.
-pub struct Judge<'a> {
+/// A judge of a tool's evaluations, and the one statement of the contract that they have to meet.
+pub struct PointChecker<'a> {
     tool: &'a dyn Tool,
     reference: &'a Reference,
     owners: Vec<Vec<usize>>,
-    /// ulp(S), by which errors are measured.
+    /// One ulp(S), the unit of errors.
     pub ulp: f64,
 }
 
-/// How far away a tool still has its distance, in S: farther than 64 sizes it is a bound.
+/// Distance from the surface, in S, up to which a tool must have its distance outside. Farther than 64 sizes it has
+/// a bound.
 const HAS_DISTANCE: f64 = 16.0;
 
-/// What is found out about one point.
+/// Results for one point.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// How many ulp(S) from the surface it is put on the wrong side; 0 if the side is right.
+    /// Distance from the surface in ulp(S) if the point is put on the wrong side; 0 if the side is right.
     pub side: f64,
-    /// Of the distance outside, in ulp(S), where the tool has it.
+    /// Error of the distance outside, in ulp(S), where the tool has it.
     pub clearance: Option<f64>,
-    /// Of a point that the tool takes for one inside.
+    /// Results for a point that the tool takes for one inside.
     pub inside: Option<Inside>,
 }
 
-/// What is found out about a point inside.
+/// Results for a point inside.
 #[derive(Clone, Debug)]
 pub struct Inside {
     /// The region that the evaluator gave it.
     pub region: usize,
-    /// Whether a number is none, a depth or a niceness below 0, or the region nobody's.
+    /// True if a number is not finite, a depth or niceness is below 0, or the region has no owner.
     pub senseless: bool,
-    /// Of the depth, in ulp(S).
+    /// Error of the depth, in ulp(S).
     pub depth: f64,
-    /// By how many ulp(S) the owner is farther than the nearest.
+    /// Distance in ulp(S) by which the owner is farther than the nearest.
     pub owner: f64,
-    /// Of the direction's length, in ε.
+    /// Error of the direction's length, in ε.
     pub length: f64,
-    /// Of the direction, over its bound.
+    /// Error of the direction, over its bound.
     pub direction: f64,
 }
 
-impl<'a> Judge<'a> {
-    /// A judge of a tool by the reference of its profile.
-    pub fn new(tool: &'a dyn Tool, reference: &'a Reference, oracle: &Nearest) -> Judge<'a> {
+impl<'a> PointChecker<'a> {
+    /// Creates a judge of a tool by the reference of its profile.
+    pub fn new(tool: &'a dyn Tool, reference: &'a Reference, oracle: &Nearest) -> PointChecker<'a> {
         let owners = owners(tool, oracle);
-        Judge { tool, reference, owners, ulp: reference.scale() * f64::EPSILON }
+        PointChecker { tool, reference, owners, ulp: reference.scale() * f64::EPSILON }
     }
 
-    /// Judges the point that is felt in a place of a list.
-    pub fn judge(&self, p: [f64; 3], felt: &Felt, i: usize) -> Judged {
+    /// Judges point `p`, which is entry `i` of an evaluation.
+    pub fn judge(&self, p: [f64; 3], evaluation: &Evaluations, i: usize) -> Judged {
         let at = At::new(p);
         let exact = self.reference.depth(&at);
         let depth = exact.to_f64();
-        let answer = numbers(felt, i);
+        let answer = numbers(evaluation, i);
         let wrong = answer.is_some() != (depth > 0.0);
         let side = if wrong { depth.abs() / self.ulp } else { 0.0 };
         let Some(answer) = answer else {
             let off = || (self.tool.clearance(p) + depth).abs() / self.ulp;
-            let has = self.tool.card().exact() && -depth < HAS_DISTANCE * self.reference.scale();
+            let has = self.tool.info().is_exact() && -depth < HAS_DISTANCE * self.reference.scale();
             let clearance = has.then(off);
             return Judged { side, clearance, inside: None };
         };
@@ -275,7 +287,7 @@ impl<'a> Judge<'a> {
         if !finite {
             return inside;
         }
-        // Where rounding alone puts a point inside, its depth is 0.
+        // A point that only rounding puts inside has depth 0.
         let deep = if depth > 0.0 { exact - &Big::exactly(found) } else { Big::exactly(found) };
         inside.depth = deep.abs().to_f64() / self.ulp;
         let Some(owner) = owner else { return inside };
@@ -288,7 +300,7 @@ impl<'a> Judge<'a> {
         let expected = self.reference.direction(at, owner);
         let apart = u.iter().zip(&expected).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
         let rho = self.reference.singular(at, owner);
-        // Exactly where no direction exists, the one that the language fixes is wanted.
+        // Exactly where no direction exists, the one that the language fixes is required.
         let blur = if rho == 0.0 { 1.0 } else { (self.reference.scale() / rho).max(1.0) };
         inside.direction = apart.sqrt() / (8.0 * f64::EPSILON * blur);
         inside
@@ -296,8 +308,8 @@ impl<'a> Judge<'a> {
 }
 
 impl Row {
-    /// Takes up what was found out about a point.
-    fn see(&mut self, p: [f64; 3], judged: &Judged, card: &Card) {
+    /// Adds the results for a point.
+    fn see(&mut self, p: [f64; 3], judged: &Judged, info: &ToolInfo) {
         if judged.side > DOUBT {
             self.sides.see(judged.side, p, "");
         }
@@ -305,7 +317,7 @@ impl Row {
             self.clearance.see(off, p, "");
         }
         let Some(inside) = &judged.inside else { return };
-        let name = &card.regions[inside.region].name;
+        let name = &info.regions[inside.region].name;
         self.inside += 1;
         self.senseless += usize::from(inside.senseless);
         self.depth.see(inside.depth, p, name);

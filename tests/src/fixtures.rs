@@ -1,15 +1,15 @@
-//! What the benches of single calls are asked: many points about a tool, and poses along the tube.
+//! Inputs for the benches of single calls: many points near a tool, and poses along the tube.
 
-use crate::oracle::draw::Draw;
-use touchoff::scenes::{Path, tube};
-use touchoff::tool::{Points, Tool};
+use crate::oracle::draw::Rng;
+use touchoff::scenes::{ScenePath, tube};
+use touchoff::tool::{PointBatch, Tool};
 use touchoff::{Cloud, Part, Pose};
 
-/// Tools that the benches evaluate: one of straight lines and a ball, the thesis's by hand and by
-/// profile, and one of many pieces.
+/// Tools that the benches evaluate: one of straight lines and a ball, the thesis's by hand and by profile, and one
+/// of many profile segments.
 pub const TOOLS: [&str; 4] = ["D2Ball", "Fig73", "Fig73Exact", "BullNoseHsk63"];
 
-/// A tool of the library.
+/// Returns a tool of the library.
 ///
 /// # Panics
 /// If there is none of that name.
@@ -17,16 +17,16 @@ pub fn tool(name: &str) -> &'static dyn Tool {
     tools_library::find(name).expect("a tool of the library")
 }
 
-/// Points within 5 % of the tool's radius of its outline, inside or not: what the tree leaves of a
-/// cloud. Of more than some 16,000 a processor cannot learn which branches they take.
-pub fn near(tool: &dyn Tool, count: usize) -> Points {
-    let card = tool.card();
-    let ([low, high], radius) = (card.reach(), card.radius());
-    let mut draw = Draw::new(1);
-    let mut points = Points::default();
+/// Returns points within 5 % of the tool's radius of its outline, inside or not, such as the tree leaves of a
+/// cloud. If there are more than some 16,000, a processor cannot learn which branches they take.
+pub fn near(tool: &dyn Tool, count: usize) -> PointBatch {
+    let info = tool.info();
+    let ([low, high], radius) = (info.reach(), info.radius());
+    let mut draw = Rng::new(1);
+    let mut points = PointBatch::default();
     while points.len() < count {
         let z = draw.between(low, high);
-        let slabs = card.envelope.iter().filter(|slab| (slab.low..=slab.high).contains(&z));
+        let slabs = info.envelope.iter().filter(|slab| (slab.low..=slab.high).contains(&z));
         let outline = slabs.fold(0.0, |most, slab| slab.radius.max(most));
         let d = outline + draw.between(-0.05, 0.05) * radius;
         let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
@@ -35,17 +35,17 @@ pub fn near(tool: &dyn Tool, count: usize) -> Points {
     points
 }
 
-/// The tube as so many points.
+/// Returns the tube as `points` points.
 ///
 /// # Panics
-/// Of no points.
+/// If `points` is 0.
 pub fn part(points: usize) -> Part {
     let mesh = tube();
-    let cloud = Cloud::random(&mesh, points, 1).expect("the tube has a surface");
-    Part::new(&cloud, mesh.survey())
+    let cloud = Cloud::uniform(&mesh, points, 1).expect("the tube has a surface");
+    Part::new(&cloud, mesh.diagnostics())
 }
 
-/// A path cut into poses.
-pub fn poses(path: Path, count: usize) -> Vec<Pose> {
+/// Returns `count` poses along a path.
+pub fn poses(path: ScenePath, count: usize) -> Vec<Pose> {
     (0..count).map(|k| path.pose(k, count)).collect()
 }

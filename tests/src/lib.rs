@@ -1,4 +1,4 @@
-//! Oracles that share no code with the project, and the scenes and tools that tests ask.
+//! Oracles that share no code with the project, and the scenes and tools that the tests use.
 
 pub mod accuracy;
 pub mod fixtures;

@@ -5,7 +5,7 @@ use tool_dsl::CheckedTool;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
 
-/// The folder of the library's `.tool` files.
+/// Returns the folder of the library's `.tool` files.
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools")
 }

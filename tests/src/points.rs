@@ -1,18 +1,19 @@
-//! Points that an evaluator of a profile finds hard, and as many ordinary ones.
+//! Test points that are hard for an evaluator of a profile, and as many ordinary ones.
 
-use crate::oracle::draw::Draw;
+use crate::oracle::draw::Rng;
 use crate::oracle::{Nearest, Oracle};
 
-/// Points beside each place of a border that is looked for.
+/// Number of points beside each border point that is found.
 const BESIDE: usize = 16;
 
-/// Points that a search by climbing found to have the largest errors: a tool's name and the coordinates.
+/// The points with the largest errors that a climbing search found: a tool's name and the coordinates, per line.
 const HARD: &str = include_str!("hard_points.tsv");
 
-/// Returns `count` points, half of them anywhere in a box a tenth larger than the tool, half within 1e-6 of the surface or of a splitting
-/// curve; and every vertex, every centre, the axis, and the points with the largest errors that are known.
+/// Returns `count` points: half of them anywhere in a box a tenth larger than the tool, half within 1e-6 of the
+/// surface or of a splitting curve. Adds every vertex, every centre, points on the axis, and the points with the
+/// largest errors that are known.
 pub fn points(oracle: &Nearest, count: usize, seed: u64) -> Vec<[f64; 3]> {
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     let mut points = Vec::new();
     anywhere(oracle, count / 2, &mut draw, &mut points);
     beside_borders(oracle, count.div_ceil(2 * BESIDE), &mut draw, &mut points);
@@ -40,13 +41,13 @@ fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
     [d * cos, d * sin, z]
 }
 
-fn any_azimuth(draw: &mut Draw) -> [f64; 2] {
+fn any_azimuth(draw: &mut Rng) -> [f64; 2] {
     let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
     [cos, sin]
 }
 
-/// Exactly along x and y, and anywhere.
-fn azimuth(draw: &mut Draw) -> [f64; 2] {
+/// Returns a unit vector across the axis: exactly along x or y, or in a random direction.
+fn azimuth(draw: &mut Rng) -> [f64; 2] {
     match draw.bits() % 6 {
         0 => [1.0, 0.0],
         1 => [0.0, 1.0],
@@ -56,7 +57,7 @@ fn azimuth(draw: &mut Draw) -> [f64; 2] {
     }
 }
 
-fn anywhere(oracle: &Nearest, count: usize, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+fn anywhere(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let [radius, height] = oracle.extent();
     for _ in 0..count {
         let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
@@ -64,8 +65,8 @@ fn anywhere(oracle: &Nearest, count: usize, draw: &mut Draw, points: &mut Vec<[f
     }
 }
 
-/// Where borders run is found by halving a stretch on whose ends the oracle disagrees.
-fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+/// Finds border points by bisection of a line segment on whose ends the oracle disagrees.
+fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let curves = oracle.curves();
     let owner = |[d, z]: [f64; 2]| oracle.sense([d, 0.0, z]).map(|sense| sense.owner);
     let mut found = 0;
@@ -97,8 +98,8 @@ fn beside_borders(oracle: &Nearest, count: usize, draw: &mut Draw, points: &mut 
     }
 }
 
-/// Vertices, centres and ends of known curves, and one ulp to either side in `d` and in `z`.
-fn at_corners(oracle: &Nearest, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+/// Adds vertices, centres and ends of known curves, and points one ulp to either side in `d` and in `z`.
+fn at_corners(oracle: &Nearest, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let around = |v: f64| [v, v.next_up(), v.next_down()];
     for [d, z] in oracle.corners() {
         for d in around(d) {
@@ -110,7 +111,7 @@ fn at_corners(oracle: &Nearest, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
     }
 }
 
-/// On the axis and as close to it as numbers go, at every height that a corner has and at others.
+/// Adds points on the axis and as close to it as numbers go, at every height that a corner has and at others.
 fn on_the_axis(oracle: &Nearest, points: &mut Vec<[f64; 3]>) {
     let height = oracle.extent()[1];
     let corners = oracle.corners().into_iter().flat_map(|[_, z]| [z, z.next_up(), z.next_down()]);

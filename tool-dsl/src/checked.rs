@@ -1,36 +1,37 @@
-//! The last pass: a planned tool is looked over, bounded and proved as far as a build proves it.
+//! The last pass: a planned tool is linted, bounded, and proved to the extent that a build requires.
 
-use crate::bound::{self, Slab};
+use crate::bound::{self, EnvelopeSlab};
 use crate::diagnostic::{CheckKind, Diagnostic, Reported, without_error};
 use crate::expr;
-use crate::look;
+use crate::lint;
 use crate::model::Model;
 use crate::plan::{self, PlannedTool};
 use crate::prove::Bounds;
 use std::ops::Deref;
 
-/// A tool in which no error was found, with everything that is emitted about it. Only [`compile`](crate::compile()) makes one.
+/// A tool in which no error was found, with everything that is emitted about it. Only
+/// [`compile`](crate::compile()) constructs one.
 ///
-/// It dereferences to the [`PlannedTool`] that was checked, of which it gives no mutable access.
+/// It dereferences to the [`PlannedTool`] that was checked, without mutable access.
 #[derive(Clone, Debug)]
 pub struct CheckedTool {
     planned: PlannedTool,
-    envelope: Vec<Slab>,
+    envelope: Vec<EnvelopeSlab>,
     bounds: Bounds,
 }
 
 impl CheckedTool {
-    /// The tool's largest radius along the axis, in slabs.
-    pub fn envelope(&self) -> &[Slab] {
+    /// Returns the tool's largest radius along the axis, in slabs.
+    pub fn envelope(&self) -> &[EnvelopeSlab] {
         &self.envelope
     }
 
-    /// Bounds of its depth, as far as a build proves them.
+    /// Returns the bounds of its depth, as far as a build proves them.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Gives the tool another name, that of the Rust type.
+    /// Renames the tool, and with it the Rust type.
     pub(crate) fn rename(&mut self, name: &str) {
         name.clone_into(&mut self.planned.model.name);
     }
@@ -47,7 +48,7 @@ impl Deref for CheckedTool {
 /// Checks a model, plans its splits and bounds its depth.
 ///
 /// # Errors
-/// With an error among the diagnostics.
+/// If the diagnostics contain an error.
 pub(crate) fn check(
     model: Model,
     diagnostics: &mut Vec<Diagnostic>,
@@ -55,15 +56,15 @@ pub(crate) fn check(
     finite(&model).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let extent = match bound::extent(&model) {
         Ok(extent) => extent,
-        // A curve that has no value somewhere has no bound either: say so.
+        // An undefined curve prevents bounding; report the undefined value instead of the missing bound.
         Err(diagnostic) => {
-            diagnostics.extend(look::undefined(&model));
+            diagnostics.extend(lint::undefined(&model));
             let undefined = Reported::among(diagnostics);
             return Err(undefined.unwrap_or_else(|| Reported::push(diagnostics, diagnostic)));
         }
     };
-    diagnostics.extend(look::look(&model, &extent));
-    // The plan would only repeat what is wrong.
+    diagnostics.extend(lint::lint(&model, &extent));
+    // The plan would only repeat these errors.
     without_error(diagnostics)?;
     let envelope = bound::envelope(&model, &extent);
     let planned =
@@ -74,7 +75,10 @@ pub(crate) fn check(
     Ok(CheckedTool { planned, envelope, bounds })
 }
 
-/// Every constant that code needs is a double.
+/// Checks that every constant that code needs is a finite double.
+///
+/// # Errors
+/// [`CheckKind::ConstantOutgrows`] if one overflows.
 fn finite(model: &Model) -> Result<(), Diagnostic> {
     let outputs = model.regions.iter().flat_map(|region| region.outputs.roots());
     let curves = model.curves.iter().map(|curve| curve.value);

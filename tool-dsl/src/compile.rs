@@ -1,4 +1,4 @@
-//! From a text to a checked tool, and what is reported on the way.
+//! Compilation of a text to a checked tool, with its diagnostics.
 
 use crate::checked::{self, CheckedTool};
 use crate::diagnostic::{
@@ -10,28 +10,28 @@ use crate::source::{Source, Sources, Span};
 use crate::syntax;
 use std::collections::BTreeSet;
 
-/// The result of compiling a text: a tool, or the errors for which there is none.
+/// The result of compiling a text: a tool, or the errors that prevent it.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// The tool and its warnings, or why it is refused.
+    /// The tool and its warnings, or the errors that refuse it.
     pub outcome: Result<Accepted, Refusal>,
-    /// The tool's name, if the text got so far.
+    /// The tool's name, if the text could be parsed that far.
     pub name: Option<String>,
-    /// The texts that the diagnostics speak of.
+    /// The texts that the diagnostics refer to.
     pub sources: Sources,
 }
 
-/// A tool without an error.
+/// A tool without errors.
 #[derive(Clone, Debug)]
 pub struct Accepted {
     /// The tool.
     pub tool: Box<CheckedTool>,
-    /// Warnings about it, in the order of the text.
+    /// The warnings about it, in the order of the text.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl Compiled {
-    /// The same tool as another Rust type.
+    /// Renames the tool, and with it the Rust type.
     #[must_use]
     pub fn named(mut self, name: &str) -> Compiled {
         if let Ok(accepted) = &mut self.outcome {
@@ -41,17 +41,17 @@ impl Compiled {
         self
     }
 
-    /// The tool, if it is not refused.
+    /// Returns the tool, unless it was refused.
     pub fn tool(&self) -> Option<&CheckedTool> {
         self.outcome.as_ref().ok().map(|accepted| &*accepted.tool)
     }
 
-    /// The tool itself, if it is not refused.
+    /// Returns the tool by value, unless it was refused.
     pub fn into_tool(self) -> Option<Box<CheckedTool>> {
         self.outcome.ok().map(|accepted| accepted.tool)
     }
 
-    /// Errors and warnings, in the order of the text.
+    /// Returns errors and warnings, in the order of the text.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match &self.outcome {
             Ok(accepted) => &accepted.warnings,
@@ -60,15 +60,14 @@ impl Compiled {
     }
 }
 
-/// Compiles a tool's text as far as a checked tool. The files that it mounts are read beside the
-/// file that holds it.
+/// Compiles a tool's text to a checked tool. Mounted files are read relative to the file that contains the
+/// text.
 pub fn compile(source: &Source) -> Compiled {
     compile_with(source, &[])
 }
 
-/// Compiles a tool of which some params are given: `D = 0.25inch, flute = 18`, with constant
-/// expressions of the language. What is given replaces the default; a bare number is in the tool's
-/// unit.
+/// Compiles a tool with arguments for its params: `D = 0.25inch, flute = 18`, where the values are constant
+/// expressions of the language. An argument replaces the default; a bare number is in the tool's unit.
 pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     let mut sources = Sources::new(source.clone(), given.iter().cloned());
     let mut diagnostics = Vec::new();
@@ -84,7 +83,8 @@ pub fn compile_with(source: &Source, given: &[Source]) -> Compiled {
     Compiled { outcome, name, sources }
 }
 
-/// Names what the params are given beside each error of the tool's own text: a value may have broken it.
+/// Adds the params' arguments to each error in the tool's own text, since one of their values may be the
+/// cause.
 fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     let given = &sources.all()[1..=count];
     if given.is_empty() {
@@ -102,8 +102,10 @@ fn name_given(sources: &Sources, count: usize, diagnostics: &mut [Diagnostic]) {
     }
 }
 
-/// Compiles the first of the sources with what the others give its params. Fails only with an error
-/// among the diagnostics, and never succeeds with one.
+/// Compiles the first of the sources with the others as arguments of its params.
+///
+/// # Errors
+/// If and only if the diagnostics contain an error.
 fn compiled(
     sources: &mut Sources,
     name: &mut Option<String>,
@@ -112,7 +114,7 @@ fn compiled(
     let tree = syntax::parse(sources.own(), diagnostics);
     let mut settings = Vec::new();
     for source in &sources.all()[1..] {
-        settings.extend(syntax::given(source, diagnostics));
+        settings.extend(syntax::parse_argument(source, diagnostics));
     }
     let tree = tree?;
     *name = Some(tree.name.word.clone()).filter(|name| syntax::is_type_name(name));
@@ -127,7 +129,7 @@ fn compiled(
     checked::check(model, diagnostics)
 }
 
-/// Returns whether a diagnostic only says that what a broken item would have said is missing.
+/// Returns whether a diagnostic only reports the absence of what a broken item would have defined.
 fn follows(diagnostic: &Diagnostic, broken: &BTreeSet<&str>) -> bool {
     let has = |word: &str| broken.contains(word);
     match &diagnostic.kind {
@@ -155,7 +157,7 @@ mod tests {
     use super::*;
     use crate::diagnostic::{NameRemedy, SurfaceRemedy};
 
-    /// What follows from a broken item is decided by the kind and its names, not by a message.
+    /// The consequences of a broken item are recognised by kind and names, not by a message's text.
     #[test]
     fn words_decide_nothing() {
         let at = Span { start: 0, end: 0 };
@@ -173,7 +175,7 @@ mod tests {
         assert!(follows(surface("flute")) && !follows(surface("shank")));
         assert!(follows(ValueKind::NoUnit.into()));
         assert!(follows(ValueKind::UnusedName { word: "shank".to_owned() }.into()));
-        // A name of a broken item in another kind is no reason to be silent.
+        // The same name in another kind of diagnostic is no reason to suppress it.
         assert!(!follows(ValueKind::DefinedTwice { word: "flute".to_owned() }.into()));
     }
 }

@@ -1,4 +1,4 @@
-//! A tool's meaning as one number, by which its versions are told apart.
+//! A digest of a tool's meaning, which distinguishes its versions.
 
 use crate::checked::CheckedTool;
 use crate::expr::{Id, Node};
@@ -7,19 +7,19 @@ use siphasher::sip::SipHasher24;
 use std::collections::HashMap;
 use std::fmt::{Debug, Write};
 
-/// A number that changes whenever anything that the tool answers may: where it is, what is felt there, how far
-/// it reaches, its surfaces and regions by name, and what is proved of it. How the file is laid out, its
-/// comments, the tool's name and its title do not matter; nor does it matter whether a number is written, given
-/// to a param or mounted. It is the same on every machine, and of the same compiler: one that computes otherwise
-/// gives another.
+/// Computes a number that changes whenever anything that the tool answers may change: its solid, its
+/// evaluations, its extent, its surfaces and regions by name, and the bounds proved for it. Layout, comments,
+/// the tool's name and its title do not matter. Nor does it matter whether a number is written, given as an
+/// argument or mounted. The result is the same on every machine for one version of the compiler; a compiler
+/// that computes differently gives another.
 ///
 /// It is SipHash-2-4, without a key, of the tool as text.
 pub fn digest(tool: &CheckedTool) -> u64 {
     SipHasher24::new().hash(meaning(tool).as_bytes())
 }
 
-/// All that code is made of. Expressions are told by their places among those that are needed, so that it
-/// does not matter what else the file defines.
+/// Writes everything that code is generated from. Expressions are identified by their index among those that
+/// are needed, so that other definitions in the file do not matter.
 fn meaning(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut needed: Vec<Id> = model.curves.iter().map(|curve| curve.value).collect();
@@ -48,7 +48,7 @@ fn meaning(tool: &CheckedTool) -> String {
     line(&tool.plan.outside.map(&|id: &Id| Some(place(*id))));
     for id in &needed {
         match model.graph.node(*id) {
-            // As code has it.
+            // The rounded value, as in the generated code.
             Node::Const(value) => line(&value.to_f64()),
             Node::Coord(coord) => line(coord),
             node => {

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-/// What an expression measures.
+/// The dimension of an expression.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dimension {
     /// A number without a unit; it fits any power of length.
     Bare,
-    /// A power of length; exponents are sums of halves, exact in a double.
+    /// A power of length. Exponents are sums of halves and exact in a double.
     Length(f64),
     /// An angle.
     Angle,
@@ -19,7 +19,8 @@ use Dimension::{Angle, Bare, Length};
 pub(crate) const LENGTH: Dimension = Length(1.0);
 
 impl Dimension {
-    /// Of a sum, a difference, a minimum, two sides of a comparison.
+    /// Returns the dimension of a sum, a difference, a minimum, or the two sides of a comparison; `None` if
+    /// they do not match.
     pub(crate) fn alike(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (Bare, Length(_)) => Some(other),
@@ -28,7 +29,7 @@ impl Dimension {
         }
     }
 
-    /// Of a product.
+    /// Returns the dimension of a product, if it has one.
     pub(crate) fn times(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (Bare, any) | (any, Bare) => Some(any),
@@ -37,7 +38,7 @@ impl Dimension {
         }
     }
 
-    /// Of a quotient.
+    /// Returns the dimension of a quotient, if it has one.
     pub(crate) fn over(self, other: Dimension) -> Option<Dimension> {
         match (self, other) {
             (any, Bare) => Some(any),
@@ -48,7 +49,7 @@ impl Dimension {
         }
     }
 
-    /// Of a power with an exponent given in halves.
+    /// Returns the dimension of a power with an exponent given in halves; `None` for an angle.
     pub(crate) fn power(self, halves: i32) -> Option<Dimension> {
         match self {
             Bare => Some(Bare),
@@ -57,7 +58,7 @@ impl Dimension {
         }
     }
 
-    /// Whether it will do where a length is wanted.
+    /// Returns whether it is accepted where a length is expected.
     pub(crate) fn is_length(self) -> bool {
         self == Bare || self == LENGTH
     }

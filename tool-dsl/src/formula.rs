@@ -1,42 +1,42 @@
-//! Which points a region has: "and" and "or" over the sides of splitting curves.
+//! Formulas for the points of a region: "and" and "or" over the sides of splitting curves.
 
 use crate::expr::Id;
 use crate::expr::interval::Interval;
 
-/// The place of a curve in a list of them.
+/// The index of a curve in a list of curves.
 pub type CurveIndex = usize;
 
-/// A splitting curve, the zeros of an expression.
+/// A splitting curve: the zero set of an expression.
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// The file's name for it, if it has one.
     pub name: Option<String>,
-    /// Zero on the curve.
+    /// The expression that is zero on the curve.
     pub value: Id,
 }
 
-/// A condition on the signs of curves. Both sides of an atom are closed: `below` is `c ≤ 0`, its
-/// opposite `c ≥ 0`, but for strict atoms.
+/// A condition on the signs of curves. Except for strict atoms, both sides of a curve are closed: `below`
+/// means `c ≤ 0`, its opposite `c ≥ 0`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
-    /// Always or never.
+    /// True everywhere or nowhere.
     Const(bool),
     /// One side of a curve.
     Atom {
-        /// Which curve.
+        /// The index of the curve.
         curve: CurveIndex,
         /// `c ≤ 0` rather than `c ≥ 0`.
         below: bool,
-        /// Without the curve itself, as exceptions of derived regions are.
+        /// Excludes the curve itself, as the exceptions of derived regions do.
         strict: bool,
     },
-    /// All hold.
+    /// A conjunction.
     All(Vec<Formula>),
-    /// One holds.
+    /// A disjunction.
     Any(Vec<Formula>),
 }
 
-/// What is known of a curve's sign: a set of `NEGATIVE`, `ZERO` and `POSITIVE`.
+/// The possible signs of a curve: a set of `NEGATIVE`, `ZERO` and `POSITIVE`.
 pub type Signs = u8;
 /// `c < 0`
 pub const NEGATIVE: Signs = 1;
@@ -44,10 +44,10 @@ pub const NEGATIVE: Signs = 1;
 pub const ZERO: Signs = 2;
 /// `c > 0`
 pub const POSITIVE: Signs = 4;
-/// Nothing is known.
+/// All signs are possible.
 pub const ANY: Signs = 7;
 
-/// Returns the only side of a curve that signs leave: true for below, and where only 0 is left.
+/// Returns the only side of a curve that the signs leave: true for below, also if only 0 is left.
 pub(crate) fn one_side(signs: Signs) -> Option<bool> {
     match (signs & NEGATIVE == 0, signs & POSITIVE == 0) {
         (_, true) => Some(true),
@@ -57,7 +57,7 @@ pub(crate) fn one_side(signs: Signs) -> Option<bool> {
 }
 
 impl Formula {
-    /// Whether it holds where the curves have these values. A NaN is on no side.
+    /// Returns whether the formula holds where the curves have these values. A NaN is on no side.
     pub fn holds(&self, value: &impl Fn(CurveIndex) -> f64) -> bool {
         match self {
             Formula::Const(constant) => *constant,
@@ -70,12 +70,12 @@ impl Formula {
         }
     }
 
-    /// Whether it holds, as far as the known signs decide.
+    /// Returns whether the formula holds; `None` if the known signs do not decide it.
     pub fn decided(&self, signs: &[Signs]) -> Option<bool> {
         self.decided_by(&mut |curve| signs[curve])
     }
 
-    /// The same where what is known of a curve is found out when it is asked for.
+    /// The same, where a curve's sign is determined only when it is needed.
     pub fn decided_by(&self, sign: &mut impl FnMut(CurveIndex) -> Signs) -> Option<bool> {
         let mut known = Some(true);
         let (parts, any) = match self {
@@ -101,8 +101,8 @@ impl Formula {
         known.map(|_| !any)
     }
 
-    /// Narrows the signs to those that every point has for which this holds, as far as single
-    /// atoms say so.
+    /// Narrows the signs to those of points that satisfy the formula. Only conjunctions of single atoms are
+    /// used.
     pub fn demand(&self, signs: &mut [Signs]) {
         match self {
             Formula::Atom { curve, below, strict } => {
@@ -114,7 +114,7 @@ impl Formula {
         }
     }
 
-    /// The choices of which every point for which this holds has one, for each of several.
+    /// Returns the disjunctions that every point of the formula satisfies, each as a list of alternatives.
     pub fn choices(&self) -> Vec<&[Formula]> {
         match self {
             Formula::All(parts) => parts.iter().flat_map(Formula::choices).collect(),
@@ -123,7 +123,7 @@ impl Formula {
         }
     }
 
-    /// The curve of the first atom that is not yet decided: the first that [`Formula::open`] lists.
+    /// Returns the curve of the first undecided atom: the first that [`Formula::open`] lists.
     pub fn first_open(&self, signs: &[Signs]) -> Option<CurveIndex> {
         match self {
             Formula::Const(_) => None,
@@ -135,7 +135,7 @@ impl Formula {
         }
     }
 
-    /// The atoms whose curve is not yet decided, in order.
+    /// Lists the atoms whose curve is undecided, in order.
     pub fn open(&self, signs: &[Signs], atoms: &mut Vec<(CurveIndex, bool)>) {
         match self {
             Formula::Atom { curve, below, .. } if self.decided(signs).is_none() => {
@@ -151,7 +151,7 @@ impl Formula {
     }
 }
 
-/// The signs of the numbers in an interval.
+/// Returns the signs of the numbers in an interval.
 pub(crate) fn possible(value: Interval) -> Signs {
     let mut signs = 0;
     if value.low < 0.0 {
@@ -166,7 +166,7 @@ pub(crate) fn possible(value: Interval) -> Signs {
     signs
 }
 
-/// The signs that an atom allows.
+/// Returns the signs that an atom allows.
 fn side(below: bool, strict: bool) -> Signs {
     let open = if below { NEGATIVE } else { POSITIVE };
     if strict { open } else { open | ZERO }

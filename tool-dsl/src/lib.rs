@@ -1,13 +1,12 @@
 //! The compiler of `.tool` files, an ordinary library.
 //!
 //! ```text
-//! text ──syntax──▶ tree ──resolve──▶ model ──bound, look──▶ checked tool ──plan──▶ splits
+//! text ──syntax──▶ tree ──resolve──▶ model ──bound, lint──▶ checked tool ──plan──▶ splits
 //!                                                                 │
 //!                             Rust tokens, SVG ◀──emit, draw──────┼──────interpret──▶ values
 //! ```
 //!
-//! A [`CheckedTool`] has no error left in it: [`emit::emit`] and [`interpret::Interpreter`]
-//! cannot fail.
+//! A [`CheckedTool`] contains no errors: [`emit::emit`] and [`interpret::Interpreter`] cannot fail.
 
 pub mod bound;
 mod checked;
@@ -24,7 +23,7 @@ pub mod format;
 pub mod formula;
 mod geometry;
 pub mod interpret;
-mod look;
+mod lint;
 pub mod model;
 pub mod number;
 pub mod plan;

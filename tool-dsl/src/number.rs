@@ -1,5 +1,5 @@
-//! Constants, folded with 256 bits and rounded to `f64` once, so that a file gives the same code
-//! on every machine.
+//! Constants, folded with 256 bits and rounded to `f64` once, so that a file gives the same code on every
+//! machine.
 
 use dashu_float::round::mode::HalfEven;
 use dashu_float::{DBig, FBig};
@@ -9,17 +9,17 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::str::FromStr;
 use std::sync::OnceLock;
 
-/// Bits carried by every constant.
+/// The precision of every constant, in bits.
 const PRECISION: usize = 256;
 
-/// The part of its terms' sizes that a sum of [`Number`]s may keep when it cancels.
+/// The largest residue of a cancelling sum of [`Number`]s, relative to the absolute values of its terms.
 pub(crate) const ROUNDING: f64 = 1.0 / ((1u128 << 95) as f64 * (1u128 << 95) as f64);
 
-/// A real constant to 256 bits.
+/// A real constant with 256 bits.
 #[derive(Clone)]
 pub struct Number {
     exact: FBig<HalfEven, 2>,
-    /// The nearest double, once somebody asked.
+    /// The nearest double, computed on first use.
     near: OnceLock<f64>,
 }
 
@@ -28,7 +28,7 @@ impl Number {
         Number { exact, near: OnceLock::new() }
     }
 
-    /// Rounded to the precision; zero has no sign, so equal numbers are equal in every way.
+    /// Rounds to the precision. Zero has no sign, so that equal numbers have equal representations.
     fn rounded(value: FBig<HalfEven, 2>) -> Number {
         if value.repr().significand().is_zero() {
             return Number::new(FBig::ZERO.with_precision(PRECISION).value());
@@ -36,7 +36,7 @@ impl Number {
         Number::new(value.with_precision(PRECISION).value())
     }
 
-    /// A number from a decimal literal such as `0.25` or `1e-3`.
+    /// Parses a decimal literal such as `0.25` or `1e-3`.
     pub fn decimal(text: &str) -> Option<Number> {
         let value = DBig::from_str(text).ok()?;
         Some(Number::rounded(
@@ -44,51 +44,52 @@ impl Number {
         ))
     }
 
-    /// A number from a double, exactly; `None` for NaN and infinities.
+    /// Converts a double, exactly; `None` for NaN and infinities.
     pub fn from_f64(value: f64) -> Option<Number> {
         FBig::<HalfEven, 2>::try_from(value).ok().map(Number::rounded)
     }
 
-    /// A whole number.
+    /// Converts an integer.
     pub fn int(value: i64) -> Number {
         Number::rounded(FBig::from(value))
     }
 
-    /// The ratio of the circle.
+    /// Returns π.
     pub fn pi() -> Number {
         Number::new(FBig::<HalfEven, 2>::pi(PRECISION))
     }
 
-    /// The nearest double; an infinity beyond the range.
+    /// Returns the nearest double; an infinity if the number is out of range.
     pub fn to_f64(&self) -> f64 {
         *self.near.get_or_init(|| self.exact.to_f64().value())
     }
 
-    /// Whether this is a number that a file may write: sums of its powers outgrow no double.
+    /// Returns whether a file may contain this number: zero, or a magnitude from 1e-90 to 1e90, so that sums
+    /// of its powers do not overflow a double.
     pub(crate) fn is_in_range(&self) -> bool {
         self.is_zero() || (1e-90..=1e90).contains(&self.to_f64().abs())
     }
 
-    /// Whether this is exactly zero.
+    /// Returns whether this is exactly zero.
     pub fn is_zero(&self) -> bool {
         self.exact.repr().significand().is_zero()
     }
 
-    /// Whether this is below zero.
+    /// Returns whether this is below zero.
     pub fn is_negative(&self) -> bool {
         match self.to_f64() {
-            // Below the smallest double
+            // The number may be below the smallest double.
             0.0 => *self < Number::int(0),
             near => near < 0.0,
         }
     }
 
-    /// The absolute value.
+    /// Returns the absolute value.
     pub fn abs(&self) -> Number {
         if self.is_negative() { -self } else { self.clone() }
     }
 
-    /// The square root; `None` below zero.
+    /// Returns the square root; `None` below zero.
     pub fn sqrt(&self) -> Option<Number> {
         if self.is_negative() {
             None
@@ -99,28 +100,28 @@ impl Number {
         }
     }
 
-    /// Returns the sum of some terms, and the sum of their sizes.
+    /// Returns the sum of some terms, and the sum of their absolute values.
     pub(crate) fn sum(terms: &[Number]) -> (Number, f64) {
         let size = terms.iter().map(|term| term.to_f64().abs()).sum();
         (terms.iter().fold(Number::int(0), |sum, term| &sum + term), size)
     }
 
-    /// The quotient; `None` for division by zero.
+    /// Returns the quotient; `None` for division by zero.
     pub fn over(&self, divisor: &Number) -> Option<Number> {
         (!divisor.is_zero()).then(|| self / divisor)
     }
 
-    /// The sine of an angle in radians.
+    /// Returns the sine of an angle in radians.
     pub fn sin(&self) -> Number {
         Number::rounded(self.exact.sin())
     }
 
-    /// The cosine of an angle in radians.
+    /// Returns the cosine of an angle in radians.
     pub fn cos(&self) -> Number {
         Number::rounded(self.exact.cos())
     }
 
-    /// The exponent as a whole number of halves, if it is one between -32 and 32.
+    /// Returns twice this exponent, if that is an integer between -32 and 32.
     pub fn halves(&self) -> Option<i32> {
         let twice = self.to_f64() * 2.0;
         let whole = twice.round();
@@ -128,11 +129,11 @@ impl Number {
         (exact && whole.abs() <= 32.0).then_some(whole as i32)
     }
 
-    /// Whether two constants agree but for the last few of their 256 bits.
+    /// Returns whether two constants agree except for the last few of their 256 bits.
     pub fn agrees(&self, other: &Number) -> bool {
         let (a, b) = (self.to_f64(), other.to_f64());
         let scale = a.abs().max(b.abs());
-        // Most differ in the first digits.
+        // A comparison of doubles rejects most pairs cheaply.
         (a - b).abs() <= 1e-9 * scale && (self - other).to_f64().abs() <= scale * 2f64.powi(-200)
     }
 }
@@ -184,7 +185,7 @@ arithmetic!(Add add, Sub sub, Mul mul);
 
 impl Div<&Number> for &Number {
     type Output = Number;
-    /// Division by a constant that is known not to be zero.
+    /// Divides by a constant that is known to be nonzero.
     fn div(self, other: &Number) -> Number {
         Number::rounded(&self.exact / &other.exact)
     }

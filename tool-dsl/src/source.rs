@@ -1,4 +1,4 @@
-//! The text that a tool is written in, and places in it.
+//! The source text of a tool, and locations in it.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -6,14 +6,17 @@ use std::path::{Component, Path, PathBuf};
 
 use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
-/// The longest text that is read, in bytes.
+/// The length of the longest text that is read, in bytes.
 pub const LONGEST: usize = 1 << 20;
 
-/// The text of a file, or why it cannot be one of a tool.
+/// Reads the text of a file.
+///
+/// # Errors
+/// If the path is not a regular file, the text is longer than [`LONGEST`] or not UTF-8, or reading fails.
 fn text(path: &Path) -> io::Result<String> {
     let wrong = |why: String| io::Error::new(io::ErrorKind::InvalidData, why);
     let kind = std::fs::metadata(path)?;
-    // Asked before it is opened: to open a pipe waits for who writes it.
+    // Checked before opening: opening a pipe blocks until there is a writer.
     if !kind.is_file() && !kind.is_dir() {
         return Err(wrong("it is no regular file: save the text as a file first".to_owned()));
     }
@@ -32,53 +35,53 @@ fn text(path: &Path) -> io::Result<String> {
     })
 }
 
-/// The folder of a file.
+/// Returns the folder of a file.
 fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// A stretch of text, in bytes: of a source's, or of all [`Sources`] one behind the other.
+/// A byte range of text: in one source, or in all [`Sources`] concatenated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Span {
-    /// Offset of the first byte.
+    /// The offset of the first byte.
     pub start: usize,
-    /// Offset behind the last byte.
+    /// The offset after the last byte.
     pub end: usize,
 }
 
 impl Span {
-    /// The stretch from the start of `self` to the end of `other`.
+    /// Returns the range from the start of `self` to the end of `other`.
     pub fn to(self, other: Span) -> Span {
         Span { start: self.start, end: other.end }
     }
 
-    /// The same stretch in a text that begins at `base`.
+    /// Returns the same range in a text that begins at `base`.
     pub fn behind(self, base: usize) -> Span {
         Span { start: self.start + base, end: self.end + base }
     }
 }
 
-/// A tool's text with the name it is known by.
+/// The text of a tool, with the name shown for it.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// A path, or a word for text that is not from a file.
+    /// A path, or a keyword for text that does not come from a file.
     pub name: String,
     /// The text itself.
     pub text: String,
-    /// Where it begins among all sources of a tool.
+    /// The offset at which it begins among all sources of a tool.
     pub(crate) base: usize,
-    /// The file that holds it.
+    /// The file that contains the text.
     path: Option<PathBuf>,
-    /// The folder below which files may be mounted, if not that of the file.
+    /// The folder that contains all files that may be mounted, if it is not the text's own folder.
     root: Option<PathBuf>,
-    /// Where each token came from, if it was not a file.
+    /// The range and origin of each token, for a text made from Rust tokens.
     tokens: Option<Vec<(Span, proc_macro2::Span)>>,
-    /// The `mount` that asked for it.
+    /// The location of the `mount` that requested the text.
     by: Option<Span>,
 }
 
 impl Source {
-    /// A source from the text of a file.
+    /// Returns a source with the given name and text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Source {
         Source {
             name: name.into(),
@@ -91,37 +94,44 @@ impl Source {
         }
     }
 
-    /// A source from a file, known by its path.
+    /// Reads a source from a file; the path is its name.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is longer than [`LONGEST`] or is not UTF-8.
     pub fn read(path: impl AsRef<Path>) -> io::Result<Source> {
         Source::read_as(path.as_ref().display().to_string(), path.as_ref())
     }
 
-    /// A source from a file, known by a name.
+    /// Reads a source from a file under another name.
+    ///
+    /// # Errors
+    /// As for [`Source::read`].
     pub fn read_as(name: impl Into<String>, path: &Path) -> io::Result<Source> {
-        Ok(Source::new(name, text(path)?).held_by(path))
+        Ok(Source::new(name, text(path)?).with_path(path))
     }
 
-    /// With the file that holds the text: what it mounts is looked for beside that.
+    /// Sets the file that contains the text. Paths of mounted files are relative to its folder.
     #[must_use]
-    pub fn held_by(mut self, path: impl Into<PathBuf>) -> Source {
+    pub fn with_path(mut self, path: impl Into<PathBuf>) -> Source {
         self.path = Some(path.into());
         self
     }
 
-    /// With the folder below which files may be mounted: [that of the file](Source::held_by), if nothing is said.
+    /// Sets the folder that must contain all mounted files. The default is
+    /// [that of the file](Source::with_path).
     #[must_use]
-    pub fn within(mut self, root: impl Into<PathBuf>) -> Source {
+    pub fn with_root(mut self, root: impl Into<PathBuf>) -> Source {
         self.root = Some(root.into());
         self
     }
 
-    /// The folder below which files may be mounted.
+    /// Returns the folder that must contain all mounted files.
     fn root(&self) -> Option<&Path> {
         self.root.as_deref().or_else(|| self.path.as_deref().map(folder))
     }
 
-    /// A source from the tokens inside `tool! { … }`: written out one space after each unless
-    /// punctuation is joined, each token remembering where it came from.
+    /// Makes a source from the tokens inside `tool! { … }`. A space follows each token, except between joined
+    /// punctuation. Each token keeps its origin.
     pub fn from_tokens(tokens: TokenStream) -> Source {
         let mut source = Source::new("tool!", "");
         source.tokens = Some(Vec::new());
@@ -166,7 +176,7 @@ impl Source {
                     self.push(close, group.span_close(), true);
                 }
                 TokenTree::Punct(punct) => {
-                    // `. 5` would not be seen to be `.5`.
+                    // A space in `. 5` would hide that the text was `.5`.
                     let apart = punct.spacing() == Spacing::Alone && punct.as_char() != '.';
                     self.push(&punct.as_char().to_string(), punct.span(), apart);
                 }
@@ -185,7 +195,7 @@ impl Source {
         }
     }
 
-    /// The first and the last Rust token of a place, for a source made of tokens.
+    /// Returns the first and the last Rust token of a location, for a source made of tokens.
     pub fn tokens_at(&self, span: Span) -> Option<[proc_macro2::Span; 2]> {
         let tokens = self.tokens.as_ref()?;
         let end = tokens.len().checked_sub(1)?;
@@ -194,12 +204,12 @@ impl Source {
         Some([first, behind.saturating_sub(1).max(first)].map(|at| tokens[at].1))
     }
 
-    /// The file that holds the text, if any does.
+    /// Returns the file that contains the text, if there is one.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// A path that this text mentions: for people, and where it leads.
+    /// Resolves a path that this text mentions: the path to show, and the path to open.
     fn beside(&self, file: &str) -> Option<(String, PathBuf)> {
         let near = |path: &Path| folder(path).join(file);
         let shown = match self.tokens {
@@ -210,13 +220,13 @@ impl Source {
     }
 }
 
-/// All texts that a tool is made of: its own first, then what it is given from outside, then the
-/// files that it mounts. A [`Span`] means a stretch of all of them, one behind the other.
+/// All texts that a tool consists of: its own, then the arguments given from outside, then the mounted files.
+/// A [`Span`] is a range in their concatenation.
 #[derive(Clone, Debug)]
 pub struct Sources(Vec<Source>);
 
 impl Sources {
-    /// A tool's own text, and what it is given.
+    /// Makes the list from a tool's own text and its arguments.
     pub fn new(own: Source, given: impl IntoIterator<Item = Source>) -> Sources {
         let mut sources = Sources(Vec::new());
         for source in std::iter::once(own).chain(given) {
@@ -226,24 +236,24 @@ impl Sources {
     }
 
     fn add(&mut self, mut source: Source) -> &Source {
-        // One more, so that the place behind a text is its own.
+        // The extra byte gives the position after each text's end an offset of its own.
         source.base = self.0.last().map_or(0, |last| last.base + last.text.len() + 1);
         let at = self.0.len();
         self.0.push(source);
         &self.0[at]
     }
 
-    /// The tool's own text.
+    /// Returns the tool's own text.
     pub fn own(&self) -> &Source {
         &self.0[0]
     }
 
-    /// All of them, the own one first.
+    /// Returns all texts, the tool's own first.
     pub fn all(&self) -> &[Source] {
         &self.0
     }
 
-    /// The source of a place, and the place in that source's own text.
+    /// Returns the source that contains a location, and the location in that source's own text.
     pub fn locate(&self, span: Span) -> (&Source, Span) {
         let after = self.0.partition_point(|source| source.base <= span.start).max(1);
         let source = &self.0[after - 1];
@@ -251,14 +261,14 @@ impl Sources {
         (source, Span { start, end: span.end.saturating_sub(source.base).max(start) })
     }
 
-    /// The text of a place.
+    /// Returns the text of a location.
     pub fn text(&self, span: Span) -> &str {
         let (source, span) = self.locate(span);
         source.text.get(span.start..span.end).unwrap_or_default()
     }
 
-    /// The Rust tokens of a place; of a place in a mounted file, those of the mount which asked
-    /// for it. `None` if that stands in a file.
+    /// Returns the first and last Rust tokens of a location. For a location in a mounted file they are those
+    /// of the `mount` that requested it; `None` if that `mount` is itself in a file.
     pub fn tokens_at(&self, mut span: Span) -> Option<[proc_macro2::Span; 2]> {
         loop {
             let (source, inside) = self.locate(span);
@@ -269,25 +279,25 @@ impl Sources {
         }
     }
 
-    /// The `.tool` files that were read.
+    /// Returns the paths of the `.tool` files that were read.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let files = self.0.iter().filter(|source| source.tokens.is_none());
         files.filter_map(|source| source.path.as_deref())
     }
 
-    /// Where a file lies that is mentioned at a place; `None` for one that is mentioned in a text
-    /// from nowhere.
+    /// Resolves a path mentioned at a location: the path to show, and the path to open. Returns `None` if the
+    /// mentioning text has no file.
     pub(crate) fn beside(&self, by: Span, file: &str) -> Option<(String, PathBuf)> {
         self.locate(by).0.beside(file)
     }
 
-    /// The folder below which mounted files have to lie, where it was [given](Source::within).
+    /// Returns the folder that must contain mounted files, if it was [set](Source::with_root).
     pub(crate) fn given_root(&self) -> Option<&Path> {
         self.own().root.as_deref()
     }
 
-    /// Returns whether a file lies below the folder that mounted files have to lie below, links followed. Of a
-    /// file that does not exist its name decides.
+    /// Returns whether a file lies below the folder that must contain mounted files, with links followed. For
+    /// a file that does not exist, its name decides.
     pub(crate) fn may_mount(&self, path: &Path) -> bool {
         let Some(root) = self.own().root() else { return false };
         let root = if root == Path::new("") { Path::new(".") } else { root };
@@ -304,6 +314,9 @@ impl Sources {
     }
 
     /// Reads a file that a `mount` mentions, unless it was read before.
+    ///
+    /// # Errors
+    /// As for [`Source::read`].
     pub(crate) fn read(
         &mut self,
         by: Span,

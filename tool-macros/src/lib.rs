@@ -1,4 +1,4 @@
-//! The macros that compile tools. They hand text to `tool-dsl` and its answer to Rust.
+//! The macros that compile tools. They pass text to `tool-dsl` and return its output to rustc.
 
 mod said;
 
@@ -10,15 +10,15 @@ use syn::{Ident, LitStr, Token};
 use tool_dsl::source::Source;
 use tool_dsl::{Compiled, compile, compile_with, emit, syntax};
 
-/// `include_tool!("tools/ball.tool")`: the type that the file's tool describes. The path is
-/// relative to the package's folder; touching the file, or one that it mounts, rebuilds.
+/// `include_tool!("tools/ball.tool")` expands to the type that the file's tool describes. The path is
+/// relative to the package's folder. A change of the file, or of one that it mounts, triggers a rebuild.
 ///
-/// `include_tool!("tools/ball.tool" as QuarterInchBall, D = 0.25inch, flute = 18)` gives the type
-/// another name, and values to the file's `param`s: constant expressions of the language, in
-/// the file's unit where they say none.
+/// `include_tool!("tools/ball.tool" as QuarterInchBall, D = 0.25inch, flute = 18)` gives the type another
+/// name, and arguments to the file's `param`s. Arguments are constant expressions of the language; values
+/// without a unit are in the file's unit.
 ///
-/// rustc shows a tool's warnings as uses of a deprecated constant: `#![deny(warnings)]` makes them errors, and
-/// `#[allow(deprecated)]` on a module around the macro silences them.
+/// rustc shows a tool's warnings as uses of a deprecated constant: `#![deny(warnings)]` makes them errors,
+/// and `#[allow(deprecated)]` on a module around the macro silences them.
 #[proc_macro]
 pub fn include_tool(input: TokenStream) -> TokenStream {
     let call = syn::parse_macro_input!(input as Call);
@@ -28,7 +28,7 @@ pub fn include_tool(input: TokenStream) -> TokenStream {
     }
 }
 
-/// What `include_tool!` is told.
+/// The arguments of `include_tool!`.
 struct Call {
     path: LitStr,
     name: Option<Ident>,
@@ -69,24 +69,24 @@ impl Call {
     }
 }
 
-/// `tool! { tool Ball { … } }`: a tool written in place. A mistake is shown where it stands. What
-/// it mounts is looked for beside the source file.
+/// `tool! { tool Ball { … } }`: a tool written in the source file. Errors are shown at its tokens. Mounted
+/// files are read relative to the source file's folder.
 #[proc_macro]
 pub fn tool(input: TokenStream) -> TokenStream {
     let mut source = Source::from_tokens(input.into());
     let here = proc_macro::Span::call_site().local_file();
     if let Some(file) = here.and_then(|file| std::path::absolute(file).ok()) {
-        source = source.held_by(file);
+        source = source.with_path(file);
     }
     meaning(&compile(&source), proc_macro2::Span::call_site()).into()
 }
 
-/// `tool_library!("tools")`: the types of all `.tool` files of a folder, in the order of their
-/// names, and `TOOLS`, a list of them all. A file that is added needs a build script that says
-/// `cargo::rerun-if-changed=tools`.
+/// `tool_library!("tools")` expands to the types of all `.tool` files of a folder, in the order of their
+/// names, and `TOOLS`, a list of them all. To pick up added files, the package needs a build script that
+/// prints `cargo::rerun-if-changed=tools`.
 ///
-/// If that script also says `cargo::rustc-env=TOUCHOFF_TOOLS=ball,drill`, only these files are compiled:
-/// so a package's features choose among its tools.
+/// If that script also prints `cargo::rustc-env=TOUCHOFF_TOOLS=ball,drill`, only these files are compiled. A
+/// package's features can thus select among its tools.
 #[proc_macro]
 pub fn tool_library(input: TokenStream) -> TokenStream {
     let folder = syn::parse_macro_input!(input as LitStr);
@@ -136,7 +136,7 @@ fn library(folder: &LitStr) -> syn::Result<proc_macro2::TokenStream> {
     })
 }
 
-/// The files that are wanted, by their names without an ending and separated by commas.
+/// Returns the selected files, given by comma-separated names without the extension.
 fn chosen(wanted: &str, files: &[PathBuf], folder: &LitStr) -> syn::Result<Vec<PathBuf>> {
     let wanted = wanted.split(',').filter(|name| !name.is_empty());
     wanted
@@ -153,7 +153,7 @@ fn chosen(wanted: &str, files: &[PathBuf], folder: &LitStr) -> syn::Result<Vec<P
         .collect()
 }
 
-/// The package whose source the macro stands in.
+/// Returns the folder of the package that contains the macro call.
 fn at_root(path: &LitStr) -> syn::Result<PathBuf> {
     match std::env::var_os("CARGO_MANIFEST_DIR") {
         Some(root) => Ok(PathBuf::from(root)),
@@ -164,18 +164,18 @@ fn at_root(path: &LitStr) -> syn::Result<PathBuf> {
     }
 }
 
-/// The text of a file, by a path that is shown.
+/// Reads the text of a file; `shown` is its name in messages.
 fn read(path: &Path, shown: &str, place: &LitStr) -> syn::Result<Source> {
     Source::read_as(shown, path)
         .map_err(|error| syn::Error::new(place.span(), format!("cannot read `{shown}`: {error}")))
 }
 
-/// Whether the compiler at work is rustdoc, the only one that shows drawings.
+/// Returns whether the running compiler is rustdoc, the only one that shows drawings.
 fn documents() -> bool {
     std::env::current_exe().is_ok_and(|program| program.file_stem().is_some_and(|n| n == "rustdoc"))
 }
 
-/// A tool's code and its warnings, or a stand-in for one that has errors, and these.
+/// Returns a tool's code and its warnings; for a tool with errors, these and a placeholder type.
 fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenStream {
     let mut tokens = match (&compiled.outcome, &compiled.name) {
         (Ok(accepted), _) if documents() => emit::documented(&accepted.tool),
@@ -187,7 +187,7 @@ fn meaning(compiled: &Compiled, place: proc_macro2::Span) -> proc_macro2::TokenS
         Ok(accepted) => said::warnings(&accepted.warnings, &compiled.sources, place),
         Err(refusal) => said::errors(refusal, &compiled.sources, place),
     });
-    // Cargo rebuilds when a file that is included changes.
+    // Cargo rebuilds when an included file changes.
     for file in compiled.sources.files() {
         let file = file.display().to_string();
         tokens.extend(quote! { const _: &[u8] = ::core::include_bytes!(#file); });

@@ -1,11 +1,11 @@
-//! What the compiler says of a tool, where rustc shows it.
+//! Diagnostics of a tool, as tokens that make rustc show them.
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
 use tool_dsl::diagnostic::{Diagnostic, Refusal};
 use tool_dsl::source::Sources;
 
-/// A tool's errors, each at its place.
+/// Returns a tool's errors, each at its location.
 pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> TokenStream {
     placed(refusal.errors(), sources, place)
         .map(|(message, [first, last])| {
@@ -18,10 +18,10 @@ pub(crate) fn errors(refusal: &Refusal, sources: &Sources, place: Span) -> Token
         .collect()
 }
 
-/// A tool's warnings, each at its place.
+/// Returns a tool's warnings, each at its location.
 ///
-/// A macro has none of its own on stable Rust. But rustc warns where something deprecated is used, with the text that
-/// it was deprecated with.
+/// On stable Rust a macro cannot emit warnings. But rustc warns about the use of a deprecated item, and shows
+/// the text of its deprecation note.
 pub(crate) fn warnings(diagnostics: &[Diagnostic], sources: &Sources, place: Span) -> TokenStream {
     placed(diagnostics.iter(), sources, place)
         .map(|(message, [first, _])| {
@@ -36,8 +36,9 @@ pub(crate) fn warnings(diagnostics: &[Diagnostic], sources: &Sources, place: Spa
         .collect()
 }
 
-/// Texts, and the first and the last token that rustc shows each at: a diagnostic of the program's own text at its tokens,
-/// one of a mounted file at the mount, with its file's line; all others together at the macro's call.
+/// Returns texts, each with the first and last tokens at which rustc shows it. A diagnostic of the program's
+/// own text is shown at its tokens. One of a mounted file is shown at the mount, with the line of its file.
+/// All others are shown together at the macro's call.
 fn placed<'r>(
     diagnostics: impl Iterator<Item = &'r Diagnostic>,
     sources: &Sources,
@@ -58,15 +59,15 @@ fn placed<'r>(
     texts.into_iter()
 }
 
-/// A diagnostic with the line of its file.
+/// Returns a diagnostic with the line of its file.
 fn excerpt(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let text = diagnostic.render(sources, false);
-    // rustc says "error: " and "warning: " itself: the code goes behind the message.
+    // rustc adds "error: " and "warning: " itself; the code is moved after the message.
     let text = text.split_once("]: ").map_or(text.as_str(), |(_, message)| message);
     text.replacen('\n', &format!(" [{}]\n", diagnostic.code()), 1)
 }
 
-/// A diagnostic where rustc shows the place itself.
+/// Returns a diagnostic for a location that rustc shows itself.
 fn in_words(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut text = format!("{} [{}]", diagnostic.message(), diagnostic.code());
     if let Some((span, label)) = &diagnostic.second {

@@ -1,14 +1,14 @@
-//! Tools compiled from the `.tool` files of this package's folder `tools/`.
+//! Tools compiled from the `.tool` files in this package's folder `tools/`.
 //!
-//! Each file is a type of its own; [`TOOLS`] lists them all, [`find`] finds one by name. A program that
-//! wants a few of them turns the default features off and names their files as features: for the others
-//! nothing is compiled.
+//! Each file becomes a type; [`TOOLS`] lists them all, and [`find`] looks one up by name. A program that
+//! needs only a few of them disables the default features and enables the features named after their files.
+//! The other tools are then not compiled.
 
 touchoff::tool_library!("tools");
 
 use touchoff::Tool;
 
-/// The tool of a name.
+/// Returns the tool with the given name, if there is one.
 pub fn find(name: &str) -> Option<&'static dyn Tool> {
-    TOOLS.iter().find(|tool| tool.card().name == name).copied()
+    TOOLS.iter().find(|tool| tool.info().name == name).copied()
 }

@@ -1,37 +1,39 @@
-//! How deep a tool comes on its way by trying many times and places.
+//! The greatest depth of a tool during a motion, by sampling many times and points.
 //!
-//! Each time is asked as a pose: a triangle whose centre is shallower than the best by more than its size is
-//! left out, the others are sampled. From the best a search climbs in time and place at once.
+//! Each time is sampled as a pose. A triangle whose centre is shallower than the best sample by more than the
+//! triangle's radius is skipped; the others are sampled. From the best samples a search climbs in time and position at
+//! once.
 
 use super::brute::{Brute, GROUP, Point, Seen, nearest};
 use nalgebra::Point3;
 use touchoff::Pose;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// How many triangles of a pose are sampled, and how often each.
+/// Maximum number of triangles sampled per pose, and number of samples per triangle.
 const TRIANGLES: usize = 40;
 const SAMPLES: usize = 6;
-/// How many times are looked at more closely, how often, from how many the search climbs, and in how many steps.
+/// Number of times that are refined, number of refinements of each, number of starts of the search, and number of its
+/// steps.
 const CLOSER: usize = 5;
 const AGAIN: usize = 6;
 const STARTS: usize = 6;
 const STEPS: usize = 700;
 
-/// A tool's way, as it is meant.
+/// A tool's motion, as it is specified.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// Where it begins.
+    /// The first pose.
     pub from: Pose,
-    /// Where it ends.
+    /// The last pose.
     pub to: Pose,
 }
 
 impl Way {
-    /// The pose at a part of the way: Shoemake's formula for the axis.
+    /// Returns the pose at parameter `t` in 0 to 1, with the axis by Shoemake's formula.
     ///
     /// # Panics
-    /// If the axes are opposite.
+    /// If the axes are antiparallel.
     pub fn pose(&self, t: f64) -> Pose {
         let (a, b) = (self.from.axis(), self.to.axis());
         let angle = self.angle();
@@ -44,23 +46,23 @@ impl Way {
         Pose::from_axis(Point3::from(tip), axis).expect("axes that are not opposite")
     }
 
-    /// By how much the axis turns.
+    /// Returns the angle between the first and the last axis, rad.
     pub fn angle(&self) -> f64 {
         let (a, b) = (self.from.axis(), self.to.axis());
         2.0 * (b - a).norm().atan2((b + a).norm())
     }
 }
 
-/// A place on the way.
+/// A sample of a motion.
 #[derive(Clone, Copy, Debug)]
 pub struct Closest {
-    /// When.
+    /// The time, 0 to 1.
     pub t: f64,
-    /// The triangle that it lies on.
+    /// The index of the triangle.
     pub triangle: usize,
-    /// Where, in the part's frame.
+    /// The point, in the part's frame.
     pub point: Point,
-    /// How deep it is in the part's unit; below 0 how near.
+    /// The depth in the part's unit; minus the distance if the point is outside.
     pub depth: f64,
 }
 
@@ -69,16 +71,16 @@ fn point(of: Point3<f64>) -> Point {
 }
 
 impl Brute<'_> {
-    fn felt(&self, seen: &Seen, p: Point) -> f64 {
+    fn evaluation(&self, seen: &Seen, p: Point) -> f64 {
         self.depth(self.to_tool(seen, Point3::from(p))) * self.length
     }
 
-    /// The deepest of samples at a time.
-    pub fn at(&self, way: &Way, t: f64, draw: &mut Draw) -> Closest {
+    /// Returns the deepest sample at a time.
+    pub fn at(&self, way: &Way, t: f64, draw: &mut Rng) -> Closest {
         let seen = self.seen(&way.pose(t));
         let [radius, height] = self.oracle.extent();
         let mut best = Closest { t, triangle: 0, point: [f64::NAN; 3], depth: f64::NEG_INFINITY };
-        // No place of a ball is deeper.
+        // Upper bound of the depth in a ball, from its distance to the tool's bounding cylinder.
         let at_most = |(middle, reach): &(Point3<f64>, f64)| {
             let p = self.to_tool(&seen, *middle);
             let out = (p[0].hypot(p[1]) - radius).max(0.0);
@@ -98,7 +100,7 @@ impl Brute<'_> {
                 if at_most(&self.balls[id]) < best.depth {
                     continue;
                 }
-                let depth = self.felt(&seen, point(*middle));
+                let depth = self.evaluation(&seen, point(*middle));
                 near.push((depth + reach, id));
                 if depth > best.depth {
                     best = Closest { t, triangle: id, point: point(*middle), depth };
@@ -121,7 +123,7 @@ impl Brute<'_> {
                 points.push(nearest(point(inside), &corners));
             }
             for p in points {
-                let depth = self.felt(&seen, p);
+                let depth = self.evaluation(&seen, p);
                 if depth > best.depth {
                     best = Closest { t, triangle: id, point: p, depth };
                 }
@@ -130,8 +132,9 @@ impl Brute<'_> {
         best
     }
 
-    /// The deepest place of a whole way, of so many times; if `closely`, also of those beside the best of them.
-    pub fn closest(&self, way: &Way, times: u32, closely: bool, draw: &mut Draw) -> Closest {
+    /// Returns the deepest sample of a whole motion, at `times` random times and at both ends. If `closely`, also
+    /// refines around the best of them.
+    pub fn closest(&self, way: &Way, times: u32, closely: bool, draw: &mut Rng) -> Closest {
         let step = 1.0 / f64::from(times);
         let middle = |k| (f64::from(k) + draw.between(0.0, 1.0)) * step;
         let mut at: Vec<f64> = (0..times).map(middle).collect();
@@ -151,8 +154,8 @@ impl Brute<'_> {
         climbed.fold(found[0], |best, other| if other.depth > best.depth { other } else { best })
     }
 
-    /// The deepest that a search in time and place reaches.
-    fn climb_on(&self, way: &Way, from: Closest, step: f64, draw: &mut Draw) -> Closest {
+    /// Climbs in time and position from a sample, and returns the deepest sample reached.
+    fn climb_on(&self, way: &Way, from: Closest, step: f64, draw: &mut Rng) -> Closest {
         let corners = self.mesh.triangle(from.triangle as u32).map(point);
         let mut best = from;
         let (mut part, mut wide) =
@@ -167,7 +170,7 @@ impl Brute<'_> {
             let aside = if k % 3 == 1 { 0.0 } else { wide };
             let turn = draw.direction();
             let p = nearest([0, 1, 2].map(|axis| best.point[axis] + aside * turn[axis]), &corners);
-            let depth = self.felt(&self.seen(&way.pose(t)), p);
+            let depth = self.evaluation(&self.seen(&way.pose(t)), p);
             if depth > best.depth {
                 best = Closest { t, point: p, depth, ..best };
                 failed = 0;

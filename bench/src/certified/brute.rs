@@ -1,24 +1,24 @@
-//! The deepest point of triangles in a tool by trying many.
+//! The deepest point of triangles in a tool, by brute force.
 //!
-//! A signed distance changes by no more than the way, so a triangle whose centre is shallower than the best
-//! by more than its size is left out. What remains is sampled at its corners, at random, and at the feet of
-//! random points of the tool, and from the best samples a search climbs by ever smaller random steps.
+//! A signed distance is 1-Lipschitz, so a triangle whose centre is shallower than the best sample by more than the
+//! triangle's radius is skipped. The others are sampled at their corners, at random points and at the feet of random
+//! points of the tool. From the best samples a search climbs by decreasing random steps.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::{Mesh, Pose};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Meridian, Nearest, Oracle};
 
 /// A point or vector in the tool's frame and unit.
 pub type Point = [f64; 3];
 
-/// Samples of a triangle, of either kind: the fewer triangles are near, the more.
+/// Minimum and maximum number of samples of each kind per triangle. Fewer triangles nearby get more samples each.
 const SAMPLES: [usize; 2] = [8, 150];
-/// Samples of all that are near, unless they are more than that.
+/// Number of samples of each kind over all triangles nearby, within the limits per triangle.
 const TOGETHER: usize = 600;
-/// Of how many triangles there are samples at most.
+/// Maximum number of triangles that are sampled.
 const TRIANGLES: usize = 1000;
-/// From how many samples the search climbs, of how many of a triangle, and in how many steps.
+/// Number of samples from which the search climbs, maximum number of them per triangle, and number of steps.
 const STARTS: usize = 6;
 const EACH: usize = 3;
 const STEPS: usize = 500;
@@ -27,20 +27,20 @@ const STEPS: usize = 500;
 pub struct Brute<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) oracle: &'a Nearest,
-    /// The tool's unit of length in the part's.
+    /// The tool's unit of length, in the part's unit.
     pub length: f64,
-    /// The tool's and the part's size and how far that is from the origin, in the part's unit.
+    /// The sum of the tool's size, the part's size and the part's distance from the origin, in the part's unit.
     pub size: f64,
-    /// The middle of each triangle, and how far it reaches from there.
+    /// Bounding ball of each triangle: centroid and radius.
     pub(super) balls: Vec<(Point3<f64>, f64)>,
-    /// The same of some triangles together, in their order.
+    /// Bounding balls of groups of consecutive triangles.
     pub(super) groups: Vec<(Point3<f64>, f64)>,
 }
 
-/// How many triangles are in a group.
+/// Number of triangles per group.
 pub(super) const GROUP: usize = 32;
 
-/// A pose, as brute force sees it: its tip, and the tool's axes in the world.
+/// A pose: its tip, and the tool's axes in the world frame.
 pub struct Seen {
     tip: Point3<f64>,
     axes: [[f64; 3]; 3],
@@ -62,15 +62,15 @@ fn along(a: Point, t: f64, way: Point) -> Point {
     [a[0] + t * way[0], a[1] + t * way[1], a[2] + t * way[2]]
 }
 
-/// How far two points are apart.
+/// Returns the distance between two points.
 pub fn distance(a: Point, b: Point) -> f64 {
     let way = minus(a, b);
     dot(way, way).sqrt()
 }
 
-/// The point of a triangle that is nearest to another: the foot on its plane, else one on an edge.
+/// Returns the point of a triangle nearest to `p`: the foot on its plane, or else a point on an edge.
 pub fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
-    // The two shortest edges tell the plane of a sliver best.
+    // The two shortest edges determine the plane of a sliver best.
     let mut ways = [minus(b, a), minus(c, b), minus(a, c)];
     ways.sort_by(|e, f| dot(*e, *e).total_cmp(&dot(*f, *f)));
     let normal = cross(ways[0], ways[1]);
@@ -91,7 +91,7 @@ pub fn nearest(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
     edges.into_iter().min_by(|e, f| distance(p, *e).total_cmp(&distance(p, *f))).unwrap_or(a)
 }
 
-/// A ball around some.
+/// Returns a ball that contains several balls.
 fn around(balls: &[(Point3<f64>, f64)]) -> (Point3<f64>, f64) {
     let all = balls.iter().map(|(middle, _)| middle.coords);
     let middle = Point3::from(all.sum::<Vector3<f64>>() / balls.len() as f64);
@@ -100,7 +100,7 @@ fn around(balls: &[(Point3<f64>, f64)]) -> (Point3<f64>, f64) {
 }
 
 impl<'a> Brute<'a> {
-    /// The triangles of a mesh, and a tool whose unit of length is so many of the mesh's.
+    /// Prepares the triangles of a mesh. `length` is the tool's unit of length in the mesh's unit.
     pub fn new(mesh: &'a Mesh, oracle: &'a Nearest, length: f64) -> Brute<'a> {
         let [low, high] = mesh.bounds();
         let [radius, height] = oracle.extent();
@@ -124,7 +124,7 @@ impl<'a> Brute<'a> {
         }
     }
 
-    /// A pose.
+    /// Converts a pose.
     pub fn seen(&self, pose: &Pose) -> Seen {
         let turn = pose.rotation();
         Seen {
@@ -138,24 +138,24 @@ impl<'a> Brute<'a> {
         seen.axes.map(|axis| dot(axis, [off.x, off.y, off.z]) / self.length)
     }
 
-    /// A point of the world in the tool's frame and unit.
+    /// Returns a point of the world in the tool's frame and unit.
     pub fn inside(&self, pose: &Pose, point: Point3<f64>) -> Point {
         self.to_tool(&self.seen(pose), point)
     }
 
-    /// A triangle in the tool's frame and unit.
+    /// Returns a triangle in the tool's frame and unit.
     pub fn triangle(&self, seen: &Seen, id: usize) -> [Point; 3] {
         self.mesh.triangle(id as u32).map(|corner| self.to_tool(seen, corner))
     }
 
-    /// How deep a point of the tool's frame is, in the tool's unit; below 0 outside.
+    /// Returns the depth of a point of the tool's frame, in the tool's unit; it is negative outside.
     pub fn depth(&self, p: Point) -> f64 {
         -self.oracle.profile().signed_distance(Meridian::of(p).dz)
     }
 
-    /// The deepest point found, in the part's unit; below 0 if none is inside, and negative infinity if
-    /// none is near.
-    pub fn deepest(&self, seen: &Seen, draw: &mut Draw, samples: &mut u64) -> f64 {
+    /// Returns the greatest depth found, in the part's unit. It is negative if no sample is inside, and negative
+    /// infinity if no triangle is near.
+    pub fn deepest(&self, seen: &Seen, draw: &mut Rng, samples: &mut u64) -> f64 {
         let [radius, height] = self.oracle.extent();
         let mut near = Vec::new();
         for (id, (middle, reach)) in self.balls.iter().enumerate() {
@@ -175,10 +175,11 @@ impl<'a> Brute<'a> {
             if bound <= best {
                 break;
             }
-            let felt = self.sample(&self.triangle(seen, id), count, draw);
-            *samples += felt.len() as u64;
-            best = best.max(felt[0].0);
-            starts.extend(felt.into_iter().take(EACH).map(|(depth, point)| (depth, id, point)));
+            let evaluation = self.sample(&self.triangle(seen, id), count, draw);
+            *samples += evaluation.len() as u64;
+            best = best.max(evaluation[0].0);
+            starts
+                .extend(evaluation.into_iter().take(EACH).map(|(depth, point)| (depth, id, point)));
         }
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
         let climbs = starts.into_iter().take(STARTS);
@@ -186,8 +187,8 @@ impl<'a> Brute<'a> {
         reached.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Samples of a triangle, the deepest first.
-    fn sample(&self, triangle: &[Point; 3], count: usize, draw: &mut Draw) -> Vec<(f64, Point)> {
+    /// Returns samples of a triangle, the deepest first.
+    fn sample(&self, triangle: &[Point; 3], count: usize, draw: &mut Rng) -> Vec<(f64, Point)> {
         let [radius, height] = self.oracle.extent();
         let [a, b, c] = *triangle;
         let mut points = vec![a, b, c];
@@ -195,24 +196,24 @@ impl<'a> Brute<'a> {
             let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
             let (v, w) = if v + w > 1.0 { (1.0 - v, 1.0 - w) } else { (v, w) };
             points.push(along(along(a, v, minus(b, a)), w, minus(c, a)));
-            // Half of them near the tip.
+            // Half of the points are near the tip.
             let high =
                 if draw.bits().is_multiple_of(2) { height } else { height.min(2.0 * radius) };
             let mut across = || draw.between(-0.5, 0.5) * radius;
             points.push(nearest([across(), across(), draw.between(0.0, high)], triangle));
         }
-        let mut felt: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
-        felt.sort_by(|a, b| b.0.total_cmp(&a.0));
-        felt
+        let mut evaluation: Vec<_> = points.into_iter().map(|p| (self.depth(p), p)).collect();
+        evaluation.sort_by(|a, b| b.0.total_cmp(&a.0));
+        evaluation
     }
 
-    /// The deepest that a search from a point of a triangle reaches, in the part's unit.
+    /// Climbs from a point of a triangle and returns the greatest depth reached, in the part's unit.
     pub fn climb(
         &self,
         seen: &Seen,
         triangle: usize,
         from: Point,
-        draw: &mut Draw,
+        draw: &mut Rng,
         samples: &mut u64,
     ) -> f64 {
         let triangle = self.triangle(seen, triangle);
@@ -228,7 +229,7 @@ impl<'a> Brute<'a> {
                 break;
             }
             *samples += 1;
-            // Along a ridge few directions lead up: the last that did is likely to do so again.
+            // Few directions lead up along a ridge, so the last successful direction is tried again.
             let way = if k % 4 == 0 && last != [0.0; 3] { last } else { draw.direction() };
             let next = nearest(along(at, step, way), &triangle);
             let depth = self.depth(next);

@@ -1,36 +1,36 @@
-//! Tools wholly inside a block of material, and those that just are not.
+//! Tools entirely inside a block of material, and tools just cut by one of its faces.
 //!
-//! One face of the block is at a small distance from the tool's extent, inside it or outside, and the others are
-//! farther. Where the tool ends in that direction is known from its numbers, so is the verdict.
+//! One face of the block is a small distance inside or outside the tool's extent, and the others are farther away. The
+//! tool's extent in that direction is known from its dimensions, so the correct verdict is known.
 
 use super::subject::Subject;
 use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// The verdicts about a tool.
+/// The verdicts for a tool.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    /// The tool.
+    /// The tool's name.
     pub tool: String,
-    /// Poses at which it is wholly inside, and those of them with that verdict.
+    /// Number of poses entirely inside, and number of them with that verdict.
     pub inside: [usize; 2],
-    /// Poses at which a face cuts it, and those of them with a verdict of touching.
+    /// Number of poses at which a face cuts the tool, and number of them with the verdict of touching.
     pub cut: [usize; 2],
-    /// Verdicts that are neither true nor undecided.
+    /// Verdicts that are neither correct nor undecided.
     pub violations: Vec<String>,
 }
 
-/// Asks about so many blocks around a tool.
+/// Checks the verdicts on `count` random blocks around a tool.
 ///
 /// # Panics
-/// If the tool is refused.
+/// If the certifier rejects the tool.
 pub fn measure(tool: &dyn Tool, subject: &Subject, count: usize, seed: u64) -> Row {
-    let mut draw = Draw::new(seed);
-    let card = tool.card();
-    let mut row = Row { tool: card.name.to_string(), ..Row::default() };
+    let mut draw = Rng::new(seed);
+    let info = tool.info();
+    let mut row = Row { tool: info.name.to_string(), ..Row::default() };
     let [radius, height] = subject.oracle().extent();
     let size = radius.max(height);
     for _ in 0..count {
@@ -50,28 +50,28 @@ pub fn measure(tool: &dyn Tool, subject: &Subject, count: usize, seed: u64) -> R
             if face < 3 { -away } else { away }
         });
         let low = Point3::new(faces[0], faces[1], faces[2]);
-        let block = shapes::cuboid(low, Point3::new(faces[3], faces[4], faces[5]), card.unit);
+        let block = shapes::cuboid(low, Point3::new(faces[3], faces[4], faces[5]), info.unit);
         let tip = Point3::from(draw.direction()) * size;
         let pose = Pose::from_axis(tip, Vector3::from(draw.direction())).expect("an axis");
         let block = placed(&block.expect("a cuboid"), &pose);
-        let facets = Facets::new(&block);
-        let mut certifier = Certifier::new(&facets, tool).expect("a tool that is proved");
-        let found = certifier.clear(&pose);
+        let bvh = TriangleBvh::new(&block);
+        let mut certifier = Certifier::new(&bvh, tool).expect("a tool that is proved");
+        let found = certifier.check_pose(&pose);
         let told = if inside { &mut row.inside } else { &mut row.cut };
         told[0] += 1;
         match (inside, found) {
-            (true, Clear::Inside(_)) | (false, Clear::Touching(_)) => told[1] += 1,
-            (_, Clear::Undecided(_)) => {}
+            (true, PoseVerdict::Inside(_)) | (false, PoseVerdict::Touching(_)) => told[1] += 1,
+            (_, PoseVerdict::Undecided(_)) => {}
             _ => row.violations.push(format!(
                 "{} with a gap of {gap:e} at face {near}, inside {inside}: {found:?} at {pose:?}",
-                card.name
+                info.name
             )),
         }
     }
     row
 }
 
-/// A mesh of the tool's frame in the world.
+/// Transforms a mesh from the tool's frame to the world frame.
 fn placed(mesh: &Mesh, pose: &Pose) -> Mesh {
     let place = |p: &Point3<f64>| pose.tip() + pose.rotation() * p.coords;
     let vertices = mesh.vertices().iter().map(place).collect();

@@ -1,8 +1,8 @@
-//! Certified penetrations beside what brute force finds, pose by pose.
+//! Certified penetrations compared with brute force, pose by pose.
 //!
-//! What is certified is the depth of triangles in a tool. Brute force ([`brute`]) knows the tool from its
-//! restatement, samples triangles and climbs from the deepest samples. Whatever it finds has to be below
-//! the upper bound; the lower bound is proved by the witness, whose depth is asked of the same oracle.
+//! The certified quantity is the depth of triangles in a tool. Brute force ([`brute`]) knows the tool from its
+//! restatement, samples triangles and climbs from the deepest samples. Its result must not exceed the upper bound. The
+//! lower bound is proved by the witness, whose depth is evaluated by the same oracle.
 
 pub mod approach;
 pub mod brute;
@@ -17,18 +17,18 @@ pub mod zoomed;
 use brute::{Brute, Seen};
 use nalgebra::Point3;
 use std::fmt::Write;
-use touchoff::certify::{Certifier, Clear, Facets, Witness};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh, Witness};
 use touchoff::{Mesh, Pose, Tool};
 use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// The tolerances that are asked for, in the part's unit.
+/// The tolerances used, in the part's unit.
 pub const TOLERANCES: [f64; 4] = [0.0, 1e-9, 1e-6, 1e-3];
 
-/// The largest excess of one kind, and how to see it again.
+/// The largest value of one kind, and the case to reproduce it.
 #[derive(Clone, Debug, Default)]
 pub struct Worst {
-    /// By how much, in the part's unit.
+    /// The value, in the part's unit.
     pub by: f64,
     /// Tool, part and pose, to the last bit.
     pub at: String,
@@ -42,64 +42,64 @@ impl Worst {
     }
 }
 
-/// What a tool and a part give.
+/// The results for a tool and a part.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The tool.
+    /// The tool's name.
     pub tool: String,
-    /// The part.
+    /// The part's name.
     pub part: String,
-    /// Poses that were asked about.
+    /// Number of poses queried.
     pub poses: usize,
-    /// Those at which something is inside the tool.
+    /// Number of poses at which brute force finds a point inside the tool.
     pub touching: usize,
-    /// Points that brute force asked the oracle about.
+    /// Number of points that brute force evaluated with the oracle.
     pub samples: u64,
-    /// By how much brute force is above the upper bound. More than rounding is a violation.
+    /// Excess of brute force over the upper bound. More than rounding is a violation.
     pub over: Worst,
-    /// By how much the lower bound is above the witness's depth. More than rounding is a violation.
+    /// Excess of the lower bound over the witness's depth. More than rounding is a violation.
     pub under: Worst,
-    /// By how much the lower bound is above what brute force finds on its own: how strong that is.
+    /// Excess of the lower bound over the result of brute force without the witness: a measure of its strength.
     pub behind: Worst,
-    /// At how many poses it finds the lower bound on its own, to 1e-6.
+    /// Number of poses at which that excess is at most 1e-6.
     pub reached: usize,
-    /// By how much an interval is wider than the tolerance.
+    /// Excess of an interval's width over the tolerance.
     pub wide: Worst,
-    /// How many intervals are wider than tolerance and rounding.
+    /// Number of intervals wider than tolerance and rounding together.
     pub wider: usize,
-    /// Answers of `clear` that are `Undecided`.
+    /// Number of verdicts of [`Certifier::check_pose`] that are undecided.
     pub undecided: usize,
-    /// Everything that must not happen.
+    /// All violations.
     pub violations: Vec<String>,
 }
 
-/// What is compared with what.
+/// A part and a tool to compare.
 pub struct Pair<'a> {
-    /// The part's name, for people.
+    /// The part's name in messages.
     pub part: &'a str,
     /// The part.
     pub mesh: &'a Mesh,
-    /// Its triangles in a tree.
-    pub facets: &'a Facets,
+    /// The part's triangles in a bounding volume hierarchy.
+    pub bvh: &'a TriangleBvh,
     /// The tool.
     pub tool: &'a dyn Tool,
-    /// What the oracle knows about the tool.
+    /// The oracle of the tool.
     pub oracle: &'a Nearest,
 }
 
 impl Pair<'_> {
-    /// Asks about so many poses.
+    /// Compares `count` random poses.
     ///
     /// # Panics
-    /// If the tool is refused.
+    /// If the certifier rejects the tool.
     pub fn measure(&self, count: usize, seed: u64) -> Row {
-        let mut draw = Draw::new(seed);
-        let card = self.tool.card();
-        let length = card.unit.to(self.mesh.unit());
+        let mut draw = Rng::new(seed);
+        let info = self.tool.info();
+        let length = info.unit.factor_to(self.mesh.unit());
         let brute = Brute::new(self.mesh, self.oracle, length);
-        let mut certifier = Certifier::new(self.facets, self.tool).expect("a tool with a profile");
+        let mut certifier = Certifier::new(self.bvh, self.tool).expect("a tool with a profile");
         let mut row = Row {
-            tool: card.name.to_string(),
+            tool: info.name.to_string(),
             part: self.part.to_owned(),
             poses: count,
             touching: 0,
@@ -120,7 +120,7 @@ impl Pair<'_> {
                 pair: self,
                 brute: &brute,
                 seen: brute.seen(&pose),
-                // What the oracle and the place of a sample err by.
+                // Error bound of the oracle and of the coordinates of a sample.
                 rounding: 64.0 * f64::EPSILON * brute.size,
                 pose,
                 tolerance,
@@ -132,7 +132,7 @@ impl Pair<'_> {
     }
 }
 
-/// A pose that is looked at.
+/// A pose under validation.
 struct Judge<'a> {
     pair: &'a Pair<'a>,
     brute: &'a Brute<'a>,
@@ -144,7 +144,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn pose(&mut self, certifier: &mut Certifier<'_>, draw: &mut Draw) {
+    fn pose(&mut self, certifier: &mut Certifier<'_>, draw: &mut Rng) {
         let found = certifier.deepest(&self.pose, self.tolerance);
         let [low, high] = found.depth;
         let deep = self.brute.deepest(&self.seen, draw, &mut self.row.samples);
@@ -177,31 +177,31 @@ impl Judge<'_> {
         if most > high + self.rounding {
             self.wrong(&format!("a sample is {most:e} deep, above the upper bound"), &at);
         }
-        // Not `low <= high`, which holds for no NaN.
+        // Written without `low > high`, which is false for NaN.
         if !(0.0 <= low && low <= high && high.is_finite()) {
             self.wrong("no interval", &at);
         }
         let wide = high - low - self.tolerance;
         self.row.wide.see(wide, || at.clone());
-        // The error is twice at either end and four times in the tolerance.
+        // The rounding error counts twice at either end and four times in the tolerance.
         self.row.wider += usize::from(wide > 8.0 * self.rounding);
-        let clear = certifier.clear(&self.pose);
+        let clear = certifier.check_pose(&self.pose);
         self.clear(clear, most, low, &format!("{at}, {clear:?}"));
     }
 
-    fn clear(&mut self, clear: Clear, most: f64, low: f64, at: &str) {
+    fn clear(&mut self, clear: PoseVerdict, most: f64, low: f64, at: &str) {
         match clear {
-            Clear::Clear | Clear::SurfaceOnly | Clear::Inside(_) => {
+            PoseVerdict::Clear | PoseVerdict::SurfaceOnly | PoseVerdict::Inside(_) => {
                 if most > self.rounding || low > 0.0 {
                     self.wrong("said not to touch", at);
                 }
             }
-            Clear::Touching(witness) => {
+            PoseVerdict::Touching(witness) => {
                 if self.witness(&witness, at) < -self.rounding {
                     self.wrong("the witness of a touch is outside", at);
                 }
             }
-            Clear::Undecided(high) => {
+            PoseVerdict::Undecided(high) => {
                 self.row.undecided += 1;
                 if most > high + self.rounding {
                     self.wrong("deeper than what is undecided", at);
@@ -210,7 +210,7 @@ impl Judge<'_> {
         }
     }
 
-    /// The depth of a witness, which has to lie on its triangle.
+    /// Returns the depth of a witness, and checks that it lies on its triangle.
     fn witness(&mut self, witness: &Witness, at: &str) -> f64 {
         let triangle = self.brute.triangle(&self.seen, witness.triangle as usize);
         let point = self.brute.inside(&self.pose, witness.point);
@@ -218,14 +218,14 @@ impl Judge<'_> {
         if off > self.rounding {
             self.wrong(&format!("the witness is {off:e} from its triangle"), at);
         }
-        if witness.surface >= self.pair.tool.card().surfaces.len() {
+        if witness.surface >= self.pair.tool.info().surfaces.len() {
             self.wrong("the witness is at no surface", at);
         }
         self.brute.depth(point) * self.brute.length
     }
 
-    /// The deepest that a climb from a witness reaches.
-    fn beside(&mut self, witness: &Witness, draw: &mut Draw) -> f64 {
+    /// Returns the greatest depth that a climb from a witness reaches.
+    fn beside(&mut self, witness: &Witness, draw: &mut Rng) -> f64 {
         let from = self.brute.inside(&self.pose, Point3::from(witness.point.coords));
         let triangle = witness.triangle as usize;
         self.brute.climb(&self.seen, triangle, from, draw, &mut self.row.samples)
@@ -236,10 +236,10 @@ impl Judge<'_> {
     }
 }
 
-/// The rows as Markdown, and under them what was violated.
+/// Returns the rows as a Markdown table, with a list of violations.
 ///
 /// # Errors
-/// None that a text could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut page = "| tool | part | poses | in contact | worst over | worst under | brute behind | reached | over the tolerance | wider \
                     | undecided | violations |\n|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"

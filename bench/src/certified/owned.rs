@@ -1,46 +1,47 @@
-//! How deep each surface of a tool is by trying many places, and by how much that is more than is allowed.
+//! The depth of each surface of a tool by sampling, and its excess over the surface's allowance.
 
 use super::brute::{Brute, Point, distance, nearest};
 use touchoff::Pose;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// How many triangles of a pose are sampled at most, and how often each.
+/// Maximum number of triangles sampled per pose, and number of samples per triangle.
 const TRIANGLES: usize = 300;
 const SAMPLES: usize = 8;
-/// From how many samples the search climbs, and in how many steps.
+/// Number of samples from which the search climbs, and number of steps.
 const STARTS: usize = 3;
 const STEPS: usize = 250;
 
-/// A place of a triangle, in the tool's frame and unit.
+/// A sample of a triangle, in the tool's frame and unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// The triangle.
+    /// The index of the triangle.
     pub triangle: usize,
-    /// Where.
+    /// The point.
     pub point: Point,
-    /// How deep, or by how much too deep, in the part's unit.
+    /// The depth, or its excess over the allowance, in the part's unit.
     pub value: f64,
 }
 
-/// A tool's surfaces beside a part, each with how deep it may be.
+/// A tool's surfaces with their allowances, and a part.
 pub struct Owned<'a> {
-    /// What samples the triangles.
+    /// The part's triangles and the tool.
     pub brute: &'a Brute<'a>,
-    /// The surfaces' names, in the card's order.
+    /// The surfaces' names, in the tool's order.
     pub names: Vec<String>,
-    /// What they are allowed, in the part's unit; below 0 how far they have to keep.
+    /// The allowances of the surfaces, in the part's unit. A negative one is a distance to keep.
     pub allowed: Vec<f64>,
 }
 
 impl Owned<'_> {
-    /// How far a place is from a surface, in the part's unit.
+    /// Returns the distance of a point from a surface, in the part's unit.
     pub fn away(&self, surface: usize, p: Point) -> f64 {
         self.brute.oracle.away(&self.names[surface], p) * self.brute.length
     }
 
-    /// Returns how deep a point is, in the part's unit, if it is inside and the surface is the nearest by more than rounding:
-    /// 2e-9 beside a tangent joint two distances differ by 1e-18.
+    /// Returns the depth of a point, in the part's unit, if the point is inside and the surface is the nearest by more
+    /// than rounding. Returns negative infinity otherwise. At 2e-9 from a tangent joint, two distances differ by only
+    /// 1e-18.
     pub fn depth(&self, surface: usize, p: Point) -> f64 {
         let depth = self.brute.depth(p) * self.brute.length;
         let mine = self.away(surface, p) + 8.0 * f64::EPSILON * self.brute.size;
@@ -49,7 +50,8 @@ impl Owned<'_> {
         if depth >= 0.0 && nearest { depth } else { f64::NEG_INFINITY }
     }
 
-    /// By how much a place is deeper than is allowed, or nearer.
+    /// Returns the largest excess of a point's depth over an allowance, or of a distance to keep over the point's
+    /// distance.
     pub fn over(&self, p: Point) -> f64 {
         let of = |surface: usize| {
             let allowed = self.allowed[surface];
@@ -60,8 +62,8 @@ impl Owned<'_> {
         most.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Samples of the triangles near a pose, of no value yet.
-    pub fn samples(&self, pose: &Pose, draw: &mut Draw) -> Vec<Sample> {
+    /// Returns samples of the triangles near a pose, with the value NaN.
+    pub fn samples(&self, pose: &Pose, draw: &mut Rng) -> Vec<Sample> {
         let (brute, seen) = (self.brute, self.brute.seen(pose));
         let [radius, height] = brute.oracle.extent();
         let keep = self.allowed.iter().fold(0.0, |keep: f64, allowed| keep.max(-allowed));
@@ -90,13 +92,13 @@ impl Owned<'_> {
         samples
     }
 
-    /// The most of something that samples and a search from the best of them find.
+    /// Returns the largest value over the samples and a search from the best of them.
     pub fn most(
         &self,
         pose: &Pose,
         samples: &[Sample],
         value: impl Fn(Point) -> f64,
-        draw: &mut Draw,
+        draw: &mut Rng,
     ) -> Option<Sample> {
         let valued = samples.iter().map(|sample| Sample { value: value(sample.point), ..*sample });
         let mut valued: Vec<Sample> =
@@ -112,7 +114,7 @@ impl Owned<'_> {
         pose: &Pose,
         from: Sample,
         value: impl Fn(Point) -> f64,
-        draw: &mut Draw,
+        draw: &mut Rng,
     ) -> Sample {
         let triangle = self.brute.triangle(&self.brute.seen(pose), from.triangle);
         let [a, b, c] = triangle;

@@ -1,15 +1,15 @@
-//! Poses at which a tool is likely to touch a part, and parts.
+//! Parts, and poses at which a tool is likely to touch a part.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, MeshError, Pose, Unit, scenes};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
-/// The parts that are made here, in mm, with their names.
+/// Returns the generated parts, in mm, with their names.
 ///
 /// # Errors
-/// None that these measures have.
+/// Never for these dimensions.
 pub fn parts() -> Result<Vec<(&'static str, Mesh)>, MeshError> {
     let [low, high] = [Point3::new(-20.0, -15.0, -10.0), Point3::new(20.0, 15.0, 0.0)];
     Ok(vec![
@@ -20,13 +20,13 @@ pub fn parts() -> Result<Vec<(&'static str, Mesh)>, MeshError> {
     ])
 }
 
-/// A wavy sheet `2 half` mm wide in so many squares a side, with ridges between its triangles.
+/// Returns a wavy sheet `2 half` mm wide, with `divisions` squares per side and ridges between its triangles.
 ///
 /// # Errors
-/// None that a positive width has.
+/// Never for a positive width.
 pub fn bumpy(half: f64, divisions: u32) -> Result<Mesh, MeshError> {
     let flat = shapes::plane(half, divisions, Unit::Millimetre)?;
-    let mut draw = Draw::new(7);
+    let mut draw = Rng::new(7);
     let raise = |p: &Point3<f64>| {
         let wave = 1.5 * (0.4 * p.x).sin() * (0.3 * p.y).cos();
         Point3::new(p.x, p.y, wave + draw.between(-0.3, 0.3))
@@ -35,12 +35,12 @@ pub fn bumpy(half: f64, divisions: u32) -> Result<Mesh, MeshError> {
     Mesh::new(vertices, flat.triangles().to_vec(), Unit::Millimetre)
 }
 
-fn unit(draw: &mut Draw) -> Vector3<f64> {
+fn unit(draw: &mut Rng) -> Vector3<f64> {
     Vector3::from(draw.direction())
 }
 
-/// A unit vector at right angles to another.
-fn beside(way: &Vector3<f64>, draw: &mut Draw) -> Vector3<f64> {
+/// Returns a random unit vector perpendicular to `way`.
+fn beside(way: &Vector3<f64>, draw: &mut Rng) -> Vector3<f64> {
     loop {
         let other = unit(draw);
         let across = other - way * way.dot(&other);
@@ -50,12 +50,12 @@ fn beside(way: &Vector3<f64>, draw: &mut Draw) -> Vector3<f64> {
     }
 }
 
-/// A pose: most put a point of the tool's surface a little into a triangle, some facing it and some at any
-/// turn, some along the coordinate axes and on round numbers, and some anywhere about the part.
+/// Returns a random pose. Most poses press a point of the tool's surface slightly into a triangle, either facing it or
+/// in any orientation. Some are along the coordinate axes and at round numbers, and some anywhere around the part.
 ///
 /// # Panics
 /// If the oracle has no surface.
-pub fn pose(mesh: &Mesh, oracle: &Nearest, length: f64, draw: &mut Draw) -> Pose {
+pub fn pose(mesh: &Mesh, oracle: &Nearest, length: f64, draw: &mut Rng) -> Pose {
     match draw.bits() % 20 {
         0..=7 => touching(mesh, oracle, length, true, draw),
         8..=14 => touching(mesh, oracle, length, false, draw),
@@ -68,8 +68,8 @@ fn made(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
     Pose::from_axis(tip, axis).expect("an axis")
 }
 
-/// A random place of the tool's surface, and the way out there, `[d, z]`.
-fn of_surface(oracle: &Nearest, draw: &mut Draw) -> ([f64; 2], [f64; 2]) {
+/// Returns a random point of the tool's surface and the outward direction there, both as `[d, z]`.
+fn of_surface(oracle: &Nearest, draw: &mut Rng) -> ([f64; 2], [f64; 2]) {
     loop {
         let pieces = oracle.profile().surface();
         let piece = &pieces[draw.bits() as usize % pieces.len()];
@@ -85,13 +85,13 @@ fn of_surface(oracle: &Nearest, draw: &mut Draw) -> ([f64; 2], [f64; 2]) {
     }
 }
 
-/// From 1e-9 to some mm, and sometimes as much short of contact.
-fn press(draw: &mut Draw) -> f64 {
+/// Returns a random depth from 1e-9 to about 6 mm, or sometimes minus that, for a gap.
+fn press(draw: &mut Rng) -> f64 {
     let depth = 10f64.powf(draw.between(-9.0, 0.8));
     if draw.bits().is_multiple_of(8) { -depth } else { depth }
 }
 
-fn touching(mesh: &Mesh, oracle: &Nearest, length: f64, facing: bool, draw: &mut Draw) -> Pose {
+fn touching(mesh: &Mesh, oracle: &Nearest, length: f64, facing: bool, draw: &mut Rng) -> Pose {
     let id = (draw.bits() as usize % mesh.triangles().len()) as u32;
     let [a, b, c] = mesh.triangle(id);
     let (v, w) = (draw.between(0.0, 1.0), draw.between(0.0, 1.0));
@@ -111,8 +111,8 @@ fn touching(mesh: &Mesh, oracle: &Nearest, length: f64, facing: bool, draw: &mut
     made(place - length * (d * radial + z * axis) + press(draw) * way, axis)
 }
 
-/// Along a coordinate axis: flush with a corner of the part's box, tangent to its sides, or on a grid.
-fn aligned(mesh: &Mesh, oracle: &Nearest, length: f64, draw: &mut Draw) -> Pose {
+/// Returns a pose along a coordinate axis: flush with a corner of the part's box, tangent to its sides, or on a grid.
+fn aligned(mesh: &Mesh, oracle: &Nearest, length: f64, draw: &mut Rng) -> Pose {
     let mut axis = Vector3::zeros();
     let upright = draw.bits() as usize % 3;
     axis[upright] = if draw.bits().is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -135,8 +135,8 @@ fn aligned(mesh: &Mesh, oracle: &Nearest, length: f64, draw: &mut Draw) -> Pose 
     made(tip, axis)
 }
 
-/// Anywhere in a box twice the part's, so that the tool may be wholly inside or far away.
-fn anywhere(mesh: &Mesh, draw: &mut Draw) -> Pose {
+/// Returns a pose anywhere in a box twice the part's size, so that the tool may be entirely inside or far away.
+fn anywhere(mesh: &Mesh, draw: &mut Rng) -> Pose {
     let [low, high] = mesh.bounds();
     let middle = nalgebra::center(&low, &high);
     let tip = [0, 1, 2].map(|k| middle[k] + (high[k] - low[k]) * draw.between(-1.0, 1.0));

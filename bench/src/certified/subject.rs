@@ -1,34 +1,34 @@
-//! Tools as oracles know them, whose depth is asked for millions of times.
+//! Tools as oracles whose depth is fast enough for millions of evaluations.
 
 use touchoff_tests::oracle::outline::Outline;
 use touchoff_tests::oracle::{
     Block, Cylinder, Fig73, LBracket, Nearest, Oracle, UnitSphere, restated,
 };
 
-/// Tools by their profile.
+/// Tools with a profile.
 pub const PROFILES: [&str; 6] =
     ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
 
-/// Regions written by hand, solids, and profiles that overhang.
+/// Tools with regions written by hand, solids, and tools whose profile overhangs.
 pub const FIELDS: [&str; 7] =
     ["Fig73", "Cylinder", "UnitSphere", "Block", "LBracket", "BoringBar", "FaceMill"];
 
-/// No field of the list changes by more than so many times the way: the thesis's tool by √5.
+/// A Lipschitz bound for all fields in the list; the thesis's tool attains √5.
 const STEEPEST: f64 = 2.24;
 
-/// A tool whose depth is asked for many times.
+/// A tool whose depth is evaluated many times.
 pub enum Subject {
-    /// By its profile.
+    /// A tool with a profile.
     Profile(Box<Nearest>, Outline),
-    /// By its field.
+    /// A tool with a depth field.
     Field(Box<dyn Oracle + Send + Sync>),
 }
 
 impl Subject {
-    /// A tool of the lists above.
+    /// Returns a tool from the lists above.
     ///
     /// # Panics
-    /// If it is in neither.
+    /// If it is in neither list.
     pub fn of(name: &str) -> Subject {
         match name {
             "Fig73" => Subject::Field(Box::<Fig73>::default()),
@@ -46,7 +46,7 @@ impl Subject {
         }
     }
 
-    /// The tool in the oracles' terms.
+    /// Returns the oracle of the tool.
     pub fn oracle(&self) -> &dyn Oracle {
         match self {
             Subject::Profile(nearest, _) => &**nearest,
@@ -54,7 +54,7 @@ impl Subject {
         }
     }
 
-    /// The depth of a point; below 0 outside.
+    /// Returns the depth of a point; it is negative outside.
     pub(super) fn depth(&self, p: [f64; 3]) -> f64 {
         match self {
             Subject::Profile(_, outline) => {
@@ -66,7 +66,7 @@ impl Subject {
         }
     }
 
-    /// The bound of the depth's change, as a multiple of the way.
+    /// Returns a Lipschitz bound of the depth.
     pub(super) fn steepest(&self) -> f64 {
         match self {
             Subject::Profile(..) => 1.0,
@@ -74,7 +74,8 @@ impl Subject {
         }
     }
 
-    /// The smallest gap, as a part of the tool's size, that a verdict is asked about: a field is searched to a thousandth.
+    /// Returns the smallest gap to validate, as a share of the tool's size. The certifier resolves a field only to a
+    /// thousandth.
     pub(super) fn finest(&self) -> f64 {
         match self {
             Subject::Profile(..) => 1e-7,
@@ -82,8 +83,8 @@ impl Subject {
         }
     }
 
-    /// Returns the tolerance to ask for, and how near samples should come to the lower bound, in the part's unit. A
-    /// field is asked for a millionth of the unit, whatever the tool's size.
+    /// Returns the tolerance for the certifier, and how near samples should come to the lower bound, in the part's
+    /// unit. The tolerance for a field is a millionth of the unit, whatever the tool's size.
     pub(super) fn tolerance(&self, size: f64) -> [f64; 2] {
         match self {
             Subject::Profile(..) => [1e-9 * size; 2],

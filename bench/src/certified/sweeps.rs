@@ -1,67 +1,67 @@
-//! Certified ways beside samples of them.
+//! Certified motions compared with samples of them.
 //!
-//! What is proved is that no triangle comes deeper into a tool than its tolerance. Samples
-//! ([`super::approach`]) know the tool from its restatement and the way from a formula of their own.
+//! The proved statement is that no triangle comes deeper into a tool than the tolerance. The samples
+//! ([`super::approach`]) know the tool from its restatement, and the motion from a separate formula.
 
 use super::approach::{Closest, Way};
 use super::brute::{Brute, distance, nearest};
 use super::{Pair, Worst, ways};
 use nalgebra::Point3;
 use std::fmt::Write;
-use touchoff::certify::{Certifier, Sweep, Witness};
+use touchoff::certify::{Certifier, MotionVerdict, Witness};
 use touchoff::{Mesh, Motion};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// The tolerances that are asked for, in the part's unit.
+/// The tolerances used, in the part's unit.
 const TOLERANCES: [f64; 3] = [0.0, 1e-6, 1e-3];
 
-/// Times of a way that are sampled.
+/// Number of times sampled per motion.
 const TIMES: u32 = 64;
 
-/// How many ways are drawn for one that is proved, at most.
+/// Maximum number of motions drawn per motion that is proved clear.
 const TRIES: usize = 20;
 
-/// How many that are not decided are told.
+/// Maximum number of undecided motions listed.
 const TOLD: usize = 24;
 
-/// What a tool and a part give.
+/// The results for a tool and a part.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The tool.
+    /// The tool's name.
     pub tool: String,
-    /// The part.
+    /// The part's name.
     pub part: String,
-    /// Ways that were asked about.
+    /// Number of motions queried.
     pub motions: usize,
-    /// Those that were proved.
+    /// Number of motions proved clear.
     pub proved: usize,
-    /// Those with a witness.
+    /// Number of motions with a witness of contact.
     pub touching: usize,
-    /// Those that are not decided, and how to see them again.
+    /// Undecided motions, with the data to reproduce them.
     pub undecided: Vec<String>,
-    /// Those that were proved and come nearer than 0.001.
+    /// Number of motions proved clear that come nearer than 0.001.
     pub near: usize,
-    /// How much deeper than the tolerance a sample is. More than rounding is a violation.
+    /// Excess of a sample's depth over tolerance and rounding. A positive value is a violation.
     pub over: Worst,
-    /// How far the tip and the axis are from where another formula has them. More than rounding is a violation.
+    /// Deviation of tip and axis from those of the other formula, beyond rounding. A positive value is a violation.
     pub off: Worst,
-    /// Everything that must not happen.
+    /// All violations.
     pub violations: Vec<String>,
 }
 
 impl Pair<'_> {
-    /// Asks about ways until so many are proved.
+    /// Queries random motions until `count` of them are proved clear.
     ///
     /// # Panics
-    /// If the tool is refused.
+    /// If the certifier rejects the tool.
     pub fn sweeps(&self, count: usize, seed: u64) -> Row {
-        let mut draw = Draw::new(seed);
-        let card = self.tool.card();
-        let brute = Brute::new(self.mesh, self.oracle, card.unit.to(self.mesh.unit()));
-        let mut certifier = Certifier::new(self.facets, self.tool).expect("a tool with a profile");
+        let mut draw = Rng::new(seed);
+        let info = self.tool.info();
+        let brute = Brute::new(self.mesh, self.oracle, info.unit.factor_to(self.mesh.unit()));
+        let mut certifier = Certifier::new(self.bvh, self.tool).expect("a tool with a profile");
         let mut row = Row {
-            tool: card.name.to_string(),
+            tool: info.name.to_string(),
             part: self.part.to_owned(),
             motions: 0,
             proved: 0,
@@ -77,7 +77,7 @@ impl Pair<'_> {
             let tolerance = TOLERANCES[row.motions % TOLERANCES.len()];
             let way = ways::way(&brute, kind, &mut draw);
             let motion = Motion::new(&way.from, &way.to).expect("axes that are not opposite");
-            let swept = certifier.sweep_clear(&motion, tolerance);
+            let swept = certifier.check_motion(&motion, tolerance);
             let at = format!(
                 "{} in {} ({kind}) from {} to {}, tolerance {tolerance:e}: {swept:?}",
                 row.tool,
@@ -91,8 +91,8 @@ impl Pair<'_> {
                 brute: &brute,
                 way,
                 motion,
-                // Places are proved to so much, and samples err by as much.
-                rounding: 64.0 * f64::EPSILON * (brute.size + motion.way().norm()),
+                // Error bound of certified positions, and of the samples.
+                rounding: 64.0 * f64::EPSILON * (brute.size + motion.displacement().norm()),
                 tolerance,
                 row: &mut row,
                 at,
@@ -119,28 +119,28 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn judge(&mut self, swept: Sweep, draw: &mut Draw) {
+    fn judge(&mut self, swept: MotionVerdict, draw: &mut Rng) {
         for t in [0.0, 1.0, draw.between(0.0, 1.0)] {
             self.same(t);
         }
         match swept {
-            Sweep::Clear | Sweep::Inside(_) | Sweep::SurfaceOnly => {
+            MotionVerdict::Clear | MotionVerdict::Inside(_) | MotionVerdict::SurfaceOnly => {
                 self.row.proved += 1;
                 let closest = self.brute.closest(&self.way, TIMES, true, draw);
                 self.proved(&closest);
                 self.side(swept);
             }
-            Sweep::Touching(t, witness) => {
+            MotionVerdict::Touching(t, witness) => {
                 self.row.touching += 1;
                 self.same(t);
                 self.witness(t, &witness);
             }
-            Sweep::Undecided(t) => self.undecided(t, draw),
+            MotionVerdict::Undecided(t) => self.undecided(t, draw),
         }
     }
 
-    /// What comes before is proved.
-    fn undecided(&mut self, t: f64, draw: &mut Draw) {
+    /// Validates an undecided motion: the part before time `t` must be clear.
+    fn undecided(&mut self, t: f64, draw: &mut Rng) {
         let closest = self.brute.closest(&self.way, TIMES, true, draw);
         self.row.undecided.push(format!("{}, {closest:?}", self.at));
         if !(0.0..=1.0).contains(&t) {
@@ -162,11 +162,11 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether a motion has the tip and the axis where they should be.
+    /// Checks tip and axis of the motion at a time.
     fn same(&mut self, t: f64) {
         let (pose, own) = (self.motion.pose(t), self.way.pose(t));
         let tip = (pose.tip() - own.tip()).norm() - self.rounding;
-        // The formula divides by the sine.
+        // The formula for the axis divides by the sine.
         let sine = self.way.angle().sin();
         let known = 16.0 * f64::EPSILON / if sine > 0.0 { sine.min(1.0) } else { 1.0 };
         let off = tip.max((pose.axis() - own.axis()).norm() - known.min(1e-13));
@@ -189,7 +189,7 @@ impl Judge<'_> {
         if off > self.rounding {
             self.wrong(&format!("the witness is {off:e} from its triangle"));
         }
-        let surfaces = &self.pair.tool.card().surfaces;
+        let surfaces = &self.pair.tool.info().surfaces;
         let away = surfaces[witness.surface..=witness.surface]
             .iter()
             .map(|surface| self.pair.oracle.away(&surface.name, point));
@@ -199,12 +199,15 @@ impl Judge<'_> {
         }
     }
 
-    /// Inside or outside, by the angle that the part is seen under from the tool.
-    fn side(&mut self, swept: Sweep) {
+    /// Checks a verdict of inside or outside by the part's winding number about a point of the tool.
+    fn side(&mut self, swept: MotionVerdict) {
         let [_, height] = self.pair.oracle.extent();
         let top = self.way.from.tip() + self.way.from.axis() * (0.9 * height * self.brute.length);
         let inside = turns(self.pair.mesh, top).round() > 0.0;
-        if matches!((swept, inside), (Sweep::Clear, true) | (Sweep::Inside(_), false)) {
+        if matches!(
+            (swept, inside),
+            (MotionVerdict::Clear, true) | (MotionVerdict::Inside(_), false)
+        ) {
             self.wrong("it is on the other side");
         }
     }
@@ -214,7 +217,8 @@ impl Judge<'_> {
     }
 }
 
-/// How often a surface goes around a point: the sum of the angles of its triangles (Van Oosterom, Strackee 1983).
+/// Returns the winding number of a surface about a point: the sum of its triangles' solid angles (Van Oosterom,
+/// Strackee 1983) over 4π.
 fn turns(mesh: &Mesh, point: Point3<f64>) -> f64 {
     let angle = |id: u32| {
         let [a, b, c] = mesh.triangle(id).map(|corner| corner - point);
@@ -226,10 +230,10 @@ fn turns(mesh: &Mesh, point: Point3<f64>) -> f64 {
     all / (4.0 * std::f64::consts::PI)
 }
 
-/// The rows as Markdown, and under them what is not decided and what was violated.
+/// Returns the rows as a Markdown table, with lists of undecided motions and of violations.
 ///
 /// # Errors
-/// None that a text could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut page = "| tool | part | motions | proved | of these near | touching | undecided | worst over | violations |\n\
                     |---|---|--:|--:|--:|--:|--:|--:|--:|\n"

@@ -1,4 +1,4 @@
-//! Ways on which a tool is likely to come near to a part.
+//! Random motions on which a tool is likely to come near a part.
 
 use super::approach::Way;
 use super::brute::Brute;
@@ -6,9 +6,9 @@ use super::poses;
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use touchoff::Pose;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// What ways there are.
+/// The kinds of motions.
 pub const KINDS: [&str; 8] = [
     "slide",
     "swing about the tip",
@@ -20,7 +20,7 @@ pub const KINDS: [&str; 8] = [
     "any",
 ];
 
-/// How often a way is moved to where it comes near, by how many times of it.
+/// Number of times that a motion is shifted toward a near miss, and number of sampled times per shift.
 const MOVES: usize = 3;
 const TIMES: u32 = 10;
 
@@ -28,26 +28,27 @@ fn made(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
     Pose::from_axis(tip, axis.normalize()).expect("an axis")
 }
 
-fn unit(draw: &mut Draw) -> Vector3<f64> {
+fn unit(draw: &mut Rng) -> Vector3<f64> {
     Vector3::from(draw.direction())
 }
 
-/// From one power of ten to another.
-fn size(draw: &mut Draw, from: f64, to: f64) -> f64 {
+/// Returns a random number between two powers of ten.
+fn size(draw: &mut Rng, from: f64, to: f64) -> f64 {
     10f64.powf(draw.between(from, to))
 }
 
-/// A turn about anything by 0.001 to 150 degrees.
-fn turn(draw: &mut Draw) -> Rotation3<f64> {
+/// Returns a rotation about a random axis by 0.001 to 150 degrees.
+fn turn(draw: &mut Rng) -> Rotation3<f64> {
     let about = Unit::new_normalize(unit(draw));
     Rotation3::from_axis_angle(&about, size(draw, -3.0, 150f64.log10()).to_radians())
 }
 
-/// A way of a kind. Most are moved off the part until they pass it by 1e-7 to 0.5 mm, or as much too near.
-pub fn way(brute: &Brute<'_>, kind: &str, draw: &mut Draw) -> Way {
+/// Returns a random motion of a kind. Most are shifted away from the part until they pass it by 1e-7 to 0.5 mm, or
+/// overlap it by that much.
+pub fn way(brute: &Brute<'_>, kind: &str, draw: &mut Rng) -> Way {
     loop {
         let drawn = drawn(brute, kind, draw);
-        // Nearly opposite axes have a way that rounding decides.
+        // For nearly antiparallel axes, rounding decides the rotation.
         if drawn.angle().to_degrees() > 170.0 {
             continue;
         }
@@ -56,7 +57,7 @@ pub fn way(brute: &Brute<'_>, kind: &str, draw: &mut Draw) -> Way {
     }
 }
 
-fn drawn(brute: &Brute<'_>, kind: &str, draw: &mut Draw) -> Way {
+fn drawn(brute: &Brute<'_>, kind: &str, draw: &mut Rng) -> Way {
     let from = poses::pose(brute.mesh, brute.oracle, brute.length, draw);
     let (tip, axis) = (from.tip(), from.axis());
     let [low, high] = brute.mesh.bounds();
@@ -83,7 +84,7 @@ fn drawn(brute: &Brute<'_>, kind: &str, draw: &mut Draw) -> Way {
         "still" => from,
         "rapid" => {
             let far = made(tip + unit(draw) * part * size(draw, 0.5, 3.0), turn(draw) * axis);
-            // Also those that come from as far.
+            // Half of them also come from far away.
             if draw.bits().is_multiple_of(2) {
                 let back = tip - (far.tip() - tip);
                 return Way { from: made(back, axis), to: far };
@@ -95,7 +96,7 @@ fn drawn(brute: &Brute<'_>, kind: &str, draw: &mut Draw) -> Way {
     if draw.bits().is_multiple_of(2) { Way { from, to } } else { Way { from: to, to: from } }
 }
 
-fn moved(brute: &Brute<'_>, mut way: Way, draw: &mut Draw) -> Way {
+fn moved(brute: &Brute<'_>, mut way: Way, draw: &mut Rng) -> Way {
     let [radius, _] = brute.oracle.extent();
     let gap = size(draw, -7.0, -0.3) * (radius * brute.length / 5.0);
     let gap = if draw.bits().is_multiple_of(10) { -gap } else { gap };

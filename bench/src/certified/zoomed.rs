@@ -1,9 +1,9 @@
-//! Certified depths beside the largest of millions of samples that zoom in on the deepest places.
+//! Certified depths compared with the largest of millions of samples that zoom in on the deepest points.
 //!
-//! Half of the samples are middles of triangles and of their halves. Next is always the piece that may have the deepest
-//! place, since depth changes by no more than so many times the way. About the deepest of these samples the others are
-//! drawn, in neighbourhoods that shrink from round to round until they are as small as rounding. The largest depth must
-//! not be above the upper bound, and should reach the lower one, which the search does not know.
+//! The first half of the samples are centroids of triangles and of their repeated halves. The next piece is always the
+//! one that may have the greatest depth, since depth is Lipschitz. The other samples are drawn around the deepest of
+//! these. Their neighbourhoods shrink from round to round until they are as small as rounding. The greatest depth must
+//! not exceed the upper bound, and should reach the lower bound, which the search does not know.
 
 use super::subject::Subject;
 use super::{Worst, buried, poses};
@@ -11,59 +11,59 @@ use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt::Write;
-use touchoff::certify::{Certifier, Facets};
+use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{Mesh, Pose, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 /// A point of the tool's frame.
 type Point = [f64; 3];
 
-/// Places that are zoomed in on at first and at last.
+/// Number of points that are zoomed in on, at first and at last.
 const PLACES: [usize; 2] = [48, 6];
-/// A neighbourhood's part of the one before.
+/// Ratio of the sizes of successive neighbourhoods.
 const SHRINK: f64 = 0.4;
-/// A tool and a part.
+/// A part, a tool and its oracle.
 pub struct Zoomed<'a> {
-    /// The part's name, for people.
+    /// The part's name in messages.
     pub part: &'a str,
     /// The part.
     pub mesh: &'a Mesh,
-    /// Its triangles in a tree.
-    pub facets: &'a Facets,
+    /// The part's triangles in a bounding volume hierarchy.
+    pub bvh: &'a TriangleBvh,
     /// The tool.
     pub tool: &'a dyn Tool,
-    /// The tool as the oracle knows it.
+    /// The oracle of the tool.
     pub subject: &'a Subject,
 }
 
-/// The figures of a tool and a part. Lengths are parts of the tool's size.
+/// The results for a tool and a part. Lengths are shares of the tool's size.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    /// The tool.
+    /// The tool's name.
     pub tool: String,
-    /// The part.
+    /// The part's name.
     pub part: String,
-    /// Poses that were asked about.
+    /// Number of poses queried.
     pub poses: usize,
-    /// Those at which a sample is inside the tool.
+    /// Number of poses at which a sample is inside the tool.
     pub touching: usize,
-    /// All samples.
+    /// Number of samples.
     pub samples: u64,
-    /// By how much a sample is above the upper bound. More than rounding is a violation.
+    /// Excess of a sample's depth over the upper bound. More than rounding is a violation.
     pub over: Worst,
-    /// By how much the samples fall short of the lower bound.
+    /// Excess of the lower bound over the samples' greatest depth.
     pub behind: Worst,
-    /// At how many poses they come near enough.
+    /// Number of poses at which the samples come near enough to the lower bound.
     pub reached: usize,
-    /// The widest interval.
+    /// The width of the widest interval.
     pub wide: Worst,
-    /// How many intervals are wider than the tolerance and rounding.
+    /// Number of intervals wider than tolerance and rounding together.
     pub wider: usize,
-    /// Poses at which a sample is above the upper bound.
+    /// Poses at which a sample exceeds the upper bound.
     pub violations: Vec<String>,
 }
 
-/// A sample: its depth, its triangle, and two of its weights there.
+/// A sample: its depth, its triangle, and two of its barycentric weights.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     depth: f64,
@@ -71,11 +71,11 @@ struct Sample {
     at: [f64; 2],
 }
 
-/// A piece of a triangle whose middle was asked: no place of it is deeper than the bound.
+/// A piece of a triangle whose centroid was evaluated. No point of it is deeper than the bound.
 struct Piece {
     bound: f64,
     triangle: usize,
-    /// Two weights of each corner.
+    /// Two barycentric weights of each corner.
     corners: [[f64; 2]; 3],
 }
 
@@ -100,22 +100,22 @@ impl PartialEq for Piece {
 impl Eq for Piece {}
 
 impl Zoomed<'_> {
-    /// Asks about so many poses, with so many samples each.
+    /// Compares random poses, with `samples` samples at each pose where a triangle is near.
     ///
     /// # Panics
-    /// If the tool is refused.
+    /// If the certifier rejects the tool.
     pub fn measure(&self, poses: usize, samples: u64, seed: u64) -> Row {
-        let mut draw = Draw::new(seed);
-        let card = self.tool.card();
-        let length = card.unit.to(self.mesh.unit());
+        let mut draw = Rng::new(seed);
+        let info = self.tool.info();
+        let length = info.unit.factor_to(self.mesh.unit());
         let [radius, height] = self.subject.oracle().extent();
         let size = radius.max(height) * length;
         let [tolerance, near] = self.subject.tolerance(size);
         let [low, high] = self.mesh.bounds();
         let part = (high - low).norm() + low.coords.amax().max(high.coords.amax());
         let rounding = 64.0 * f64::EPSILON * (size + part);
-        let mut certifier = Certifier::new(self.facets, self.tool).expect("a tool that is proved");
-        let (tool, part) = (card.name.to_string(), self.part.to_owned());
+        let mut certifier = Certifier::new(self.bvh, self.tool).expect("a tool that is proved");
+        let (tool, part) = (info.name.to_string(), self.part.to_owned());
         let mut row = Row { tool, part, poses, ..Row::default() };
         for _ in 0..poses {
             let pose = self.pose(length, &mut draw);
@@ -138,12 +138,12 @@ impl Zoomed<'_> {
         row
     }
 
-    /// A pose at which the tool is likely to touch the part.
-    fn pose(&self, length: f64, draw: &mut Draw) -> Pose {
+    /// Returns a pose at which the tool is likely to touch the part.
+    fn pose(&self, length: f64, draw: &mut Rng) -> Pose {
         if let Subject::Profile(nearest, _) = self.subject {
             return poses::pose(self.mesh, nearest, length, draw);
         }
-        // Some place of the tool is at some place of the part.
+        // A random point inside the tool's extent is placed at a random point of the part.
         let [a, b, c] =
             self.mesh.triangle((draw.bits() as usize % self.mesh.triangles().len()) as u32);
         let (v, w) = (draw.between(0.0, 0.5), draw.between(0.0, 0.5));
@@ -159,11 +159,12 @@ impl Zoomed<'_> {
             }
         };
         let turned = Pose::from_quaternion(Point3::origin(), turn).expect("a quaternion");
-        turned.shifted(place.coords - turned.rotation() * inside).expect("a place near the part")
+        turned.translated(place.coords - turned.rotation() * inside).expect("a place near the part")
     }
 
-    /// The largest depth of samples in the tool's unit, and how many these are: none if no triangle is near.
-    fn deepest(&self, pose: &Pose, samples: u64, draw: &mut Draw) -> (f64, u64) {
+    /// Returns the greatest depth of the samples, in the tool's unit, and their number. Without a triangle nearby the
+    /// depth is negative infinity and the number 0.
+    fn deepest(&self, pose: &Pose, samples: u64, draw: &mut Rng) -> (f64, u64) {
         let triangles = self.near(pose);
         if triangles.is_empty() {
             return (f64::NEG_INFINITY, 0);
@@ -188,7 +189,7 @@ impl Zoomed<'_> {
         (best[0].depth, asked)
     }
 
-    /// The deepest middles of halved triangles, and how far the pieces reached at last.
+    /// Bisects triangles. Returns the deepest centroids, and the size of the neighbourhoods to start with.
     fn halved(&self, triangles: &[[Point; 3]], count: u64, asked: &mut u64) -> (Vec<Sample>, f64) {
         let mut best: Vec<Sample> = Vec::new();
         let mut pieces = BinaryHeap::new();
@@ -219,7 +220,7 @@ impl Zoomed<'_> {
         (best, (4.0 * reach).min(widest[0].max(widest[1])))
     }
 
-    /// A piece of a triangle, its middle asked, and how far it reaches from there.
+    /// Evaluates a piece's centroid, and returns the piece and its radius about the centroid.
     fn piece(
         &self,
         triangles: &[[Point; 3]],
@@ -234,14 +235,14 @@ impl Zoomed<'_> {
         let reaches = corners.map(|corner| distance(middle, point(&triangles[triangle], corner)));
         let reach = reaches[0].max(reaches[1]).max(reaches[2]);
         let steep = self.subject.steepest();
-        // Outside depth is the distance; only inside it may be steeper.
+        // Outside, the depth is minus the distance, which is 1-Lipschitz; it can be steeper only inside.
         let bound = if depth < 0.0 { steep * (depth + reach) } else { depth + steep * reach };
         (Piece { bound, triangle, corners }, reach)
     }
 
-    /// The triangles whose boxes meet that of the tool, in its frame and unit.
+    /// Returns the triangles whose boxes overlap the tool's box, in the tool's frame and unit.
     fn near(&self, pose: &Pose) -> Vec<[Point; 3]> {
-        let length = self.tool.card().unit.to(self.mesh.unit());
+        let length = self.tool.info().unit.factor_to(self.mesh.unit());
         let [radius, height] = self.subject.oracle().extent();
         let back = pose.rotation().transpose();
         let inside = |p: Point3<f64>| -> Point { (back * (p - pose.tip()) / length).into() };
@@ -258,8 +259,8 @@ impl Zoomed<'_> {
         ids.map(|id| self.mesh.triangle(id).map(inside)).filter(near).collect()
     }
 
-    /// A sample in a neighbourhood of another, which it replaces if it is deeper.
-    fn beside(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, draw: &mut Draw) {
+    /// Draws a sample in the neighbourhood of another, and replaces that one if the new sample is deeper.
+    fn beside(&self, corners: &[Point; 3], reach: f64, best: &mut Sample, draw: &mut Rng) {
         let [a, b, c] = corners;
         let step = |to: &Point| {
             let way = [0, 1, 2].map(|k| to[k] - a[k]);
@@ -282,7 +283,7 @@ impl Zoomed<'_> {
     }
 }
 
-/// Puts a sample among the deepest, which are in order.
+/// Inserts a sample into the sorted list of the deepest.
 fn keep(best: &mut Vec<Sample>, sample: Sample) {
     if best.len() < PLACES[0] || sample.depth > best[PLACES[0] - 1].depth {
         let place = best.partition_point(|other| other.depth >= sample.depth);
@@ -291,7 +292,7 @@ fn keep(best: &mut Vec<Sample>, sample: Sample) {
     }
 }
 
-/// The halves of a piece, cut through its longest side.
+/// Bisects a piece at its longest edge.
 fn halves(triangle: &[Point; 3], corners: [[f64; 2]; 3]) -> [[[f64; 2]; 3]; 2] {
     let places = corners.map(|corner| point(triangle, corner));
     let long = [0, 1, 2].map(|k| distance(places[k], places[(k + 1) % 3]));
@@ -306,15 +307,15 @@ fn distance(a: Point, b: Point) -> f64 {
     way.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-/// The point of a triangle with two of its weights.
+/// Returns the point of a triangle with two barycentric weights.
 fn point([a, b, c]: &[Point; 3], [v, w]: [f64; 2]) -> Point {
     [0, 1, 2].map(|k| a[k] + v * (b[k] - a[k]) + w * (c[k] - a[k]))
 }
 
-/// The rows as Markdown, those of tools inside blocks, and what was violated.
+/// Returns the rows and those of tools inside blocks as Markdown tables, with a list of violations.
 ///
 /// # Errors
-/// None that a text could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn table(rows: &[Row], blocks: &[buried::Row]) -> Result<String, std::fmt::Error> {
     let mut page =
         "| tool | part | poses | in contact | worst over | worst behind | reached | widest | wider | violations |\n\

@@ -1,4 +1,4 @@
-//! The page `accuracy.md`: compiled tools beside 256 bits.
+//! The page `accuracy.md`: compiled tools compared with a 256-bit reference.
 
 use clap::Args;
 use std::error::Error;
@@ -7,10 +7,10 @@ use touchoff_bench::page::{Page, Section};
 use touchoff_bench::parallel;
 use touchoff_tests::accuracy::{Row, measure, tools};
 
-/// Compares compiled tools with 256 bits: depth, side, owner and direction.
+/// Compares compiled tools with a 256-bit reference: depth, side, owner and direction.
 #[derive(Args)]
 pub(crate) struct Accuracy {
-    /// Points of each tool.
+    /// Number of points per tool.
     #[arg(long, value_name = "N", default_value_t = 1_000_000)]
     points: usize,
 }

@@ -1,4 +1,4 @@
-//! The page `compile.md`: the size of each tool's code, the time that compiling it takes, and what a tool costs that is not compiled.
+//! The page `compile.md`: size of each tool's code, compile time, and cost of loading a tool at run time instead.
 
 use super::interpreter;
 use clap::Args;
@@ -8,13 +8,13 @@ use std::process::Command;
 use touchoff_bench::compile::{Parts, Times, parts, sources, times};
 use touchoff_bench::page::{Page, Section};
 
-/// Times each tool is compiled, optimised and not.
+/// Number of compilations of each tool: in the release build, and in the unoptimised build.
 const COUNTS: [usize; 2] = [7, 3];
 
-/// Measures the code of each tool, the time that compiling it takes, optimised and not, and what it costs to load it instead.
+/// Measures the code of each tool, its compile time with and without optimisation, and the cost of interpreting it.
 #[derive(Args)]
 pub(crate) struct Compile {
-    /// Prints only the times of this build, in seconds, a line a tool: best, median and worst.
+    /// Prints only the compile times of this build, in seconds: one line per tool with best, median and worst.
     #[arg(long)]
     times: bool,
 }
@@ -48,12 +48,12 @@ impl Compile {
     }
 }
 
-/// The name of a tool's file: the folder may be another in a build that was kept.
+/// Returns the file name of a tool: the folder may differ in a cached build.
 fn file(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-/// The times of a build such as a user's `cargo build` makes of the macros: nothing optimised.
+/// Returns the compile times in an unoptimised build, as a user's `cargo build` runs the macros.
 fn unoptimised() -> Result<BTreeMap<String, Times>, Box<dyn Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
@@ -81,7 +81,7 @@ fn row(parts: &Parts, took: Times, slow: Times) -> String {
         "| {} | {segments} | {} | {} | {} | {:.1} | {:.1} |",
         parts.name, parts.regions, parts.curves, parts.tests, parts.splits[0], parts.splits[1],
     );
-    row += &format!(" {} |", operations("feel"));
+    row += &format!(" {} |", operations("evaluate_lanes"));
     for took in [took, slow] {
         for time in [took.best, took.median, took.worst] {
             row += &format!(" {:.1} |", 1e3 * time);
@@ -94,12 +94,12 @@ fn body(rows: &str) -> String {
     let [often, seldom] = COUNTS;
     format!(
         "**Tests** are those of the tree of owners; **met** is how many of them one point meets on average, within 2 % of the largest
-radius from the surface and anywhere in the tool's box. **Feel** are the operations of the code for lanes: arithmetic, square
+radius from the surface and anywhere in the tool's box. **Operations** are those of the code for lanes: arithmetic, square
 roots, comparisons, selects; a block of points executes those on its way and of its regions. **Times** are from a text to its tokens, in ms: best, median and worst
 of {often} in a release build, of {seldom} in one where nothing is optimised, as when a user's `cargo build` expands a macro (profile
 `user`). `Assembly30` is a cutter, its nut, a holder and a spindle nose. Goals for it: 50 ms and 300 ms.
 
-| tool | segments | regions | curves | tests | met near | met in box | feel | release: best | median | worst | debug: best | median | worst |
+| tool | segments | regions | curves | tests | met near | met in box | operations | release: best | median | worst | debug: best | median | worst |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 {rows}"
     )

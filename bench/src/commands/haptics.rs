@@ -2,7 +2,7 @@
 
 use clap::Args;
 use std::error::Error;
-use touchoff::haptic::{Energy, Rendering};
+use touchoff::haptic::{EnergyBalance, Rendering};
 use touchoff::scenes::tube;
 use touchoff::{Law, Part};
 use touchoff_bench::haptics::latency;
@@ -11,13 +11,13 @@ use touchoff_bench::haptics::shake::{Case, Shaking, Way, shaking, tools};
 use touchoff_bench::page::{Page, Section};
 use touchoff_tests::haptics::{energy, sheet, wall};
 
-/// Measures the haptic loop: walls, shaking, energy, a thin sheet and latencies.
+/// Measures the haptic loop: stable wall stiffness, force roughness, energy, a thin sheet and latencies.
 #[derive(Args)]
 pub(crate) struct Haptics {
-    /// Measures a sample.
+    /// Measures a small sample instead of the full set.
     #[arg(long)]
     quick: bool,
-    /// Time over which the latency of a loop is measured, s; a tenth of it at higher rates.
+    /// Duration of each latency measurement, in seconds; at the higher rate a tenth of it.
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = super::not_negative)]
     latency: f64,
 }
@@ -34,7 +34,7 @@ impl Haptics {
             sheet: pressed(),
             tapping: tapped(),
             latency: {
-                // Five times as fast for a tenth of the time.
+                // At five times the rate, a tenth of the time.
                 let rates: &[f64] = if self.quick { &[1.0] } else { &[1.0, 5.0] };
                 let run = |times: &f64| {
                     let seconds = if *times > 1.0 { self.latency / 10.0 } else { self.latency };
@@ -81,7 +81,7 @@ fn shaken(quick: bool) -> Result<Vec<Shaken>, Box<dyn Error>> {
     Ok(rows)
 }
 
-fn tapped() -> Vec<(&'static str, Vec<Energy>)> {
+fn tapped() -> Vec<(&'static str, Vec<EnergyBalance>)> {
     let part = energy::plane();
     let direct = Some(Rendering::Direct { scaled: false, damping: 0.0 });
     vec![

@@ -1,20 +1,20 @@
-//! A tool that is loaded at run time beside the same tool compiled, by the same queries, interleaved pose by pose in one process.
+//! Compares interpreted tools with the same tools compiled: the same queries in one process, interleaved pose by pose.
 
 use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
-use touchoff::scenes::{Path, tube};
+use touchoff::scenes::{ScenePath, tube};
 use touchoff::tool::{Interpreted, Tool};
 use touchoff::{Cloud, Part, Pose, Probe};
 use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
-/// Poses of a row; each is asked for once, so that nothing is learnt.
+/// Number of poses per row; each is queried once per tool, so that branch predictors learn no pose.
 const POSES: usize = 4_000;
 
-/// Returns the section of all tools of the library.
+/// Returns the section about all library tools.
 pub(super) fn section() -> Result<Section, Box<dyn Error>> {
-    let cloud = Cloud::random(&tube(), 20_000, 1)?;
+    let cloud = Cloud::uniform(&tube(), 20_000, 1)?;
     let part = Part::from_cloud(&cloud);
     let mut body = format!(
             "Wrenches at {POSES} poses along the tube of 20,000 points, each pose asked once of both, interleaved; median ns a query.
@@ -27,10 +27,10 @@ The forces are equal to the bit.
     let mut ratios = Vec::new();
     for source in library() {
         let Ok(loaded) = Interpreted::parse(&source) else { continue };
-        let Some(compiled) = tools_library::find(&loaded.card().name) else { continue };
-        let name = &loaded.card().name;
+        let Some(compiled) = tools_library::find(&loaded.info().name) else { continue };
+        let name = &loaded.info().name;
         eprintln!("{name}");
-        for path in [Path::Outside, Path::Inside] {
+        for path in [ScenePath::Outside, ScenePath::Inside] {
             let (contacts, [fast, slow]) = measure(&part, [compiled, &loaded], path);
             let ratio = slow / fast;
             ratios.push(ratio);
@@ -47,8 +47,8 @@ The forces are equal to the bit.
     Ok(Section { title: "Loaded at run time", body, missed: Vec::new() })
 }
 
-/// Contacts on average, and the median time of each of two tools.
-fn measure(part: &Part, tools: [&dyn Tool; 2], path: Path) -> (f64, [f64; 2]) {
+/// Returns the mean number of contacts, and the median time per query of each tool, ns.
+fn measure(part: &Part, tools: [&dyn Tool; 2], path: ScenePath) -> (f64, [f64; 2]) {
     let mut probes = tools.map(|tool| Probe::new(part, tool));
     let mut times = [Vec::with_capacity(POSES), Vec::with_capacity(POSES)];
     let mut contacts = 0;
@@ -58,10 +58,10 @@ fn measure(part: &Part, tools: [&dyn Tool; 2], path: Path) -> (f64, [f64; 2]) {
         let mut forces = [None; 2];
         for which in order {
             let start = Instant::now();
-            let felt = probes[which].wrench(&pose);
+            let evaluation = probes[which].wrench(&pose);
             times[which].push(start.elapsed().as_secs_f64() * 1e9);
-            contacts += felt.colliding;
-            forces[which] = Some(felt.force);
+            contacts += evaluation.colliding;
+            forces[which] = Some(evaluation.force);
         }
         assert_eq!(forces[0], forces[1], "both do the same operations");
     }

@@ -1,4 +1,4 @@
-//! The commands, by the pages that they make.
+//! The commands, one per page.
 
 mod accuracy;
 mod certified;
@@ -26,13 +26,13 @@ pub(crate) use work_precision::WorkPrecision;
 
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of parts that an option names, or the one beside the repository.
+/// Returns the folder of parts: the one given, or else the default beside the repository.
 fn parts(folder: Option<&Path>) -> PathBuf {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
     folder.map_or_else(beside, Path::to_owned)
 }
 
-/// Parses a number of 0 or more.
+/// Parses a finite number of 0 or more.
 fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
@@ -40,7 +40,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Parses the name of a tool of the library.
+/// Checks that the library has a tool with this name.
 fn tool(text: &str) -> Result<String, String> {
     match tools_library::find(text) {
         Some(_) => Ok(text.to_owned()),

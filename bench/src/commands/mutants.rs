@@ -1,4 +1,4 @@
-//! Proofs of tools that are broken on purpose.
+//! The section of `proofs.md` about tools with deliberate defects.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -8,12 +8,12 @@ use touchoff_bench::mutants::{Caught, KINDS, caught, changes, mutants};
 use touchoff_bench::page::Section;
 use touchoff_tests::library::library;
 
-/// Times that each tool is broken.
+/// Number of mutants per tool.
 const EACH: usize = 20;
-/// Columns of counts: all, alike, and one for each [`Caught`].
+/// Number of columns with counts: all mutants, those that are alike, and one per variant of [`Caught`].
 const COLUMNS: usize = 7;
 
-/// Breaks every tool of the library on purpose, and returns the section that counts what proofs see of it.
+/// Makes mutants of every library tool and returns the section that counts which of them the proofs detect.
 pub(super) fn section() -> Result<Section, Box<dyn Error>> {
     let mut body = format!(
             "Every tool is broken {EACH} times, in one place each, after it was compiled; and `touchoff check`'s proof is made once more. **Alike** are

@@ -1,28 +1,28 @@
-//! The page `postures.md`: postures of a sweep beside brute force.
+//! The page `postures.md`: postures of a sweep compared with brute force.
 
 use clap::Args;
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use touchoff::mesh::Shape;
+use touchoff::mesh::Geometry;
 use touchoff::{Mesh, Unit};
 use touchoff_bench::page::{Page, Section};
 use touchoff_bench::postures::page::page;
 use touchoff_bench::postures::parts::relief;
 use touchoff_bench::postures::{Odd, Wanted, measure};
 
-/// Into how many squares a side the part is cut that is made here.
+/// Number of squares per side of the generated part.
 const SQUARES: u32 = 64;
 
-/// Judges postures of a sweep again by brute force.
+/// Validates postures of a sweep by brute force.
 #[derive(Args)]
 pub(crate) struct Postures {
-    /// A mesh in STL, PLY or OBJ [default: a relief that is made here].
+    /// Mesh of the part in STL, PLY or OBJ [default: a generated relief].
     #[arg(long, value_name = "FILE", requires = "unit")]
     part: Option<PathBuf>,
-    /// The part's unit: `mm`, `inch` or `m`.
+    /// Unit of the part: `mm`, `inch` or `m`.
     #[arg(long, requires = "part")]
     unit: Option<Unit>,
-    /// Tools of the library by name, separated by commas.
+    /// Library tools by name, separated by commas.
     #[arg(
         long,
         value_name = "A,B,…",
@@ -31,19 +31,19 @@ pub(crate) struct Postures {
         value_parser = super::tool
     )]
     tools: Vec<String>,
-    /// Directions of a hemisphere.
+    /// Number of directions on a hemisphere.
     #[arg(long, value_name = "N", default_value_t = 200)]
     directions: usize,
-    /// Allowed depth of what cuts, in the part's unit.
+    /// Allowed depth of cutting surfaces, in the part's unit.
     #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = super::not_negative)]
     tolerance: f64,
-    /// Niceness that contacts have to exceed.
+    /// Niceness that contacts must exceed.
     #[arg(long, value_name = "N", default_value_t = 0.5, value_parser = super::not_negative)]
     niceness: f64,
-    /// Postures of either kind that are judged again.
+    /// Number of postures of each kind that are validated.
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     draws: usize,
-    /// Seed by which they are drawn.
+    /// Seed for the random choice of postures.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
 }
@@ -84,8 +84,8 @@ impl Postures {
 }
 
 fn read(file: &Path, unit: Unit) -> Result<Mesh, Box<dyn Error>> {
-    match Shape::read(file, unit)? {
-        Shape::Mesh(mesh) => Ok(mesh),
-        Shape::Points(_) => Err(format!("{} has no triangles", file.display()).into()),
+    match Geometry::read(file, unit)? {
+        Geometry::Mesh(mesh) => Ok(mesh),
+        Geometry::Points(_) => Err(format!("{} has no triangles", file.display()).into()),
     }
 }

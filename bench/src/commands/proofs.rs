@@ -1,4 +1,4 @@
-//! The page `proofs.md`: bounds that are proved of every tool, and what proofs see of tools that are broken on purpose.
+//! The page `proofs.md`: bounds proved for every tool, and the detection of tools with deliberate defects.
 
 use super::mutants;
 use clap::Args;
@@ -6,12 +6,12 @@ use std::error::Error;
 use std::fmt::Write;
 use std::time::Instant;
 use tool_dsl::compile;
-use tool_dsl::diagnostic::figure;
+use tool_dsl::diagnostic::format_number;
 use tool_dsl::prove::Certificate;
 use touchoff_bench::compile::sources;
 use touchoff_bench::page::{Page, Section};
 
-/// Proves bounds of every tool of the library, and breaks each on purpose to count what proofs see of it.
+/// Proves bounds for every library tool, and counts the deliberate defects that the proofs detect.
 #[derive(Args)]
 pub(crate) struct Proofs {}
 
@@ -34,13 +34,13 @@ boxes where the proof did not come to an end. Times are those of the proof alone
             let took = 1e3 * start.elapsed().as_secs_f64();
             let inner = || proved.borders.iter().filter(|border| border.between.1.is_some());
             let count = |is: &dyn Fn(f64) -> bool| inner().filter(|b| is(b.jump.high)).count();
-            let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), figure);
+            let bound = |bound: Option<f64>| bound.map_or("-".to_owned(), format_number);
             writeln!(
                 body,
                 "| {} | {} | {} | {} | {:.0e} | {} | {} | {} | {} | {} | {} | {took:.1} |",
                 tool.model.name,
                 tool.model.regions.len(),
-                bound(proved.least()),
+                bound(proved.lower_slope()),
                 bound(proved.lipschitz()),
                 proved.slack,
                 if proved.is_exact() { "yes" } else { "no" },

@@ -1,4 +1,4 @@
-//! The page `stress.md`: every tool at points, poses and scenes that are hard.
+//! The page `stress.md`: every tool at difficult points, poses and scenes.
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
@@ -7,19 +7,19 @@ use touchoff_bench::page::{Page, Section};
 use touchoff_bench::stress::ledger::ITEMS;
 use touchoff_bench::stress::{Amount, measure, page};
 
-/// Compares every tool with 256 bits at points, poses and scenes that are hard.
+/// Compares every tool with a 256-bit reference at difficult points, poses and scenes.
 #[derive(Args)]
 pub(crate) struct Stress {
-    /// Measures a sample.
+    /// Measures a small sample instead of the full set.
     #[arg(long)]
     quick: bool,
-    /// Seed of points, poses and scenes.
+    /// Seed for points, poses and scenes.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Measures this item of the list alone, by its number [default: all].
+    /// Measures only the item with this number [default: all items].
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=ITEMS.len() as u64))]
     item: Option<usize>,
-    /// Measures this tool alone [default: all of the library].
+    /// Measures only the library tool with this name [default: all tools].
     #[arg(long, value_name = "NAME", value_parser = super::tool)]
     tool: Option<String>,
 }

@@ -1,17 +1,17 @@
-//! The page `sweeps.md`: certified sweeps beside samples.
+//! The page `sweeps.md`: certified motions compared with samples.
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::error::Error;
 use touchoff::Mesh;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff_bench::certified::sweeps::{Row, table};
 use touchoff_bench::certified::{Pair, poses};
 use touchoff_bench::page::{Page, Section};
 use touchoff_bench::parallel;
 use touchoff_tests::oracle::Nearest;
 
-/// The last is in inches.
+/// Library tools; the last is in inches.
 const TOOLS: [&str; 10] = [
     "Fig73Exact",
     "BullNose",
@@ -25,16 +25,16 @@ const TOOLS: [&str; 10] = [
     "HalfInchBallCat40",
 ];
 
-/// Compares certified sweeps with samples of the motions.
+/// Compares certified motions with samples of them.
 #[derive(Args)]
 pub(crate) struct Sweeps {
-    /// Motions that are proved, of all parts and tools together.
+    /// Number of motions to prove clear, over all parts and tools together.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     motions: usize,
-    /// Seed of the motions.
+    /// Seed for the motions.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Measures this tool alone, by as many motions as it has among all [default: all].
+    /// Measures only this tool, with its share of the motions [default: all tools].
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(TOOLS))]
     tool: Option<String>,
 }
@@ -66,9 +66,9 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
         }))
     }
 
-    /// Returns a row for each part and tool.
+    /// Returns one row per part and tool.
     fn rows(&self, parts: &[(&str, Mesh)], each: usize) -> Vec<Row> {
-        let facets: Vec<Facets> = parts.iter().map(|(_, mesh)| Facets::new(mesh)).collect();
+        let bvh: Vec<TriangleBvh> = parts.iter().map(|(_, mesh)| TriangleBvh::new(mesh)).collect();
         let wanted = |name: &str| self.tool.as_deref().is_none_or(|only| only == name);
         let asked = (0..parts.len() * TOOLS.len()).filter(|k| wanted(TOOLS[k % TOOLS.len()]));
         let asked: Vec<usize> = asked.collect();
@@ -77,9 +77,9 @@ much a sample is deeper than the tolerance and rounding, less than 0 where none 
             let ((part, mesh), name) = (&parts[k / TOOLS.len()], TOOLS[k % TOOLS.len()]);
             let tool = tools_library::find(name).expect("a tool of the library");
             let oracle = Nearest::of(name);
-            let facets = &facets[k / TOOLS.len()];
-            let row = Pair { part, mesh, facets, tool, oracle: &oracle }
-                .sweeps(each, self.seed + k as u64);
+            let bvh = &bvh[k / TOOLS.len()];
+            let row =
+                Pair { part, mesh, bvh, tool, oracle: &oracle }.sweeps(each, self.seed + k as u64);
             eprintln!(
                 "{name} in {part}: {} of {} proved, {} undecided, {} violations",
                 row.proved,

@@ -1,4 +1,4 @@
-//! The page `triangles.md`: how long it takes to prove depths in triangles, and, with the feature `peers`, `parry3d`'s contact.
+//! The page `triangles.md`: times of certified depths, and with the feature `peers` of `parry3d`'s contact query.
 
 use clap::Args;
 use nalgebra::{Point3, Vector3};
@@ -6,9 +6,9 @@ use std::error::Error;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use tools_library::{Fig73Exact, Flat};
-use touchoff::certify::{Certifier, Clear, Facets, Sweep};
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
-use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, Path, apart};
+use touchoff::scenes::{BALL, HEIGHT, INNER, POSES, ScenePath, apart};
 use touchoff::{Mesh, Motion, Pose, Tool, Unit};
 use touchoff_bench::page::{Page, Section};
 #[cfg(feature = "peers")]
@@ -18,19 +18,19 @@ use touchoff_bench::race::contender::{Answer, Contender};
 
 /// Tolerance of certified depths, mm.
 const TOLERANCE: f64 = 1e-9;
-/// Depth of tools in the scenes where many triangles are as deep, mm.
+/// Depth in the scenes where many triangles are equally deep, mm.
 const TIED: f64 = 0.1;
 
-/// Methods that say no depth.
+/// Methods that return a verdict without a depth.
 const YES_OR_NO: [&str; 2] = ["touchoff clear", "touchoff sweep"];
 
-/// Times certified depths, and whether a tool or a motion is clear, on meshes of several sizes.
+/// Times certified depths and the verdicts on poses and motions, on meshes of several sizes.
 #[derive(Args)]
 pub(crate) struct Triangles {
-    /// Triangles of the meshes, about.
+    /// Approximate numbers of triangles of the meshes, separated by commas.
     #[arg(long, value_name = "N,M,…", value_delimiter = ',', default_value = "2000,20000,200000")]
     triangles: Vec<usize>,
-    /// Time that a method may take for a row, s; slower ones sit out poses.
+    /// Time limit of a method per row, in seconds; slower methods skip poses.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.4, value_parser = super::not_negative)]
     seconds: f64,
 }
@@ -54,26 +54,26 @@ impl Triangles {
     }
 }
 
-/// A scene of triangles.
+/// A scene: a mesh, a tool and poses.
 #[derive(Clone, Copy)]
 enum Scene {
-    /// The tube and a path of `touchoff::scenes`.
-    Along(Path),
-    /// The ball that far from the tube.
+    /// The tube, with a path of [`touchoff::scenes`].
+    Along(ScenePath),
+    /// The ball at this distance from the tube, mm.
     Apart(f64),
-    /// A flat end flat on a plate.
+    /// A flat end mill upright on a plate.
     Flat,
-    /// The side of a cutter along a plate.
+    /// A flat end mill with its side along a plate.
     Line,
-    /// A cutter in a bore as wide as it is, but for the depth.
+    /// A flat end mill in a bore of its own diameter, less twice the depth.
     Bore,
 }
 
 impl Scene {
     const ALL: [Scene; 8] = [
-        Scene::Along(Path::Outside),
-        Scene::Along(Path::Inside),
-        Scene::Along(Path::Hold),
+        Scene::Along(ScenePath::Outside),
+        Scene::Along(ScenePath::Inside),
+        Scene::Along(ScenePath::Hold),
         Scene::Apart(1.0),
         Scene::Apart(0.01),
         Scene::Flat,
@@ -98,11 +98,11 @@ impl Scene {
         }
     }
 
-    /// A mesh of about so many triangles.
+    /// Returns a mesh of about this many triangles.
     fn mesh(self, triangles: usize) -> Mesh {
         let root = (triangles as f64).sqrt();
         let tube = |inner: f64, height: f64| {
-            // As wide as high, as triangles of a wall are.
+            // The triangles of a wall come out about as wide as high.
             let around = (root * 0.9).round().max(3.0);
             let layers = (triangles as f64 / (4.0 * around) - 1.0).round().max(1.0);
             shapes::tube(inner, inner + 2.0, height, around as u32, layers as u32, Unit::Millimetre)
@@ -137,7 +137,7 @@ impl Scene {
     }
 }
 
-/// The depth, proved.
+/// The certified depth.
 struct Certified<'a>(Certifier<'a>);
 
 impl Contender for Certified<'_> {
@@ -152,7 +152,7 @@ impl Contender for Certified<'_> {
     }
 }
 
-/// The verdict of a pose.
+/// The verdict on a pose.
 struct Cleared<'a>(Certifier<'a>);
 
 impl Contender for Cleared<'_> {
@@ -161,13 +161,14 @@ impl Contender for Cleared<'_> {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let clear = matches!(self.0.clear(pose), Clear::Clear | Clear::SurfaceOnly);
+        let clear =
+            matches!(self.0.check_pose(pose), PoseVerdict::Clear | PoseVerdict::SurfaceOnly);
         Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
     }
 }
 
-/// The verdict of a way of a tool's radius: along the wall, in half of the poses swung by a
-/// tenth of a radian the while.
+/// The verdict on a motion along the wall by the radius of the ball; in half of the poses the tool also swings by a
+/// tenth of a radian.
 struct Swept<'a>(Certifier<'a>);
 
 impl Contender for Swept<'_> {
@@ -185,15 +186,15 @@ impl Contender for Swept<'_> {
         let axis = (pose.axis() + swing * way.normalize()).normalize();
         let to = Pose::from_axis(centre + way - BALL * axis, axis).expect("a unit vector");
         let motion = Motion::new(pose, &to).expect("axes that are not opposite");
-        let clear = matches!(self.0.sweep_clear(&motion, TOLERANCE), Sweep::Clear);
+        let clear = matches!(self.0.check_motion(&motion, TOLERANCE), MotionVerdict::Clear);
         Answer { colliding: usize::from(!clear), depth: 0.0, wrench: None }
     }
 }
 
-/// Times the methods of a scene on a mesh, and adds a row for each.
+/// Times the methods of a scene on a mesh, and adds one row per method.
 fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt::Result {
-    let facets = Facets::new(mesh);
-    let certifier = || Certifier::new(&facets, scene.tool()).expect("a tool with a profile");
+    let bvh = TriangleBvh::new(mesh);
+    let certifier = || Certifier::new(&bvh, scene.tool()).expect("a tool with a profile");
     let mut methods: Vec<Box<dyn Contender>> =
         vec![Box::new(Certified(certifier())), Box::new(Cleared(certifier()))];
     if let Scene::Apart(_) = scene {
@@ -213,7 +214,8 @@ fn rows(body: &mut String, scene: Scene, mesh: &Mesh, seconds: f64) -> std::fmt:
     Ok(())
 }
 
-/// Returns the largest distance of a method's depths from the proved ones; `None` of methods that say no depth.
+/// Returns the largest difference between a method's depths and the certified ones, mm. Returns `None` for methods
+/// without a depth.
 fn error(method: &mut dyn Contender, certifier: &mut Certifier<'_>, poses: &[Pose]) -> Option<f64> {
     if YES_OR_NO.contains(&method.name()) {
         return None;

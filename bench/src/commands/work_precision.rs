@@ -6,37 +6,38 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use touchoff::mesh::Shape;
+use touchoff::mesh::Geometry;
 use touchoff::tool::Interpreted;
 use touchoff::{Program, Tool, Unit};
 use touchoff_bench::page::Page;
 use touchoff_bench::work_precision::{self, Own, Plan, Row};
 
-/// The word for all scenes.
+/// The scene name that stands for all scenes.
 const ALL: &str = "all";
 
-/// Races settings, levels, proofs and, with the feature `peers`, other methods; a row is printed as it comes.
+/// Times point clouds, levels of detail, proofs and, with the feature `peers`, other methods; prints each row when
+/// measured.
 #[derive(Args)]
 pub(crate) struct WorkPrecision {
-    /// Measures a sample, in less than a minute.
+    /// Measures a small sample, in less than a minute.
     #[arg(long)]
     quick: bool,
-    /// Seed of the clouds and placements.
+    /// Seed for clouds and placements.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Scenes by name [default: all, or with `--part` none but that].
+    /// Scenes by name [default: all; with `--part` only that part].
     #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', value_parser = PossibleValuesParser::new(words()))]
     scene: Vec<String>,
-    /// A part of your own: a mesh in STL, PLY or OBJ.
+    /// Mesh of your own part in STL, PLY or OBJ.
     #[arg(long, value_name = "FILE", requires_all = ["unit", "tool", "path"])]
     part: Option<PathBuf>,
-    /// The part's unit: `mm`, `inch` or `m`.
+    /// Unit of the part: `mm`, `inch` or `m`.
     #[arg(long, requires = "part")]
     unit: Option<Unit>,
-    /// A tool of the library by name, or any `.tool` file.
+    /// Library tool by name, or a `.tool` file.
     #[arg(long, value_name = "NAME|FILE.tool", requires = "part")]
     tool: Option<OsString>,
-    /// The tool's path along the part: a table, or APT-CL.
+    /// Tool path along the part: a table, or APT-CL.
     #[arg(long, value_name = "FILE", requires = "part")]
     path: Option<PathBuf>,
 }
@@ -52,13 +53,13 @@ impl WorkPrecision {
             }
             _ => None,
         };
-        // A reader who has enough of the rows ends them, not the measurement.
+        // A closed pipe on standard output ends the printing of rows, not the measurement.
         let mut print = |row: Row| drop(writeln!(std::io::stdout(), "{}", row.json()));
         let measured = work_precision::measure(&self.scenes(), own, &plan, &mut print)?;
         Ok(Some(work_precision::page(&measured, &plan)?))
     }
 
-    /// Returns the scenes that are meant.
+    /// Returns the names of the chosen scenes.
     fn scenes(&self) -> Vec<&str> {
         let all = self.scene.iter().any(|word| word == ALL);
         if all || (self.scene.is_empty() && self.part.is_none()) {
@@ -67,7 +68,7 @@ impl WorkPrecision {
         self.scene.iter().map(String::as_str).collect()
     }
 
-    /// Loads the tool if a file is named.
+    /// Loads the tool if the option names a `.tool` file.
     fn loaded(&self) -> Result<Option<Interpreted>, Box<dyn Error>> {
         let named = self.tool.as_ref().map(Path::new);
         let file = named.filter(|name| name.extension().is_some_and(|ending| ending == "tool"));
@@ -78,7 +79,7 @@ impl WorkPrecision {
         Ok(loaded)
     }
 
-    /// Returns the tool of a file, or the library's of that name.
+    /// Returns the loaded tool, or the library tool with the given name.
     fn tool<'t>(&self, loaded: Option<&'t Interpreted>) -> Result<&'t dyn Tool, Box<dyn Error>> {
         if let Some(tool) = loaded {
             return Ok(tool);
@@ -95,7 +96,7 @@ fn words() -> Vec<&'static str> {
     words
 }
 
-/// Reads a part and a tool's path along it.
+/// Reads a part and a tool path along it.
 fn own<'t>(
     (part, unit): (&Path, Unit),
     tool: &'t dyn Tool,
@@ -103,19 +104,19 @@ fn own<'t>(
 ) -> Result<Own<'t>, Box<dyn Error>> {
     let program = Program::read(path)?;
     program.check_unit(unit)?;
-    program.check_poses(tool.card())?;
-    if let Some(line) = program.check_cutter(tool.card(), unit)? {
-        let (path, name) = (path.display(), &tool.card().name);
+    program.check_poses(tool.info())?;
+    if let Some(line) = program.check_cutter(tool.info(), unit)? {
+        let (path, name) = (path.display(), &tool.info().name);
         eprintln!("{path}:{line}: CUTTER is not compared: it cannot describe `{name}`");
     }
     let file = part.display();
-    let Shape::Mesh(mesh) = Shape::read(part, unit)? else {
+    let Geometry::Mesh(mesh) = Geometry::read(part, unit)? else {
         return Err(format!("{file} has no triangles").into());
     };
-    for finding in mesh.survey().findings() {
+    for finding in mesh.diagnostics().findings() {
         eprintln!("{file}: {finding}");
     }
     let name = part.file_stem().map_or("part".into(), |stem| stem.to_string_lossy().into_owned());
-    let poses = program.stops.iter().map(|stop| stop.pose).collect();
+    let poses = program.locations.iter().map(|stop| stop.pose).collect();
     Ok(Own { mesh, name, tool, poses })
 }

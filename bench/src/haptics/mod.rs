@@ -1,4 +1,4 @@
-//! The haptic loop with a simulated hand: what it shakes at, how long it takes.
+//! The haptic loop with a simulated hand: force roughness, and the time per cycle.
 
 pub mod latency;
 pub mod page;

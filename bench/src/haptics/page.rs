@@ -3,28 +3,29 @@
 use super::shake::{Case, Shaking};
 use crate::plot::{Axis, Plot, Series};
 use std::fmt::{self, Write};
-use touchoff::haptic::{Energy, Report};
+use touchoff::haptic::{EnergyBalance, LoopReport};
 use touchoff_tests::haptics::wall::{Row, STEP};
 
-/// What was measured.
+/// The measurements of the page.
 pub struct Measured {
-    /// By rate.
+    /// Stability limits of a wall, one row per update rate.
     pub walls: Vec<Row>,
-    /// With how many points.
+    /// Force roughness: number of points, case and result.
     pub shaking: Vec<(usize, Case<'static>, Shaking)>,
-    /// How the sheet was pressed, in words, and what came of it.
+    /// Description of each rendering with which the sheet was pressed, and the samples: wanted depth in mm, height of
+    /// the tip in mm, force in N.
     pub sheet: Vec<(&'static str, Vec<[f64; 3]>)>,
-    /// A hand that taps, in words, and its energy cycle by cycle.
-    pub tapping: Vec<(&'static str, Vec<Energy>)>,
-    /// By rate, for so many seconds: a hand that presses, and a loop that does nothing.
-    pub latency: Vec<(f64, f64, [Report; 2])>,
+    /// Description of each rendering under a tapping hand, and the energy balance after each cycle.
+    pub tapping: Vec<(&'static str, Vec<EnergyBalance>)>,
+    /// Cycle rate in Hz, duration in s, and the reports of a pressing hand and of a loop that does nothing.
+    pub latency: Vec<(f64, f64, [LoopReport; 2])>,
 }
 
-/// Walls of people: the stiffness that was rendered cleanly, N/mm, by Choi and Tan, *Effect of update rate on
-/// perceived instability of virtual haptic texture*, 2004.
+/// Update rate in Hz and stiffness in N/mm of walls that people perceived as rendered cleanly. Source: Choi and Tan,
+/// *Effect of update rate on perceived instability of virtual haptic texture*, 2004.
 const FELT: [[f64; 2]; 2] = [[250.0, 0.33], [40_000.0, 0.90]];
 
-/// The plots by their file's name.
+/// Returns the plots: file names and SVG contents.
 pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
     let limits = |name: &str, of: &dyn Fn(&Row) -> f64| {
         let points = measured.walls.iter().map(|row| [row.rate, of(row)]).collect();
@@ -56,7 +57,7 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
             Axis::linear("energy put in and not held, N·mm"),
         ),
         |plot, (name, energies)| {
-            let point = |(cycle, energy): (usize, &Energy)| {
+            let point = |(cycle, energy): (usize, &EnergyBalance)| {
                 [cycle as f64 / 1000.0, energy.put_in - energy.held]
             };
             let points = energies.iter().enumerate().step_by(25).map(point).collect();
@@ -71,10 +72,10 @@ pub fn plots(measured: &Measured) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// The text of the page.
+/// Returns the text of the page.
 ///
 /// # Errors
-/// None that a string could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
     let mut page = String::new();
     walls(&mut page, measured)?;
@@ -88,7 +89,9 @@ pub fn page(measured: &Measured) -> Result<String, fmt::Error> {
     writeln!(page, "![energy](haptics-energy.svg)\n")?;
     writeln!(page, "| | after 5 s, N·mm | generated at most | taken out |\n|---|--:|--:|--:|")?;
     for (name, energies) in &measured.tapping {
-        let Some(Energy { put_in, held, generated, taken_out }) = energies.last() else { continue };
+        let Some(EnergyBalance { put_in, held, generated, taken_out }) = energies.last() else {
+            continue;
+        };
         let net = put_in - held;
         writeln!(page, "| {name} | {net:.4} | {generated:.1e} | {taken_out:.1e} |")?;
     }
@@ -171,7 +174,7 @@ fn latency(page: &mut String, measured: &Measured) -> fmt::Result {
     writeln!(page, "|--:|--:|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
     for (rate, seconds, reports) in &measured.latency {
         for (name, report) in ["pressing", "empty"].into_iter().zip(reports) {
-            for (what, times) in [("took", &report.took), ("late", &report.late)] {
+            for (what, times) in [("took", &report.durations), ("late", &report.start_delays)] {
                 let at = |share: f64| times.value_at_quantile(share) as f64 / 1e3;
                 writeln!(
                     page,
@@ -181,7 +184,7 @@ fn latency(page: &mut String, measured: &Measured) -> fmt::Result {
                     at(0.999),
                     times.max() as f64 / 1e3,
                     report.missed,
-                    report.left_out,
+                    report.skipped,
                     report.cycles,
                 )?;
             }

@@ -1,34 +1,36 @@
-//! How much a push shakes while a hand moves a tool evenly along a part.
+//! Roughness of the rendered force while a hand moves a tool evenly along a part.
 
 use super::smooth::Fig73Smooth;
 use nalgebra::Vector3;
-use touchoff::haptic::{Coupling, Hand, Limits, Rendering, Session, Settings};
-use touchoff::scenes::{BALL, Path};
+use touchoff::haptic::{
+    Coupling, DeviceLimits, Rendering, Session, SessionSettings, SimulatedHand,
+};
+use touchoff::scenes::{BALL, ScenePath};
 use touchoff::{Law, Part, Pose, Probe, Tool};
 use touchoff_tests::haptics::tool;
 use touchoff_tests::haptics::wall::LIMITS;
 
-/// Cycles a second.
+/// Update rate, Hz.
 const RATE: f64 = 1000.0;
-/// How long the hand takes for its way, s.
+/// Duration of the hand's motion, s.
 const SECONDS: f64 = 8.0;
-/// How far inside the wall the hand wants the tool, mm: by its grip it presses with some 0.6 N.
+/// Depth inside the wall that the hand aims at, mm. With the hand's impedance it presses with about 0.6 N.
 const INSIDE: f64 = 3.0;
 
-/// How far the tool is let down along the edge, mm, so that the edge goes from flute to taper and on.
+/// Lowering of the tool along the edge, mm, so that the contact moves from the flute to the taper and on.
 const DOWN: f64 = 2.5;
 
-/// A way of the hand along the tube, some ten millimetres a second.
+/// A path of the hand along the tube, at about 10 mm/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
-    /// The ball on the outer wall.
+    /// The ball slides on the outer wall.
     Wall,
-    /// Flute, taper and spindle along the top edge, which goes from one of the tool's regions to the next.
+    /// Flute, taper and spindle slide along the top edge, which passes from one region of the tool to the next.
     Edge,
 }
 
 impl Way {
-    /// The word for it.
+    /// Returns the name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Way::Wall => "wall",
@@ -43,77 +45,79 @@ impl Way {
         };
         const POSES: usize = 10_000_000;
         let share = from + (to - from) * time / SECONDS;
-        let pose = Path::Outside.pose((share * POSES as f64) as usize, POSES);
+        let pose = ScenePath::Outside.pose((share * POSES as f64) as usize, POSES);
         let centre = pose.tip() + pose.axis() * BALL;
         let inward = -Vector3::new(centre.x, centre.y, 0.0).normalize();
-        // It comes from outside: the wall is thinner than the way that the hand would have it.
+        // The approach starts outside: the wall is thinner than the depth that the hand aims at.
         let inside = INSIDE * (2.0 * time).min(1.0) - 0.3 * (1.0 - 2.0 * time).max(0.0);
         let down = if self == Way::Edge { DOWN } else { 0.0 };
         let way = inward * inside - Vector3::z() * down;
-        pose.shifted(way).expect("a pose beside the tube")
+        pose.translated(way).expect("a pose beside the tube")
     }
 }
 
-/// The tools: with the thesis's own magnitudes, exact, and exact with directions that turn in fans.
+/// Returns the tools: Fig. 7.3 with the thesis's own magnitudes, with exact distances, and with exact distances whose
+/// directions turn in fans at corners.
 pub fn tools() -> [(&'static str, &'static dyn Tool); 3] {
     [("Fig73", tool("Fig73")), ("Fig73Exact", tool("Fig73Exact")), ("smooth", &Fig73Smooth)]
 }
 
-/// What is measured.
+/// A case to measure.
 #[derive(Clone, Copy)]
 pub struct Case<'a> {
-    /// Along what.
+    /// The path.
     pub way: Way,
-    /// The tool, and what it is called.
+    /// The tool's name and the tool.
     pub tool: (&'static str, &'a dyn Tool),
-    /// The law.
+    /// The force law.
     pub law: Law,
-    /// Direct, scaled or coupled.
+    /// The rendering: `direct`, `scaled` or `coupled`.
     pub how: &'static str,
-    /// N/mm³ by the gradient's law; by the others half of it, since in ideal contact they push twice as much.
+    /// Contact stiffness under [`Law::Gradient`], N/mm³. The other laws use half of it, since in ideal contact they
+    /// push twice as hard.
     pub stiffness: f64,
 }
 
-/// What the hand felt: root mean squares in N.
+/// The force that the hand received and the stiffness of the contact. `force` and `rough` are root mean squares.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Shaking {
-    /// Of the force.
+    /// The force, N.
     pub force: f64,
-    /// Of what of it is above 30 Hz, which is felt as roughness and not as shape.
+    /// The part of the force above 30 Hz, N, which is perceived as roughness and not as shape.
     pub rough: f64,
-    /// The largest change from one cycle to the next.
+    /// The largest change of the force from one cycle to the next, N.
     pub step: f64,
     /// The largest eigenvalue of the contact's stiffness, N/mm.
     pub stiffest: f64,
 }
 
-/// Moves the tool along its way.
+/// Moves the tool along its path and returns the statistics of the force.
 pub fn shaking(part: &Part, case: &Case<'_>) -> Shaking {
-    let limits = Limits { force: 50.0, torque: 2000.0, ..LIMITS };
+    let limits = DeviceLimits { force: 50.0, torque: 2000.0, ..LIMITS };
     let rendering = match case.how {
         "coupled" => Rendering::Coupled(Coupling::of(&limits)),
         how => Rendering::Direct { scaled: how == "scaled", damping: 0.0 },
     };
     let share = if case.law == Law::Gradient { 1.0 } else { 0.5 };
-    let settings = Settings {
+    let settings = SessionSettings {
         stiffness: share * case.stiffness,
         rendering: Some(rendering),
         passive: false,
-        ..Settings::new(RATE)
+        ..SessionSettings::new(RATE)
     };
-    let probe = Probe::new(part, case.tool.1).law(case.law);
+    let probe = Probe::new(part, case.tool.1).with_law(case.law);
     let mut session = Session::new(probe, &settings, limits).expect("settings");
-    let mut hand = Hand::new(limits, RATE, |time| case.way.pose(time)).expect("a hand");
+    let mut hand = SimulatedHand::new(limits, RATE, |time| case.way.pose(time)).expect("a hand");
     let (mut sums, mut low, mut before) = (Shaking::default(), [Vector3::zeros(); 2], None);
     let mut count = 0.0;
-    // A filter of first order, twice.
+    // A first-order low-pass filter at 30 Hz, applied twice.
     let share = 1.0 - (-std::f64::consts::TAU * 30.0 / RATE).exp();
     for cycle in 0..(SECONDS * RATE) as usize {
         let Some(state) = session.cycle(&mut hand) else { continue };
-        let force = state.push.force;
+        let force = state.wrench_on_hand.force;
         low[0] += share * (force - low[0]);
         low[1] += share * (low[0] - low[1]);
-        // Not while it comes.
+        // The first second, the approach, does not count.
         if cycle as f64 > RATE {
             count += 1.0;
             sums.force += force.norm_squared();

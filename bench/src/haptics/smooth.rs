@@ -1,4 +1,4 @@
-//! The tool of fig. 7.3 with directions that do not jump at corners.
+//! The tool of Ho 1999, fig. 7.3, with directions that do not jump at corners.
 
 touchoff::tool! {
     tool Fig73Smooth "ball end mill, spindle and housing, directions that turn in fans (after Ho 1999, fig. 7.3)" {

@@ -1,9 +1,9 @@
-//! Every point, one after the other: in `f64` with branches, and in `f32` sixteen at a time.
+//! Brute force over all points: in `f64` with branches, and in `f32` sixteen points at a time.
 //!
-//! The first passes over points outside the tool's outline by one comparison, since a branch a
-//! region, mispredicted for points in no order, would take longer than all else. The second asks the formula of minima and maxima of all points, as wide as the machine
-//! goes; it takes its own sign for the answer, so points within some 1e-6 of the surface may fall
-//! on the wrong side.
+//! The first method skips points outside the tool's outline by a single comparison. One branch per region, mispredicted
+//! for points in no order, would take longer than everything else. The second evaluates the formula of minima and
+//! maxima at all points, with the widest SIMD instructions of the machine. The sign of that formula decides, so points
+//! within about 1e-6 of the surface may be classified wrongly.
 
 use super::formula;
 use super::points::{Point, points};
@@ -11,15 +11,15 @@ use crate::race::contender::{Answer, Contender, Sums, View};
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, dispatch, f32x16};
 use touchoff::{Cloud, Pose};
 
-/// Every point in `f64`, with branches.
+/// All points in `f64`, with branches.
 pub struct Scalar {
-    /// Coordinates alone, since few points need more.
+    /// The coordinates alone, since few points need more data.
     at: Vec<[f64; 3]>,
     points: Vec<Point>,
 }
 
 impl Scalar {
-    /// Of a part's points.
+    /// Copies the points of a cloud.
     pub fn new(cloud: &Cloud) -> Scalar {
         let points = points(cloud);
         Scalar { at: points.iter().map(|point| point.at).collect(), points }
@@ -40,8 +40,8 @@ impl Contender for Scalar {
             if formula::beside(p) {
                 continue;
             }
-            if let Some(felt) = formula::sense(p) {
-                sums.add([arm, p], (point.weight, point.normal), felt);
+            if let Some(evaluation) = formula::sense(p) {
+                sums.add([arm, p], (point.weight, point.normal), evaluation);
             }
         }
         sums.answer(&view)
@@ -50,16 +50,16 @@ impl Contender for Scalar {
 
 const WIDTH: usize = 16;
 
-/// Every point in `f32`, sixteen at a time.
+/// All points in `f32`, sixteen at a time.
 pub struct Lanes {
     level: Level,
-    /// Coordinates list by list; what fills the last block lies far away.
+    /// One list of coordinates per axis, padded to full blocks with coordinates far away.
     at: [Vec<f32>; 3],
     points: Vec<Point>,
 }
 
 impl Lanes {
-    /// Of a part's points.
+    /// Copies the points of a cloud.
     pub fn new(cloud: &Cloud) -> Lanes {
         let points = points(cloud);
         let room = points.len().next_multiple_of(WIDTH);
@@ -71,14 +71,14 @@ impl Lanes {
         Lanes { level: Level::new(), at, points }
     }
 
-    /// One point inside, in single precision but for the sums.
+    /// Adds one inside point to the sums. Its coordinates are rounded to single precision; the sums are doubles.
     fn feel(&self, view: &View, at: usize, sums: &mut Sums) {
         let point = &self.points[at];
         let arm = view.arm([0, 1, 2].map(|axis| f64::from(self.at[axis][at])));
         let p = view.turn(arm).map(|c| f64::from(c as f32));
-        // Within rounding of the surface the two forms may disagree.
-        let felt = formula::sense(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
-        sums.add([arm, p], (point.weight, point.normal), felt);
+        // Within rounding of the surface the two formulas may disagree about the side.
+        let evaluation = formula::sense(p).unwrap_or((0.0, [1.0, 0.0, 0.0]));
+        sums.add([arm, p], (point.weight, point.normal), evaluation);
     }
 }
 

@@ -1,14 +1,14 @@
-//! The largest of the thesis's magnitudes on a part's triangles, by branch and bound: what peers are judged by.
+//! Branch and bound for the largest of the thesis's magnitudes on a part's triangles: the peers' reference.
 
 use super::formula;
 use crate::race::contender::View;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Mesh, Pose};
 
-/// How exactly it is found, mm.
+/// Tolerance of the result, mm.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// The largest magnitude on the part's triangles, given one that is reached.
+/// Returns the largest magnitude on the part's triangles, to [`TOLERANCE`]. `best` is a magnitude known to be attained.
 pub fn deepest(mesh: &Mesh, pose: &Pose, mut best: f64) -> f64 {
     let view = View::of(pose);
     let turn = |p: Point3<f64>| Vector3::from(view.turn(view.arm(p.coords.into())));
@@ -20,7 +20,7 @@ pub fn deepest(mesh: &Mesh, pose: &Pose, mut best: f64) -> f64 {
         if most <= best + TOLERANCE {
             continue;
         }
-        // Across the longest edge.
+        // Bisect across the longest edge.
         let [ab, bc, ca] = [b - a, c - b, a - c].map(|edge| edge.norm_squared());
         let (p, q, r) = if ab >= bc && ab >= ca {
             (a, b, c)
@@ -35,8 +35,8 @@ pub fn deepest(mesh: &Mesh, pose: &Pose, mut best: f64) -> f64 {
     best
 }
 
-/// The magnitude at a triangle's centre, and no less than it has anywhere on the triangle: it is the
-/// largest of concave functions, none of which exceeds its tangent at the centre.
+/// Returns the magnitude at a triangle's centre, and an upper bound of the magnitude on the triangle. The magnitude is
+/// the largest of concave functions, none of which exceeds its tangent at the centre.
 fn bound(corners: [Vector3<f64>; 3]) -> (f64, f64) {
     let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
     let d = centre.x.hypot(centre.y);

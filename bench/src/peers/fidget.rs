@@ -1,11 +1,10 @@
-//! `fidget`: the tool as an implicit surface, compiled to machine code at run time.
+//! The tool as an implicit surface in `fidget`, compiled to machine code at run time.
 //!
-//! Its own way of working: interval evaluation rules out nodes of a tree over the cloud, all points
-//! of the leaves that are left are evaluated in one slice, and the gradient in one more slice of
-//! those inside. The function is the tool's magnitude as minima and maxima, its direction
-//! `−∇m/|∇m|`. fidget computes in `f32`; points are carried to the tool's frame in `f64` first.
-//! The tape is not simplified from node to node: for so short a tape compiling a shorter one takes
-//! longer than all points together.
+//! The method follows fidget's own way of working. Interval evaluation rules out nodes of a tree over the cloud. All
+//! points of the remaining leaves are evaluated in one slice, and the gradient in a second slice of the points inside.
+//! The function is the tool's magnitude as minima and maxima; its direction is `−∇m/|∇m|`. fidget computes in `f32`, so
+//! points are transformed to the tool's frame in `f64` first. The tape is not simplified per node: for so short a tape,
+//! compiling a shorter one takes longer than evaluating all points.
 
 use super::points::{Bounds, Tree};
 use crate::race::contender::{Answer, Contender, Sums, View};
@@ -16,18 +15,18 @@ use fidget::types::{Grad, Interval};
 use fidget::var::Var;
 use touchoff::{Cloud, Pose};
 
-/// Points of a leaf, tried from 16 to 128 at 20,000 points.
+/// Points per leaf; sizes from 16 to 128 were tried at 20,000 points.
 const LEAF: usize = 32;
 
-/// What single precision may err on the magnitude.
+/// Assumed bound on the single-precision error of the magnitude, mm.
 const MARGIN: f32 = 1e-4;
 
 type TapeOf<E> = <E as BulkEvaluator>::Tape;
 
-/// Where x, y and z stand among a tape's arguments.
+/// The indices of x, y and z among a tape's arguments.
 type Places = [usize; 3];
 
-/// The formula as machine code, over a tree of the points.
+/// The formula as machine code, and a tree of the points.
 pub struct Fidget {
     tree: Tree<Bounds>,
     interval: (JitIntervalEval, <JitIntervalEval as TracingEvaluator>::Tape, Places),
@@ -41,10 +40,10 @@ pub struct Fidget {
 }
 
 impl Fidget {
-    /// Of a part's points.
+    /// Compiles the formula and builds the tree of a cloud.
     ///
     /// # Panics
-    /// Never: the formula has all three coordinates.
+    /// Never: the formula contains all three coordinates.
     pub fn new(cloud: &Cloud) -> Fidget {
         let mut context = fidget::Context::new();
         let node = context.import(&magnitude());
@@ -66,7 +65,7 @@ impl Fidget {
         }
     }
 
-    /// The points of leaves that the tool may touch, in the tool's frame.
+    /// Collects the points of the leaves that the tool may touch, in the tool's frame.
     fn gather(&mut self, view: &View) {
         let (eval, tape, places) = &mut self.interval;
         let (points, leaves) = self.tree.leaves(|bounds| {
@@ -95,12 +94,12 @@ impl Fidget {
     }
 }
 
-/// Where a tape wants x, y and z.
+/// Returns the indices of x, y and z among a tape's arguments.
 fn places(tape: &impl Tape) -> Places {
     [Var::X, Var::Y, Var::Z].map(|var| tape.vars().get(&var).expect("the formula has all three"))
 }
 
-/// [`super::formula::magnitude`] as fidget's expression.
+/// Returns [`super::formula::magnitude`] as a fidget expression.
 fn magnitude() -> Formula {
     let (x, y, up) = Formula::axes();
     let z = super::formula::TIP as f32 - up;
@@ -147,11 +146,11 @@ impl Contender for Fidget {
         for (hit, slope) in self.hits.iter().zip(&slopes[0]) {
             let away = [slope.dx, slope.dy, slope.dz].map(|c| -f64::from(c));
             let length = crate::race::contender::dot(away, away).sqrt();
-            // On the axis there is no slope across.
+            // On the axis the gradient has no radial part.
             let way = if length > 0.0 { away.map(|c| c / length) } else { [1.0, 0.0, 0.0] };
             let point = &self.tree.points()[self.near[*hit]];
-            let felt = (f64::from(slope.v), way);
-            sums.add(self.arms[*hit], (point.weight, point.normal), felt);
+            let evaluation = (f64::from(slope.v), way);
+            sums.add(self.arms[*hit], (point.weight, point.normal), evaluation);
         }
         sums.answer(&view)
     }

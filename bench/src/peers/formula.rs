@@ -1,36 +1,36 @@
-//! The tool of Ho (1999), fig. 7.3, written by hand in the forms that the methods want.
+//! The tool of Ho (1999), fig. 7.3, written by hand in the forms that the other methods need.
 //!
-//! Points are in the tool's frame, the tip at the origin. As in the thesis `z` runs from the
-//! housing's back to the tip at [`TIP`], `d` is the distance from the axis.
+//! Points are in the tool's frame, with the tip at the origin, in mm. As in the thesis, `z` runs from the back of the
+//! housing to the tip at [`TIP`]; `d` is the distance from the axis.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
-/// Where the tip is along the thesis's `z`.
+/// The tip's coordinate along the thesis's `z`, mm.
 pub const TIP: f64 = 20.0;
 
-/// The largest radius of the tool.
+/// The largest radius of the tool, mm.
 pub const RADIUS: f64 = 5.0;
 
-/// Magnitude and direction, radial and along the thesis's `z`, not of unit length.
+/// Magnitude, and direction as radial part and part along the thesis's `z`, not normalised.
 type Felt = (f64, [f64; 2]);
 
-/// Magnitude and unit direction at a point of the tool's frame; `None` outside. Three trees of
-/// splits, one behind the other.
+/// Returns the magnitude and unit direction at a point of the tool's frame, or `None` outside. Three decision trees are
+/// arranged along the axis.
 #[inline]
 pub fn sense(p: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let z = TIP - p[2];
     let squared = p[0] * p[0] + p[1] * p[1];
-    let felt = if z >= 15.0 {
+    let evaluation = if z >= 15.0 {
         cutter(squared, z)
     } else if z > 11.0 {
         spindle(squared, z)
     } else {
         housing(squared, z)
     };
-    felt.map(|felt| in_space(p, squared, felt))
+    evaluation.map(|evaluation| in_space(p, squared, evaluation))
 }
 
-/// The cutter and its ball, 15 ≤ z ≤ 20.
+/// Evaluates the cutter and its ball, 15 ≤ z ≤ 20; `squared` is `d²`.
 #[inline]
 pub fn cutter(squared: f64, z: f64) -> Option<Felt> {
     if squared > 1.0 || z > TIP {
@@ -39,7 +39,7 @@ pub fn cutter(squared: f64, z: f64) -> Option<Felt> {
     if z >= 19.0 {
         let above = z - 19.0;
         let square = squared + above * above;
-        // Inside or not as the magnitude's sign says, so that the surface belongs to the tool.
+        // The sign of the magnitude decides, so that the surface belongs to the tool.
         let magnitude = 1.0 - square.sqrt();
         return (magnitude >= 0.0).then(|| (magnitude, [squared.sqrt(), above]));
     }
@@ -47,7 +47,7 @@ pub fn cutter(squared: f64, z: f64) -> Option<Felt> {
     if d + z >= 16.0 { Some((1.0 - d, [1.0, 0.0])) } else { Some((17.0 - 2.0 * d - z, [2.0, 1.0])) }
 }
 
-/// The spindle and its taper, 11 < z < 15.
+/// Evaluates the spindle and its taper, 11 < z < 15; `squared` is `d²`.
 #[inline]
 pub fn spindle(squared: f64, z: f64) -> Option<Felt> {
     if squared > 9.0 {
@@ -63,7 +63,7 @@ pub fn spindle(squared: f64, z: f64) -> Option<Felt> {
     (z + d <= 16.0).then_some((16.0 - d - z, [1.0, 1.0]))
 }
 
-/// The housing, 0 ≤ z ≤ 11.
+/// Evaluates the housing, 0 ≤ z ≤ 11; `squared` is `d²`.
 #[inline]
 pub fn housing(squared: f64, z: f64) -> Option<Felt> {
     if squared > 25.0 || z < 0.0 {
@@ -81,7 +81,8 @@ pub fn housing(squared: f64, z: f64) -> Option<Felt> {
     }
 }
 
-/// The direction in the tool's frame, as a unit vector; +x for radial on the axis.
+/// Returns the magnitude, and the direction as a unit vector in the tool's frame. On the axis the radial direction is
+/// +x. A direction of length 0 becomes +z.
 #[inline]
 pub fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f64, [f64; 3]) {
     let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
@@ -91,15 +92,15 @@ pub fn in_space(p: [f64; 3], squared: f64, (magnitude, way): Felt) -> (f64, [f64
     (magnitude, [out * radial[0], out * radial[1], -down])
 }
 
-/// Whether a point lies outside by its distance from the axis alone, without branches.
+/// Returns whether a point is outside judging by its axial position and distance from the axis alone, without branches.
 #[inline]
 pub fn beside(p: [f64; 3]) -> bool {
     let radius = if p[2] < 9.0 { (p[2] - 4.0).clamp(1.0, 3.0) } else { RADIUS };
     (p[0] * p[0] + p[1] * p[1] > radius * radius) | (p[2] < 0.0) | (p[2] > TIP)
 }
 
-/// Magnitude as one formula of minima and maxima, negative outside: what the regions come to, since
-/// they join without jumps. √5-Lipschitz everywhere.
+/// Returns the magnitude as one formula of minima and maxima, negative outside. It equals the magnitudes of the
+/// regions, since these join without jumps. It is √5-Lipschitz everywhere.
 pub fn magnitude(p: [f64; 3]) -> f64 {
     let d = p[0].hypot(p[1]);
     let z = TIP - p[2];
@@ -109,7 +110,7 @@ pub fn magnitude(p: [f64; 3]) -> f64 {
     z.min(5.0 - d).min(housing.max(spindle).max(cutter))
 }
 
-/// Five concave functions of `d` and `z` whose largest is [`magnitude`], each with its slopes.
+/// Returns five concave functions of `d` and `z` whose maximum is [`magnitude`], each with its two derivatives.
 pub fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
     let linear = |by_d: f64, by_z: f64, rest: f64| (rest + by_d * d + by_z * z, [by_d, by_z]);
     let least = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 < a.0 { b } else { a };
@@ -127,7 +128,7 @@ pub fn pieces(d: f64, z: f64) -> [(f64, [f64; 2]); 5] {
     .map(|piece| least(piece, least(linear(0.0, 1.0, 0.0), linear(-1.0, 0.0, 5.0))))
 }
 
-/// [`magnitude`] of sixteen points, given by `x² + y²` and the thesis's `z`.
+/// Returns [`magnitude`] at sixteen points, given by `x² + y²` and the thesis's `z`.
 #[inline(always)]
 fn magnitude_lanes<S: Simd>(squared: f32x16<S>, z: f32x16<S>) -> f32x16<S> {
     let simd = z.simd;
@@ -141,7 +142,7 @@ fn magnitude_lanes<S: Simd>(squared: f32x16<S>, z: f32x16<S>) -> f32x16<S> {
     z.min(splat(5.0) - d).min(housing.max(spindle).max(cutter))
 }
 
-/// [`magnitude`] of sixteen of some points, seen from the tip by the rows of a rotation.
+/// Returns [`magnitude`] at sixteen points of the world frame; `rows` and `tip` transform them to the tool's frame.
 #[inline(always)]
 pub fn magnitude_from<S: Simd>(
     simd: S,
@@ -157,15 +158,15 @@ pub fn magnitude_from<S: Simd>(
     magnitude_lanes(across * across + beside * beside, f32x16::splat(simd, TIP as f32) - along)
 }
 
-/// Whether a box of the tool's frame, by its centre and half extents, may touch the tool: not
-/// beside its ends, nor farther from the axis than its largest radius over the box's stretch.
+/// Returns whether a box of the tool's frame, given by its centre and half extents, may touch the tool. It cannot if it
+/// is beyond the tool's ends, or farther from the axis than the largest radius over its axial range.
 #[inline]
 pub fn may_touch(centre: [f64; 3], half: [f64; 3]) -> bool {
     let (low, high) = (centre[2] - half[2], centre[2] + half[2]);
     if high < 0.0 || low > TIP {
         return false;
     }
-    // The farther from the tip, the thicker it is.
+    // The radius does not decrease with the distance from the tip, so the far end of the range has the largest radius.
     let radius = match high {
         h if h < 1.0 => (h * (2.0 - h)).sqrt(),
         h if h < 5.0 => 1.0,

@@ -1,5 +1,5 @@
-//! Other ways to answer what a probe answers: the tool of fig. 7.3 at the points of a cloud, or at the
-//! part's triangles. `work_precision` races them against this project.
+//! Other methods for the queries of a probe: the tool of fig. 7.3 at the points of a cloud, or at the part's triangles.
+//! `work_precision` times them against this project.
 
 pub mod brute;
 pub mod deepest;

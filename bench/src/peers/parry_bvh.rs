@@ -1,8 +1,8 @@
-//! `parry3d`'s tree of boxes over blocks of 64 points, the tool's formula written by hand.
+//! `parry3d`'s bounding volume hierarchy over blocks of 64 points, with the tool's formula written by hand.
 //!
-//! What someone would build who knows parry, SIMD and this one tool: [`Bvh::leaves`] with a test of
-//! a node in the tool's frame against the largest radius over its stretch of the axis; a block's 64
-//! points in `f32`, as wide as the machine goes, with a margin; what is left in `f64`.
+//! An implementation as an expert in parry and SIMD would write it for this one tool. [`Bvh::leaves`] tests each node,
+//! in the tool's frame, against the largest radius over the node's axial range. The 64 points of a block are tested in
+//! `f32` with a margin, by the widest SIMD instructions of the machine. The remaining points are evaluated in `f64`.
 
 use super::formula;
 use super::points::{Bounds, Point, order, points};
@@ -16,13 +16,13 @@ use touchoff::{Cloud, Pose};
 const BLOCK: usize = 64;
 const WIDTH: usize = 16;
 
-/// More than what single precision loses on coordinates below 100.
+/// Margin in mm, larger than the single-precision error at coordinates below 100 mm.
 const MARGIN: f64 = 1e-4;
 
-/// 64 points; what is not there lies far away.
+/// Coordinates of 64 points, padded with coordinates far away.
 struct Block([[f32; BLOCK]; 3]);
 
-/// Blocks of points under `parry3d`'s tree.
+/// Blocks of points in `parry3d`'s hierarchy.
 pub struct ParryBvh {
     level: Level,
     bvh: Bvh,
@@ -32,7 +32,7 @@ pub struct ParryBvh {
 }
 
 impl ParryBvh {
-    /// Of a part's points.
+    /// Sorts the points of a cloud into blocks and builds the hierarchy.
     pub fn new(cloud: &Cloud) -> ParryBvh {
         let mut points = points(cloud);
         order(&mut points, BLOCK);
@@ -63,7 +63,7 @@ impl ParryBvh {
     }
 }
 
-/// Points of the found blocks that are inside.
+/// Adds the points of the found blocks that are inside to the sums.
 #[inline(always)]
 fn inside<S: Simd>(simd: S, this: &ParryBvh, view: &View, sums: &mut Sums) {
     let rows = view.single();

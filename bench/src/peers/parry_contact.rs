@@ -1,11 +1,10 @@
-//! `parry3d`'s own question: `contact` of the tool as a compound of convex shapes against the
-//! part's triangles.
+//! `parry3d`'s own query: `contact` between the tool as a compound of convex shapes and the part's triangles.
 //!
-//! The union of the shapes is the tool exactly: housing, spindle and cutter are cylinders, the taper
-//! is a cone whose point lies inside the cutter, the ball is a ball. The spindle goes on through the
-//! housing, so that its end there is no surface that a triangle could leave it by. The answer is the pair of a
-//! shape and a triangle that overlap deepest: one depth, no sum over the contact, so no force and
-//! torque. It feels all of the surface, not points of it.
+//! The union of the shapes is exactly the tool. Housing, spindle and cutter are cylinders. The taper is a cone whose
+//! apex lies inside the cutter; the ball is a ball. The spindle extends through the housing, so that its end there is
+//! not a surface through which a triangle could leave it. The answer is the pair of a shape and a triangle with the
+//! deepest overlap. It has one depth and no sum over the contact, hence no force and torque. It takes into account the
+//! whole surface, not only points of it.
 
 use crate::race::contender::{Answer, Contender};
 use parry3d::math::{Pose as Place, Rotation, Vector};
@@ -13,20 +12,20 @@ use parry3d::query::contact;
 use parry3d::shape::{Compound, SharedShape, TriMesh};
 use touchoff::{Mesh, Pose};
 
-/// The tool as a compound, the part as a mesh.
+/// The tool as a compound shape and the part as a mesh.
 pub struct ParryContact {
     tool: Compound,
     part: TriMesh,
 }
 
 impl ParryContact {
-    /// Makes the method for a part's triangles.
+    /// Converts the part's triangles.
     ///
     /// # Panics
-    /// If there are none.
+    /// If the mesh has no triangles.
     pub fn new(mesh: &Mesh) -> ParryContact {
-        // parry's cylinders and cones stand along y, the cone's point up; here y is from the spindle
-        // to the tip, and places are those of the centres.
+        // The axes of parry's cylinders and cones are along y, with the cone's apex up. Here that y axis points from
+        // the spindle to the tip, and positions are those of the centres.
         let turn = Rotation::from_rotation_x(-std::f32::consts::FRAC_PI_2);
         let at = |z: f32| Place::from_parts(Vector::new(0.0, 0.0, z), turn);
         let tool = Compound::new(vec![
@@ -53,7 +52,7 @@ impl Contender for ParryContact {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        let isometry = pose.isometry();
+        let isometry = pose.to_isometry();
         let q = isometry.rotation.coords.map(|c| c as f32);
         let place = Place::from_parts(
             single(pose.tip().coords.into()),

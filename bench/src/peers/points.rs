@@ -1,35 +1,34 @@
-//! Points in an order in which neighbours lie together, and a tree of boxes about them. What
-//! `parry-bvh`, `fidget` and `grid` stand on.
+//! Points in kd order and a tree of boxes over them, shared by several methods.
 
 use super::formula;
 use crate::race::contender::{Sums, View};
 use std::ops::Range;
 use touchoff::Cloud;
 
-/// A point of the cloud with all that is known of it.
+/// A point of the cloud with its attributes.
 #[derive(Clone, Copy)]
 pub struct Point {
-    /// Where it is.
+    /// The position.
     pub at: [f64; 3],
-    /// Out of the material.
+    /// The unit normal, out of the material.
     pub normal: [f64; 3],
-    /// The area it stands for.
+    /// The surface area that the point represents.
     pub weight: f64,
 }
 
 impl Point {
-    /// Adds the point to the sums if the formula in `f64` has it inside.
+    /// Adds the point to the sums if the formula in `f64` classifies it as inside.
     #[inline]
     pub fn feel(&self, view: &View, sums: &mut Sums) {
         let arm = view.arm(self.at);
         let p = view.turn(arm);
-        if let Some(felt) = formula::sense(p) {
-            sums.add([arm, p], (self.weight, self.normal), felt);
+        if let Some(evaluation) = formula::sense(p) {
+            sums.add([arm, p], (self.weight, self.normal), evaluation);
         }
     }
 }
 
-/// The cloud's points, as they come.
+/// Returns the cloud's points in their original order.
 pub fn points(cloud: &Cloud) -> Vec<Point> {
     let lists = cloud.points().iter().zip(cloud.normals()).zip(cloud.weights());
     lists
@@ -41,7 +40,7 @@ pub fn points(cloud: &Cloud) -> Vec<Point> {
         .collect()
 }
 
-/// Kd order: across the longest side, the left part a power of two of full leaves.
+/// Sorts points in kd order: splits at the longest side, with a power of two of full leaves in the left half.
 pub fn order(points: &mut [Point], leaf: usize) {
     if points.len() <= leaf {
         return;
@@ -55,22 +54,22 @@ pub fn order(points: &mut [Point], leaf: usize) {
     order(high, leaf);
 }
 
-/// A box by its centre and half extents.
+/// A box, by its centre and half extents.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
-    /// Its centre.
+    /// The centre.
     pub centre: [f64; 3],
-    /// Half of its sides.
+    /// The half extents.
     pub half: [f64; 3],
 }
 
 impl Bounds {
-    /// Of a point.
+    /// Returns the box of a single point.
     pub fn at(point: [f64; 3]) -> Bounds {
         Bounds { centre: point, half: [0.0; 3] }
     }
 
-    /// About some boxes.
+    /// Returns the bounding box of several boxes.
     pub fn of(all: impl Iterator<Item = Bounds>) -> Bounds {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for one in all {
@@ -84,22 +83,22 @@ impl Bounds {
     }
 }
 
-/// How many children a node of [`Tree`] has.
+/// Number of children per node of a [`Tree`].
 const CHILDREN: usize = 4;
 
-/// A tree without pointers: node `n` of a level has the children `4 n …` of the next, and below
-/// the last level stand the leaves' points.
+/// A tree without pointers. Node `n` of a level has the children `4 n …` in the next level; below the last level are
+/// the points of the leaves.
 pub struct Tree<N> {
     points: Vec<Point>,
     leaf: usize,
-    /// From the root down.
+    /// The levels, from the root down.
     levels: Vec<Vec<N>>,
     nodes: Vec<u32>,
     below: Vec<u32>,
 }
 
 impl<N> Tree<N> {
-    /// The tree of a cloud, leaves of so many points, each node made of its box and points.
+    /// Builds the tree of a cloud with `leaf` points per leaf. `node` makes a node from its box and points.
     pub fn new(cloud: &Cloud, leaf: usize, node: impl Fn(Bounds, &[Point]) -> N) -> Self {
         let mut points = points(cloud);
         order(&mut points, leaf);
@@ -121,13 +120,12 @@ impl<N> Tree<N> {
         Tree { points, leaf, levels, nodes: Vec::new(), below: Vec::new() }
     }
 
-    /// All points, in the tree's order.
+    /// Returns all points, in the tree's order.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// All points, and which of them lie in leaves that are reached through nodes that may touch
-    /// the tool.
+    /// Traverses the nodes that `touches` accepts. Returns all points, and the index ranges of the leaves reached.
     pub fn leaves(
         &mut self,
         mut touches: impl FnMut(&N) -> bool,

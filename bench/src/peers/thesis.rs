@@ -1,22 +1,21 @@
-//! The method of Ho (1999): a binary tree of k-DOPs over the cloud, nodes behind pointers, and the
-//! tool as a tree of volumes whose leaves have a tree of splits each.
+//! The method of Ho (1999): a binary tree of k-DOPs over the cloud, with nodes behind pointers, and the tool as a tree
+//! of volumes with a decision tree in each leaf.
 //!
-//! Chapters 2 to 4 and 7.3: the cloud's tree never moves; the tool's volumes are bounded anew at
-//! each pose; where leaves of both overlap the points are carried into the tool's frame and asked
-//! one by one. k = 18, which Klosowski (1997) found best, and leaves of at most `LEAF` points.
-//! Where the thesis turns the vertices of a volume and bounds those, here each volume is bounded
-//! tightly by its support function: better than what the thesis had. Overlap ends at the first
-//! direction that separates, and the larger of two volumes is divided first.
+//! It follows chapters 2 to 4 and section 7.3. The cloud's tree never moves; the tool's volumes are bounded anew at
+//! each pose. Where leaves of both trees overlap, the points are transformed to the tool's frame and evaluated one by
+//! one. It uses k = 18, which Klosowski (1997) found best, and leaves of at most `LEAF` points. The thesis rotates the
+//! vertices of a volume and bounds those; here each volume is bounded tightly by its support function, which is better.
+//! An overlap test ends at the first separating direction, and the larger of two volumes is subdivided first.
 
 use super::formula;
 use super::points::{Point, points};
 use crate::race::contender::{Answer, Contender, Sums, View, dot};
 use touchoff::{Cloud, Pose};
 
-/// Most points of a leaf, tried from 4 to 32 at 20,000 points.
+/// Maximum number of points per leaf; values from 4 to 32 were tried at 20,000 points.
 const LEAF: usize = 16;
 
-/// The directions of an 18-DOP: the axes, and between each two of them.
+/// Number of directions of an 18-DOP: the axes, and the bisectors of each two axes and their opposites.
 const WAYS: usize = 9;
 const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 const WAY: [[f64; 3]; WAYS] = [
@@ -31,7 +30,7 @@ const WAY: [[f64; 3]; WAYS] = [
     [0.0, DIAGONAL, -DIAGONAL],
 ];
 
-/// From where to where along every direction.
+/// The lower and upper bound along each direction.
 #[derive(Clone, Copy)]
 struct Dop([[f64; 2]; WAYS]);
 
@@ -48,7 +47,7 @@ impl Dop {
         self.0.iter().zip(&other.0).all(|(a, b)| a[0] <= b[1] && b[0] <= a[1])
     }
 
-    /// The longest side along the axes, and which it is.
+    /// Returns the longest side along the coordinate axes, and the index of that axis.
     fn longest(&self) -> (f64, usize) {
         let side = |axis: usize| self.0[axis][1] - self.0[axis][0];
         (0..3).map(|axis| (side(axis), axis)).fold((-1.0, 0), |a, b| if b.0 > a.0 { b } else { a })
@@ -84,7 +83,7 @@ fn build(points: &mut [Point]) -> Box<Node> {
     Box::new(Node { volume, size, below })
 }
 
-/// A frustum about the tool's axis: from where to where from the tip, and the radii there.
+/// A frustum about the tool's axis: the distances of its ends from the tip, and the radii there, mm.
 struct Frustum {
     ends: [f64; 2],
     radii: [f64; 2],
@@ -95,7 +94,7 @@ const TAPER: Frustum = Frustum { ends: [5.0, 7.0], radii: [1.0, 3.0] };
 const SPINDLE: Frustum = Frustum { ends: [7.0, 9.0], radii: [3.0, 3.0] };
 const HOUSING: Frustum = Frustum { ends: [9.0, 20.0], radii: [5.0, 5.0] };
 
-/// The directions seen from the tool: how far along each the tip is, and the axis points.
+/// The tip's coordinate along each direction, and the component of the tool's axis along each.
 struct Ways {
     tip: [f64; WAYS],
     axis: [f64; WAYS],
@@ -113,7 +112,7 @@ impl Ways {
         }))
     }
 
-    /// The ball of radius 1 at the tip.
+    /// Returns the bounds of the ball of radius 1 at the tip.
     fn ball(&self) -> Dop {
         let centre = |way: usize| self.tip[way] + self.axis[way];
         Dop(std::array::from_fn(|way| [centre(way) - 1.0, centre(way) + 1.0]))
@@ -125,10 +124,10 @@ fn both(mut a: Dop, b: &Dop) -> Dop {
     a
 }
 
-/// The splits of a leaf of the tool, where it begins and ends along the thesis's `z` first.
+/// The decision tree of a leaf of the tool, as a function of `d²` and the thesis's `z`.
 type Splits = fn(f64, f64) -> Option<(f64, [f64; 2])>;
 
-/// The tool's tree: leaves are cutter, spindle and housing; the neck is the first two together.
+/// The tool's tree: its leaves are cutter, spindle and housing; the neck combines the first two.
 const LEAVES: [Splits; 3] = [
     |squared, z| if z >= 15.0 { formula::cutter(squared, z) } else { None },
     |squared, z| if z > 11.0 && z < 15.0 { formula::spindle(squared, z) } else { None },
@@ -137,7 +136,7 @@ const LEAVES: [Splits; 3] = [
 const NECK: usize = 3;
 const WHOLE: usize = 4;
 
-/// What is below a volume of the tool.
+/// Returns the children of a volume of the tool.
 fn below(volume: usize) -> Option<[usize; 2]> {
     match volume {
         WHOLE => Some([NECK, 2]),
@@ -167,7 +166,7 @@ impl Tool {
         Tool { view, volumes, sums: Sums::default() }
     }
 
-    /// Descends both trees together.
+    /// Descends both trees at once.
     fn meet(&mut self, node: &Node, volume: usize) {
         if !node.volume.overlaps(&self.volumes[volume]) {
             return;
@@ -188,19 +187,19 @@ impl Tool {
             let arm = self.view.arm(point.at);
             let p = self.view.turn(arm);
             let squared = p[0] * p[0] + p[1] * p[1];
-            if let Some(felt) = splits(squared, formula::TIP - p[2]) {
-                let felt = formula::in_space(p, squared, felt);
-                self.sums.add([arm, p], (point.weight, point.normal), felt);
+            if let Some(evaluation) = splits(squared, formula::TIP - p[2]) {
+                let evaluation = formula::in_space(p, squared, evaluation);
+                self.sums.add([arm, p], (point.weight, point.normal), evaluation);
             }
         }
     }
 }
 
-/// The cloud's tree.
+/// The tree of the cloud.
 pub struct Thesis(Box<Node>);
 
 impl Thesis {
-    /// Of a part's points.
+    /// Builds the tree of a cloud.
     pub fn new(cloud: &Cloud) -> Thesis {
         Thesis(build(&mut points(cloud)))
     }

@@ -1,39 +1,39 @@
-//! Whether something of a part is in a tool's way: all triangles, cut up until nothing is left to ask.
+//! Collision checks of a posture by brute force: all triangles are subdivided until every piece is decided.
 //!
-//! The distance to a surface changes by no more than the way. So what holds at a triangle's middle by more than
-//! the triangle reaches holds for all of it, and a triangle of which that is not known is cut in two. Nothing
-//! is skipped but by that.
+//! The distance to a surface is 1-Lipschitz. A condition that holds at a triangle's centroid with a margin of at least
+//! the triangle's radius holds on the whole triangle. An undecided triangle is bisected. No piece is skipped for any
+//! other reason.
 
 use super::stand::{Posture, Stand};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 use touchoff::Mesh;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// What is found of a posture.
+/// The verdict on a posture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// Nothing is in the way.
+    /// The posture is free of collision.
     Free,
-    /// A place is by so much deeper than it may be, in the part's unit; infinity where the tool is inside the
-    /// part.
+    /// The excess of a point's depth over the allowed depth, in the part's unit. It is infinite if the tool is inside
+    /// the part.
     Blocked(f64),
-    /// Pieces as small as rounding do not tell, or there were too many.
+    /// Undecided: pieces as small as rounding are left, or there were too many pieces.
     Open,
 }
 
 /// A part's triangles.
 pub struct Part<'a> {
     mesh: &'a Mesh,
-    /// The middle of each, and how far it reaches from there.
+    /// Bounding ball of each triangle: centroid and radius.
     balls: Vec<(Point3<f64>, f64)>,
-    /// Whether every edge is gone along as often as back.
+    /// True if each edge is used equally often in both directions.
     closed: bool,
-    /// How large it is and how far from the origin, in its unit.
+    /// The sum of the part's size and its distance from the origin, in its unit.
     pub size: f64,
 }
 
-/// How many pieces are looked at.
+/// Maximum number of pieces examined.
 const MOST: usize = 1_000_000;
 
 fn ball(corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, f64) {
@@ -43,7 +43,7 @@ fn ball(corners: &[Vector3<f64>; 3]) -> (Vector3<f64>, f64) {
 }
 
 impl<'a> Part<'a> {
-    /// The triangles of a mesh.
+    /// Prepares the triangles of a mesh.
     pub fn new(mesh: &'a Mesh) -> Part<'a> {
         let ids = 0..mesh.triangles().len() as u32;
         let balls = ids.map(|id| {
@@ -66,8 +66,8 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Whether a tool may stand so: what cuts no deeper than a tolerance, the rest not in the part at all,
-    /// but for `more` of either, in the part's unit; below 0, what does not cut has to keep as far away.
+    /// Validates a posture. Cutting surfaces may be in the part up to the depth `tolerance + more`, the other surfaces
+    /// up to `more`, in the part's unit. If `more` is negative, the other surfaces must keep that distance.
     pub fn judge(&self, stand: &Stand, posture: &Posture, tolerance: f64, more: f64) -> Verdict {
         let length = stand.length;
         let asked = Asked { stand, cuts: tolerance + more, rest: more };
@@ -114,7 +114,7 @@ impl<'a> Part<'a> {
         if left {
             return Verdict::Open;
         }
-        // No triangle is where the tool may not be, so that is inside or outside as a whole.
+        // No triangle intersects the forbidden part of the tool, so that part is inside or outside as a whole.
         let inside = stand
             .cores
             .iter()
@@ -122,9 +122,9 @@ impl<'a> Part<'a> {
         if inside { Verdict::Blocked(f64::INFINITY) } else { Verdict::Free }
     }
 
-    /// Whether a place is inside a closed part: what a ray crosses, out less in.
+    /// Returns whether a point is inside a closed part, by counting the signed crossings of a random ray.
     fn contains(&self, place: Point3<f64>) -> bool {
-        let mut draw = Draw::new(9);
+        let mut draw = Rng::new(9);
         for _ in 0..16 {
             if let Some(turns) = self.turns(place, Vector3::from(draw.direction())) {
                 return turns > 0;
@@ -133,7 +133,7 @@ impl<'a> Part<'a> {
         false
     }
 
-    /// `None` where the ray comes too near to an edge.
+    /// Returns the signed number of crossings of a ray. Returns `None` if the ray is too near to an edge.
     fn turns(&self, place: Point3<f64>, way: Vector3<f64>) -> Option<i32> {
         let mut turns = 0;
         for (id, (middle, reach)) in self.balls.iter().enumerate() {
@@ -142,7 +142,7 @@ impl<'a> Part<'a> {
             if along < -reach || off.norm_squared() - along * along > 1.1 * reach * reach {
                 continue;
             }
-            // Möller and Trumbore 1997.
+            // Intersection of Möller and Trumbore 1997.
             let [a, b, c] = self.mesh.triangle(id as u32);
             let (u, v, from) = (b - a, c - a, place - a);
             let p = way.cross(&v);
@@ -165,17 +165,17 @@ impl<'a> Part<'a> {
     }
 }
 
-/// A piece of a triangle that may be in the way.
+/// A piece of a triangle that may collide.
 struct Piece {
     corners: [Vector3<f64>; 3],
     reach: f64,
-    /// By how much its middle is too deep.
+    /// Excess of the depth at the centroid over the allowed depth.
     over: f64,
-    /// By how much any place of it may be.
+    /// Upper bound of that excess on the piece.
     bound: f64,
 }
 
-/// How deep what cuts may be, and the rest.
+/// The allowed depths of cutting surfaces and of the other surfaces.
 struct Asked<'a> {
     stand: &'a Stand,
     cuts: f64,
@@ -183,14 +183,14 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// A piece by its corners from the tip; `None` if nothing of it is in the way.
+    /// Evaluates a piece given by its corners relative to the tip. Returns `None` if no point of it collides.
     fn piece(&self, axis: &Vector3<f64>, corners: [Vector3<f64>; 3]) -> Option<Piece> {
         let (middle, reach) = ball(&corners);
         let z = middle.dot(axis);
         let at = [(middle - z * axis).norm(), 0.0, z].map(|part| part / self.stand.length);
-        let [depth, cuts, rest] = self.stand.felt(at);
+        let [depth, cuts, rest] = self.stand.evaluation(at);
         let most = depth + reach;
-        // The rest is the nearest to no place of it that is inside, or there is none.
+        // The other surfaces are not the nearest to any point of the piece inside the tool, or no point is inside.
         let apart = most < 0.0 || rest - reach > most;
         let bound_cuts = if most > 0.0 { most - self.cuts } else { f64::NEG_INFINITY };
         let bound_rest = if apart { reach - rest } else { most } - self.rest;

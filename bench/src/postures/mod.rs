@@ -1,7 +1,7 @@
-//! A posture sweep beside brute force: postures drawn from what was found accessible, and from what was not.
+//! A posture sweep compared with brute force, on postures drawn from those found accessible and from the others.
 //!
-//! Each is rebuilt from the tool's restatement ([`stand`]) and judged by cutting up all triangles ([`free`]).
-//! Accessible has to be free; what is not has to be blocked.
+//! Each posture is rebuilt from the tool's restatement ([`stand`]) and validated by subdividing all triangles
+//! ([`free`]). Accessible postures must be free, and the others must be blocked.
 
 pub mod free;
 pub mod page;
@@ -16,84 +16,84 @@ use std::error::Error;
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
 use std::time::Instant;
-use touchoff::certify::Facets;
-use touchoff::postures::sweep::{Sweep, Tally};
-use touchoff::postures::{Directions, Row, Rules};
+use touchoff::certify::TriangleBvh;
+use touchoff::postures::sweep::{PostureSweep, SweepStats};
+use touchoff::postures::{Directions, MapRow, Rules};
 use touchoff::{Mesh, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// What is swept.
+/// The settings of a comparison.
 pub struct Wanted<'a> {
     /// The part.
     pub mesh: &'a Mesh,
-    /// Tools of the library, by name.
+    /// Library tools, by name.
     pub tools: Vec<&'a str>,
-    /// Directions a hemisphere.
+    /// Number of directions per hemisphere.
     pub hemisphere: usize,
-    /// How deep what cuts may be, in the part's unit.
+    /// Allowed depth of cutting surfaces, in the part's unit.
     pub tolerance: f64,
-    /// Contacts have to be nicer.
+    /// Niceness that contacts must exceed.
     pub niceness: f64,
-    /// How many postures of either kind are judged again.
+    /// Number of postures of each kind that are validated.
     pub draws: usize,
-    /// What they are drawn by.
+    /// Seed for the choice of postures.
     pub seed: u64,
 }
 
-/// How far a tool gets.
+/// The reach of a tool.
 #[derive(Clone, Debug, Default)]
 pub struct Reach {
-    /// Its name.
+    /// The tool's name.
     pub tool: String,
-    /// Triangles that it reaches.
+    /// Number of triangles that the tool reaches.
     pub triangles: usize,
     /// Their area, in the square of the part's unit.
     pub area: f64,
-    /// Postures in which it does.
+    /// Number of postures in which it reaches them.
     pub postures: u64,
 }
 
-/// A posture that was drawn and is not as the sweep has it.
+/// A posture on which sweep and brute force disagree or the latter is undecided.
 #[derive(Clone, Debug)]
 pub struct Odd {
     /// Triangle, tool and direction.
     pub at: String,
-    /// What brute force has to say.
+    /// The result of brute force.
     pub what: String,
 }
 
-/// What was drawn of a kind.
+/// The validated postures of one kind.
 #[derive(Clone, Debug, Default)]
 pub struct Drawn {
-    /// How many were judged.
+    /// Number of postures.
     pub judged: usize,
-    /// Those that are not as the sweep has them.
+    /// Postures on which brute force contradicts the sweep.
     pub wrong: Vec<Odd>,
-    /// Those that brute force leaves open.
+    /// Postures that brute force leaves undecided.
     pub open: Vec<Odd>,
 }
 
-/// All that was found.
+/// The results of a comparison.
 pub struct Found {
-    /// How the sweep decided.
-    pub tally: Tally,
-    /// How long it took, and brute force after it, in seconds.
+    /// The sweep's statistics.
+    pub tally: SweepStats,
+    /// Duration of the sweep, and of brute force, s.
     pub seconds: [f64; 2],
-    /// All of the part, by triangles and area.
+    /// Number of triangles and area of the whole part.
     pub all: (usize, f64),
-    /// What is reached by any tool.
+    /// Number of triangles and area that any tool reaches.
     pub any: (usize, f64),
-    /// Tool by tool.
+    /// The reach of each tool.
     pub reach: Vec<Reach>,
-    /// Of the accessible ones.
+    /// The validated accessible postures.
     pub accessible: Drawn,
-    /// Of those that are not accessible, but face their triangle.
+    /// The validated postures that face their triangle but are not accessible.
     pub refused: Drawn,
-    /// What was taken as rounding, in the part's unit.
+    /// The distance that counts as rounding, in the part's unit.
     pub rounding: f64,
 }
 
-/// A posture by numbers.
+/// A posture, by indices.
 #[derive(Clone, Copy)]
 struct Choice {
     triangle: u32,
@@ -101,16 +101,16 @@ struct Choice {
     direction: usize,
 }
 
-/// Closer than that, as parts of the tolerance, a posture that was refused is told to have been.
+/// Distances, as shares of the tolerance, at which a refused posture that is free is tested for a near collision.
 const CLOSE: [f64; 7] = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// Rounding, as a part of the part's and the tool's size.
+/// The distance that counts as rounding, as a share of the part's and the tool's size.
 const ROUNDING: f64 = 1e-9;
 
-/// Sweeps, and judges what was drawn again.
+/// Runs a sweep and validates random postures of it.
 ///
 /// # Errors
-/// A tool that is not in the library, or that no sweep can be done with.
+/// If a tool is not in the library, or cannot be used in a sweep.
 pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
     let mesh = wanted.mesh;
     let find = |name: &&str| tools_library::find(name).ok_or_else(|| format!("no tool `{name}`"));
@@ -119,7 +119,7 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
         .iter()
         .map(|name| find(name).map(|tool| tool as &dyn Tool))
         .collect::<Result<_, _>>()?;
-    let length = |tool: &&dyn Tool| tool.card().unit.to(mesh.unit());
+    let length = |tool: &&dyn Tool| tool.info().unit.factor_to(mesh.unit());
     let stands: Vec<Stand> = tools
         .iter()
         .zip(&wanted.tools)
@@ -127,15 +127,15 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
         .collect::<Result<_, _>>()?;
     let (tolerance, niceness) = (wanted.tolerance, wanted.niceness);
     let directions = Directions::spread(wanted.hemisphere);
-    let facets = Facets::new(mesh);
+    let bvh = TriangleBvh::new(mesh);
     let rules = Rules { tolerance, niceness, allowed: Vec::new() };
     let start = Instant::now();
-    let sweep = Sweep::new((mesh, &facets), tools, &directions, rules, NonZeroU16::MIN)?;
-    let mut rows = vec![Row::default(); mesh.triangles().len()];
-    let mut tally = Tally::default();
+    let sweep = PostureSweep::new((mesh, &bvh), tools, &directions, rules, NonZeroU16::MIN)?;
+    let mut rows = vec![MapRow::default(); mesh.triangles().len()];
+    let mut tally = SweepStats::default();
     let batches: Vec<usize> = (0..sweep.batches()).collect();
     let done = sweep.run(&batches, |batch| {
-        tally += batch.tally;
+        tally += batch.stats;
         batch.rows.into_iter().for_each(|(id, row)| rows[id as usize] = row);
         ControlFlow::<()>::Continue(())
     });
@@ -152,7 +152,7 @@ pub fn measure(wanted: &Wanted<'_>) -> Result<Found, Box<dyn Error>> {
         niceness,
         rounding: ROUNDING * (part.size + size.fold(0.0, f64::max)),
     };
-    let mut draw = Draw::new(wanted.seed);
+    let mut draw = Rng::new(wanted.seed);
     let start = Instant::now();
     let chosen = accessible(&rows, wanted.draws, &mut draw);
     let accessible =
@@ -176,8 +176,8 @@ fn has(set: &[u64], direction: usize) -> bool {
     set[direction / 64] >> (direction % 64) & 1 == 1
 }
 
-/// Postures that the sweep found accessible, each as likely.
-fn accessible(rows: &[Row], count: usize, draw: &mut Draw) -> Vec<Choice> {
+/// Draws from the postures that the sweep found accessible, with uniform probability.
+fn accessible(rows: &[MapRow], count: usize, draw: &mut Rng) -> Vec<Choice> {
     let mut ends = Vec::new();
     let mut sum = 0u64;
     for (triangle, row) in rows.iter().enumerate() {
@@ -209,7 +209,7 @@ fn gather(all: Vec<Result<(), (bool, Odd)>>) -> Drawn {
     drawn
 }
 
-/// What is needed to judge postures again.
+/// The data for the validation of postures.
 struct Again<'a> {
     mesh: &'a Mesh,
     part: &'a Part<'a>,
@@ -244,7 +244,7 @@ impl Again<'_> {
         self.part.judge(&self.stands[choice.tool], posture, self.tolerance, more)
     }
 
-    /// Whether one of the postures that a choice may stand for is free.
+    /// Checks that one of the postures of a choice is free. The error has the finding, and whether it is undecided.
     fn accessible(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
         let verdicts: Vec<Verdict> = self
             .postures(choice, 2.0)
@@ -262,8 +262,8 @@ impl Again<'_> {
         Err((open, Odd { at: self.at(choice), what }))
     }
 
-    /// Postures that face a triangle and that the sweep has not found accessible.
-    fn facing(&self, rows: &[Row], count: usize, draw: &mut Draw) -> Vec<Choice> {
+    /// Draws postures that face a triangle and that the sweep did not find accessible.
+    fn facing(&self, rows: &[MapRow], count: usize, draw: &mut Rng) -> Vec<Choice> {
         let mut chosen = Vec::new();
         for _ in 0..100 * count {
             if chosen.len() == count {
@@ -283,7 +283,7 @@ impl Again<'_> {
         chosen
     }
 
-    /// Whether something is in the way of all postures that a choice may stand for.
+    /// Checks that all postures of a choice are blocked. The error has the finding, and whether it is undecided.
     fn refused(&self, choice: &Choice) -> Result<(), (bool, Odd)> {
         for posture in self.postures(choice, -1.0) {
             let verdict = self.judge(choice, &posture, 0.0);
@@ -298,7 +298,7 @@ impl Again<'_> {
                 Some(near) => format!("{verdict:?}, blocked if {near:e} of the tolerance nearer"),
                 None => format!("{verdict:?}, blocked by nothing near"),
             };
-            // What is as close as the certifier's rounding was left undecided, and is no lie.
+            // A near collision within the certifier's rounding is undecided in the sweep, not wrong.
             let open = verdict == Verdict::Open || near.is_some_and(|near| *near <= 1e-6);
             return Err((open, Odd { at: self.at(choice), what }));
         }
@@ -308,8 +308,8 @@ impl Again<'_> {
 
 type Share = (usize, f64);
 
-/// All of a part, what any tool reaches, and each.
-fn coverage(mesh: &Mesh, rows: &[Row], tools: &[&str]) -> (Share, Share, Vec<Reach>) {
+/// Returns number and area of all triangles, of those that any tool reaches, and the reach of each tool.
+fn coverage(mesh: &Mesh, rows: &[MapRow], tools: &[&str]) -> (Share, Share, Vec<Reach>) {
     let (mut all, mut any) = ((0, 0.0), (0, 0.0));
     let none = |tool: &&str| Reach { tool: (*tool).to_owned(), ..Reach::default() };
     let mut reach: Vec<Reach> = tools.iter().map(none).collect();

@@ -1,15 +1,15 @@
-//! What was found, as Markdown.
+//! The results as Markdown.
 
 use super::{Drawn, Found, Wanted};
 use std::fmt::{Error, Write};
 
-/// How many odd postures are listed.
+/// Maximum number of deviating postures listed.
 const LISTED: usize = 20;
 
-/// The page, below its title and command.
+/// Returns the page below its title and head line.
 ///
 /// # Errors
-/// None that a text could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn page(part: &str, wanted: &Wanted<'_>, found: &Found) -> Result<String, Error> {
     let mut page = String::new();
     let unit = wanted.mesh.unit();
@@ -23,10 +23,10 @@ pub fn page(part: &str, wanted: &Wanted<'_>, found: &Found) -> Result<String, Er
     let of = |count: u64| 100.0 * count as f64 / tally.postures().max(1) as f64;
     writeln!(page, "\n## How postures were decided\n\n| by | postures | % |\n|---|--:|--:|")?;
     let rows = [
-        ("nothing that cuts faces it", tally.facing),
-        ("not nice enough", tally.plain),
-        ("a place that was in the way beside", tally.known),
-        ("a place that a search found", tally.found),
+        ("nothing that cuts faces it", tally.not_facing),
+        ("not nice enough", tally.below_niceness),
+        ("a place that was in the way beside", tally.cached_obstruction),
+        ("a place that a search found", tally.obstructed),
         ("rounding", tally.undecided),
         ("proved acceptable", tally.acceptable),
         ("all", tally.postures()),

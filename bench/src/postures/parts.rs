@@ -1,14 +1,14 @@
-//! A part with hollows and bosses.
+//! A generated part with hollows and bosses.
 
 use nalgebra::Point3;
 use touchoff::{Mesh, MeshError, Unit};
 
-/// How wide the block is, and how low its bottom, in mm.
+/// Width of the block, and height of its bottom, mm.
 const WIDE: f64 = 40.0;
 const LOW: f64 = -16.0;
 
-/// How high its top is: a bowl, a dome, a groove and a step. In the bowl a ball of 4 mm fits, in the groove one
-/// of 2.
+/// Returns the height of the top, mm: a bowl, a dome, a groove and a step. A ball of 4 mm fits into the bowl, and a
+/// ball of 2 mm into the groove.
 fn top(x: f64, y: f64) -> f64 {
     let dome = (-((x - 9.0).powi(2) + (y - 8.0).powi(2)) / 18.0).exp();
     let bowl = (-((x + 8.0).powi(2) + (y - 7.0).powi(2)) / 24.0).exp();
@@ -17,11 +17,11 @@ fn top(x: f64, y: f64) -> f64 {
     6.0 * dome - 7.0 * bowl - 4.0 * groove + 3.0 * (step - 1.0) + 0.3 * (0.9 * x).sin()
 }
 
-/// A block whose top goes up and down, closed and oriented outward, in mm: its top is cut into so many squares a
-/// side, its sides and its bottom into strips.
+/// Returns a block with this top, in mm, closed and oriented outward. Its top has `squares` squares per side; its sides
+/// and its bottom are divided into strips.
 ///
 /// # Errors
-/// If there is no square.
+/// If `squares` is 0.
 pub fn relief(squares: u32) -> Result<Mesh, MeshError> {
     let n = squares;
     let at = |k: u32| WIDE * (f64::from(k) / f64::from(n) - 0.5);
@@ -39,7 +39,7 @@ pub fn relief(squares: u32) -> Result<Mesh, MeshError> {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    // Around the rim, counter-clockwise from above, with what lies below it, and the bottom's middle.
+    // Duplicate the rim, counter-clockwise from above, at the height of the bottom, and add the bottom's centre.
     let rim: Vec<u32> = (0..n)
         .map(|k| up(k, 0))
         .chain((0..n).map(|k| up(n, k)))
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn it_is_a_solid() {
-        let survey = relief(12).expect("a block").survey();
-        assert!(survey.solid(), "{:?}", survey.findings());
+        let survey = relief(12).expect("a block").diagnostics();
+        assert!(survey.is_solid(), "{:?}", survey.findings());
     }
 }

@@ -1,4 +1,4 @@
-//! How a tool stands at a triangle, from its restatement alone.
+//! Postures of a tool at a triangle, derived from the tool's restatement alone.
 
 use nalgebra::{Point3, Vector3};
 use touchoff_tests::oracle::restated;
@@ -6,7 +6,7 @@ use touchoff_tests::oracle::{Nearest, Oracle};
 
 type P2 = [f64; 2];
 
-/// A line or arc of the outline, lengths in the tool's unit.
+/// A line or an arc of the outline, with lengths in the tool's unit.
 struct Piece {
     from: P2,
     to: P2,
@@ -14,32 +14,32 @@ struct Piece {
     cuts: bool,
 }
 
-/// A tool that is to stand at triangles.
+/// A tool whose postures are derived.
 pub struct Stand {
     pieces: Vec<Piece>,
-    /// What knows its depths.
+    /// The oracle for its depths.
     pub oracle: Nearest,
-    /// Which of its surfaces cut, by name.
+    /// The names of its surfaces, and whether each cuts.
     pub surfaces: Vec<(&'static str, bool)>,
-    /// The tool's unit of length in the part's.
+    /// The tool's unit of length, in the part's unit.
     pub length: f64,
-    /// Heights on the axis, in the tool's unit, where what cuts is deeper than a tolerance, or the rest is
-    /// inside: the deepest of either.
+    /// Up to two heights on the axis, in the tool's unit: the deepest point owned by a cutting surface, if deeper than
+    /// the tolerance, and the deepest point owned by another surface.
     pub cores: Vec<f64>,
 }
 
-/// Where a tool stands.
+/// A posture of a tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Posture {
-    /// Its tip, in the part's unit.
+    /// The tip, in the part's unit.
     pub tip: Point3<f64>,
-    /// From the tip to the spindle.
+    /// The axis, from the tip to the spindle.
     pub axis: Vector3<f64>,
-    /// How good the contact is.
+    /// The quality of the contact.
     pub niceness: f64,
 }
 
-/// A sine, or a part of the tool's size, that is rounding.
+/// A sine, or a share of the tool's size, that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
 fn minus(a: P2, b: P2) -> P2 {
@@ -60,14 +60,14 @@ fn unit(a: P2) -> P2 {
 }
 
 impl Piece {
-    /// Which way the outline goes at a place of the piece; the material is on the left.
+    /// Returns the tangent of the outline at a point of the piece. The material is on the left.
     fn along(&self, at: P2) -> P2 {
         let Some(centre) = self.centre else { return unit(minus(self.to, self.from)) };
         let [d, z] = unit(minus(at, centre));
         if self.bulges() { [-z, d] } else { [z, -d] }
     }
 
-    /// Of an arc: whether the material is about its centre.
+    /// Returns whether the piece is an arc whose material is around its centre.
     fn bulges(&self) -> bool {
         let of = |centre| cross(minus(self.from, centre), minus(self.to, centre)) > 0.0;
         self.centre.is_some_and(of)
@@ -75,11 +75,11 @@ impl Piece {
 }
 
 impl Stand {
-    /// The tool of a name, whose unit of length is so many of the part's, and which may cut so deep, in the
-    /// part's unit.
+    /// Derives a tool from its restatement. `length` is the tool's unit of length in the part's unit. `tolerance` is
+    /// the allowed depth of cutting surfaces, in the part's unit.
     ///
     /// # Errors
-    /// If it is not restated.
+    /// If the tool has no restatement.
     pub fn new(name: &str, length: f64, tolerance: f64) -> Result<Stand, String> {
         let tool = restated::of(name).ok_or_else(|| format!("`{name}` is not restated"))?;
         let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
@@ -101,9 +101,9 @@ impl Stand {
         Ok(stand)
     }
 
-    /// All postures in which what cuts touches a plane through a place, at a place of the outline where that
-    /// bulges, or a corner of it: the outline's own normal there is the opposite of the plane's, or between
-    /// those of the pieces that meet. What is so nearly, by `more` times rounding, counts too.
+    /// Returns all postures in which a cutting surface touches the plane through a point, on a convex arc or at a
+    /// corner of the outline. The outline's normal there is opposite to the plane's, or the opposite lies between the
+    /// normals of the pieces that meet at the corner. Deviations up to `more` times rounding are accepted.
     pub fn postures(
         &self,
         place: Point3<f64>,
@@ -116,7 +116,7 @@ impl Stand {
         let out = across.norm();
         let way: P2 = [out, up];
         let size = self.oracle.extent()[0].max(self.oracle.extent()[1]);
-        // Where it touches, and a little inside of what touches there.
+        // The contact point, and a point slightly inside the piece that touches there.
         let hair = ROUNDING * size;
         let inside = |at: P2, back: P2, piece: P2| {
             [at[0] + hair * (back[0] - 0.02 * piece[1]), at[1] + hair * (back[1] + 0.02 * piece[0])]
@@ -136,7 +136,7 @@ impl Stand {
                     touched.push((on(radius), [on(radius - hair); 2]));
                 }
             }
-            // The corner before the piece; at the axis the outline comes from its mirror image.
+            // The corner before the piece. On the axis, the outline continues as its mirror image.
             let after = piece.along(piece.from);
             let before = match k.checked_sub(1) {
                 Some(k) if self.pieces[k].cuts => self.pieces[k].along(piece.from),
@@ -153,13 +153,13 @@ impl Stand {
             }
         }
         let posture = |([d, z], both): (P2, [P2; 2])| {
-            // Square to a face, a ring of the tool touches, and no place of it is told from others.
+            // If the tool's axis is parallel to the normal, the contact is a ring without a distinguished point.
             if out < ROUNDING && d > ROUNDING * size {
                 return None;
             }
             let radial = if out > 0.0 { across / out } else { Vector3::zeros() };
             let nice = |[d, z]: P2| self.oracle.sense([d, 0.0, z]).map(|sense| sense.niceness);
-            // What meets at a corner both touches: the less nice counts.
+            // At a corner both pieces touch, and the lower niceness counts.
             let niceness = both.into_iter().filter_map(nice).reduce(f64::min)?;
             let tip = place - self.length * (d * radial + z * axis);
             Some(Posture { tip, axis, niceness })
@@ -167,14 +167,14 @@ impl Stand {
         touched.into_iter().filter_map(posture).collect()
     }
 
-    /// The largest radius and the height, in the part's unit.
+    /// Returns the largest radius and the height, in the part's unit.
     pub fn extent(&self) -> [f64; 2] {
         self.oracle.extent().map(|part| part * self.length)
     }
 
-    /// How deep a place of the tool's frame and unit is, below 0 outside, and how far from what cuts and from
-    /// the rest; in the part's unit.
-    pub fn felt(&self, at: [f64; 3]) -> [f64; 3] {
+    /// Returns the depth of a point of the tool's frame, which is negative outside, and its distances from the cutting
+    /// surfaces and from the others. The point is in the tool's unit, the results in the part's.
+    pub fn evaluation(&self, at: [f64; 3]) -> [f64; 3] {
         let away = |cuts: bool| {
             let own = self.surfaces.iter().filter(|(_, cutting)| *cutting == cuts);
             own.map(|(name, _)| self.oracle.away(name, at)).fold(f64::INFINITY, f64::min)
@@ -188,13 +188,17 @@ impl Stand {
         const PLACES: u32 = 256;
         let height = self.oracle.extent()[1];
         let heights = (1..PLACES).map(|k| height * f64::from(k) / f64::from(PLACES));
-        let felt: Vec<(f64, [f64; 3])> = heights.map(|z| (z, self.felt([0.0, 0.0, z]))).collect();
+        let evaluation: Vec<(f64, [f64; 3])> =
+            heights.map(|z| (z, self.evaluation([0.0, 0.0, z]))).collect();
         let deepest = |of: fn(&[f64; 3]) -> bool, least: f64| {
-            let own = felt.iter().filter(|(_, felt)| felt[0] > least && of(felt));
+            let own =
+                evaluation.iter().filter(|(_, evaluation)| evaluation[0] > least && of(evaluation));
             own.max_by(|a, b| a.1[0].total_cmp(&b.1[0])).map(|(z, _)| *z)
         };
-        let all =
-            [deepest(|felt| felt[1] <= felt[2], tolerance), deepest(|felt| felt[2] < felt[1], 0.0)];
+        let all = [
+            deepest(|evaluation| evaluation[1] <= evaluation[2], tolerance),
+            deepest(|evaluation| evaluation[2] < evaluation[1], 0.0),
+        ];
         all.into_iter().flatten().collect()
     }
 }
@@ -202,12 +206,13 @@ impl Stand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff_tests::oracle::draw::Draw;
+    use touchoff_tests::oracle::draw::Rng;
 
-    /// A place a hair below the face is in the tool, or at its surface, and none above is.
+    /// The contact point is on the tool's surface, a point slightly above the plane is inside the tool, and no point
+    /// slightly below the plane is.
     #[test]
     fn a_tool_touches_the_plane_that_it_stands_at() {
-        let mut draw = Draw::new(5);
+        let mut draw = Rng::new(5);
         for name in ["D2Ball", "BullNose", "TaperedBall", "Flat", "Drill", "HalfInchBallCat40"] {
             let length = if name.starts_with("Half") { 25.4 } else { 1.0 };
             let stand = Stand::new(name, length, 0.01).expect("a restated tool");

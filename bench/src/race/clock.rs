@@ -1,62 +1,63 @@
-//! How methods are timed: in turns, on the same poses, never the same pose twice.
+//! Timing of competing methods: interleaved, on the same poses, and never twice at the same pose.
 //!
-//! The path is cut into blocks of `BLOCK` poses. Every block is given to one method after the
-//! other, each time another one first. Before its turn a method is asked once, untimed, at the pose
-//! before the block: in use it would not have to share its caches with others. Even blocks are timed
-//! as a whole, for the average; odd blocks query by query, for the percentiles, which the clock makes
-//! longer by some 20 ns. A method too slow for its share of time sits out blocks, evenly.
+//! The path is divided into blocks of `BLOCK` poses. Every block is given to each method in turn, with a different
+//! method first each time. Before its turn, a method answers one untimed query at the pose before the block. In real
+//! use it would not share its caches with other methods. Even blocks are timed as a whole, for the mean. Odd blocks are
+//! timed query by query, for the percentiles; reading the clock adds about 20 ns there. A method that would exceed its
+//! time budget skips blocks at even intervals.
 
 use super::contender::{Answer, Contender};
 use cpu_time::ThreadTime;
 use std::time::{Duration, Instant};
 use touchoff::Pose;
 
-/// Poses of a turn.
+/// Number of poses per turn.
 const BLOCK: usize = 25;
-/// Poses by which a method's share is estimated.
+/// Number of poses by which a method's time is estimated.
 const TRIAL: usize = 5;
 
-/// What was measured of one method.
+/// The timings of one method.
 #[derive(Default)]
 pub struct Times {
-    /// Even blocks: queries, wall and CPU time.
+    /// Even blocks: number of queries, wall time and CPU time.
     together: usize,
     wall: Duration,
     cpu: Duration,
-    /// Odd blocks: every query, ns.
+    /// Odd blocks: the time of each query, ns.
     single: Vec<u64>,
     colliding: usize,
 }
 
 impl Times {
-    /// How many poses it was asked at.
+    /// Returns the number of poses queried.
     pub fn poses(&self) -> usize {
         self.together + self.single.len()
     }
 
-    /// Wall time of a query, ns.
+    /// Returns the mean wall time per query, ns.
     pub fn average(&self) -> f64 {
         self.wall.as_secs_f64() * 1e9 / self.together.max(1) as f64
     }
 
-    /// CPU time of a query, ns.
+    /// Returns the mean CPU time per query, ns.
     pub fn cpu(&self) -> f64 {
         self.cpu.as_secs_f64() * 1e9 / self.together.max(1) as f64
     }
 
-    /// What a part of all queries took at most, ns; `None` if there are too few of them to say.
+    /// Returns the time in ns that a fraction `part` of all queries does not exceed. Returns `None` if fewer than one
+    /// query lies beyond it.
     pub fn percentile(&self, part: f64) -> Option<u64> {
         let beyond = (1.0 - part) * self.single.len() as f64;
         let at = (self.single.len() as f64 * part) as usize;
         (beyond > 1.0 - 1e-9).then(|| self.single[at.min(self.single.len() - 1)])
     }
 
-    /// The longest query, ns.
+    /// Returns the time of the longest query, ns.
     pub fn longest(&self) -> Option<u64> {
         self.single.last().copied()
     }
 
-    /// Returns the average number of points inside.
+    /// Returns the mean number of points inside.
     pub fn colliding(&self) -> f64 {
         self.colliding as f64 / self.poses().max(1) as f64
     }
@@ -66,7 +67,7 @@ impl Times {
     }
 }
 
-/// Keeps the thread on the last core; whether that worked.
+/// Pins the thread to the last core. Returns whether that succeeded.
 pub fn pin() -> bool {
     let cores = core_affinity::get_core_ids().unwrap_or_default();
     cores.last().is_some_and(|core| core_affinity::set_for_current(*core))
@@ -113,7 +114,7 @@ fn round(method: &mut dyn Contender, poses: &[Pose], together: bool, times: &mut
     times.colliding += counts.colliding;
 }
 
-/// Of how many pairs of blocks a method gets one.
+/// Returns `n` such that a method takes part in one of every `n` pairs of blocks.
 fn stride(method: &mut dyn Contender, poses: &[Pose], seconds: f64) -> usize {
     let trial = || poses.iter().step_by((poses.len() / TRIAL).max(1));
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Methods that answer the same question, asked in turns and timed.
+//! Interleaved timing of methods that answer the same query.
 
 pub mod clock;
 pub mod contender;

@@ -1,42 +1,42 @@
-//! Triangles, poses and tolerances where rounding does the most.
+//! Random triangles, poses and tolerances for which rounding errors are largest.
 
 use super::cutters::Cutter;
 use super::truth::Point;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::TAU;
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::outline::{Flat, Segment};
 
-/// A kind of case.
+/// A family of test cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// A triangle through a place of the tool, turned anyhow.
+    /// A triangle through a point of the tool, with any orientation.
     Any,
-    /// Heights of 1e-13 to 1e-2 of the length.
+    /// Slivers: heights of 1e-13 to 1e-2 of the length.
     Sliver,
-    /// Corners in line, or equal, beside a sound triangle.
+    /// A triangle with collinear or equal corners, beside a sound triangle.
     Degenerate,
-    /// A corner, an edge or a face at a place whose nearest point is a joint of the profile.
+    /// A corner, an edge or a face at a point whose nearest point is a joint of the profile.
     Joint,
-    /// The same at the centre of an arc or on the axis.
+    /// The same at the centre of an arc, or on the axis.
     Centre,
-    /// Normal to the axis, at a height where the profile has a joint or a centre, or at any.
+    /// A triangle normal to the axis, at the height of a joint or a centre of the profile, or at any height.
     Level,
-    /// In a plane that touches the profile, or is off by 1e-17 to 1e-6 of the tool.
+    /// A triangle in a plane that is tangent to the profile, or off by 1e-17 to 1e-6 of the tool's radius.
     Tangent,
-    /// Lengths from 1e-6 to 1e6 of the tool's.
+    /// A triangle whose size is 1e-6 to 1e6 of the tool's radius.
     Size,
-    /// Several triangles about a place whose nearest point is a joint.
+    /// Several triangles around a point whose nearest point is a joint of the profile.
     Fan,
-    /// One of the former, as far from the origin as 1 to 1e12 sizes.
+    /// One of the former, with the tip 1 to 1e12 tool sizes away from the origin.
     Far,
-    /// One of the former, with a rotation composed of many.
+    /// One of the former, with a rotation composed of many rotations.
     Drift,
 }
 
 impl Family {
-    /// All of them, in the order in which cases go through them.
+    /// All families, in the order in which case numbers cycle through them.
     pub const ALL: [Family; 11] = [
         Family::Any,
         Family::Sliver,
@@ -52,23 +52,23 @@ impl Family {
     ];
 }
 
-/// A question to the certifier.
+/// A query to the certifier.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The triangles, in the world.
+    /// The triangles, in the world frame.
     pub triangles: Vec<[Point; 3]>,
     /// The tool's pose.
     pub pose: Pose,
-    /// The tolerance.
+    /// The tolerance, in the unit of the triangles.
     pub tolerance: f64,
 }
 
-/// A power of ten with an exponent between two numbers.
-fn magnitude(low: f64, high: f64, draw: &mut Draw) -> f64 {
+/// Returns a power of ten with a random exponent between two numbers.
+fn magnitude(low: f64, high: f64, draw: &mut Rng) -> f64 {
     10f64.powf(draw.between(low, high))
 }
 
-fn one_of<T: Copy>(list: &[T], draw: &mut Draw) -> T {
+fn one_of<T: Copy>(list: &[T], draw: &mut Rng) -> T {
     list[draw.bits() as usize % list.len()]
 }
 
@@ -76,8 +76,8 @@ fn toward(at: Point, step: f64, way: Point) -> Point {
     [0, 1, 2].map(|k| at[k] + step * way[k])
 }
 
-/// A unit vector at right angles to another.
-fn beside(way: Point, draw: &mut Draw) -> Point {
+/// Returns a random unit vector perpendicular to `way`.
+fn beside(way: Point, draw: &mut Rng) -> Point {
     loop {
         let other = draw.direction();
         let along = way[0] * other[0] + way[1] * other[1] + way[2] * other[2];
@@ -89,8 +89,8 @@ fn beside(way: Point, draw: &mut Draw) -> Point {
     }
 }
 
-/// A triangle of about that size whose plane has that normal, with a place at a corner, on an edge or inside.
-fn about(at: Point, normal: Point, size: f64, draw: &mut Draw) -> [Point; 3] {
+/// Returns a random triangle of about this size and with this normal. The point `at` is a corner, on an edge or inside.
+fn about(at: Point, normal: Point, size: f64, draw: &mut Rng) -> [Point; 3] {
     let first = beside(normal, draw);
     let second = [
         normal[1] * first[2] - normal[2] * first[1],
@@ -110,15 +110,15 @@ fn about(at: Point, normal: Point, size: f64, draw: &mut Draw) -> [Point; 3] {
     flat.map(|p| toward(toward(at, p[0] - base[0], first), p[1] - base[1], second))
 }
 
-/// A tool whose cases are drawn.
+/// A tool for which cases are generated, and its largest radius.
 struct Sketch<'a> {
     cutter: &'a Cutter,
     radius: f64,
 }
 
 impl Sketch<'_> {
-    /// A point at `[d, z]`, at some angle about the axis, and the vector with given radial and axial parts there.
-    fn turned(at: Flat, way: Flat, draw: &mut Draw) -> (Point, Point) {
+    /// Rotates a point `[d, z]` and a vector with radial and axial components about the axis by one random angle.
+    fn turned(at: Flat, way: Flat, draw: &mut Rng) -> (Point, Point) {
         let (sin, cos) = match draw.bits() % 4 {
             0 => (0.0, 1.0),
             1 => (1.0, 0.0),
@@ -128,24 +128,24 @@ impl Sketch<'_> {
         (lift(at), lift(way))
     }
 
-    /// A place in the tool or a little beside it, most of them near the tip.
-    fn place(&self, draw: &mut Draw) -> Point {
+    /// Returns a point inside the tool or slightly outside, mostly near the tip.
+    fn place(&self, draw: &mut Rng) -> Point {
         let height = self.cutter.extent[1];
         let high = if draw.bits().is_multiple_of(2) { height } else { height.min(self.radius) };
         let at = [draw.between(0.0, self.radius), draw.between(-0.02, 1.0) * high];
         Self::turned(at, [1.0, 0.0], draw).0
     }
 
-    fn any(&self, size: f64, draw: &mut Draw) -> [Point; 3] {
+    fn any(&self, size: f64, draw: &mut Rng) -> [Point; 3] {
         about(self.place(draw), draw.direction(), size, draw)
     }
 
-    /// A size like the tool's.
-    fn size(&self, draw: &mut Draw) -> f64 {
+    /// Returns a random size of the order of the tool's radius.
+    fn size(&self, draw: &mut Rng) -> f64 {
         self.radius * magnitude(-1.5, 1.5, draw)
     }
 
-    fn sliver(&self, height: f64, draw: &mut Draw) -> [Point; 3] {
+    fn sliver(&self, height: f64, draw: &mut Rng) -> [Point; 3] {
         let (at, along) = (self.place(draw), draw.direction());
         let (length, part) = (self.size(draw), draw.between(-0.5, 1.5));
         let from = toward(at, -length * draw.between(0.0, 1.0), along);
@@ -154,7 +154,7 @@ impl Sketch<'_> {
         [from, toward(from, length, along), third]
     }
 
-    fn degenerate(&self, draw: &mut Draw) -> [Point; 3] {
+    fn degenerate(&self, draw: &mut Rng) -> [Point; 3] {
         let [a, b, c] = self.sliver(0.0, draw);
         match draw.bits() % 4 {
             0 => [a, b, a],
@@ -163,8 +163,8 @@ impl Sketch<'_> {
         }
     }
 
-    /// A point under a joint of the profile and the way out there, which is between the two normals.
-    fn under_joint(&self, draw: &mut Draw) -> (Point, Point) {
+    /// Returns a point under a joint of the profile and the outward direction there, between the two normals.
+    fn under_joint(&self, draw: &mut Rng) -> (Point, Point) {
         let segments = &self.cutter.outline.segments;
         let k = 1 + draw.bits() as usize % (segments.len() - 1);
         let ([a, b], part) = (
@@ -178,13 +178,13 @@ impl Sketch<'_> {
         Self::turned(at, way, draw)
     }
 
-    fn joint(&self, size: f64, draw: &mut Draw) -> [Point; 3] {
+    fn joint(&self, size: f64, draw: &mut Rng) -> [Point; 3] {
         let (at, way) = self.under_joint(draw);
         let normal = if draw.bits().is_multiple_of(2) { way } else { draw.direction() };
         about(at, normal, size, draw)
     }
 
-    fn centre(&self, draw: &mut Draw) -> [Point; 3] {
+    fn centre(&self, draw: &mut Rng) -> [Point; 3] {
         let centres = self.cutter.outline.segments.iter().filter_map(|segment| segment.centre);
         let axis = [0.0, draw.between(0.0, self.cutter.extent[1])];
         let places: Vec<Flat> = centres.filter(|at| at[0] >= 0.0).chain([axis]).collect();
@@ -194,7 +194,7 @@ impl Sketch<'_> {
         about(at, normal, self.size(draw), draw)
     }
 
-    fn level(&self, draw: &mut Draw) -> [Point; 3] {
+    fn level(&self, draw: &mut Rng) -> [Point; 3] {
         let mut at = self.place(draw);
         let segment = one_of(&self.cutter.outline.segments, draw);
         let centre = segment.centre.unwrap_or(segment.to);
@@ -204,7 +204,7 @@ impl Sketch<'_> {
         triangle
     }
 
-    fn tangent(&self, draw: &mut Draw) -> [Point; 3] {
+    fn tangent(&self, draw: &mut Rng) -> [Point; 3] {
         let segment = one_of(&self.cutter.outline.segments, draw);
         let part = draw.between(0.0, 1.0);
         let way = outward(&segment, part);
@@ -226,11 +226,11 @@ impl Sketch<'_> {
         about(at, way, self.size(draw), draw)
     }
 
-    fn fan(&self, draw: &mut Draw) -> Vec<[Point; 3]> {
+    fn fan(&self, draw: &mut Rng) -> Vec<[Point; 3]> {
         let (at, way) = self.under_joint(draw);
         let count = 2 + draw.bits() as usize % 4;
         let size = self.size(draw);
-        let rim = |draw: &mut Draw| {
+        let rim = |draw: &mut Rng| {
             let across = toward(at, size * draw.between(0.1, 1.0), beside(way, draw));
             toward(across, size * draw.between(-0.5, 0.1), way)
         };
@@ -245,7 +245,7 @@ impl Sketch<'_> {
         triangles
     }
 
-    fn triangles(&self, family: Family, draw: &mut Draw) -> Vec<[Point; 3]> {
+    fn triangles(&self, family: Family, draw: &mut Rng) -> Vec<[Point; 3]> {
         let size = self.size(draw);
         match family {
             Family::Any => vec![self.any(size, draw)],
@@ -279,7 +279,7 @@ fn unit(v: Flat) -> Flat {
     if size > 0.0 { v.map(|part| part / size) } else { [0.0, 1.0] }
 }
 
-/// The unit normal of a profile's segment, out of the material, at a part of it.
+/// Returns the unit normal of a profile segment, out of the material, at parameter `part` in 0 to 1.
 fn outward(segment: &Segment, part: f64) -> Flat {
     let ([a, b], [c, d]) = (segment.from, segment.to);
     let at = [a + part * (c - a), b + part * (d - b)];
@@ -288,8 +288,9 @@ fn outward(segment: &Segment, part: f64) -> Flat {
     if segment.is_hollow() { arm.map(|part| -part) } else { arm }
 }
 
-/// A pose: the identity, along a coordinate axis, or turned anyhow, its tip within some sizes of the origin.
-fn pose(family: Family, size: f64, draw: &mut Draw) -> Pose {
+/// Returns a random pose: the identity, an axis along a coordinate axis, or any rotation. The tip is within a few tool
+/// sizes of the origin, or farther for [`Family::Far`].
+fn pose(family: Family, size: f64, draw: &mut Rng) -> Pose {
     let far = if family == Family::Far { magnitude(0.0, 12.0, draw) } else { 3.0 };
     let tip = Point3::from(draw.direction()) * (size * far);
     match draw.bits() % 6 {
@@ -304,7 +305,7 @@ fn pose(family: Family, size: f64, draw: &mut Draw) -> Pose {
                 let turn = [0; 4].map(|_| draw.between(-1.0, 1.0));
                 let norm = turn.iter().map(|part| part * part).sum::<f64>().sqrt();
                 if norm > 0.1 {
-                    // As far from a unit as a pose takes.
+                    // The norm deviates from 1 by almost as much as a pose accepts.
                     break turn.map(|part| part / norm * draw.between(0.9991, 1.0009));
                 }
             };
@@ -318,22 +319,22 @@ fn made(tip: Point3<f64>, axis: Vector3<f64>) -> Pose {
     Pose::from_axis(tip, axis).expect("an axis")
 }
 
-/// A pose after many turns about the origin, some of them there and back.
-fn drifted(pose: Pose, draw: &mut Draw) -> Pose {
+/// Returns a pose after many rotations about the origin, some of which are undone immediately.
+fn drifted(pose: Pose, draw: &mut Rng) -> Pose {
     let mut pose = pose;
     for _ in 0..12 {
         let axis = Vector3::from(draw.direction());
         let step = Pose::from_axis(Point3::origin(), axis).expect("an axis");
         pose = pose.then(&step);
         if draw.bits().is_multiple_of(2) {
-            pose = pose.seen_from(&step);
+            pose = pose.relative_to(&step);
         }
     }
     pose
 }
 
-/// A case of a family for a tool.
-pub fn case(family: Family, cutter: &Cutter, draw: &mut Draw) -> Case {
+/// Returns a random case of a family for a tool.
+pub fn case(family: Family, cutter: &Cutter, draw: &mut Rng) -> Case {
     let [radius, height] = cutter.extent;
     let drawn = Sketch { cutter, radius }.triangles(family, draw);
     let mut pose = pose(family, radius + height, draw);

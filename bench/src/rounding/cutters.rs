@@ -1,7 +1,7 @@
-//! Tools whose every coordinate is a short dyadic number, so that a power of two scales them without rounding.
+//! Tools whose coordinates are all short dyadic numbers, so that scaling by a power of two does not round them.
 //!
-//! Tangent points lie on Pythagorean triples. The truth of a tool is its list of numbers here, in doubles and in
-//! 256 bits; the tool that is judged is compiled from text with the same numbers.
+//! Tangent points come from Pythagorean triples. The reference for a tool is its list of coordinates in this module,
+//! evaluated in doubles and in 256 bits. The tool under test is compiled from text with the same numbers.
 
 use std::fmt::Write;
 use tool_dsl::source::Source;
@@ -13,24 +13,25 @@ use touchoff_tests::oracle::restated::{Restated, Way};
 
 /// A tool at one scale.
 pub struct Cutter {
-    /// Its name and scale.
+    /// The name and the scale.
     pub name: String,
     /// The compiled tool.
     pub tool: Interpreted,
-    /// Its profile in doubles.
+    /// The profile in doubles.
     pub outline: Outline,
-    /// The same in 256 bits.
+    /// The profile in 256 bits.
     pub reference: Reference,
-    /// Largest distance from the axis, and height.
+    /// The largest distance from the axis, and the height, mm.
     pub extent: [f64; 2],
-    /// How far the circles of its arcs reach from its tip, if farther than the tool.
+    /// The largest distance from the tip to which the circles of its arcs extend, or the tool's extent if that is
+    /// larger, mm.
     pub reach: f64,
 }
 
-/// A profile: the name, and points with the centre of the arc that ends there.
+/// A profile: the name, and the end points of its segments with the centre if the segment is an arc.
 type Drawn = (&'static str, &'static [(Flat, Option<Flat>)]);
 
-/// The profiles at scale 1; each begins at the origin.
+/// The profiles at scale 1, mm; each begins at the origin.
 const PROFILES: [Drawn; 11] = [
     ("Ball", &[([5., 5.], Some([0., 5.])), ([5., 22.], None), ([0., 22.], None)]),
     ("Flat", &[([6., 0.], None), ([6., 26.], None), ([0., 26.], None)]),
@@ -47,7 +48,7 @@ const PROFILES: [Drawn; 11] = [
             ([0., 83.], None),
         ],
     ),
-    // 7, 24, 25: the cone touches the ball at (3, 2.25).
+    // Triple 7, 24, 25: the cone is tangent to the ball at (3, 2.25).
     (
         "Taper",
         &[
@@ -57,7 +58,7 @@ const PROFILES: [Drawn; 11] = [
             ([0., 30.], None),
         ],
     ),
-    // 3, 4, 5: the ball ends on the neck at (3, 9), a reflex corner.
+    // Triple 3, 4, 5: the ball meets the neck at (3, 9), a reflex corner.
     (
         "Lollipop",
         &[
@@ -69,7 +70,7 @@ const PROFILES: [Drawn; 11] = [
             ([0., 75.], None),
         ],
     ),
-    // A hollow arc.
+    // A concave arc.
     (
         "Rounding",
         &[
@@ -95,7 +96,7 @@ const PROFILES: [Drawn; 11] = [
             ([0., 74.], None),
         ],
     ),
-    // 13, 84, 85: an arc with its centre far beyond the axis.
+    // Triple 13, 84, 85: an arc whose centre lies far beyond the axis.
     (
         "Barrel",
         &[
@@ -106,7 +107,7 @@ const PROFILES: [Drawn; 11] = [
             ([0., 50.], None),
         ],
     ),
-    // An arc whose radius is 4096.00390625, a hundred times the tool's size.
+    // An arc of radius 4096.00390625, a hundred times the tool's size.
     (
         "Bowed",
         &[
@@ -117,22 +118,22 @@ const PROFILES: [Drawn; 11] = [
             ([0., 40.], None),
         ],
     ),
-    // A point, whose depth has a kink on the axis.
+    // A pointed tip: the depth has a kink on the axis.
     ("Point", &[([6., 6.], None), ([6., 20.], None), ([0., 20.], None)]),
-    // A hundred times as long as it is thick.
+    // A tool a hundred times as long as it is thick.
     ("Needle", &[([0.5, 0.5], Some([0., 0.5])), ([0.5, 64.], None), ([0., 64.], None)]),
 ];
 
-/// Exponents of two by which each profile is scaled: from 1e-6 to 1e6.
+/// Exponents of two by which each profile is scaled: from about 1e-6 to 1e6.
 const SCALES: [i32; 5] = [-20, -10, 0, 10, 20];
 
-/// The number of tools that [`cutter`] makes.
+/// The number of tools that [`cutter`] can make.
 pub const COUNT: usize = PROFILES.len() * SCALES.len();
 
-/// The tool with a number below [`COUNT`].
+/// Returns the tool with a number below [`COUNT`].
 ///
 /// # Errors
-/// If the compiler refuses it.
+/// If the compiler rejects the tool.
 pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
     let (name, points) = PROFILES[number % PROFILES.len()];
     let exponent = SCALES[number / PROFILES.len()];
@@ -160,7 +161,7 @@ pub fn cutter(number: usize) -> Result<Cutter, ToolError> {
     })
 }
 
-/// The tool as a file has it.
+/// Returns the source text of the tool.
 fn text(name: &str, segments: &[Segment]) -> String {
     let mut text = format!("tool {name} {{ units mm; profile {{ start (0, 0);");
     for (k, segment) in segments.iter().enumerate() {
@@ -177,7 +178,7 @@ fn text(name: &str, segments: &[Segment]) -> String {
     text + " } niceness cutting: 1; }"
 }
 
-/// The tool as the reference in 256 bits reads it.
+/// Returns the tool as the 256-bit reference reads it.
 fn restated(name: &'static str, segments: &[Segment]) -> Restated {
     let exact = |point: Flat| point.map(Big::exactly);
     let way = |segment: &Segment| Way {
@@ -197,12 +198,12 @@ fn restated(name: &'static str, segments: &[Segment]) -> Restated {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff_tests::oracle::draw::Draw;
+    use touchoff_tests::oracle::draw::Rng;
     use touchoff_tests::oracle::reference::At;
 
     #[test]
     fn doubles_and_256_bits_agree() {
-        let mut draw = Draw::new(1);
+        let mut draw = Rng::new(1);
         for number in 0..COUNT {
             let cutter = cutter(number).expect("a tool");
             let [radius, height] = cutter.extent;

@@ -1,12 +1,13 @@
-//! Certified depths of single triangles beside the truth in 256 bits, where rounding does the most.
+//! Certified depths of single triangles compared with a 256-bit reference, in cases where rounding errors are largest.
 //!
-//! The doubles of a mesh and a pose are taken as exact numbers, and the pose as what it says it is: the map
-//! `p = R q + tip` from the tool's frame, so that a place of the part is `R⁻¹ (p - tip)` there. A search in doubles
-//! finds places, and the depth of the best of them in 256 bits is a lower bound of the truth ([`truth`]). So the
-//! upper bound is violated for certain if it is below that. The lower bound is that of the witness, so two things
-//! violate it: a witness that is farther from its triangle than rounding explains, and a place of the triangle next
-//! to the witness whose depth is less than the bound by more than the two are apart, since depth changes by no more
-//! than the way.
+//! The doubles of a mesh and a pose are taken as exact numbers. The pose is taken as the exact map `p = R q + tip` from
+//! the tool's frame, so a point `p` of the part is `R⁻¹ (p - tip)` in that frame. A search in doubles proposes points.
+//! The 256-bit depth of the best of them is a lower bound of the true depth ([`truth`]). An upper bound below it is
+//! certainly violated.
+//!
+//! The lower bound is the depth of the witness, so two findings violate it. One is a witness that is farther from its
+//! triangle than rounding explains. The other is a point of the triangle next to the witness whose depth is below the
+//! lower bound by more than the distance between the two: depth is 1-Lipschitz.
 
 pub mod cases;
 pub mod cutters;
@@ -16,21 +17,21 @@ use cases::{Case, Family};
 use cutters::Cutter;
 use nalgebra::Point3;
 use std::fmt::Write;
-use touchoff::certify::{Certifier, Facets, Witness};
+use touchoff::certify::{Certifier, TriangleBvh, Witness};
 use touchoff::{Mesh, Unit};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use truth::{Place, Point, Scene};
 
-/// Violations that are shown, of a family.
+/// Number of violations listed per family.
 const SHOWN: usize = 4;
 
-/// The largest of some figures, and the case that has it.
+/// The largest of several values, and the case that has it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
-    /// The figure.
+    /// The value.
     pub figure: f64,
-    /// The case's number.
+    /// The case number.
     pub case: u64,
 }
 
@@ -42,39 +43,39 @@ impl Worst {
     }
 }
 
-/// The figures of a family's cases.
+/// The statistics of a family's cases.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The family.
     pub family: Family,
-    /// Cases that were asked about.
+    /// Number of cases queried.
     pub cases: u64,
-    /// Those with a place inside the tool.
+    /// Cases in which a point of the triangles is inside the tool.
     pub touching: u64,
-    /// Those at which the search without the witness comes within 1e-9 of the tool's size of the lower bound.
+    /// Cases in which the search without the witness comes within 1e-9 of the tool's size of the lower bound.
     pub alone: u64,
-    /// Those in which the lower bound is below a depth in 256 bits, so that it is true beyond doubt.
+    /// Cases in which a depth in 256 bits reaches the lower bound, so that the bound is certainly true.
     pub certain: u64,
-    /// Intervals wider than the tolerance and what is promised to be added at both ends.
+    /// Intervals wider than the tolerance plus the promised widening at both ends.
     pub wider: u64,
     /// The largest excess of an interval's width over that, in widenings.
     pub widest: Worst,
-    /// The largest excess of the truth over the depth that was computed, as a part of what the upper bound adds.
+    /// The largest excess of the true depth over the computed depth, as a fraction of what the upper bound adds.
     pub above: Worst,
-    /// The largest excess of the depth that was computed over the truth, as a part of what the lower bound takes.
+    /// The largest excess of the computed depth over the true depth, as a fraction of what the lower bound subtracts.
     pub below: Worst,
-    /// Upper bounds that are below a depth in 256 bits, or are no bounds.
+    /// Upper bounds below a depth in 256 bits, and intervals that are negative or not finite.
     pub exceeded: u64,
     /// Witnesses that are off their triangle.
     pub off: u64,
     /// Witnesses that are not as deep as the lower bound.
     pub shallow: u64,
-    /// Some of these three.
+    /// Descriptions of the first of these three kinds of violations.
     pub shown: Vec<String>,
 }
 
 impl Row {
-    /// A row without cases.
+    /// Returns a row without cases.
     pub fn new(family: Family) -> Row {
         Row {
             family,
@@ -110,7 +111,7 @@ impl Row {
         self.shown.truncate(SHOWN);
     }
 
-    /// The number of wrong answers.
+    /// Returns the number of wrong answers.
     pub fn violations(&self) -> u64 {
         self.exceeded + self.off + self.shallow
     }
@@ -122,58 +123,58 @@ impl Row {
     }
 }
 
-/// The tools, and the seed from which cases are drawn.
+/// The tools, and the seed of the random cases.
 pub struct Rounding {
     cutters: Vec<Cutter>,
     seed: u64,
-    /// The part of what each end adds for rounding and the tolerance that is taken from it before it is judged. It is 0,
-    /// but to see that the judge objects to a bound that is too tight.
+    /// The fraction of the rounding and tolerance added at each end that is removed before the answer is validated. It
+    /// is 0 except in tests that the validation rejects a bound that is too tight.
     pub pinch: f64,
 }
 
 impl Rounding {
-    /// All tools.
+    /// Compiles all tools.
     ///
     /// # Panics
-    /// If the compiler refuses one.
+    /// If the compiler rejects one.
     pub fn new(seed: u64) -> Rounding {
         let cutter = |number| cutters::cutter(number).expect("a tool that compiles");
         Rounding { cutters: (0..cutters::COUNT).map(cutter).collect(), seed, pinch: 0.0 }
     }
 
-    /// Asks about a case by its number, and adds it to the rows of all families.
+    /// Queries the case with this number and adds the result to the row of its family.
     ///
     /// # Panics
-    /// If the tool is refused.
+    /// If the certifier rejects the tool.
     pub fn ask(&self, number: u64, rows: &mut [Row]) {
-        let mut draw = Draw::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+        let mut draw = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
         let kind = number as usize % Family::ALL.len();
         let cutter = &self.cutters[draw.bits() as usize % self.cutters.len()];
         let case = cases::case(Family::ALL[kind], cutter, &mut draw);
         let vertices = case.triangles.iter().flatten().map(|corner| Point3::from(*corner));
         let ids = (0..case.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
-        // A mesh has some area; a sliver may have none.
+        // A mesh needs a positive area; a sliver may have none.
         let Ok(mesh) = Mesh::new(vertices.collect(), ids.collect(), Unit::Millimetre) else {
             return;
         };
-        let facets = Facets::new(&mesh);
-        let mut certifier = Certifier::new(&facets, &cutter.tool).expect("a tool with a profile");
+        let bvh = TriangleBvh::new(&mesh);
+        let mut certifier = Certifier::new(&bvh, &cutter.tool).expect("a tool with a profile");
         let found = certifier.deepest(&case.pose, case.tolerance);
         let scene = Scene::new(cutter, &case.pose, &case.triangles);
         let judge = Judge { case: &case, scene: &scene, interval: found.depth, pinch: self.pinch };
         judge.judge(found.witness, &mut draw, &mut rows[kind], number);
     }
 
-    /// A case by its number, for people.
+    /// Returns a readable description of the case with this number.
     pub fn describe(&self, number: u64) -> String {
-        let mut draw = Draw::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
+        let mut draw = Rng::new(self.seed ^ number.wrapping_mul(0xa076_1d64_78bd_642f));
         let family = Family::ALL[number as usize % Family::ALL.len()];
         let cutter = &self.cutters[draw.bits() as usize % self.cutters.len()];
         format!("{} {:?}", cutter.name, cases::case(family, cutter, &mut draw))
     }
 }
 
-/// An answer that is judged.
+/// An answer to validate.
 struct Judge<'a> {
     case: &'a Case,
     scene: &'a Scene<'a>,
@@ -182,7 +183,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn judge(&self, witness: Option<Witness>, draw: &mut Draw, row: &mut Row, number: u64) {
+    fn judge(&self, witness: Option<Witness>, draw: &mut Rng, row: &mut Row, number: u64) {
         let [rounding, skew] = self.promised();
         let widening = rounding + skew;
         let tolerance = self.case.tolerance.max(4.0 * rounding);
@@ -225,8 +226,8 @@ impl Judge<'_> {
             row.show(format!("{}: the witness is {:e} deep", text(), depth.to_f64()));
         }
         if low > 0.0 {
-            // The certifier takes two roundings and the skew from the depth that it computed, and adds one, the skew
-            // and the tolerance.
+            // The certifier subtracts two roundings and the skew from the depth that it computed. It adds one rounding,
+            // the skew and the tolerance.
             let skewed = (0.5 * (high - low - tolerance - 3.0 * rounding)).clamp(0.0, skew);
             let [taken, added] = [2.0, 1.0].map(|times| times * rounding + skewed);
             let off = (&truth - &Big::exactly(low + taken)).to_f64();
@@ -235,8 +236,9 @@ impl Judge<'_> {
         }
     }
 
-    /// The deepest of a place's depth and those beside the witness, in 256 bits; 0 if none is inside.
-    fn truth(&self, alone: Big, beside: Option<&Beside>, draw: &mut Draw) -> Big {
+    /// Returns the largest 256-bit depth of the search result, of the point next to the witness and of a climb from
+    /// there, or 0 if none is inside.
+    fn truth(&self, alone: Big, beside: Option<&Beside>, draw: &mut Rng) -> Big {
         let mut truth = if alone.is_negative() { Big::zero() } else { alone };
         let Some(Beside { place, way, rounded }) = beside else { return truth };
         let step = 1e-3_f64.min(1e3 * (way + rounded) / self.scene.cutter.extent[0] + 1e-12);
@@ -250,8 +252,9 @@ impl Judge<'_> {
         truth
     }
 
-    /// The rounding that is promised, and the skew: 64 ε of the tool's reach and the part's size, and of each triangle
-    /// `12 ε r s/h`, or its height `h`.
+    /// Returns the promised rounding and the promised skew. The rounding is 64 ε of the tool's reach plus the part's
+    /// size. The skew is the largest over the triangles of `12 ε r s/h`, or of the triangle's height `h` if that is
+    /// less.
     fn promised(&self) -> [f64; 2] {
         let corners = || self.case.triangles.iter().flatten();
         let extent = [0, 1, 2].map(|axis| {
@@ -263,7 +266,7 @@ impl Judge<'_> {
         [64.0 * f64::EPSILON * (self.scene.cutter.reach + part), skew]
     }
 
-    /// The place of its triangle that is about the nearest to a witness.
+    /// Returns the point of the witness's triangle that is approximately nearest to the witness.
     fn beside(&self, witness: &Witness) -> Beside {
         let (tip, rotation) = (self.case.pose.tip(), self.case.pose.rotation());
         let inside: Point = (rotation.transpose() * (witness.point - tip)).into();
@@ -275,16 +278,17 @@ impl Judge<'_> {
     }
 }
 
-/// A place of a triangle next to a witness.
+/// A point of a triangle next to a witness.
 struct Beside {
     place: Place,
     /// The distance between the two.
     way: f64,
-    /// The distance by which rounding in the world may have moved the witness.
+    /// The distance by which rounding in the world frame may have moved the witness.
     rounded: f64,
 }
 
-/// The promised bound of the error of the line in a triangle on which depth is greatest.
+/// Returns the promised error bound of the line of greatest depth in a triangle: `12 ε r s/h`, at most `h`. `r` is the
+/// distance of the farthest corner from the tip, `s` the shortest edge and `h` the height over the longest edge.
 fn skew(corners: &[Point; 3]) -> f64 {
     let edge = |a: Point, b: Point| [0, 1, 2].map(|k| b[k] - a[k]);
     let norm = |v: Point| v.iter().map(|part| part * part).sum::<f64>().sqrt();
@@ -296,15 +300,15 @@ fn skew(corners: &[Point; 3]) -> f64 {
     let area = norm([y * w - z * v, z * u - x * w, x * v - y * u]);
     let height = if longest > 0.0 { area / longest } else { 0.0 };
     let far = corners.iter().copied().map(norm).fold(0.0, f64::max);
-    // Differences of corners that were rounded once tell a height to some units.
+    // Differences of corners that were rounded once determine the height to within a few units of rounding.
     let height = height + 8.0 * f64::EPSILON * longest;
     (12.0 * f64::EPSILON * far * (shortest / height)).min(height)
 }
 
-/// The rows as Markdown, and under them what was violated.
+/// Returns the rows as Markdown tables, with a list of violations.
 ///
 /// # Errors
-/// None that a text could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn table(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut page = "| family | cases | in contact | found alone | low certain | above | below | wider | widest | exceeded | off | shallow |\n\
                     |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"

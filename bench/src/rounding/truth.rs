@@ -1,42 +1,42 @@
-//! The deepest place of triangles in a tool, sought in doubles and weighed in 256 bits.
+//! Search for the deepest point of triangles in a tool, in doubles, with the depth evaluated in 256 bits.
 //!
-//! A place is a convex combination of a triangle's corners, so it is on the triangle exactly. Its depth in 256 bits
-//! is a lower bound of the greatest depth, however the place was found.
+//! A candidate point is a convex combination of a triangle's corners, so it lies on the triangle exactly. Its depth in
+//! 256 bits is a lower bound of the greatest depth, however the point was found.
 
 use super::cutters::Cutter;
 use touchoff::Pose;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::reference::At;
 
 /// A point or vector in space.
 pub type Point = [f64; 3];
 
-/// Starts that the search climbs from, the steps of each, and those that the best of them is given more.
+/// Number of starting points of the search, steps per start, and additional steps for the best of them.
 const STARTS: usize = 3;
 const STEPS: usize = 60;
 const MORE: usize = 120;
 
-/// A tool at a pose beside triangles.
+/// A tool at a pose, and triangles.
 pub struct Scene<'a> {
     /// The tool.
     pub cutter: &'a Cutter,
     /// The corners of each triangle, in the tool's frame and in doubles.
     pub triangles: Vec<[Point; 3]>,
-    /// The same in 256 bits.
+    /// The same corners in 256 bits.
     exact: Vec<[[Big; 3]; 3]>,
 }
 
-/// A place on a triangle: what each corner weighs.
+/// A point on a triangle, by its unnormalised barycentric weights.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// The triangle.
+    /// The index of the triangle.
     pub triangle: usize,
-    /// Numbers that are not below 0, and not all 0.
+    /// Weights that are not negative and not all 0.
     pub weights: Point,
 }
 
-/// The inverse of a matrix, by its columns' cross products.
+/// Returns the inverse of a matrix, computed from cross products of its columns.
 fn inverse(columns: &[[Big; 3]; 3]) -> [[Big; 3]; 3] {
     let [x, y, z] = columns;
     let rows = [cross(y, z), cross(z, x), cross(x, y)];
@@ -61,13 +61,13 @@ fn product(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The weighted mean of a triangle's corners.
+/// Returns the weighted mean of a triangle's corners.
 fn mean([a, b, c]: &[Point; 3], [u, v, w]: Point) -> Point {
     [0, 1, 2].map(|k| (u * a[k] + v * b[k] + w * c[k]) / (u + v + w))
 }
 
-/// The weights of the point of a triangle that is about the nearest to another: the best of the foot on its plane, if
-/// that is inside, and of the feet on its edges, since a sliver's plane is hardly known.
+/// Returns the weights of the point of a triangle that is approximately nearest to `p`. Candidates are the foot on the
+/// plane, if it is inside, and the feet on the edges, since the plane of a sliver is poorly conditioned.
 fn nearest(p: Point, corners: &[Point; 3]) -> Point {
     let [a, b, c] = *corners;
     let off = |weights: &Point| {
@@ -77,7 +77,7 @@ fn nearest(p: Point, corners: &[Point; 3]) -> Point {
     let edges = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
         let way = minus(corners[to], corners[from]);
         let part = product(minus(p, corners[from]), way) / product(way, way);
-        // Written so that an edge without length is its first end.
+        // This form maps NaN to 0, so an edge without length gives its first end.
         let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
         let mut weights = [0.0; 3];
         weights[from] = 1.0 - part;
@@ -87,7 +87,7 @@ fn nearest(p: Point, corners: &[Point; 3]) -> Point {
     let (e, f) = (minus(b, a), minus(c, a));
     let (ee, ef, ff) = (product(e, e), product(e, f), product(f, f));
     let area = ee * ff - ef * ef;
-    // What is left is solved for again: of a sliver the first weights are known to few digits.
+    // Iterative refinement: the first weights of a sliver have few correct digits.
     let [mut v, mut w] = [0.0; 2];
     for _ in 0..3 {
         let left = minus(p, mean(corners, [1.0 - v - w, v, w]));
@@ -101,7 +101,7 @@ fn nearest(p: Point, corners: &[Point; 3]) -> Point {
 }
 
 impl<'a> Scene<'a> {
-    /// Triangles of the world seen from a pose, which maps the tool's frame to the world: `p = R q + tip`.
+    /// Transforms triangles from the world to the tool's frame. The pose maps that frame to the world: `p = R q + tip`.
     pub fn new(cutter: &'a Cutter, pose: &Pose, triangles: &[[Point; 3]]) -> Scene<'a> {
         let rotation = pose.rotation();
         let columns = [0, 1, 2].map(|k| [0, 1, 2].map(|i| Big::exactly(rotation[(i, k)])));
@@ -118,18 +118,18 @@ impl<'a> Scene<'a> {
         Scene { cutter, triangles: exact.iter().map(double).collect(), exact }
     }
 
-    /// A place in the tool's frame, in doubles.
+    /// Returns the point in the tool's frame, in doubles.
     pub fn point(&self, place: &Place) -> Point {
         mean(&self.triangles[place.triangle], place.weights)
     }
 
-    /// The depth of a place, in doubles.
+    /// Returns the depth of a point, computed in doubles.
     pub fn depth(&self, place: &Place) -> f64 {
         let [x, y, z] = self.point(place);
         self.cutter.outline.depth([x.hypot(y), z])
     }
 
-    /// The depth of a place, in 256 bits.
+    /// Returns the depth of a point, computed in 256 bits.
     pub fn exact_depth(&self, place: &Place) -> Big {
         let corners = &self.exact[place.triangle];
         let weights = place.weights.map(Big::exactly);
@@ -141,13 +141,13 @@ impl<'a> Scene<'a> {
         self.cutter.reference.depth(&At::of(at))
     }
 
-    /// The place of a triangle that is about the nearest to a point of the tool's frame.
+    /// Returns the point of a triangle that is approximately nearest to `p`, which is in the tool's frame.
     pub fn nearest(&self, triangle: usize, p: Point) -> Place {
         Place { triangle, weights: nearest(p, &self.triangles[triangle]) }
     }
 
-    /// The deepest place that a search finds by itself.
-    pub fn deepest(&self, draw: &mut Draw) -> Place {
+    /// Returns the deepest point found by the random search.
+    pub fn deepest(&self, draw: &mut Rng) -> Place {
         let mut starts = Vec::new();
         for triangle in 0..self.triangles.len() {
             self.starts(triangle, draw, &mut starts);
@@ -161,8 +161,8 @@ impl<'a> Scene<'a> {
         self.climb(&best.1, best.2, MORE, draw).1
     }
 
-    /// Corners, places of edges, places inside, and the feet of points of the tool.
-    fn starts(&self, triangle: usize, draw: &mut Draw, starts: &mut Vec<Place>) {
+    /// Appends starting points: corners, points on edges and inside, and feet of points of the tool.
+    fn starts(&self, triangle: usize, draw: &mut Rng, starts: &mut Vec<Place>) {
         let mut push = |weights: Point| starts.push(Place { triangle, weights });
         for k in 0..3 {
             let mut corner = [0.0; 3];
@@ -191,14 +191,14 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The deepest place reached from another by random steps, with its depth and the last step: the step grows when
-    /// one leads deeper, and shrinks when none does.
+    /// Climbs from a point by random steps and returns the greatest depth, its point and the last step size. The step
+    /// grows after an improvement and shrinks otherwise.
     pub fn climb(
         &self,
         from: &Place,
         step: f64,
         steps: usize,
-        draw: &mut Draw,
+        draw: &mut Rng,
     ) -> (f64, Place, f64) {
         let (mut best, mut at, mut step) = (self.depth(from), *from, step);
         let mut last = [0.0; 3];
@@ -206,7 +206,7 @@ impl<'a> Scene<'a> {
             if step < 1e-17 {
                 break;
             }
-            // Along a ridge few directions lead up: the last one that did may do so again.
+            // Few directions lead up along a ridge, so the last successful direction is tried again.
             let turn = if k % 3 == 0 && last != [0.0; 3] {
                 last
             } else {

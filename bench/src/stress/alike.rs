@@ -1,5 +1,5 @@
-//! Beyond the list: scenes that should feel the same, turned as a whole, mirrored, spun about the axis, in another unit; and clouds that
-//! are merged, whose forces add.
+//! Item 14, beyond the list: equivalent scenes. A scene is rotated as a whole, mirrored, spun about the tool's axis or
+//! converted to another unit. Clouds are merged, and their forces must add.
 
 use super::leaves::{rounding, told};
 use super::ledger::{Kind, Ledger};
@@ -8,20 +8,20 @@ use super::scene::{Asked, Given, apart, shown};
 use super::truth::Subject;
 use nalgebra::{Matrix3, Point3, Vector3};
 use touchoff::{Contact, Part, Pose, Probe, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 const MIRRORED: Kind = Kind::never("mirrored: other bits");
 const MERGED: Kind = Kind::never("merged: other contacts");
 const ADDED: Kind = Kind::of("merged: force and torque", "3 roundings of the sums", 1.0);
 
-/// Multiples of this, beside the tool, lose no bit in any tree.
+/// Spacing of the coordinates' grid. Near the tool, its multiples are stored without rounding in any tree.
 const GRID: f64 = 1.0 / 1024.0;
 
-/// All of them.
+/// Compares all equivalent scenes, `rounds` times.
 pub(super) fn alike(
     subject: &Subject,
     (count, rounds): (usize, usize),
-    draw: &mut Draw,
+    draw: &mut Rng,
     ledger: &mut Ledger,
 ) {
     for _ in 0..rounds {
@@ -42,19 +42,21 @@ fn contacts(subject: &Subject, part: &Part, pose: &Pose) -> Vec<Contact> {
     Probe::new(part, subject.tool).contacts(pose).to_vec()
 }
 
-/// Both errors, and that coordinates of that size are rounded.
+/// Returns the allowed difference of depths between two parts: both rounding error bounds, and the effect of rounding
+/// coordinates of magnitude `size`.
 fn bound(subject: &Subject, parts: [&Part; 2], size: f64) -> f64 {
-    let steep = subject.tool.card().depth.lipschitz.expect("proved of every tool");
-    let error = |part: &Part| Probe::new(part, subject.tool).error().expect("proved");
+    let steep = subject.tool.info().depth.lipschitz.expect("proved of every tool");
+    let error =
+        |part: &Part| Probe::new(part, subject.tool).rounding_error_bound().expect("proved");
     let rounding = steep * 8.0 * f64::EPSILON * size;
     parts.into_iter().map(error).sum::<f64>() + rounding
 }
 
-/// Part and tool turned together by any rotation.
+/// Rotates part and tool together by a random rotation.
 fn whole(
     subject: &Subject,
     (here, pose_here): (&Given, &Pose),
-    draw: &mut Draw,
+    draw: &mut Rng,
     ledger: &mut Ledger,
 ) {
     let by = pose(Point3::origin(), draw);
@@ -73,8 +75,9 @@ fn whole(
     apart([&found[0], &found[1]], here.points.len(), bound, place, ledger);
 }
 
-/// What does not depend on a mirror or a half turn. Of the block two sides change places, and with them their regions.
-fn felt(subject: &Subject, contacts: &[Contact]) -> Vec<(u32, usize, u64, u64, u64)> {
+/// Returns the values of contacts that do not change under a mirror or a half turn, in a canonical order. Regions are
+/// omitted for the block, since two of its sides are exchanged.
+fn evaluation(subject: &Subject, contacts: &[Contact]) -> Vec<(u32, usize, u64, u64, u64)> {
     let mut list: Vec<_> = contacts
         .iter()
         .map(|c| {
@@ -88,9 +91,9 @@ fn felt(subject: &Subject, contacts: &[Contact]) -> Vec<(u32, usize, u64, u64, u
     list
 }
 
-/// Mirrored in y, which all tools are alike in, and a tool of revolution also in x and in the diagonal.
+/// Mirrors the part in y, a symmetry of all tools. For a tool of revolution, also mirrors it in x and in the diagonal.
 fn mirrored(subject: &Subject, own: &Given, ledger: &mut Ledger) {
-    let plain = felt(subject, &contacts(subject, &own.part(), &Pose::default()));
+    let plain = evaluation(subject, &contacts(subject, &own.part(), &Pose::default()));
     let mut mirrors = vec![Matrix3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0)];
     if subject.oracle.revolved() {
         mirrors.push(Matrix3::new(-1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0));
@@ -99,13 +102,13 @@ fn mirrored(subject: &Subject, own: &Given, ledger: &mut Ledger) {
     for mirror in mirrors {
         let image = |p: &Point3<f64>| Point3::from(mirror * p.coords);
         let other = Given { points: own.points.iter().map(image).collect(), ..own.clone() };
-        let seen = felt(subject, &contacts(subject, &other.part(), &Pose::default()));
+        let seen = evaluation(subject, &contacts(subject, &other.part(), &Pose::default()));
         ledger.count(MIRRORED, seen != plain, || format!("by {:?}", mirror.as_slice()));
     }
 }
 
-/// The tool turned about its own axis, the part as it is.
-fn spun(subject: &Subject, own: &Given, draw: &mut Draw, ledger: &mut Ledger) {
+/// Rotates the tool about its own axis and leaves the part fixed.
+fn spun(subject: &Subject, own: &Given, draw: &mut Rng, ledger: &mut Ledger) {
     let part = own.part();
     let plain = contacts(subject, &part, &Pose::default());
     let half = draw.between(0.0, std::f64::consts::TAU) / 2.0;
@@ -114,17 +117,17 @@ fn spun(subject: &Subject, own: &Given, draw: &mut Draw, ledger: &mut Ledger) {
     let bound = bound(subject, [&part, &part], 2.0 * subject.scale());
     let place = || format!("spun to {}", shown(&pose));
     apart([&plain, &contacts(subject, &part, &pose)], own.points.len(), bound, place, ledger);
-    // Half a turn rounds nothing.
+    // A half turn does not round.
     let half = [0.0, 0.0, 1.0, 0.0];
     let pose = Pose::from_quaternion(Point3::origin(), half).expect("a unit quaternion");
-    let seen = felt(subject, &contacts(subject, &part, &pose));
-    ledger.count(MIRRORED, seen != felt(subject, &plain), || shown(&pose));
+    let seen = evaluation(subject, &contacts(subject, &part, &pose));
+    ledger.count(MIRRORED, seen != evaluation(subject, &plain), || shown(&pose));
 }
 
-/// A part of the points of two.
-fn merged(subject: &Subject, here: &Given, pose: &Pose, draw: &mut Draw, ledger: &mut Ledger) {
+/// Compares a part with two parts that have half of its points each.
+fn merged(subject: &Subject, here: &Given, pose: &Pose, draw: &mut Rng, ledger: &mut Ledger) {
     let mut all = here.clone();
-    // Weights that are stored as they are, beside whatever others.
+    // Weights that every part stores exactly: multiples of 1/64, with the same maximum in both halves.
     for weight in &mut all.weights {
         *weight = (draw.between(0.1, 2.0) * 64.0).round() / 64.0;
     }
@@ -155,29 +158,30 @@ fn merged(subject: &Subject, here: &Given, pose: &Pose, draw: &mut Draw, ledger:
     ledger.see(ADDED, part(a.torque + b.torque - ab.torque, torque), || shown(pose));
 }
 
-/// The same scene in millimetres, inches and metres: given so, and turned into it.
+/// Compares the scene in millimetres, inches and metres, with the points given in that unit and with the part converted
+/// to it.
 fn units(subject: &Subject, (here, pose): (&Given, &Pose), ledger: &mut Ledger) {
     let own = here.unit;
     let part = here.part();
     let plain = contacts(subject, &part, pose);
     for unit in [Unit::Millimetre, Unit::Inch, Unit::Metre] {
-        let by = own.to(unit);
+        let by = own.factor_to(unit);
         let point = |p: &Point3<f64>| Point3::from(p.coords * by);
         let points = here.points.iter().map(point).collect();
         let given = Given { points, unit, ..here.clone() };
-        let q = pose.isometry().rotation.coords;
+        let q = pose.to_isometry().rotation.coords;
         let there = Pose::from_quaternion(point(&pose.tip()), [q.x, q.y, q.z, q.w]);
         let there = there.expect("a unit quaternion");
         let other = given.part();
         let (tool, truth) = (subject.tool, &*subject.truth);
         Asked { tool, truth, given: &given, part: &other }.at(&there, ledger);
-        let changed = part.clone().to(unit);
+        let changed = part.clone().converted_to(unit);
         let mut seen = contacts(subject, &changed, &there);
         for contact in &mut seen {
             contact.depth /= by;
         }
         let bound = bound(subject, [&part, &part], 2.0 * subject.scale());
-        let place = || format!("in {}, {}", unit.word(), shown(&there));
+        let place = || format!("in {}, {}", unit.symbol(), shown(&there));
         apart([&plain, &seen], here.points.len(), bound, place, ledger);
     }
 }

@@ -1,4 +1,4 @@
-//! Item 4: d = 0, ±0, 5e-324, 2^-540, on the axis and beside it; of a solid the same from its planes.
+//! Item 4: distances d = ±0, 5e-324 and 2^-540 from the axis, or for a solid from its coordinate planes.
 
 use super::judge::Judge;
 use super::ledger::Ledger;
@@ -6,14 +6,15 @@ use super::truth::Subject;
 
 const CLOSE: [f64; 4] = [0.0, -0.0, 5e-324, 0.0];
 
-/// So close to the axis.
+/// Returns the distances from the axis.
 fn close() -> [f64; 4] {
     let mut close = CLOSE;
     close[3] = 2f64.powi(-540);
     close
 }
 
-/// Judges points on the axis, at every height that a corner has, an ulp from there, at 0 and at `others` more.
+/// Validates points on the axis: at the height of every corner and one ulp beside it, at and near 0, and at `others`
+/// more heights.
 pub(super) fn axis(subject: &Subject, others: usize, ledger: &mut Ledger) {
     let judge = Judge::new(subject.tool, &*subject.truth);
     let corners = subject.oracle.corner_points();
@@ -40,7 +41,7 @@ fn on_the_axis(z: f64) -> Vec<[f64; 3]> {
     close().into_iter().flat_map(ways).collect()
 }
 
-/// Each coordinate of a point replaced in turn.
+/// Replaces each coordinate of a point in turn.
 fn from_the_planes(p: [f64; 3]) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for axis in 0..3 {

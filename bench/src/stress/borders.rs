@@ -1,10 +1,10 @@
-//! Where the surface and the splitting curves run: doubles side by side of which one is on the one side and the other on the other,
-//! by the truth in 256 bits.
+//! Borders of regions and of the solid: adjacent doubles on different sides of a surface or a splitting curve,
+//! according to the 256-bit reference.
 
 use super::truth::{Place, Subject, place};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Two doubles side by side along one coordinate, with different owners.
+/// Two adjacent doubles along one coordinate, with different owners.
 pub(super) struct Bracket {
     /// The two points.
     pub ends: [[f64; 3]; 2],
@@ -12,8 +12,8 @@ pub(super) struct Bracket {
     pub owners: [Option<usize>; 2],
 }
 
-/// Along each curve and each piece of the surface, on about `most` of its points.
-pub(super) fn brackets(subject: &Subject, most: usize, draw: &mut Draw) -> Vec<Bracket> {
+/// Returns brackets along each splitting curve and each segment of the surface, at about `most` of its points.
+pub(super) fn brackets(subject: &Subject, most: usize, draw: &mut Rng) -> Vec<Bracket> {
     let mut found = Vec::new();
     for curve in subject.oracle.curve_points() {
         let step = curve.len().div_ceil(most).max(1);
@@ -26,12 +26,12 @@ pub(super) fn brackets(subject: &Subject, most: usize, draw: &mut Draw) -> Vec<B
     found
 }
 
-/// The border that a coordinate crosses at a point, or close by.
+/// Returns the border that a coordinate line crosses at a point or within 1e-6 of the tool's size.
 fn across(subject: &Subject, p: [f64; 3], axis: usize) -> Option<Bracket> {
     let owner = |at: f64| {
         let mut p = p;
         p[axis] = at;
-        // A distance from the axis is not below 0.
+        // A distance from the axis cannot be negative.
         let beyond = subject.oracle.revolved() && axis == 0 && at < 0.0;
         (!beyond).then(|| subject.truth.owner(&place(p)))
     };
@@ -55,8 +55,8 @@ fn across(subject: &Subject, p: [f64; 3], axis: usize) -> Option<Bracket> {
     None
 }
 
-/// Halves a stretch until nothing is between its ends. Toward 0 that takes a thousand steps; such a stretch is left alone, since 0
-/// itself was tried.
+/// Bisects an interval until its ends are adjacent doubles. Toward 0 that would take a thousand steps. Such an interval
+/// is given up, since 0 itself was tried.
 fn narrowed(
     [mut a, mut b]: [f64; 2],
     first: Option<usize>,
@@ -72,9 +72,9 @@ fn narrowed(
     None
 }
 
-/// A point of the half plane y = 0 of a solid of revolution turned about z, exactly along x and y or anywhere; of another solid as it
-/// is.
-pub(super) fn turned(subject: &Subject, p: [f64; 3], draw: &mut Draw) -> Vec<[f64; 3]> {
+/// Returns the rotations about z of a point in the half plane y = 0: onto x and y exactly, and by a random angle. A
+/// point of a solid without rotational symmetry is returned unchanged.
+pub(super) fn turned(subject: &Subject, p: [f64; 3], draw: &mut Rng) -> Vec<[f64; 3]> {
     if !subject.oracle.revolved() {
         return vec![p];
     }
@@ -83,7 +83,8 @@ pub(super) fn turned(subject: &Subject, p: [f64; 3], draw: &mut Draw) -> Vec<[f6
     vec![p, [0.0, -d, z], [d * cos, d * sin, z]]
 }
 
-/// Whether each coordinate of a place is a double, so that a point can lie there exactly.
+/// Returns whether a point lies exactly on the border of two regions: their depths agree to 1e-60 of the tool's size.
+/// The depth outside is 0.
 pub(super) fn exact(subject: &Subject, p: [f64; 3], owners: [Option<usize>; 2]) -> bool {
     let at: Place = place(p);
     let depths = owners.map(|owner| match owner {

@@ -1,23 +1,23 @@
-//! Item 3: points as near to three features, four or more.
+//! Item 3: points that are equally near to three, four or more features.
 
 use super::judge::Judge;
 use super::ledger::{Kind, Ledger};
 use super::section::meetings;
 use super::truth::{Subject, place};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
 
-/// What the code says, and what each region has that the point belongs to.
+/// Difference between the evaluated depth and the depth of each region that owns the point.
 const AGREE: Kind = Kind::of("all owners", "ulp(S)", 1.0);
 const THREE: Kind = Kind::told("as near to three", "features");
 const FOUR: Kind = Kind::told("as near to four or more", "features");
 
-/// Judges the meetings and their neighbours of one ulp.
+/// Validates these points and their neighbours at one ulp.
 pub(super) fn meeting(
     subject: &Subject,
     starts: (usize, usize),
-    draw: &mut Draw,
+    draw: &mut Rng,
     ledger: &mut Ledger,
 ) {
     let judge = Judge::new(subject.tool, &*subject.truth);
@@ -39,7 +39,7 @@ pub(super) fn meeting(
         let answers = judge.points(&points, ledger);
         if let Some(answer) = &answers[0] {
             let at = place(points[0]);
-            for region in 0..subject.tool.card().regions.len() {
+            for region in 0..subject.tool.info().regions.len() {
                 let Some(claim) = subject.truth.claim(&at, region) else { continue };
                 if claim.behind > subject.ulp() / 2.0 {
                     continue;
@@ -51,9 +51,9 @@ pub(super) fn meeting(
     }
 }
 
-/// The points, and how many features each is as near to.
-fn places(subject: &Subject, starts: (usize, usize), draw: &mut Draw) -> Vec<([f64; 3], usize)> {
-    let of = |name: &str, draw: &mut Draw| {
+/// Returns the points, each with the number of its nearest features.
+fn places(subject: &Subject, starts: (usize, usize), draw: &mut Rng) -> Vec<([f64; 3], usize)> {
+    let of = |name: &str, draw: &mut Rng| {
         let tool = restated::of(name).expect("every profile is restated");
         let found = meetings(&tool, subject.scale(), starts, draw);
         found.into_iter().map(|m| ([m.at[0], 0.0, m.at[1]], m.features)).collect::<Vec<_>>()
@@ -66,7 +66,7 @@ fn places(subject: &Subject, starts: (usize, usize), draw: &mut Draw) -> Vec<([f
         }
         "LBracket" => bracket(),
         "Fig73" => {
-            // Inside where its own regions meet, outside the solid's.
+            // Inside: the corners of its own regions. Outside: the points for the exact solid.
             let own = subject.oracle.corner_points().into_iter().map(|p| (p, 3));
             let outside = of("Fig73Exact", draw).into_iter();
             own.chain(outside.filter(|(p, _)| subject.oracle.sense(*p).is_none())).collect()
@@ -75,9 +75,9 @@ fn places(subject: &Subject, starts: (usize, usize), draw: &mut Draw) -> Vec<([f
     }
 }
 
-/// Of the bracket where four of its faces and its edge are as near, by its drawing.
+/// Returns the points of the bracket where four of its faces and its edge are equally near, from its drawing.
 fn bracket() -> Vec<([f64; 3], usize)> {
-    // Bottom, back and edge: as far from both faces as from the edge, a = √2 (6 - a).
+    // Bottom, back and edge: the distance a from both faces equals that from the edge, a = √2 (6 - a).
     let a = 6.0 * 2f64.sqrt() / (1.0 + 2f64.sqrt());
     let mut all = Vec::new();
     for side in [-1.0, 1.0] {

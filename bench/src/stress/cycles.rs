@@ -1,19 +1,19 @@
-//! Item 12: many cycles with a running checksum: twice the same, on one thread and on two, at every SIMD level.
+//! Item 12: many cycles with a running checksum, repeated on two threads and at every SIMD level.
 
 use super::ledger::{Kind, Ledger};
 use super::scene::Given;
 use super::truth::Subject;
 use nalgebra::Point3;
 use touchoff::{Level, Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 const OTHER: Kind = Kind::never("another checksum");
 const CHECKSUM: Kind = Kind::told("touching", "share of cycles");
 
-/// So many cycles have a checksum of their own, whoever does them.
+/// Number of cycles with a checksum of their own, whichever thread runs them.
 const CHUNK: usize = 500;
 
-/// Every level of this machine, the best first.
+/// Returns all SIMD levels of this machine, the best first.
 fn levels() -> Vec<(&'static str, Level)> {
     let best = Level::new();
     let mut levels = vec![("best", best)];
@@ -28,8 +28,8 @@ fn levels() -> Vec<(&'static str, Level)> {
     levels
 }
 
-/// The same cycles over and over.
-pub(super) fn cycles(subject: &Subject, count: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Repeats the same cycles in all configurations and compares the checksums.
+pub(super) fn cycles(subject: &Subject, count: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let given = Given::about(subject, 96, 2f64.powi(-20), draw);
     let part = given.part();
     let seed = draw.bits();
@@ -48,7 +48,7 @@ fn mix(sum: u64, bits: u64) -> u64 {
     (sum.rotate_left(5) ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// The checksum of all cycles, and how many touch.
+/// Returns the checksum of all cycles, and the number of cycles with contact.
 fn turned(
     subject: &Subject,
     part: &Part,
@@ -57,7 +57,7 @@ fn turned(
 ) -> (u64, usize) {
     let chunks = count.div_ceil(CHUNK);
     let one = |thread: usize| {
-        let mut probe = Probe::new(part, subject.tool).level(level);
+        let mut probe = Probe::new(part, subject.tool).with_level(level);
         let own = (thread..chunks).step_by(threads);
         own.map(|chunk| {
             let cycles = chunk * CHUNK..((chunk + 1) * CHUNK).min(count);
@@ -86,7 +86,7 @@ fn running(
     let [radius, height] = subject.oracle.extent();
     let (mut sum, mut touching) = (0, 0);
     for cycle in cycles {
-        let mut draw = Draw::new(seed ^ (cycle as u64).wrapping_mul(0xd134_2543_de82_ef95));
+        let mut draw = Rng::new(seed ^ (cycle as u64).wrapping_mul(0xd134_2543_de82_ef95));
         let tip = [0; 2].map(|_| draw.between(-0.2, 0.2) * radius);
         let tip = Point3::new(tip[0], tip[1], draw.between(-0.1, 0.1) * height);
         let [a, b, c] = [0; 3].map(|_| draw.between(-0.1, 0.1));

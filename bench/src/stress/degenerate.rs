@@ -1,4 +1,4 @@
-//! Item 9: degenerate profiles. Each is a compile error or an exact answer.
+//! Item 9: degenerate profiles. Each must give a compile error or exact values.
 
 use super::judge::Judge;
 use super::ledger::{Item, Kind, Ledger, Row};
@@ -7,19 +7,19 @@ use super::truth::Profiled;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated::{Restated, Way};
 use touchoff_tests::oracle::{Nearest, Oracle};
 
-/// Refused by the compiler, with these words.
+/// Rejected by the compiler; the location is the message.
 const REFUSED: Kind = Kind::told("refused", "");
-/// What must be refused and is not.
+/// A profile that must be rejected, but was accepted.
 const TAKEN: Kind = Kind::never("taken");
 
-/// One step of a profile: to a point, and about a centre if it is an arc.
+/// A step of a profile: the end point, and the centre if it is an arc.
 type Step = ([f64; 2], Option<[f64; 2]>);
 
-/// A profile, and whether it is none and must be refused.
+/// A profile, and whether it is invalid and must be rejected.
 struct Case {
     name: &'static str,
     start: [f64; 2],
@@ -200,8 +200,8 @@ fn restated(case: &Case) -> Restated {
     }
 }
 
-/// Points on the surface, beside it by 1e-16 to 1 of the tool's size, on the axis and anywhere.
-fn points(oracle: &Nearest, count: usize, draw: &mut Draw) -> Vec<[f64; 3]> {
+/// Returns points on the surface, at 1e-16 to 1 of the tool's size from it, on the axis and anywhere.
+fn points(oracle: &Nearest, count: usize, draw: &mut Rng) -> Vec<[f64; 3]> {
     let surface: Vec<[f64; 2]> = oracle.profile().surface().into_iter().flatten().collect();
     let [radius, height] = oracle.extent();
     let mut points = Vec::new();
@@ -225,8 +225,8 @@ fn points(oracle: &Nearest, count: usize, draw: &mut Draw) -> Vec<[f64; 3]> {
     points
 }
 
-/// Every case.
-pub(super) fn degenerate(item: Item, count: usize, draw: &mut Draw) -> Vec<Row> {
+/// Validates every case.
+pub(super) fn degenerate(item: Item, count: usize, draw: &mut Rng) -> Vec<Row> {
     let mut rows = Vec::new();
     for case in cases() {
         let mut ledger = Ledger::new(item, case.name);

@@ -6,19 +6,19 @@ use super::scene::{Asked, Given};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// A weight as it is stored, in `f32` parts of the largest.
+/// Error of a stored weight, in units of `f32` rounding relative to the largest weight.
 const WEIGHTS: Kind = Kind::of("stored weight", "2^-24 of the largest", 1.0);
 
 const TINY: [f64; 8] = [5e-324, -5e-324, 1e-323, 1e-310, -1e-310, 2.2e-308, 1e-300, 1e-160];
 
-/// Judges them all.
-pub(super) fn denormal(subject: &Subject, count: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Validates denormal coordinates, weights and poses.
+pub(super) fn denormal(subject: &Subject, count: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let judge = Judge::new(subject.tool, &*subject.truth);
     let mut tiny = || TINY[draw.bits() as usize % TINY.len()];
     let mut near: Vec<[f64; 3]> = (0..count).map(|_| [tiny(), tiny(), tiny()]).collect();
-    // Beside every corner as well, and by the lowest face.
+    // Include points near every corner, and on the lowest face.
     let mut corners: Vec<[f64; 3]> = subject.oracle.corner_points();
     let half = subject.oracle.extent()[0] / 4.0;
     corners.push([half, 0.0, 0.0]);
@@ -43,7 +43,7 @@ pub(super) fn denormal(subject: &Subject, count: usize, draw: &mut Draw, ledger:
         normals: vec![Vector3::x(); points.len()],
         weights: vec![1.0; points.len()],
         points,
-        unit: subject.tool.card().unit,
+        unit: subject.tool.info().unit,
     };
     poses(subject, &given, ledger);
 }
@@ -64,7 +64,7 @@ fn poses(subject: &Subject, given: &Given, ledger: &mut Ledger) {
     for k in 0..tree.len() {
         let (stored, own) = (tree.weight(k), given.weights[tree.triangle(k) as usize]);
         let off = (stored - own).abs();
-        // Where the largest is denormal itself, a part of it is rounded as such.
+        // If the largest weight is itself denormal, a fraction of it is rounded to a denormal number.
         let bound = largest * 2f64.powi(-24) + 5e-324;
         ledger.see(WEIGHTS, off / bound, || format!("{own:e} of {largest:e} is {stored:e}"));
     }

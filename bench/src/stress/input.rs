@@ -1,4 +1,4 @@
-//! Item 10: input that is none, or hardly any: typed errors, or sense.
+//! Item 10: invalid or minimal input, which must give typed errors or meaningful results.
 
 use super::ledger::{Item, Kind, Ledger, Row};
 use super::moved::pose;
@@ -6,18 +6,18 @@ use super::scene::{Asked, Given};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Cloud, Mesh, Part, Pose, Probe, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Refused with these words.
+/// Rejected; the location is the message.
 const REFUSED: Kind = Kind::told("refused", "");
-/// What should be refused and is taken, or the other way round.
+/// Invalid input that was accepted, or valid input that was rejected.
 const WRONG: Kind = Kind::never("taken, or refused, wrongly");
 const SENSE: Kind = Kind::never("no sense");
 
 const MM: Unit = Unit::Millimetre;
 
-/// One point, all points the same, all points inside, for a tool.
-pub(super) fn few(subject: &Subject, poses: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Validates clouds of one point, of equal points and of points that are all inside, for one tool.
+pub(super) fn few(subject: &Subject, poses: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let one = Given::about(subject, 1, 2f64.powi(-30), draw);
     let same = |count: usize| Given {
         points: vec![one.points[0]; count],
@@ -40,8 +40,8 @@ pub(super) fn few(subject: &Subject, poses: usize, draw: &mut Draw, ledger: &mut
     ledger.count(SENSE, all != inside.points.len(), || format!("{all} of all are felt"));
 }
 
-/// Points that are all inside by a hundredth of the tool's radius at least, if there are such.
-fn inside(subject: &Subject, count: usize, draw: &mut Draw) -> Given {
+/// Returns points that are all inside, by at least a thousandth of the tool's radius.
+fn inside(subject: &Subject, count: usize, draw: &mut Rng) -> Given {
     let mut given = Given::about(subject, count, 2f64.powi(-30), draw);
     let [radius, height] = subject.oracle.extent();
     let mut tries = 0;
@@ -60,7 +60,7 @@ fn inside(subject: &Subject, count: usize, draw: &mut Draw) -> Given {
     given
 }
 
-/// A cloud from three points of which one thing is wrong.
+/// Makes a cloud of three points after `change` has made one thing wrong.
 fn cloud(change: impl Fn(&mut Lists)) -> Result<String, String> {
     let mut lists = Lists {
         points: vec![Point3::origin(); 3],
@@ -81,12 +81,12 @@ struct Lists {
     weights: Vec<f64>,
 }
 
-/// A tetrahedron's corners and one point more, with these triangles, and points spread on them.
+/// Makes a mesh of these corners and triangles, and samples points on it.
 fn mesh(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<String, String> {
     let corners = corners.iter().map(|p| Point3::from(*p)).collect();
     let mesh = Mesh::new(corners, triangles.to_vec(), MM).map_err(|e| e.to_string())?;
     let mut said = format!("{} triangles", mesh.triangles().len());
-    for cloud in [Cloud::random(&mesh, 50, 1), Cloud::blue(&mesh, 50, 1)] {
+    for cloud in [Cloud::uniform(&mesh, 50, 1), Cloud::blue_noise(&mesh, 50, 1)] {
         let cloud = cloud.map_err(|e| e.to_string())?;
         let finite = cloud.points().iter().all(|p| p.iter().all(|c| c.is_finite()))
             && cloud.normals().iter().all(|n| (n.norm() - 1.0).abs() < 1e-12)
@@ -109,7 +109,7 @@ fn by(quaternion: [f64; 4]) -> Result<String, String> {
     pose.map(|_| "a pose".to_owned()).map_err(|e| e.to_string())
 }
 
-/// What was asked, whether it must be refused, and what came of it.
+/// The input, whether it must be rejected, and the result.
 type Outcome = (&'static str, bool, Result<String, String>);
 
 fn outcomes() -> Vec<Outcome> {
@@ -173,7 +173,7 @@ fn outcomes() -> Vec<Outcome> {
     ]
 }
 
-/// What does not depend on a tool.
+/// Checks the input that does not depend on a tool.
 pub(super) fn refused(item: Item) -> Vec<Row> {
     let mut rows = Vec::new();
     for (name, wrong, outcome) in outcomes() {
@@ -194,7 +194,7 @@ pub(super) fn refused(item: Item) -> Vec<Row> {
     rows
 }
 
-/// Sums that outgrow doubles are not numbers any more; that is the arithmetic's end, and told as such.
+/// Tests weights near overflow: the sums must stay finite.
 fn huge_weights(item: Item) -> Vec<Row> {
     let mut ledger = Ledger::new(item, "cloud: weight 1e300, felt");
     let points = vec![Point3::new(0.0, 0.0, 0.5); 20];

@@ -1,98 +1,98 @@
-//! The contract of an evaluator at given points, against 256 bits (section 1 of the accuracy reference).
+//! Validation of an evaluator at given points against 256 bits: the contract in section 1 of the accuracy reference.
 
 use super::ledger::{Kind, Ledger};
 use super::truth::{Claim, Truth, place};
-use touchoff::tool::{Ask, Felt, Points};
+use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff::{Level, Tool};
 use touchoff_tests::oracle::big::Big;
 
-/// Nearer to the surface than so many ulp(S), either side is right; and so of two owners.
+/// Distance in ulp(S) from a border within which both sides, or both owners, are accepted.
 pub const DOUBT: f64 = 2.0;
 
-/// |m - m_exact|.
+/// Error of the depth, |m - m_exact|.
 pub const DEPTH: Kind = Kind::of("depth", "ulp(S)", 1.0);
-/// A point inside that is felt outside, or the other way round, beyond doubt.
+/// A point on the wrong side of the surface, beyond doubt.
 pub const SIDES: Kind = Kind::never("wrong side");
 /// A point whose region is not the nearest, beyond doubt.
 pub const OWNERS: Kind = Kind::never("wrong owner");
-/// | |u| - 1 |.
+/// Error of the direction's length, | |u| - 1 |.
 pub const LENGTH: Kind = Kind::of("length of u", "ε", 4.0);
-/// |u - u_exact|.
+/// Error of the direction, |u - u_exact|.
 pub const DIRECTION: Kind = Kind::of("u", "8 ε max(1, S/ρ)", 1.0);
-/// The distance outside, or how far its lower bound is above it.
+/// Error of the distance outside. If the tool gives only a lower bound, the excess over the distance.
 pub const CLEARANCE: Kind = Kind::of("distance outside", "ulp(S)", 1.0);
-/// Numbers that are not finite; depths, nicenesses and distances below 0.
+/// A number that is not finite, or a negative depth, niceness or distance.
 pub const SENSELESS: Kind = Kind::never("senseless number");
-/// Other bits for one point than for lanes.
+/// Different bits in the evaluation of a single point and of a lane.
 pub const UNLIKE: Kind = Kind::never("unlike bits");
 
-/// What an evaluator says of a point.
+/// The evaluation of a tool at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// The region.
+    /// The index of the region.
     pub region: usize,
-    /// Depth, magnitude, niceness, direction, gradient.
+    /// Depth, magnitude, niceness, direction and gradient.
     pub numbers: [f64; 9],
 }
 
 impl Answer {
-    /// The depth.
+    /// Returns the depth.
     pub fn depth(&self) -> f64 {
         self.numbers[0]
     }
 
-    /// The direction.
+    /// Returns the direction.
     pub fn direction(&self) -> [f64; 3] {
         [self.numbers[3], self.numbers[4], self.numbers[5]]
     }
 
-    /// All its bits.
+    /// Returns the bits of all numbers.
     pub fn bits(&self) -> [u64; 9] {
         self.numbers.map(f64::to_bits)
     }
 }
 
-/// What a tool says of points, at a level.
+/// Evaluates a tool at points, at a SIMD level. The result is `None` for points outside.
 pub fn answers(tool: &dyn Tool, level: Level, points: &[[f64; 3]]) -> Vec<Option<Answer>> {
-    let (mut list, mut felt) = (Points::default(), Felt::default());
+    let (mut list, mut evaluation) = (PointBatch::default(), Evaluations::default());
     points.iter().for_each(|p| list.push(*p));
-    tool.evaluate(level, Ask::EVERYTHING, &list, 1.0, &mut felt);
+    tool.evaluate(level, Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
     let one = |at: usize| {
-        (felt.inside[at / 8] >> (at % 8) & 1 == 1).then(|| {
-            let [ux, uy, uz] = [0, 1, 2].map(|k| felt.direction[k][at]);
-            let [gx, gy, gz] = [0, 1, 2].map(|k| felt.gradient[k][at]);
-            let (depth, magnitude) = (felt.depth[at], felt.magnitude[at]);
+        (evaluation.inside[at / 8] >> (at % 8) & 1 == 1).then(|| {
+            let [ux, uy, uz] = [0, 1, 2].map(|k| evaluation.direction[k][at]);
+            let [gx, gy, gz] = [0, 1, 2].map(|k| evaluation.gradient[k][at]);
+            let (depth, magnitude) = (evaluation.depth[at], evaluation.magnitude[at]);
             Answer {
-                region: felt.region[at] as usize,
-                numbers: [depth, magnitude, felt.niceness[at], ux, uy, uz, gx, gy, gz],
+                region: evaluation.region[at] as usize,
+                numbers: [depth, magnitude, evaluation.niceness[at], ux, uy, uz, gx, gy, gz],
             }
         })
     };
     (0..points.len()).map(one).collect()
 }
 
-/// A tool under judgement.
+/// A tool under validation.
 pub struct Judge<'a> {
     /// The tool.
     pub tool: &'a dyn Tool,
-    /// What is true of it.
+    /// The true values.
     pub truth: &'a dyn Truth,
     /// 1 ulp(S).
     pub ulp: f64,
-    /// What errors of depth are held to.
+    /// The kind of depth errors.
     pub depth: Kind,
-    /// What errors of the distance outside are.
+    /// The kind of errors of the distance outside.
     pub clearance: Kind,
 }
 
 impl<'a> Judge<'a> {
-    /// A judge of a tool by a truth.
+    /// Makes a validator of a tool by its true values, with the kinds [`DEPTH`] and [`CLEARANCE`].
     pub fn new(tool: &'a dyn Tool, truth: &'a dyn Truth) -> Judge<'a> {
         let ulp = f64::EPSILON * truth.scale();
         Judge { tool, truth, ulp, depth: DEPTH, clearance: CLEARANCE }
     }
 
-    /// Judges all points; what the tool says of them, for more.
+    /// Validates all points and returns their evaluations for further checks.
     pub fn points(&self, points: &[[f64; 3]], ledger: &mut Ledger) -> Vec<Option<Answer>> {
         let lanes = answers(self.tool, Level::new(), points);
         let singly = answers(self.tool, Level::baseline(), points);
@@ -108,7 +108,7 @@ impl<'a> Judge<'a> {
         let at = place(p);
         let exact = self.truth.depth(&at);
         let depth = exact.to_f64();
-        let regions = &self.tool.card().regions;
+        let regions = &self.tool.info().regions;
         let shown = || match answer {
             Some(answer) => format!("{p:?} in `{}`", regions[answer.region].name),
             None => format!("{p:?}"),
@@ -123,7 +123,7 @@ impl<'a> Judge<'a> {
         if !finite {
             return;
         }
-        // Where rounding alone puts a point inside, its depth is 0.
+        // A point that is inside only by rounding has depth 0.
         let found = Big::exactly(answer.depth());
         let off = if exact.is_negative() { found } else { &exact - &found };
         ledger.see(self.depth, off.abs().to_f64() / self.ulp, shown);
@@ -141,8 +141,8 @@ impl<'a> Judge<'a> {
             parts.sum::<f64>().sqrt()
         };
         let (rho, scale) = (claim.singular, self.truth.scale());
-        // Exactly where no direction exists, the one that the language fixes is wanted; but of a centre on the axis that is no double
-        // either way is right.
+        // At a singular point the direction fixed by the language is expected. A centre on the axis need not be a
+        // double, so the directions one ulp beside it along z are accepted too.
         let (blur, apart) = if rho == 0.0 {
             let beside = [-1.0, 0.0, 1.0].map(|ulps| {
                 let [x, y, z] = at.clone();
@@ -164,11 +164,11 @@ impl<'a> Judge<'a> {
             return;
         }
         let over = &Big::exactly(clearance) - &-exact;
-        // Inside by less than doubt the distance is 0.
+        // A point inside by less than the doubt has distance 0.
         let over = if exact.is_negative() { over } else { Big::exactly(clearance) };
-        let bound = !self.tool.card().exact() && over.is_negative();
+        let bound = !self.tool.info().is_exact() && over.is_negative();
         let off = if bound { 0.0 } else { over.abs().to_f64() };
-        // Farther out than the tool is large, what is rounded is as large as the point is far.
+        // Beyond the tool's size, rounding grows with the point's coordinates.
         let far = p.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let ulp = self.ulp.max(f64::EPSILON * far);
         ledger.see(self.clearance, off / ulp, || format!("{p:?}"));

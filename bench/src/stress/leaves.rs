@@ -1,5 +1,5 @@
-//! Item 11: trees of few points. A leaf has 16 by design, so the counts about 1, 16 and 256 stand for the size of a leaf; every order of
-//! the points gives the same contacts to the last bit, and those of 256 bits.
+//! Item 11: trees of few points. A leaf has 16 points by design, so counts about 1, 16 and 256 test the leaf size.
+//! Every order of the points must give the same contacts to the last bit, and these must agree with 256 bits.
 
 use super::ledger::{Kind, Ledger};
 use super::moved::pose;
@@ -7,20 +7,20 @@ use super::scene::{Asked, Given, shown};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Part, Pose, Probe, Wrench};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 const SAME: Kind = Kind::never("another order: other contacts");
-/// Sums are taken in the tree's order, which within a leaf is the cloud's.
+/// Sums are taken in the tree's order, which within a leaf is the cloud's order.
 const SUMS: Kind = Kind::of("another order: force and torque", "2 roundings of the sums", 1.0);
 
-/// Counts of points: full leaves and not, one level and two.
+/// Numbers of points: full and partial leaves, one level and two.
 pub(super) const COUNTS: [usize; 9] = [1, 2, 3, 15, 16, 17, 255, 256, 257];
 
-/// Judges trees of so many points, in several orders.
+/// Validates trees of each size, in several orders of the points.
 pub(super) fn leaves(
     subject: &Subject,
     (orders, poses): (usize, usize),
-    draw: &mut Draw,
+    draw: &mut Rng,
     ledger: &mut Ledger,
 ) {
     let grid = 1.0 / 1024.0;
@@ -43,8 +43,8 @@ pub(super) fn leaves(
     }
 }
 
-/// All orders of up to three things, some of more, the reverse among them.
-fn permutations(count: usize, most: usize, draw: &mut Draw) -> Vec<Vec<usize>> {
+/// Returns all orders of up to three items. For more items, returns `most` orders, the reverse among them.
+fn permutations(count: usize, most: usize, draw: &mut Rng) -> Vec<Vec<usize>> {
     match count {
         1 => return vec![vec![0]],
         2 => return vec![vec![0, 1], vec![1, 0]],
@@ -66,7 +66,7 @@ fn permutations(count: usize, most: usize, draw: &mut Draw) -> Vec<Vec<usize>> {
     all
 }
 
-/// The part of the points in another order; each keeps its place as its triangle.
+/// Builds the part of the points in another order. A point's original index is its triangle id.
 fn reordered(given: &Given, order: &[usize]) -> Part {
     let pick = |k: &usize| (given.points[*k], given.normals[*k]);
     let (points, normals): (Vec<_>, Vec<_>) = order.iter().map(pick).unzip();
@@ -76,14 +76,14 @@ fn reordered(given: &Given, order: &[usize]) -> Part {
     Part::from_cloud(&cloud.expect("the same points"))
 }
 
-/// All of a contact's numbers as text, by its triangle.
+/// Returns all numbers of each contact as text, sorted by triangle.
 pub(super) fn told(contacts: &[Contact]) -> Vec<(u32, String)> {
     let mut list: Vec<_> = contacts.iter().map(|c| (c.triangle, format!("{c:?}"))).collect();
     list.sort();
     list
 }
 
-/// How far two wrenches' sums may be apart for their rounding.
+/// Returns the rounding bounds of force and torque sums over the contacts.
 pub(super) fn rounding(contacts: &[Contact], pose: &Pose) -> [f64; 2] {
     let part = f64::EPSILON * (16.0 + contacts.len() as f64 / 4.0);
     let push = |c: &Contact| 2.0 * c.weight * c.magnitude;

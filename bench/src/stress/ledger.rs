@@ -1,10 +1,10 @@
-//! What is found out about a tool under one item: the worst of each kind of figure, and where.
+//! Records of validation results per tool and item: the worst value of each kind, and its location.
 
-/// The item of the list of stresses that a figure belongs to: 1 to 13, and what goes beyond them.
+/// An item of the stress list, 1 to 13, or the item of further tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item(pub usize);
 
-/// The items' names, from the first on.
+/// The items' names, starting with item 1.
 pub const ITEMS: [&str; 14] = [
     "exactly on vertices, curves and surfaces",
     "one ulp to either side",
@@ -23,74 +23,74 @@ pub const ITEMS: [&str; 14] = [
 ];
 
 impl Item {
-    /// All of them.
+    /// Returns all items.
     pub fn all() -> impl Iterator<Item = Item> {
         (1..=ITEMS.len()).map(Item)
     }
 
-    /// Its name.
+    /// Returns the item's name.
     pub fn name(self) -> &'static str {
         ITEMS[self.0 - 1]
     }
 }
 
-/// A kind of figure: what is measured, in what, and how much is allowed. What is counted has a bar of 0.
+/// A kind of result: the quantity, its unit and its limit. Events that must not occur have the limit 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kind {
-    /// What it is.
+    /// The quantity.
     pub what: &'static str,
-    /// Its unit.
+    /// The unit.
     pub unit: &'static str,
-    /// The most that is allowed.
+    /// The largest allowed value.
     pub bar: f64,
 }
 
 impl Kind {
-    /// A kind with a bar.
+    /// Makes a kind with a limit.
     pub const fn of(what: &'static str, unit: &'static str, bar: f64) -> Kind {
         Kind { what, unit, bar }
     }
 
-    /// Something that must not happen.
+    /// Makes a kind of event that must not occur.
     pub const fn never(what: &'static str) -> Kind {
         Kind { what, unit: "times", bar: 0.0 }
     }
 
-    /// A figure without a bar, for information.
+    /// Makes a kind without a limit, for information.
     pub const fn told(what: &'static str, unit: &'static str) -> Kind {
         Kind { what, unit, bar: f64::INFINITY }
     }
 }
 
-/// The worst of a kind.
+/// The worst result of a kind.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Under which item.
+    /// The item.
     pub item: Item,
-    /// Of which kind.
+    /// The kind.
     pub kind: Kind,
-    /// The tool.
+    /// The tool, or the name of the case.
     pub tool: String,
-    /// How many were looked at.
+    /// Number of results.
     pub cases: usize,
-    /// The worst figure; of what is counted how often it happened.
+    /// The worst value, or the number of occurrences of an event.
     pub worst: f64,
-    /// Where that is, to the last bit; of what is counted the first.
+    /// Location of the worst value, to the last bit, or of the first occurrence.
     pub place: String,
 }
 
 impl Row {
-    /// Whether the bar is missed.
+    /// Returns whether the limit is exceeded.
     pub fn missed(&self) -> bool {
         self.worst.is_nan() || self.worst > self.kind.bar
     }
 
-    /// The figure as a part of its bar; of what is counted 0 or infinity.
+    /// Returns the worst value divided by the limit; for events 0 or infinity.
     pub fn share(&self) -> f64 {
         if self.worst == 0.0 { 0.0 } else { self.worst / self.kind.bar }
     }
 
-    /// What is missed, for people.
+    /// Returns a description of a missed limit.
     pub fn shown(&self) -> String {
         let Row { item, kind, tool, cases, worst, place } = self;
         let Kind { what, unit, bar } = kind;
@@ -98,7 +98,7 @@ impl Row {
     }
 }
 
-/// The rows of a tool under an item, as they come.
+/// The rows of a tool under an item, collected one result at a time.
 pub struct Ledger {
     item: Item,
     tool: String,
@@ -106,17 +106,17 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// An empty one.
+    /// Makes an empty ledger.
     pub fn new(item: Item, tool: &str) -> Ledger {
         Ledger { item, tool: tool.to_owned(), rows: Vec::new() }
     }
 
-    /// Under which item.
+    /// Returns the item.
     pub fn item(&self) -> Item {
         self.item
     }
 
-    /// Takes a figure. What is no number is the worst of all.
+    /// Records a value. NaN counts as infinite.
     pub fn see(&mut self, kind: Kind, figure: f64, place: impl FnOnce() -> String) {
         let row = self.row(kind);
         row.cases += 1;
@@ -127,7 +127,7 @@ impl Ledger {
         }
     }
 
-    /// Counts a case, and whether it is one that must not be.
+    /// Records a case, and whether the event occurred.
     pub fn count(&mut self, kind: Kind, wrong: bool, place: impl FnOnce() -> String) {
         let row = self.row(kind);
         row.cases += 1;
@@ -139,7 +139,7 @@ impl Ledger {
         }
     }
 
-    /// Notes a case of something that is told without a bar.
+    /// Records `cases` cases of a kind without a limit.
     pub fn tell(&mut self, kind: Kind, cases: usize, figure: f64, place: &str) {
         let row = self.row(kind);
         row.cases += cases;
@@ -159,7 +159,7 @@ impl Ledger {
         &mut self.rows[index]
     }
 
-    /// The rows, in the order in which their kinds came.
+    /// Returns the rows, in the order in which their kinds first occurred.
     pub fn rows(self) -> Vec<Row> {
         self.rows
     }

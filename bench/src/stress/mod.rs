@@ -1,7 +1,8 @@
-//! The stress list (section 6 of the accuracy reference), every item for every tool of the library, judged in 256 bits.
+//! The stress list (section 6 of the accuracy reference): every item for every library tool, validated in 256 bits.
 //!
-//! A *figure* is an error in the unit of its bar; each item gives the worst of each kind, and where it is, to the last bit. All is drawn
-//! from one seed, tool by tool and item by item, so a page comes out the same however many cores make it.
+//! A *figure* is an error in the unit of its limit. Each item gives the worst figure of each kind and its location, to
+//! the last bit. All random numbers come from one seed, tool by tool and item by item, so a page does not depend on the
+//! number of cores.
 
 mod alike;
 mod axis;
@@ -27,10 +28,10 @@ pub mod truth;
 
 use crate::parallel;
 use ledger::{Item, Ledger, Row};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use truth::{Subject, subjects};
 
-/// -300, -290 … 300.
+/// The exponents -300, -290 … 300.
 const POWERS: [i32; 61] = {
     let (mut powers, mut power, mut at) = ([0; 61], -300, 0);
     while at < powers.len() {
@@ -41,33 +42,33 @@ const POWERS: [i32; 61] = {
     powers
 };
 
-/// How much is looked at.
+/// Extent of a measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Amount {
-    /// What all is drawn from.
+    /// The seed of all random numbers.
     pub seed: u64,
-    /// Points of a curve on which borders are looked for.
+    /// Number of points per curve at which borders are searched for.
     pub borders: usize,
-    /// Starts of Newton's method for two borders, and every how many-th two are taken.
+    /// Number of starts of Newton's method per pair of borders, and the stride over the pairs.
     pub starts: (usize, usize),
-    /// Heights on the axis.
+    /// Number of heights on the axis.
     pub heights: usize,
-    /// Points of a scaled scene, and by which powers of two it is.
+    /// Number of points of a scaled scene, and the exponents of two by which it is scaled.
     pub scaled: (usize, &'static [i32]),
-    /// Points of a scene, and poses.
+    /// Number of points of a scene, and number of poses.
     pub scene: (usize, usize),
-    /// Points beside a degenerate profile.
+    /// Minimum number of points for a degenerate profile.
     pub degenerate: usize,
-    /// Orders of the points of a tree.
+    /// Number of orders of a tree's points.
     pub orders: usize,
-    /// Cycles of a tool.
+    /// Number of cycles per tool.
     pub cycles: usize,
 }
 
 impl Amount {
-    /// All that the page has.
+    /// Returns the extent of the full page.
     pub fn full(seed: u64) -> Amount {
-        // Ten million cycles, for all tools together.
+        // Ten million cycles over all tools together.
         let cycles = 10_000_000usize.div_ceil(tools_library::TOOLS.len());
         Amount {
             seed,
@@ -82,7 +83,7 @@ impl Amount {
         }
     }
 
-    /// A sample.
+    /// Returns the extent of a sample.
     pub fn sample(seed: u64) -> Amount {
         Amount {
             seed,
@@ -98,7 +99,7 @@ impl Amount {
     }
 }
 
-/// The rows of the tools and items that are wanted, on all cores.
+/// Validates the selected tools and items, in parallel, and returns the rows by item.
 pub fn measure(
     amount: Amount,
     item: impl Fn(Item) -> bool,
@@ -112,11 +113,7 @@ pub fn measure(
     let rows = parallel::rows(tasks.len(), |k| one(amount, tasks[k].0, tasks[k].1));
     let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
     if item(Item(9)) {
-        rows.extend(degenerate::degenerate(
-            Item(9),
-            amount.degenerate,
-            &mut Draw::new(amount.seed),
-        ));
+        rows.extend(degenerate::degenerate(Item(9), amount.degenerate, &mut Rng::new(amount.seed)));
     }
     if item(Item(10)) {
         rows.extend(input::refused(Item(10)));
@@ -125,12 +122,12 @@ pub fn measure(
     rows
 }
 
-/// An item's rows of a tool.
+/// Returns the rows of one item for one tool.
 fn one(amount: Amount, item: Item, subject: &Subject) -> Vec<Row> {
     let name = subject.name();
     let mut ledger = Ledger::new(item, name);
     let letters = name.bytes().fold(0u64, |sum, c| sum.wrapping_mul(31).wrapping_add(c.into()));
-    let mut draw = Draw::new(amount.seed ^ letters.wrapping_mul(64).wrapping_add(item.0 as u64));
+    let mut draw = Rng::new(amount.seed ^ letters.wrapping_mul(64).wrapping_add(item.0 as u64));
     match item.0 {
         1 => near::exactly(subject, amount.borders, &mut draw, &mut ledger),
         2 => near::beside(subject, amount.borders, &mut draw, &mut ledger),

@@ -1,22 +1,22 @@
-//! Item 6: part and pose moved together, 1e3 to 1e12 away.
+//! Item 6: part and pose translated together, by 1e3 to 1e12.
 
 use super::ledger::{Kind, Ledger};
 use super::scene::{Asked, Given, apart, shown};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Pose, Probe};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Where no coordinate loses a bit all that is felt has the same bits.
+/// If no coordinate loses a bit, all evaluations must have the same bits.
 const SAME: Kind = Kind::never("moved without a loss: other bits");
-/// Coordinates are multiples of this, so that sums with 2^40 are exact.
+/// Spacing of the coordinates' grid, so that sums with 2^40 are exact.
 const GRID: f64 = 1.0 / 1024.0;
 
-/// Moves a scene.
+/// Translates a scene.
 pub(super) fn moved(
     subject: &Subject,
     (count, poses): (usize, usize),
-    draw: &mut Draw,
+    draw: &mut Rng,
     ledger: &mut Ledger,
 ) {
     let own = Given::about(subject, count, GRID, draw);
@@ -35,8 +35,8 @@ pub(super) fn moved(
     }
 }
 
-/// A pose with any orientation.
-pub(super) fn pose(tip: Point3<f64>, draw: &mut Draw) -> Pose {
+/// Returns a pose with a random orientation.
+pub(super) fn pose(tip: Point3<f64>, draw: &mut Rng) -> Pose {
     loop {
         let q = [0; 4].map(|_| draw.between(-1.0, 1.0));
         let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -46,14 +46,14 @@ pub(super) fn pose(tip: Point3<f64>, draw: &mut Draw) -> Pose {
     }
 }
 
-/// The same pose elsewhere.
+/// Returns the pose with another tip.
 fn put(pose: &Pose, tip: Point3<f64>) -> Pose {
-    let q = pose.isometry().rotation.coords;
+    let q = pose.to_isometry().rotation.coords;
     Pose::from_quaternion(tip, [q.x, q.y, q.z, q.w]).expect("a unit quaternion")
 }
 
-/// What is felt but for where: text of all numbers, so that no other has the same.
-fn felt(contacts: &[Contact]) -> Vec<String> {
+/// Returns contacts without their points, as text of all numbers, so that different numbers give different text.
+fn evaluation(contacts: &[Contact]) -> Vec<String> {
     let told = |c: &Contact| {
         format!(
             "{} {} {:?} {:?} {:?} {:?}",
@@ -73,7 +73,7 @@ fn exactly(
     let (a, b) = (put(turned, tip), put(turned, tip + by));
     let parts = [here.part(), here.moved(by).part()];
     let mut probes = parts.each_ref().map(|part| Probe::new(part, subject.tool));
-    let contacts = [(0, &a), (1, &b)].map(|(k, pose)| felt(probes[k].contacts(pose)));
+    let contacts = [(0, &a), (1, &b)].map(|(k, pose)| evaluation(probes[k].contacts(pose)));
     let wrenches = [(0, &a), (1, &b)].map(|(k, pose)| {
         let mut wrench = probes[k].wrench(pose);
         if let Some(deepest) = &mut wrench.deepest {
@@ -98,13 +98,13 @@ fn anywhere(
     let (tool, truth) = (subject.tool, &*subject.truth);
     let (found, _) = Asked { tool, truth, given: here, part: near }.at(&a, ledger);
     let (moved, _) = Asked { tool, truth, given: &there, part: far }.at(&b, ledger);
-    let steep = tool.card().depth.lipschitz.expect("proved of every tool");
+    let steep = tool.info().depth.lipschitz.expect("proved of every tool");
     let errors: f64 = parts
         .each_ref()
-        .map(|part| Probe::new(part, tool).error().expect("proved of every tool"))
+        .map(|part| Probe::new(part, tool).rounding_error_bound().expect("proved of every tool"))
         .iter()
         .sum();
-    // Each coordinate of the point and of the tip is rounded to half an ulp of where it is.
+    // Each coordinate of the point and of the tip is rounded to half an ulp at its position.
     let rounding = steep * 3f64.sqrt() * f64::EPSILON * (by.amax() + subject.scale());
     let bound = errors + rounding;
     let place = || format!("moved by {:?}, {}", by.as_slice(), shown(&a));

@@ -1,21 +1,22 @@
-//! Items 1 and 2: points exactly on every vertex, splitting curve and surface, or the doubles nearest to it, and one ulp to either side.
+//! Items 1 and 2: points exactly on every vertex, splitting curve and surface, or the nearest doubles, and points one
+//! ulp beside them.
 
 use super::borders::{Bracket, brackets, exact, turned};
 use super::judge::{Answer, Judge};
 use super::ledger::{Kind, Ledger};
 use super::truth::{Subject, place};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// What the code says on a curve, and what each of its neighbours has there.
+/// Difference between the evaluated depth on a curve and the depth of each neighbouring region there.
 const AGREE: Kind = Kind::of("both neighbours", "ulp(S)", 1.0);
-/// What the code says on the two sides of a curve, less what the truth changes by.
+/// Step of the evaluated depth across a curve, less the step of the true depth.
 const STEP: Kind = Kind::of("step across", "ulp(S)", 1.0);
-/// How many points lie on a curve to the last bit.
+/// Number of points that lie on a curve exactly.
 const EXACTLY: Kind = Kind::told("exactly on it", "share");
 
-/// Item 1.
-pub(super) fn exactly(subject: &Subject, most: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Validates item 1.
+pub(super) fn exactly(subject: &Subject, most: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let judge = Judge::new(subject.tool, &*subject.truth);
     let (mut on, mut all) = (0, 0);
     for bracket in brackets(subject, most, draw) {
@@ -39,7 +40,7 @@ pub(super) fn exactly(subject: &Subject, most: usize, draw: &mut Draw, ledger: &
     ledger.tell(EXACTLY, all, share, &format!("{on} of {all}"));
 }
 
-/// Which end of a bracket is nearer to the border: where its two sides differ less.
+/// Returns the index of the bracket's end nearer to the border: there the depths of both sides differ less.
 fn nearer(subject: &Subject, bracket: &Bracket) -> usize {
     let apart = |p: [f64; 3]| {
         let depths = bracket.owners.map(|owner| depth_of(subject, p, owner));
@@ -48,16 +49,16 @@ fn nearer(subject: &Subject, bracket: &Bracket) -> usize {
     usize::from(apart(bracket.ends[1]) < apart(bracket.ends[0]))
 }
 
-/// The depth that a region has at a point; outside there is none.
+/// Returns the depth of a region at a point; outside it is 0.
 fn depth_of(subject: &Subject, p: [f64; 3], owner: Option<usize>) -> Big {
     let claim = owner.and_then(|region| subject.truth.claim(&place(p), region));
     claim.map_or_else(Big::zero, |claim| claim.depth)
 }
 
-/// All regions that a point belongs to, to half an ulp(S).
+/// Returns all regions that own a point, to half an ulp(S).
 fn owners_at(subject: &Subject, p: [f64; 3]) -> Vec<Option<usize>> {
     let at = place(p);
-    let regions = 0..subject.tool.card().regions.len();
+    let regions = 0..subject.tool.info().regions.len();
     let here = regions.filter(|region| {
         let claim = subject.truth.claim(&at, *region);
         claim.is_some_and(|claim| claim.behind <= subject.ulp() / 2.0)
@@ -89,8 +90,8 @@ fn step(subject: &Subject, bracket: &Bracket, answers: &[Option<Answer>], ledger
     }
 }
 
-/// Item 2.
-pub(super) fn beside(subject: &Subject, most: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Validates item 2.
+pub(super) fn beside(subject: &Subject, most: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let judge = Judge::new(subject.tool, &*subject.truth);
     let around = |v: f64| [v, v.next_up(), v.next_down()];
     let mut places: Vec<[f64; 3]> = subject.oracle.corner_points();

@@ -3,7 +3,7 @@
 use super::ledger::{ITEMS, Item, Kind, Row};
 use std::fmt::Write;
 
-/// What each item asks.
+/// Description of each item.
 const ASKED: [&str; ITEMS.len()] = [
     "Where the truth in 256 bits goes from one owner to another, or from inside to outside, the two doubles side by side between which it does \
      are found by halving, along z and along d; and every vertex and centre is taken. There the contract of section 1 is held, and what the code \
@@ -23,10 +23,10 @@ const ASKED: [&str; ITEMS.len()] = [
      arc's radius is above S (by 25.4 those of `Barrel` and `Oval`) the distance from its centre is rounded as what is larger than S: the contract's 1 ulp(S) is \
      missed there, as the last two rows have it, and 2 are held.",
     "Points beside the tool, part and pose moved together. By powers of two, where no coordinate loses a bit: the same bits of contacts and \
-     wrench. By 1e3 … 1e12 (1, -0.7, 0.3): no depth differs by more than both clouds' `Probe::error` and what the coordinates' own rounding \
+     wrench. By 1e3 … 1e12 (1, -0.7, 0.3): no depth differs by more than both clouds' `Probe::rounding_error_bound` and what the coordinates' own rounding \
      can do; each scene is also judged by itself in 256 bits.",
     "Quarter and half turns, with and without rounding, all axes, tilts of 1e-9 rad. Each contact's depth in 256 bits is that of the given \
-     point at the pose as it is in doubles; it may be off by `Probe::error`. The scene turned as a whole by turns without rounding has the \
+     point at the pose as it is in doubles; it may be off by `Probe::rounding_error_bound`. The scene turned as a whole by turns without rounding has the \
      same bits.",
     "A tool's end pressed into a plane, its longest side into a sphere and into a bore that is wider by a tenth, by 1e-1 … 1e-15. The deepest \
      place is a point, whose depth is a closed form. The certifier's interval, of triangles, holds it.",
@@ -38,10 +38,10 @@ const ASKED: [&str; ITEMS.len()] = [
     "Coordinates, depths, weights and poses of 5e-324 to 1e-300. The contract; and no weight is stored farther from the given one than 2^-24 of \
      the largest.",
     "The scene turned by any rotation; mirrored; the tool spun; two clouds merged, whose contacts come together and whose forces add; the scene in \
-     mm, inch and m, given so and by `Part::to`. What loses no bit has the same bits, else depths differ by both clouds' `Probe::error` and rounding.",
+     mm, inch and m, given so and by `Part::to`. What loses no bit has the same bits, else depths differ by both clouds' `Probe::rounding_error_bound` and rounding.",
 ];
 
-/// The page of these rows.
+/// Returns the page for these rows.
 pub fn page(rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut page = String::new();
     for item in Item::all() {
@@ -71,7 +71,7 @@ fn first_up(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Three digits.
+/// Formats a number with about three digits.
 fn figure(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
@@ -81,13 +81,13 @@ fn figure(value: f64) -> String {
     }
 }
 
-/// A cell's text, which has no bars and is not endless.
+/// Formats text for a table cell, without vertical bars and line breaks.
 fn cell(text: &str) -> String {
     let flat: String = text.replace('|', "/").replace('\n', " ");
     if flat.is_empty() { String::new() } else { format!("`{}`", flat.replace('`', "'")) }
 }
 
-/// The worst of each kind over all tools.
+/// Writes the worst row of each kind over all tools.
 fn worst(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     let mut kinds: Vec<Kind> = Vec::new();
     for row in rows.iter().filter(|row| row.kind.what != "refused") {
@@ -127,7 +127,7 @@ fn cell_text(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// What came of each case.
+/// Writes the outcome of each case.
 fn cases(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     let mut names: Vec<&str> = Vec::new();
     for row in rows {
@@ -167,7 +167,7 @@ fn checksums(rows: &[&Row], page: &mut String) -> std::fmt::Result {
     writeln!(page)
 }
 
-/// The largest part of its bar that any figure of an item comes to, tool by tool.
+/// Writes for each tool and item the largest ratio of a figure to its limit.
 fn shares(rows: &[Row], page: &mut String) -> std::fmt::Result {
     let mut tools: Vec<&str> = rows.iter().map(|row| row.tool.as_str()).collect();
     tools.retain(|tool| tools_library::find(tool).is_some());

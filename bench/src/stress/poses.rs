@@ -1,19 +1,19 @@
-//! Item 7: poses that are aligned with the part to the last bit, and hardly tilted ones.
+//! Item 7: poses that are aligned with the part exactly, and poses that are tilted very slightly.
 
 use super::ledger::{Kind, Ledger};
 use super::scene::{Asked, Given, shown};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Pose, Probe};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Part and tool turned together, by quarter and half turns: depths, magnitudes and regions have the same bits.
+/// Part and tool rotated together by quarter and half turns: depths, magnitudes and regions have the same bits.
 const SAME: Kind = Kind::never("quarter turn: other bits");
 
-/// Multiples of this keep all bits beside the tips that are used.
+/// Spacing of the coordinates' grid, so that its multiples keep all bits near the tips used here.
 const GRID: f64 = 1.0 / 1024.0;
 
-/// Quarter and half turns; those of the first list have rotations without rounding.
+/// Returns quarter and half turns as quaternions. Those of the first list give rotations without rounding.
 fn turns() -> [Vec<[f64; 4]>; 2] {
     let s = std::f64::consts::FRAC_1_SQRT_2;
     let exact = vec![
@@ -29,8 +29,8 @@ fn turns() -> [Vec<[f64; 4]>; 2] {
     [exact, rounded]
 }
 
-/// Judges a scene at all of them.
-pub(super) fn poses(subject: &Subject, count: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Validates a scene at all these poses.
+pub(super) fn poses(subject: &Subject, count: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let own = Given::about(subject, count, GRID, draw);
     let tip = Point3::new(0.5, -1.0, -2.0);
     let [exact, rounded] = turns();
@@ -54,16 +54,16 @@ pub(super) fn poses(subject: &Subject, count: usize, draw: &mut Draw, ledger: &m
     turned(subject, &own, &exact, ledger);
 }
 
-/// The scene turned as a whole.
+/// Rotates the scene as a whole.
 fn turned(subject: &Subject, own: &Given, turns: &[[f64; 4]], ledger: &mut Ledger) {
-    let felt = |given: &Given, pose: &Pose| {
+    let evaluation = |given: &Given, pose: &Pose| {
         let part = given.part();
         let mut probe = Probe::new(&part, subject.tool);
         let mut list: Vec<(u32, usize, u64, u64)> = probe
             .contacts(pose)
             .iter()
             .map(|c| {
-                // -0 is 0.
+                // Adding 0 makes -0 equal to 0.
                 let [depth, magnitude] = [c.depth, c.magnitude].map(|v| (v + 0.0).to_bits());
                 (c.triangle, c.region, depth, magnitude)
             })
@@ -71,10 +71,10 @@ fn turned(subject: &Subject, own: &Given, turns: &[[f64; 4]], ledger: &mut Ledge
         list.sort_unstable();
         list
     };
-    let unturned = felt(own, &Pose::default());
+    let unturned = evaluation(own, &Pose::default());
     for q in turns {
         let pose = Pose::from_quaternion(Point3::origin(), *q).expect("a unit quaternion");
         let there = own.at(&pose, GRID);
-        ledger.count(SAME, felt(&there, &pose) != unturned, || shown(&pose));
+        ledger.count(SAME, evaluation(&there, &pose) != unturned, || shown(&pose));
     }
 }

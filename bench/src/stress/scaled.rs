@@ -1,4 +1,4 @@
-//! Item 5: the whole scene scaled: the tool, written out with all its lengths multiplied, and the points.
+//! Item 5: the whole scene scaled: the points, and the tool, written out with all lengths multiplied.
 
 use super::judge::{Answer, Judge, answers};
 use super::ledger::{Kind, Ledger};
@@ -8,23 +8,23 @@ use tool_dsl::source::Source;
 use touchoff::Level;
 use touchoff::tool::{Interpreted, ToolError};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
 
-/// Exponents at which every tool is taken and has the same bits.
+/// Exponents at which every tool is accepted and has the same bits.
 const RANGE: std::ops::RangeInclusive<i32> = -40..=160;
 const SAME: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: other bits than unscaled");
-/// The slope of a magnitude is simplified where a radius is 1, and may then be rounded otherwise.
+/// The derivative of a magnitude is simplified if a radius is 1, so it may be rounded differently.
 const SLOPE: Kind = Kind::of("2^k, -40 ≤ k ≤ 160: gradient", "ε", 4.0);
 const REFUSED: Kind = Kind::never("2^k, -40 ≤ k ≤ 160: refused");
-/// Beyond those: how many steps have other bits, or are refused.
+/// Number of scales beyond that range with other bits, and number of those rejected.
 const UNLIKE: Kind = Kind::told("2^k beyond: other bits", "steps");
 const BEYOND: Kind = Kind::told("2^k beyond: refused", "steps");
-/// The depth where the radius of an arc is above S: its distance from the centre is rounded as what is larger than S.
+/// Errors if an arc's radius exceeds S: the distance from its centre is rounded relative to the larger number.
 const LARGE: Kind = Kind::of("depth, a radius above S", "ulp(S)", 2.0);
 const LARGE_OUTSIDE: Kind = Kind::of("distance outside, a radius above S", "ulp(S)", 2.0);
 
-/// A truth of which every length is so many times as large.
+/// True values with all lengths multiplied by a factor.
 struct Scaled<'a> {
     own: &'a dyn Truth,
     by: Big,
@@ -32,7 +32,7 @@ struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    /// `size` is the unscaled tool's largest coordinate.
+    /// Scales true values. `size` is the unscaled tool's largest coordinate.
     fn new(own: &'a dyn Truth, by: f64, size: f64) -> Scaled<'a> {
         let mut scale = 2f64.powi((size * by).log2().floor() as i32);
         while scale <= size * by {
@@ -71,7 +71,7 @@ impl Truth for Scaled<'_> {
     }
 }
 
-/// A tool with its lengths multiplied by what `scale` says.
+/// Compiles a tool with its lengths multiplied by the expression `scale`.
 fn written(subject: &Subject, scale: &str) -> Result<Interpreted, ToolError> {
     let name = subject.name();
     let text = by_hand(name, scale).unwrap_or_else(|| {
@@ -81,8 +81,8 @@ fn written(subject: &Subject, scale: &str) -> Result<Interpreted, ToolError> {
     Interpreted::parse(&Source::new(name, text))
 }
 
-/// Points by the tool, on its curves, corners and axis, and anywhere.
-fn points(subject: &Subject, count: usize, draw: &mut Draw) -> Vec<[f64; 3]> {
+/// Returns points near the tool's curves, at its corners, on its axis and anywhere.
+fn points(subject: &Subject, count: usize, draw: &mut Rng) -> Vec<[f64; 3]> {
     let curves: Vec<[f64; 3]> = subject.oracle.curve_points().into_iter().flatten().collect();
     let mut points: Vec<[f64; 3]> = subject.oracle.corner_points();
     let [radius, height] = subject.oracle.extent();
@@ -99,7 +99,8 @@ fn points(subject: &Subject, count: usize, draw: &mut Draw) -> Vec<[f64; 3]> {
     points
 }
 
-/// Lengths beside one another up to a power of two, niceness and direction to the last bit.
+/// Returns whether two evaluations agree to the last bit: lengths up to the factor `by`, niceness and direction as they
+/// are.
 fn same(a: Option<&Answer>, b: Option<&Answer>, by: f64) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return a.is_none() == b.is_none() };
     let mut scaled = a.numbers;
@@ -108,18 +109,18 @@ fn same(a: Option<&Answer>, b: Option<&Answer>, by: f64) -> bool {
     a.region == b.region && scaled.map(f64::to_bits)[..6] == b.bits()[..6]
 }
 
-/// How far two slopes are apart.
+/// Returns the largest difference between the components of two gradients, in units of ε.
 fn turned(a: Option<&Answer>, b: Option<&Answer>) -> f64 {
     let (Some(a), Some(b)) = (a, b) else { return 0.0 };
     let apart = (6..9).map(|k| (a.numbers[k] - b.numbers[k]).abs());
     apart.fold(0.0, f64::max) / f64::EPSILON
 }
 
-/// Scales by powers of two and by what units are apart.
+/// Scales by powers of two, and by factors that are not powers of two.
 pub(super) fn scaled(
     subject: &Subject,
     (count, powers): (usize, &[i32]),
-    draw: &mut Draw,
+    draw: &mut Rng,
     ledger: &mut Ledger,
 ) {
     let points = points(subject, count, draw);
@@ -147,7 +148,7 @@ pub(super) fn scaled(
         let scaled = answers(&tool, Level::new(), &there);
         let mut all = true;
         for ((p, a), b) in points.iter().zip(&unscaled).zip(&scaled) {
-            // Of a point so close to 0 that it loses bits nothing is asked.
+            // Skip points so close to 0 that scaling loses bits.
             if p.iter().any(|c| (c * by) / by != *c) {
                 continue;
             }
@@ -187,13 +188,13 @@ pub(super) fn scaled(
     }
 }
 
-/// The largest coordinate.
+/// Returns the largest coordinate of the tool's corners.
 fn size(subject: &Subject) -> f64 {
     let corners = subject.oracle.corner_points().into_iter().flatten();
     corners.fold(0.0, |most: f64, c| most.max(c.abs()))
 }
 
-/// The largest radius of a tool's arcs.
+/// Returns the largest radius of the tool's arcs.
 fn largest_radius(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.0 };
     let radius = |way: &restated::Way| {

@@ -1,28 +1,29 @@
-//! A few points about a tool, given as a part, and what a probe says of them against 256 bits.
+//! A few points near a tool, given as a part, and validation of a probe's answers against 256 bits.
 
 use super::ledger::{Kind, Ledger};
 use super::truth::{Place, Subject, Truth};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Cloud, Contact, Part, Pose, Probe, Tool, Unit, Wrench};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// A contact's depth against that of the point that was given.
-pub(super) const DEPTHS: Kind = Kind::of("depth of contacts", "Probe::error", 1.0);
-/// Points beyond doubt that are felt and should not, or the other way round.
+/// Error of a contact's depth relative to the true depth of the given point.
+pub(super) const DEPTHS: Kind = Kind::of("depth of contacts", "Probe::rounding_error_bound", 1.0);
+/// Points beyond doubt inside without a contact, or beyond doubt outside with one.
 pub(super) const MEMBERS: Kind = Kind::never("wrong contact");
-/// Force and torque against the sums over the contacts in 256 bits.
+/// Error of force and torque relative to the sums over the contacts in 256 bits.
 pub(super) const SUMS: Kind = Kind::of("force and torque", "rounding of the sums", 1.0);
-/// What the questions say of each other.
+/// Contradictions between the answers of different queries.
 pub(super) const ALIKE: Kind = Kind::never("questions disagree");
 /// Numbers that are not finite.
 pub(super) const FINITE: Kind = Kind::never("senseless number");
 
-/// Between two scenes that are one a depth differs by what is rounded: of both clouds and of the coordinates.
+/// Difference of a depth between two equivalent scenes, which comes from the rounding of both clouds and of the
+/// coordinates.
 const APART: Kind = Kind::of("depth in both scenes", "both errors and rounding", 1.0);
 const LOST: Kind = Kind::never("contact in one scene only");
 
-/// Holds the contacts of two scenes that should be the same to a bound; each point's triangle is its place in the list.
+/// Checks that the contacts of two equivalent scenes agree to `bound`. A contact's triangle is the index of its point.
 pub(super) fn apart(
     [a, b]: [&[Contact]; 2],
     count: usize,
@@ -47,7 +48,7 @@ pub(super) fn apart(
     }
 }
 
-/// Points, normals and weights in the world.
+/// Points, normals and weights in the world frame.
 #[derive(Clone)]
 pub(super) struct Given {
     pub(super) points: Vec<Point3<f64>>,
@@ -57,7 +58,7 @@ pub(super) struct Given {
 }
 
 impl Given {
-    /// The part: each point's triangle is its place in the list.
+    /// Builds the part. The triangle of each point is its index.
     pub(super) fn part(&self) -> Part {
         let ids = (0..self.points.len() as u32).collect();
         let (points, normals) = (self.points.clone(), self.normals.clone());
@@ -65,16 +66,16 @@ impl Given {
         Part::from_cloud(&cloud.expect("points that make a cloud"))
     }
 
-    /// Points beside a tool's surface and splitting curves, half of them farther off than the others, in the tool's frame and unit.
-    /// Their coordinates are multiples of `grid`, normals lie anywhere.
-    pub(super) fn about(subject: &Subject, count: usize, grid: f64, draw: &mut Draw) -> Given {
+    /// Returns random points near a tool's surface and splitting curves, in the tool's frame and unit. Every second
+    /// point may be farther away than the others. Coordinates are multiples of `grid`; normals have any direction.
+    pub(super) fn about(subject: &Subject, count: usize, grid: f64, draw: &mut Rng) -> Given {
         let curves = subject.oracle.curve_points();
         let reach = 0.2 * subject.oracle.extent()[0];
         let mut given = Given {
             points: Vec::new(),
             normals: Vec::new(),
             weights: Vec::new(),
-            unit: subject.tool.card().unit,
+            unit: subject.tool.info().unit,
         };
         for k in 0..count {
             let curve = &curves[draw.bits() as usize % curves.len()];
@@ -89,7 +90,7 @@ impl Given {
         given
     }
 
-    /// The same points in another frame: each is carried to where a pose puts it, and put on the grid again.
+    /// Transforms the points by a pose and rounds them to the grid again.
     pub(super) fn at(&self, pose: &Pose, grid: f64) -> Given {
         let carried = |p: &Point3<f64>| {
             let there = pose.tip() + pose.rotation() * p.coords;
@@ -98,13 +99,13 @@ impl Given {
         Given { points: self.points.iter().map(carried).collect(), ..self.clone() }
     }
 
-    /// The same, moved.
+    /// Translates the points.
     pub(super) fn moved(&self, by: Vector3<f64>) -> Given {
         Given { points: self.points.iter().map(|p| p + by).collect(), ..self.clone() }
     }
 }
 
-/// A pose to the last bit.
+/// Formats a pose to the last bit.
 pub(super) fn shown(pose: &Pose) -> String {
     let (tip, r) = (pose.tip(), pose.rotation());
     let list = |v: &[f64]| format!("{v:?}");
@@ -130,13 +131,13 @@ fn cross(a: &Place, b: &Place) -> Place {
     })
 }
 
-/// How far a vector of doubles is from one of 256 bits.
+/// Returns the distance between a vector of doubles and one of 256 bits.
 fn off(a: &Vector3<f64>, b: &Place) -> f64 {
     let squares = exactly(a).iter().zip(b).map(|(a, b)| (a - b).to_f64().powi(2)).sum::<f64>();
     squares.sqrt()
 }
 
-/// A point in the tool's frame and unit.
+/// Transforms a point to the tool's frame and unit.
 pub(super) fn in_tool(p: &Point3<f64>, pose: &Pose, [tool, part]: [Unit; 2]) -> Place {
     let from: Place = std::array::from_fn(|k| &Big::exactly(p[k]) - &Big::exactly(pose.tip()[k]));
     let mm = |unit: Unit| Big::decimal(unit.millimetres());
@@ -147,7 +148,7 @@ pub(super) fn in_tool(p: &Point3<f64>, pose: &Pose, [tool, part]: [Unit; 2]) -> 
     })
 }
 
-/// What is asked of a tool at a pose, and by what it is judged.
+/// A tool and a part, with the true values for validation.
 pub(super) struct Asked<'a> {
     pub(super) tool: &'a dyn Tool,
     pub(super) truth: &'a dyn Truth,
@@ -156,7 +157,7 @@ pub(super) struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Asks at a pose and judges the answers; the contacts and the wrench, for more.
+    /// Queries at a pose, validates the answers, and returns contacts and wrench for further checks.
     pub(super) fn at(&self, pose: &Pose, ledger: &mut Ledger) -> (Vec<Contact>, Wrench) {
         let mut probe = Probe::new(self.part, self.tool);
         let contacts = probe.contacts(pose).to_vec();
@@ -172,20 +173,21 @@ impl Asked<'_> {
             && deepest.map(|d| d.depth) == most
             && wrench.deepest.map(|d| d.depth) == most;
         ledger.count(ALIKE, !alike, || shown(pose));
-        let error = probe.error().expect("how steep depth is was proved of every tool");
+        let error =
+            probe.rounding_error_bound().expect("how steep depth is was proved of every tool");
         self.points(pose, &contacts, error, ledger);
         self.sums(pose, &contacts, &wrench, ledger);
         (contacts, wrench)
     }
 
     fn points(&self, pose: &Pose, contacts: &[Contact], error: f64, ledger: &mut Ledger) {
-        let units = [self.tool.card().unit, self.given.unit];
+        let units = [self.tool.info().unit, self.given.unit];
         let length = &Big::decimal(units[0].millimetres()) / &Big::decimal(units[1].millimetres());
-        let mut felt: Vec<Option<&Contact>> = vec![None; self.given.points.len()];
+        let mut evaluation: Vec<Option<&Contact>> = vec![None; self.given.points.len()];
         for contact in contacts {
-            felt[contact.triangle as usize] = Some(contact);
+            evaluation[contact.triangle as usize] = Some(contact);
         }
-        for (p, contact) in self.given.points.iter().zip(felt) {
+        for (p, contact) in self.given.points.iter().zip(evaluation) {
             let place = in_tool(p, pose, units);
             let exact = &self.truth.depth(&place) * &length;
             let depth = exact.to_f64();
@@ -198,7 +200,7 @@ impl Asked<'_> {
             ledger.count(FINITE, !finite, shown);
             if finite {
                 let off = (&Big::exactly(contact.depth) - &exact).abs().to_f64();
-                // Outside by less than the error it is felt with a depth of 0.
+                // A point outside by less than the error bound may be a contact; its true depth is 0.
                 let off = if depth < 0.0 { contact.depth } else { off };
                 ledger.see(DEPTHS, off / error, shown);
             }
@@ -228,7 +230,7 @@ impl Asked<'_> {
             integral = &integral + &push;
             let most = 2.0 * push.to_f64();
             size += most;
-            // A contact's point is rounded to the world's coordinates.
+            // The point of a contact is rounded in world coordinates.
             let far = contact.point.coords.amax().max(tip.coords.amax());
             lever += most * ((contact.point - tip).norm() + far);
         }

@@ -1,21 +1,22 @@
-//! Points of a half plane that are as near to three features of a profile, or more: the vertices of the subdivision by nearest feature,
-//! inside and outside.
+//! Points of a half plane that are equally near to three or more features of a profile: the vertices of the subdivision
+//! by nearest feature, inside and outside.
 //!
-//! Features are the pieces, each for the points whose foot lies on it, and the vertices, each for its fan. Their borders are where two
-//! are as far and the edges of fans, on which a piece and its end are as far. Every two borders are intersected by Newton's method, and
-//! what comes out is kept if no other feature is nearer. All in doubles: the points are judged in 256 bits, wherever they are.
+//! Features are the segments, each for the points whose foot lies on it, and the vertices, each for its fan. Borders
+//! are the points equally far from two features, and the edges of fans, where a segment and its end are equally far.
+//! Every two borders are intersected by Newton's method. An intersection is kept if no other feature is nearer. All
+//! computations are in doubles: the points found are validated in 256 bits wherever they are.
 
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated::Restated;
 
 type P2 = [f64; 2];
 
-/// A point, and how many features it is as near to.
+/// A point, and the number of features that it is equally near to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
-    /// `[d, z]`.
+    /// The point as `[d, z]`.
     pub at: P2,
-    /// How many features.
+    /// The number of features.
     pub features: usize,
 }
 
@@ -26,7 +27,7 @@ enum Feature {
     Vertex { at: P2, tangents: [Option<P2>; 2], turn: f64 },
 }
 
-/// What is 0 on a border.
+/// A border, as the zero set of a function.
 #[derive(Clone, Copy)]
 enum Border {
     Pair(usize, usize),
@@ -48,7 +49,7 @@ fn unit(a: P2) -> P2 {
 }
 
 impl Feature {
-    /// The distance, and its slope.
+    /// Returns the distance and its gradient.
     fn distance(&self, p: P2) -> (f64, P2) {
         match *self {
             Feature::Line { from, along, .. } => {
@@ -67,7 +68,7 @@ impl Feature {
         }
     }
 
-    /// Whether a point is one that the feature may own, on this side of the profile, to a tolerance.
+    /// Returns whether the feature may own a point, on this side of the profile, to the tolerance `close`.
     fn faces(&self, p: P2, close: f64) -> bool {
         match *self {
             Feature::Line { from, along, length } => {
@@ -83,7 +84,7 @@ impl Feature {
                 let beside = tangents.iter().zip([1.0, -1.0]).all(|(tangent, sign)| {
                     tangent.is_none_or(|tangent| sign * dot(from, tangent) >= -close)
                 });
-                // A joint owns nothing.
+                // A smooth joint owns no points.
                 beside && turn.abs() > 1e-9
             }
         }
@@ -154,7 +155,7 @@ fn miss(features: &[Feature], border: Border, p: P2) -> (f64, P2) {
     }
 }
 
-/// Newton's method; `None` where it does not settle.
+/// Intersects two borders by Newton's method. Returns `None` if it does not converge.
 fn meet(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) -> Option<P2> {
     for _ in 0..30 {
         let ((f, u), (g, v)) = (miss(features, a, p), miss(features, b, p));
@@ -175,13 +176,14 @@ fn meet(features: &[Feature], [a, b]: [Border; 2], mut p: P2, size: f64) -> Opti
     None
 }
 
-/// Meetings of three features or more off the surface, as far as half a size outside, from `starts` places for each two borders, of
-/// which every so many-th are taken.
+/// Returns points off the surface with three or more nearest features, inside and outside. Newton's method begins at
+/// `starts` random points per pair of borders: up to twice the tool's radius from the axis, and up to half its radius
+/// beyond its ends. Only every `every`-th pair is used.
 pub(super) fn meetings(
     tool: &Restated,
     size: f64,
     (starts, every): (usize, usize),
-    draw: &mut Draw,
+    draw: &mut Rng,
 ) -> Vec<Meeting> {
     let features = features(tool);
     let borders = borders(&features);
@@ -209,7 +211,8 @@ pub(super) fn meetings(
     found
 }
 
-/// How many features are as near as the nearest, if there are three and no surface.
+/// Returns the number of nearest features. Returns `None` if there are fewer than three, or if the point is on the
+/// surface or far away.
 fn equals(features: &[Feature], p: P2, size: f64) -> Option<usize> {
     let close = 1e-12 * size;
     if p[0] < 0.0 || p[0] > 2.0 * size || p[1].abs() > 2.0 * size {
@@ -226,11 +229,11 @@ mod tests {
     use super::*;
     use touchoff_tests::oracle::restated;
 
-    /// Outside fig. 7.3 (5, 13) and (11, 19) of the thesis's frame are as near to four features.
+    /// In the thesis's frame, the points (5, 13) and (11, 19) outside fig. 7.3 are equally near to four features.
     #[test]
     fn the_ones_that_are_known() {
         let tool = restated::of("Fig73Exact").expect("it is restated");
-        let found = meetings(&tool, 32.0, (2, 1), &mut Draw::new(1));
+        let found = meetings(&tool, 32.0, (2, 1), &mut Rng::new(1));
         for known in [[5.0, 7.0], [11.0, 1.0]] {
             let meeting = found.iter().find(|m| sub(m.at, known).iter().all(|c| c.abs() < 1e-12));
             assert_eq!(meeting.map(|m| m.features), Some(4), "{known:?} in {found:?}");

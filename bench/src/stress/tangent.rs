@@ -1,38 +1,39 @@
-//! Item 8: contacts that only just touch, of depth 1e-1 to 1e-15, on a plane, a sphere and in a bore.
+//! Item 8: grazing contacts, with depths of 1e-1 to 1e-15, on a plane, on a sphere and in a bore.
 //!
-//! The place of the part that is deepest is a point of its own, at the world's origin; how deep it is follows from the pose alone.
+//! The deepest point of the part is a point of the cloud at the world's origin. Its depth follows from the pose alone.
 
 use super::ledger::{Kind, Ledger};
 use super::scene::{Asked, Given, shown};
 use super::truth::Subject;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{PI, TAU};
-use touchoff::certify::{Certifier, Facets};
+use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::restated;
 
-/// The depth of the deepest place against the closed form.
-const CLOSED: Kind = Kind::of("closed form", "Probe::error", 1.0);
-/// A contact deeper than the error that is not felt.
+/// Error of the greatest depth relative to the closed form.
+const CLOSED: Kind = Kind::of("closed form", "Probe::rounding_error_bound", 1.0);
+/// A contact deeper than the error bound that was not found.
 const MISSED: Kind = Kind::never("contact missed");
-/// How far the closed form is out of the certified interval.
+/// Distance of the closed form from the certified interval.
 const CERTIFIED: Kind = Kind::of("outside the certified interval", "64 ε (tool + part)", 1.0);
-/// How wide that is beyond 1e-9.
+/// Width of the certified interval beyond 1e-9.
 const WIDE: Kind = Kind::of("its width beyond 1e-9 mm", "256 ε (tool + part)", 1.0);
-/// Without a profile depth is known by how fast it changes, and looking is given up at some time: the interval
-/// holds, but is wide.
+/// Width of the interval for a tool without a profile. The certifier knows its depth only by a bound on its change and
+/// stops when the budget is spent, so the interval is valid but wide.
 const WIDTH: Kind =
     Kind::told("its width, of tools whose distance it does not know", "of the tool's unit");
-/// So many nodes a question may look at then.
+/// Maximum number of nodes per query for such a tool.
 const BUDGET: u32 = 20_000;
 
-/// A side of the tool: its radius, how high its middle is, and how long it is.
+/// A side of the tool: its radius, the height of its middle, and its length.
 type Side = [f64; 3];
 
-/// The longest upright line of a tool's profile; a ball's equator where it has none. `None` of a solid.
+/// Returns the longest line of a tool's profile that is parallel to the axis, or a ball's equator. Returns `None` for a
+/// solid.
 fn side(subject: &Subject) -> Option<Side> {
     match subject.name() {
         "UnitSphere" => return Some([1.0, 1.0, 1.0]),
@@ -53,8 +54,8 @@ fn side(subject: &Subject) -> Option<Side> {
     longest
 }
 
-/// How deep a tool may be pressed into a plane and its middle be the nearest to its end: half as deep as its face or ball is wide. 0 of a
-/// tool that does not stand on its middle.
+/// Returns the depth to which a tool can be pressed into a plane such that its end is the surface nearest to the point
+/// on its axis: half the radius of its end face or ball. Returns 0 for a tool whose end is neither.
 fn stands(subject: &Subject) -> f64 {
     let Some(tool) = restated::of(subject.name()) else { return 0.5 };
     let (zero, first) = (Big::zero(), &tool.ways[0]);
@@ -63,23 +64,23 @@ fn stands(subject: &Subject) -> f64 {
     if level || ball { 0.5 * first.to[0].to_f64() } else { 0.0 }
 }
 
-/// Whether a tool has a profile: then the certifier knows the distance.
+/// Returns whether a tool has a profile, so that the certifier knows its distance.
 fn known(subject: &Subject) -> bool {
-    !subject.tool.card().outline.is_empty()
+    !subject.tool.info().outline.is_empty()
 }
 
-/// Points of a surface, the origin first, then where `at` says, for numbers between -1 and 1.
+/// Returns points of a surface: the origin, then `count` points that `at` returns for numbers between -1 and 1.
 fn surface(
     subject: &Subject,
     count: usize,
-    draw: &mut Draw,
+    draw: &mut Rng,
     at: impl Fn([f64; 2]) -> Point3<f64>,
 ) -> Given {
     let mut given = Given {
         points: vec![Point3::origin()],
         normals: Vec::new(),
         weights: vec![1.0; count + 1],
-        unit: subject.tool.card().unit,
+        unit: subject.tool.info().unit,
     };
     let mut any = || {
         let near = 10f64.powf(draw.between(-8.0, 0.0));
@@ -90,8 +91,8 @@ fn surface(
     given
 }
 
-/// Presses a tool into all three.
-pub(super) fn tangent(subject: &Subject, count: usize, draw: &mut Draw, ledger: &mut Ledger) {
+/// Presses a tool into a plane, a sphere and a bore.
+pub(super) fn tangent(subject: &Subject, count: usize, draw: &mut Rng, ledger: &mut Ledger) {
     let size = subject.oracle.extent()[0].min(5.0);
     let depths = (1..=15).map(|k| 10f64.powi(-k) * size.min(1.0));
     let plane = surface(subject, count, draw, |[a, b]| Point3::new(a * size, b * size, 0.0));
@@ -119,7 +120,7 @@ pub(super) fn tangent(subject: &Subject, count: usize, draw: &mut Draw, ledger: 
         let Some([radius, height, _]) = side else { continue };
         let off = radius - depth;
         let tip = Point3::new(-off, 0.0, -height);
-        // What is left of the depth when the tip is rounded.
+        // The depth after the tip was rounded.
         let left = &Big::decimal(radius) - &Big::exactly(off);
         for given in [Some(&sphere), bore.as_ref()].into_iter().flatten() {
             pressed(subject, (given, tip), Some(&left), ledger);
@@ -139,7 +140,7 @@ fn pressed(
     let (tool, truth) = (subject.tool, &*subject.truth);
     let (contacts, _) = Asked { tool, truth, given, part: &part }.at(&pose, ledger);
     let Some(closed) = closed else { return };
-    let error = Probe::new(&part, tool).error().expect("proved of every tool");
+    let error = Probe::new(&part, tool).rounding_error_bound().expect("proved of every tool");
     let first = contacts.iter().find(|contact| contact.triangle == 0);
     let deep = closed.to_f64();
     match first {
@@ -151,7 +152,7 @@ fn pressed(
     }
 }
 
-/// A ball whose pole is the origin and a corner of the mesh.
+/// Returns a ball whose pole is at the origin and is a vertex of the mesh.
 fn ball(radius: f64, subject: &Subject) -> Mesh {
     const RINGS: u32 = 6;
     const SIDES: u32 = 12;
@@ -178,13 +179,13 @@ fn ball(radius: f64, subject: &Subject) -> Mesh {
             triangles.extend([[a, c, b], [a, d, c]]);
         }
     }
-    Mesh::new(vertices, triangles, subject.tool.card().unit).expect("a ball")
+    Mesh::new(vertices, triangles, subject.tool.info().unit).expect("a ball")
 }
 
-/// The same contacts by the certifier, of triangles.
+/// Queries the certifier for the same contacts, with triangles.
 fn certified(subject: &Subject, side: Option<Side>, [size, round]: [f64; 2], ledger: &mut Ledger) {
     const SEGMENTS: u32 = 32;
-    let unit = subject.tool.card().unit;
+    let unit = subject.tool.info().unit;
     let plane = shapes::plane(2.0 * size, 4, unit).expect("a plane");
     let round = ball(round, subject);
     let ring = side.map(|[radius, ..]| {
@@ -197,7 +198,7 @@ fn certified(subject: &Subject, side: Option<Side>, [size, round]: [f64; 2], led
             interval(subject, &plane, Point3::new(0.0, 0.0, -depth), depth, ledger);
         }
         let (Some([radius, height, _]), Some(ring)) = (side, &ring) else { continue };
-        // What is rounded here is less than a certifier's own error.
+        // The rounding here is smaller than the certifier's own error.
         let off = radius - depth;
         interval(subject, &round, Point3::new(-off, 0.0, -height), radius - off, ledger);
         let half = PI / f64::from(SEGMENTS);
@@ -209,15 +210,15 @@ fn certified(subject: &Subject, side: Option<Side>, [size, round]: [f64; 2], led
 }
 
 fn interval(subject: &Subject, mesh: &Mesh, tip: Point3<f64>, depth: f64, ledger: &mut Ledger) {
-    let facets = Facets::new(mesh);
-    let Ok(certifier) = Certifier::new(&facets, subject.tool) else { return };
+    let bvh = TriangleBvh::new(mesh);
+    let Ok(certifier) = Certifier::new(&bvh, subject.tool) else { return };
     let exact = known(subject);
-    let mut certifier = if exact { certifier } else { certifier.budget(BUDGET) };
+    let mut certifier = if exact { certifier } else { certifier.with_budget(BUDGET) };
     let pose = Pose::from_quaternion(tip, [0.0, 0.0, 0.0, 1.0]).expect("a unit quaternion");
     let [low, high] = certifier.deepest(&pose, 1e-9).depth;
     let reach = mesh.bounds().iter().map(|p| p.coords.amax()).fold(tip.coords.amax(), f64::max);
-    // The circles of arcs count as the tool does.
-    let circles = subject.tool.card().outline.iter().filter_map(|piece| piece.circle);
+    // The error bound depends on the circles of arcs as on the tool itself.
+    let circles = subject.tool.info().outline.iter().filter_map(|piece| piece.circle);
     let circles = circles.map(|circle| circle.centre[0].hypot(circle.centre[1]) + circle.radius);
     let unit = f64::EPSILON * (circles.fold(subject.scale(), f64::max) + reach);
     let off = (low - depth).max(depth - high).max(0.0);

@@ -1,10 +1,10 @@
-//! Tools written out as `.tool` files whose every length is multiplied by a number `s`.
+//! Source text of tools in which every length is multiplied by a number `s`.
 
 use std::fmt::Write;
 use touchoff_tests::oracle::big::Big;
 use touchoff_tests::oracle::restated::{Point, Restated};
 
-/// A power of two as the language writes it, whose exponents go to 16.
+/// Returns a power of two in the tool language, whose exponents are at most 16.
 pub(super) fn power_of_two(k: i32) -> String {
     let mut text = "1".to_owned();
     let (mut left, sign) = (k.abs(), if k < 0 { "-" } else { "" });
@@ -19,7 +19,7 @@ pub(super) fn power_of_two(k: i32) -> String {
     text
 }
 
-/// A surface's name without the dots that only assemblies have.
+/// Returns a surface's name without the dots that occur only in assemblies.
 pub(super) fn flat(surface: &'static str) -> &'static str {
     match surface {
         "cutter.ball" => "cutter_ball",
@@ -37,7 +37,7 @@ pub(super) fn flat(surface: &'static str) -> &'static str {
     }
 }
 
-/// A restated tool with names that a file may write.
+/// Returns a restated tool with surface names that a file may use.
 pub(super) fn flattened(tool: &Restated) -> Restated {
     let mut tool = tool.clone();
     for way in &mut tool.ways {
@@ -47,7 +47,7 @@ pub(super) fn flattened(tool: &Restated) -> Restated {
     tool
 }
 
-/// A profile as a file, from a restatement with [flattened] names.
+/// Returns the source text of a profile, from a restatement with [flattened] names.
 pub(super) fn profile(tool: &Restated, scale: &str) -> String {
     let point = |[d, z]: &Point| format!("({}*s, {}*s)", d.written(), z.written());
     let mut text = format!("tool {} {{ units mm; let s = {scale};\nprofile {{\n", tool.name);
@@ -69,14 +69,14 @@ pub(super) fn profile(tool: &Restated, scale: &str) -> String {
     text + "} }"
 }
 
-/// Whether an arc bulges into the material: it is walked clockwise.
+/// Returns whether an arc bends into the material, that is, runs clockwise.
 fn bends_in(from: &Point, to: &Point, centre: &Point) -> bool {
     let arm = |p: &Point| [&p[0] - &centre[0], &p[1] - &centre[1]];
     let (a, b) = (arm(from), arm(to));
     (&(&a[0] * &b[1]) - &(&a[1] * &b[0])) < Big::zero()
 }
 
-/// The thesis's tool and the solids, whose regions are written by hand.
+/// Returns the source text of the thesis's tool and of the solids, whose regions are written by hand.
 pub(super) fn by_hand(name: &str, scale: &str) -> Option<String> {
     let text = match name {
         "Fig73" => FIG73,

@@ -1,4 +1,4 @@
-//! Paths along a part, measured.
+//! Measurements on paths along a part.
 
 use super::cutter::Cutter;
 use super::lineup::{CELLS, Kind, Lineup, Truths, kinds};
@@ -7,56 +7,57 @@ use super::plan::Plan;
 use super::reference::{Reference, in_contact};
 use super::row::{Label, Row};
 use super::{Facts, Failure, Sink, peers, progress};
-use touchoff::certify::{Certifier, Facets};
-use touchoff::{Graded, Law, Mesh, Part, Pose, Unit};
+use touchoff::certify::{Certifier, TriangleBvh};
+use touchoff::{Law, LodProbe, Mesh, Part, Pose, Unit};
 
-/// A tool on its way along a part.
+/// A tool and its path along a part.
 pub(super) struct Along<'t> {
-    /// The scene's word.
+    /// The scene's name.
     pub(super) name: String,
-    /// What it is.
+    /// The scene's description.
     pub(super) about: String,
     /// The tool.
     pub(super) cutter: Cutter<'t>,
-    /// Where it goes.
+    /// The poses of the path.
     pub(super) poses: Vec<Pose>,
-    /// Whether it touches anything.
+    /// True if the tool touches the part.
     pub(super) touches: bool,
 }
 
-/// A scene with its truth.
+/// A scene with its reference values.
 struct Known<'t> {
     scene: Along<'t>,
-    /// Those of its poses that are in true contact, or all where none is.
+    /// The poses that are certainly in contact, or all poses of a scene without contact.
     poses: Vec<Pose>,
     truth: Option<Reference>,
-    /// The same with the thesis's magnitudes, which is all that the peers know.
+    /// Reference values with the thesis's magnitudes, the only ones that the peers know.
     thesis: Option<Reference>,
 }
 
-/// Poses that are timed, at least.
+/// Minimum number of timed poses.
 const LEAST: usize = 2_000;
 
-/// Measures paths along one part at all sizes.
+/// Measures several paths along one part with clouds of all sizes.
 ///
 /// # Errors
-/// A path that is never in contact, a tool of which nothing can be certified, a count that no cloud has.
+/// If a path that should touch is never in contact, if nothing can be certified for a tool, or if no cloud can have the
+/// number of points.
 pub(super) fn measure(
     mesh: &Mesh,
     scenes: Vec<Along<'_>>,
     plan: &Plan,
     sink: Sink<'_>,
 ) -> Result<Vec<Facts>, Failure> {
-    let facets = Facets::new(mesh);
+    let bvh = TriangleBvh::new(mesh);
     let mut all = Vec::new();
     for scene in scenes {
-        all.push(know(scene, mesh, &facets, plan)?);
+        all.push(know(scene, mesh, &bvh, plan)?);
     }
     for (from_last, count) in plan.points.iter().rev().enumerate().rev() {
         progress(&format!("{count} points"));
         let kinds = kinds(mesh, *count, plan.seed, |cloud| cloud)?;
         let detailed = match from_last {
-            0 => Some(Part::detailed(mesh, *count, plan.seed)?),
+            0 => Some(Part::with_lods(mesh, *count, plan.seed)?),
             _ => None,
         };
         for known in &all {
@@ -64,7 +65,7 @@ pub(super) fn measure(
             lineup.add_clouds(&kinds, known.scene.cutter);
             if let Some(detailed) = &detailed {
                 add_graded(&mut lineup, known, detailed, plan);
-                add_certified(&mut lineup, known, &facets, plan)?;
+                add_certified(&mut lineup, known, &bvh, plan)?;
             }
             if peers_fit(&known.scene, mesh) {
                 add_peers(&mut lineup, mesh, &kinds, plan.has_peers(from_last), from_last == 0);
@@ -78,7 +79,7 @@ pub(super) fn measure(
 fn know<'t>(
     scene: Along<'t>,
     mesh: &Mesh,
-    facets: &Facets,
+    bvh: &TriangleBvh,
     plan: &Plan,
 ) -> Result<Known<'t>, Failure> {
     if !scene.touches {
@@ -87,11 +88,11 @@ fn know<'t>(
     }
     progress(&format!("the truth of {}", scene.name));
     let tool = scene.cutter.tool();
-    let poses = in_contact(facets, tool, &scene.poses)?;
+    let poses = in_contact(bvh, tool, &scene.poses)?;
     if poses.is_empty() {
         return Err(Failure::NoContact { scene: scene.name });
     }
-    let truth = Reference::new(mesh, facets, scene.cutter, &poses, plan)?;
+    let truth = Reference::new(mesh, bvh, scene.cutter, &poses, plan)?;
     let thesis = match peers_fit(&scene, mesh) {
         true => of_the_thesis(mesh, &poses, plan)?,
         false => None,
@@ -99,18 +100,18 @@ fn know<'t>(
     Ok(Known { scene, poses, truth: Some(truth), thesis })
 }
 
-/// Whether peers, who know one tool in millimetres, know this one.
+/// Returns whether the peers can handle the scene: they know one tool, in millimetres.
 fn peers_fit(scene: &Along<'_>, mesh: &Mesh) -> bool {
     scene.cutter.peers_know_it() && mesh.unit() == Unit::Millimetre
 }
 
-/// The truth that peers are judged by, where there are any.
+/// Returns the reference values for the peers.
 #[cfg(feature = "peers")]
 fn of_the_thesis(mesh: &Mesh, poses: &[Pose], plan: &Plan) -> Result<Option<Reference>, Failure> {
     Reference::of_the_thesis(mesh, poses, plan).map(Some)
 }
 
-/// The truth that peers are judged by, where there are any.
+/// Returns no reference values: this build has no peers.
 #[cfg(not(feature = "peers"))]
 fn of_the_thesis(_: &Mesh, _: &[Pose], _: &Plan) -> Result<Option<Reference>, Failure> {
     Ok(None)
@@ -118,8 +119,8 @@ fn of_the_thesis(_: &Mesh, _: &[Pose], _: &Plan) -> Result<Option<Reference>, Fa
 
 fn add_graded<'a>(lineup: &mut Lineup<'a>, known: &Known<'a>, detailed: &'a Part, plan: &Plan) {
     for budget in &plan.budgets {
-        // A tool may be too large for the smallest.
-        let graded = Graded::new(detailed, known.scene.cutter.tool(), *budget, Law::Thesis);
+        // A tool may be too large for the smallest budget.
+        let graded = LodProbe::new(detailed, known.scene.cutter.tool(), *budget, Law::Thesis);
         if let Ok(graded) = graded {
             let label = Label {
                 method: "graded",
@@ -137,11 +138,11 @@ fn add_graded<'a>(lineup: &mut Lineup<'a>, known: &Known<'a>, detailed: &'a Part
 fn add_certified<'a>(
     lineup: &mut Lineup<'a>,
     known: &Known<'a>,
-    facets: &'a Facets,
+    bvh: &'a TriangleBvh,
     plan: &Plan,
 ) -> Result<(), Failure> {
     for tolerance in &plan.tolerances {
-        let certifier = Certifier::new(facets, known.scene.cutter.tool())?;
+        let certifier = Certifier::new(bvh, known.scene.cutter.tool())?;
         let label = Label::triangles("certified");
         let label = Label { tolerance: Some(*tolerance), ..label };
         lineup.add(label, Box::new(Proved::new(certifier, *tolerance)));
@@ -158,11 +159,11 @@ fn add_peers(lineup: &mut Lineup<'_>, mesh: &Mesh, kinds: &[Kind], points: bool,
     }
 }
 
-/// Times, then errors.
+/// Measures times, then errors.
 fn rows(lineup: &mut Lineup<'_>, known: &Known<'_>, plan: &Plan) -> Vec<Row> {
     let name = &known.scene.name;
     progress(&format!("  {name}"));
-    // A short path is gone along again, no more often than it takes.
+    // A short path is repeated to reach the minimum number of poses, but no more often than necessary.
     let again = LEAST.min(plan.path / 2).div_ceil(known.poses.len()).max(1);
     let poses: Vec<Pose> =
         known.poses.iter().copied().cycle().take(again * known.poses.len()).collect();
@@ -227,7 +228,7 @@ mod tests {
             .collect();
         assert!(errors.len() == 2 && errors[1] < 0.3 * errors[0], "{errors:?}");
         assert!(of("inside", "graded").len() == 1 && of("inside", "cloud + bound").len() == 4);
-        // Nothing is felt where nothing is, and nothing can be wrong with it.
+        // Without contact nothing is evaluated, and there is no error to measure.
         for row in measured.rows.iter().filter(|row| row.scene == "apart") {
             assert!(row.missed == 0.0 && row.err_force.is_none() && row.err_depth.is_none());
         }

@@ -1,18 +1,18 @@
-//! Which setting for which tolerance.
+//! Choice of the fastest setting that meets a tolerance.
 
 use super::row::{Label, Row};
 
-/// What is wished of a method.
+/// A requirement on the error of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wish {
-    /// That the force's error, a root mean square, is no more than this share of the typical force.
+    /// The root-mean-square error of the force is at most this share of the typical force.
     Force(f64),
-    /// That no depth is farther off than this, in the part's unit.
+    /// The largest error of depth is at most this, in the part's unit.
     Depth(f64),
 }
 
 impl Wish {
-    /// Those of the page.
+    /// The requirements on the page.
     pub const ALL: [Wish; 7] = [
         Wish::Force(0.1),
         Wish::Force(0.01),
@@ -23,7 +23,7 @@ impl Wish {
         Wish::Depth(1e-6),
     ];
 
-    /// By how much a row is off, in what the wish is said in.
+    /// Returns a row's error in the quantity of the requirement.
     fn error(self, row: &Row) -> Option<f64> {
         match self {
             Wish::Force(_) => row.err_force,
@@ -31,7 +31,7 @@ impl Wish {
         }
     }
 
-    /// How much is allowed.
+    /// Returns the largest allowed error.
     fn most(self) -> f64 {
         match self {
             Wish::Force(most) | Wish::Depth(most) => most,
@@ -39,19 +39,19 @@ impl Wish {
     }
 }
 
-/// A setting that has a wish.
+/// A setting that meets a requirement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// What it is.
+    /// The setting.
     pub label: Label,
-    /// The median of each scene, ns, in the order of the scenes.
+    /// The median time per query in each scene, ns, in the order of the scenes.
     pub p50: Vec<u64>,
-    /// The largest error of all scenes.
+    /// The largest error over all scenes.
     pub error: f64,
 }
 
-/// The setting that has its wish in every one of the scenes and is the fastest where it is slowest; `None`
-/// where none has.
+/// Returns the setting that meets the requirement in every scene and has the shortest time in its slowest scene.
+/// Returns `None` if no setting does, or if there are no scenes.
 pub fn fastest(
     rows: &[Row],
     scenes: &[&str],
@@ -70,7 +70,7 @@ pub fn fastest(
     all.min_by_key(slowest)
 }
 
-/// A setting in every scene, if it has its wish in all of them.
+/// Returns a setting's results in all scenes, if it meets the requirement in each.
 fn choice(rows: &[Row], scenes: &[&str], wish: Wish, label: Label) -> Option<Choice> {
     let (mut p50, mut error) = (Vec::new(), 0.0f64);
     for scene in scenes {
@@ -89,15 +89,15 @@ mod tests {
     #[test]
     fn the_fastest_of_those_that_have_the_wish_everywhere_is_taken() {
         let rows = [
-            // Fast, but off in one of the scenes.
+            // Fast, but inaccurate in one scene.
             row("a", "quick", 100, 0.005, 0.001),
             row("b", "quick", 100, 0.05, 0.2),
-            // Good in both; the second is faster where it is slowest.
+            // Accurate in both scenes; the second setting is faster in its slowest scene.
             row("a", "good", 200, 0.005, 0.005),
             row("b", "good", 900, 0.008, 0.009),
             row("a", "even", 700, 0.009, 0.002),
             row("b", "even", 700, 0.002, 0.02),
-            // The best, and never asked in one of the scenes.
+            // The best, but not measured in one scene.
             row("a", "elsewhere", 1, 0.0, 0.0),
         ];
         let found = |wish| fastest(&rows, &["a", "b"], wish, |_| true);

@@ -1,4 +1,4 @@
-//! Patches in closed form, measured.
+//! Measurements on patches with closed-form contacts.
 
 use super::lineup::{CELLS, Kind, Lineup, Truths, kinds};
 use super::methods::Proved;
@@ -9,17 +9,17 @@ use super::row::{Label, Row};
 use super::truth::{Tally, Truth};
 use super::{Facts, Failure, Sink};
 use rayon::prelude::*;
-use touchoff::certify::{Certifier, Facets};
+use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{CloudError, Mesh, Pose};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Measures a patch at all sizes.
+/// Measures a patch with clouds of all sizes.
 ///
 /// # Errors
-/// A count that no cloud has.
+/// If no cloud can have the number of points, or if nothing can be certified for the tool.
 pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts, Failure> {
     let mesh = patch.mesh();
-    let facets = Facets::new(&mesh);
+    let bvh = TriangleBvh::new(&mesh);
     let times = patch.times();
     let mut typical = Tally::default();
     for (from_last, contacts) in plan.contacts.iter().rev().enumerate().rev() {
@@ -31,7 +31,7 @@ pub(super) fn measure(patch: Patch, plan: &Plan, sink: Sink<'_>) -> Result<Facts
             clouds: plan.clouds(*contacts),
             from_last,
         };
-        let (rows, truths) = size.measure(&facets)?;
+        let (rows, truths) = size.measure(&bvh)?;
         rows.into_iter().for_each(&mut *sink);
         typical.join(&truths);
     }
@@ -51,13 +51,13 @@ struct Size<'a> {
     mesh: &'a Mesh,
     count: usize,
     clouds: usize,
-    /// Its place from the largest size.
+    /// The index of the size, counted from the largest.
     from_last: usize,
 }
 
 impl Size<'_> {
     fn seed(&self, cloud: usize) -> u64 {
-        // Other clouds for every size: the first points of a longer one are those of a shorter.
+        // Each size has its own seed: otherwise the first points of a larger cloud would be those of a smaller one.
         self.plan.seed.wrapping_mul(1 << 40) + ((self.count as u64) << 12) + cloud as u64
     }
 
@@ -70,7 +70,7 @@ impl Size<'_> {
     }
 
     fn placed(&self, cloud: usize, count: usize) -> (Vec<Pose>, Vec<(usize, Truth)>) {
-        let mut draw = Draw::new(!self.seed(cloud));
+        let mut draw = Rng::new(!self.seed(cloud));
         let placed = (0..count).map(|_| self.patch.place(&mut draw));
         let (poses, truths): (Vec<Pose>, Vec<Truth>) = placed.unzip();
         (poses, truths.into_iter().enumerate().collect())
@@ -81,8 +81,8 @@ impl Size<'_> {
         lineup.check(&poses, Truths { true_depths: &truths, thesis: &truths })
     }
 
-    /// Rows of the size, and a tally of its truths.
-    fn measure(&self, facets: &Facets) -> Result<(Vec<Row>, Tally), Failure> {
+    /// Returns the rows of this size, and a tally of the true values.
+    fn measure(&self, bvh: &TriangleBvh) -> Result<(Vec<Row>, Tally), Failure> {
         let others = |cloud: usize| {
             let kinds = self.kinds(cloud)?;
             let mut lineup = Lineup::default();
@@ -94,9 +94,9 @@ impl Size<'_> {
         let kinds = self.kinds(0)?;
         let mut lineup = Lineup::default();
         self.add_points(&mut lineup, &kinds);
-        self.add_triangles(&mut lineup, facets)?;
+        self.add_triangles(&mut lineup, bvh)?;
         let mut tallies = self.check(&mut lineup, 0);
-        // What asks triangles comes after what asks points, and knows no clouds.
+        // Methods on triangles come after those on points. The other clouds have no results for them.
         for other in &others {
             tallies.iter_mut().zip(other).for_each(|(tally, other)| tally.join(other));
         }
@@ -117,17 +117,17 @@ impl Size<'_> {
         }
     }
 
-    /// Once, since no cloud makes a difference.
+    /// Adds the methods on triangles, for the largest size only, since they do not depend on the cloud.
     fn add_triangles<'a>(
         &self,
         lineup: &mut Lineup<'a>,
-        facets: &'a Facets,
+        bvh: &'a TriangleBvh,
     ) -> Result<(), Failure> {
         if self.from_last > 0 || !self.patch.is_flat() {
             return Ok(());
         }
         for tolerance in &self.plan.tolerances {
-            let proved = Certifier::new(facets, self.patch.cutter().tool())?;
+            let proved = Certifier::new(bvh, self.patch.cutter().tool())?;
             let label = Label::triangles("certified");
             let label = Label { tolerance: Some(*tolerance), ..label };
             lineup.add(label, Box::new(Proved::new(proved, *tolerance)));

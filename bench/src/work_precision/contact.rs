@@ -1,4 +1,4 @@
-//! Contacts that are known in closed form, on patches of parts that are many times as large.
+//! Contacts with closed-form solutions, on patches of parts that are many times as large.
 
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::f64::consts::{PI, TAU};
@@ -7,31 +7,31 @@ use touchoff::{Cloud, Mesh, Pose, Unit};
 use touchoff_tests::oracle::closed_forms::{
     ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// How deep the tool is.
+/// Depth of the tool in the part, mm.
 pub(super) const DEPTH: f64 = 0.1;
-/// Radius of every tool where it touches.
+/// Radius of every tool at the contact, mm.
 const RADIUS: f64 = 1.0;
-/// How long the patches are that a side touches, and which z of the tool is over their middle.
+/// Length of the patches touched by the side of a cylinder, and the tool's z over their middle, mm.
 const LONG: f64 = 1.0;
 const MIDDLE: f64 = 3.0;
-/// Half of the square that a ball touches, and half of the strip across a side.
+/// Half the side of the square that a ball touches, and half the length of the strip across a cylinder's side, mm.
 const SQUARE: f64 = 2.2;
 const ACROSS: f64 = 6.0;
-/// The ball or cavity that is touched, and the angle from its pole to the border of its cap.
+/// Radius of the touched ball or cavity, mm, and the angle from its pole to the border of its cap, rad.
 const PART: f64 = 4.0;
 const CAP: f64 = 0.55;
-/// The bore, and in how many flats it is made.
+/// Radius of the bore, mm, and the number of its flat faces.
 const BORE: f64 = 3.0;
 const FLATS: u32 = 1024;
-/// From a contact to the patch's border: what is touched is whole.
+/// Distance from a contact to the patch's border, mm, so that the contact is complete.
 const MARGIN: f64 = 0.1;
 
-/// A contact of which everything is known.
+/// A contact with a closed-form solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Contact {
-    /// CF1: a ball, tilted, in a square of a plane.
+    /// CF1: a tilted ball in a square of a plane.
     BallInPlane,
     /// CF2: the side of a cylinder in a strip of a plane.
     SideInPlane,
@@ -43,19 +43,19 @@ pub(super) enum Contact {
     SideInBore,
 }
 
-/// Where the tool is, and what it should feel: force, and torque about its tip.
+/// A pose of the tool with the exact force and torque.
 #[derive(Clone, Debug)]
 pub(super) struct Placed {
-    /// Where the tool is.
+    /// The tool's pose.
     pub(super) pose: Pose,
-    /// The force on it, under the thesis's law.
+    /// The force on the tool, by the thesis's law.
     pub(super) force: Vector3<f64>,
-    /// The torque about its tip.
+    /// The torque about the tool's tip.
     pub(super) torque: Vector3<f64>,
 }
 
 impl Contact {
-    /// Its number among the closed forms.
+    /// Returns its name among the closed forms.
     pub(super) fn name(self) -> &'static str {
         match self {
             Contact::BallInPlane => "CF1",
@@ -66,7 +66,7 @@ impl Contact {
         }
     }
 
-    /// What touches what.
+    /// Returns a description of the tool and the patch.
     pub(super) fn about(self) -> &'static str {
         match self {
             Contact::BallInPlane => {
@@ -87,17 +87,17 @@ impl Contact {
         }
     }
 
-    /// Whether the part is a cap of a sphere, from outside or from inside.
+    /// Returns whether the part is a cap of a sphere, seen from outside or from inside.
     pub(super) fn is_of_a_sphere(self) -> bool {
         matches!(self, Contact::BallOnBall | Contact::BallInCavity)
     }
 
-    /// Whether the patch's triangles are the true surface.
+    /// Returns whether the patch's triangles are the true surface.
     pub(super) fn is_flat(self) -> bool {
         matches!(self, Contact::BallInPlane | Contact::SideInPlane)
     }
 
-    /// From the centre of the ball or cavity that is touched to the tool's.
+    /// Returns the distance between the centre of the touched ball or cavity and the tool's centre, mm.
     fn between_centres(self) -> f64 {
         match self {
             Contact::BallInCavity => PART - RADIUS + DEPTH,
@@ -105,7 +105,7 @@ impl Contact {
         }
     }
 
-    /// The area of the part that is inside the tool.
+    /// Returns the area of the part that is inside the tool, mm².
     pub(super) fn area(self) -> f64 {
         let half = (DEPTH * (2.0 * RADIUS - DEPTH)).sqrt();
         match self {
@@ -124,10 +124,10 @@ impl Contact {
         }
     }
 
-    /// The patch that clouds are drawn on.
+    /// Returns the patch on which clouds are sampled.
     ///
     /// # Panics
-    /// Never: the patches are sound.
+    /// Never: the patches are valid meshes.
     pub(super) fn mesh(self) -> Mesh {
         const SOUND: &str = "a sound patch";
         const UNIT: Unit = Unit::Millimetre;
@@ -167,11 +167,11 @@ impl Contact {
         }
     }
 
-    /// The cloud, carried from the flats to the true surface: points along the radius, with true
-    /// normals, weights as areas grow on that way.
+    /// Projects a cloud from the flat triangles to the true surface: points move along the radius, normals become
+    /// exact, and weights scale with the area.
     ///
     /// # Panics
-    /// Never: what a cloud gives makes one.
+    /// Never: the lists of a valid cloud make a valid cloud.
     pub(super) fn exact(self, cloud: Cloud) -> Cloud {
         if self.is_flat() {
             return cloud;
@@ -187,7 +187,7 @@ impl Contact {
             let far = from.norm();
             let out = from / far;
             let facing = out.dot(normal).abs();
-            // Of a cone, or of a wedge, cut by a flat and by the true surface.
+            // The area ratio of a cone (or a wedge) cut by the flat triangle and by the true surface.
             let (radius, grows, normal) = match self {
                 Contact::SideInBore => (BORE, BORE / far, -out),
                 Contact::BallInCavity => (PART, (PART / far).powi(2), -out),
@@ -201,17 +201,18 @@ impl Contact {
         Cloud::new(points, normals, triangles, weights, cloud.unit()).expect("a carried cloud")
     }
 
-    /// A pose of the tool, anywhere on the patch.
+    /// Returns a random pose of the tool on the patch.
     ///
     /// # Panics
-    /// Never: poses are finite.
-    pub(super) fn place(self, draw: &mut Draw) -> Placed {
+    /// Never: the poses are finite.
+    pub(super) fn place(self, draw: &mut Rng) -> Placed {
         let half = (DEPTH * (2.0 * RADIUS - DEPTH)).sqrt();
-        let tilted = |draw: &mut Draw, up: Vector3<f64>, most: f64| {
+        let tilted = |draw: &mut Rng, up: Vector3<f64>, most: f64| {
             let across = up.cross(&Vector3::from(draw.direction())).normalize();
             Rotation3::new(across * draw.between(0.0, most)) * up
         };
-        // Of the tool: where nothing turns it, its axis, from the tip to there. And the push.
+        // The point about which the contact has no torque, the tool's axis, the distance from the tip to that point,
+        // and the force.
         let (balance, axis, tip, push) = match self {
             Contact::BallInPlane => {
                 let reach = SQUARE - half - MARGIN;
@@ -230,7 +231,7 @@ impl Contact {
                 // In a cavity the contact is wider than on a plane.
                 let margin = if self == Contact::BallInCavity { 2.0 * MARGIN } else { MARGIN };
                 let most = CAP - (half + margin) / PART;
-                // Evenly over the cap.
+                // Uniform over the cap.
                 let z = draw.between(most.cos(), 1.0);
                 let (sin, cos) = draw.between(0.0, TAU).sin_cos();
                 let out = (1.0 - z * z).sqrt();
@@ -277,7 +278,7 @@ mod tests {
         ] {
             let cloud = contact.exact(Cloud::centroids(&contact.mesh()));
             let area: f64 = cloud.weights().iter().sum();
-            // The cap's border is ragged by a triangle.
+            // The border of the cap is ragged by up to a triangle.
             let within = if contact.is_of_a_sphere() { 0.1 } else { 1e-5 };
             assert!((area / true_area(contact) - 1.0).abs() < within, "{contact:?} {area}");
         }

@@ -1,4 +1,4 @@
-//! Methods side by side: raced on the same poses, checked against the same truths.
+//! A set of methods that are timed on the same poses and compared with the same true values.
 
 use super::cutter::Cutter;
 use super::methods::{Bounded, Points};
@@ -9,23 +9,23 @@ use crate::race::clock::{Times, race};
 use crate::race::contender::Contender;
 use touchoff::{Cloud, CloudError, Mesh, Part, Pose, Probe};
 
-/// A cloud with its words and its tree.
+/// A cloud with its labels and its tree.
 pub(super) struct Kind {
-    /// How its points are spread, and what they count for.
+    /// The names of its sampling pattern and of its weights.
     pub(super) words: [&'static str; 2],
     /// The points.
     pub(super) cloud: Cloud,
-    /// The same in their tree.
+    /// The same points in a tree.
     pub(super) part: Part,
 }
 
 impl Kind {
-    /// Of a cloud.
+    /// Builds the tree of a cloud.
     pub(super) fn new(words: [&'static str; 2], cloud: Cloud) -> Kind {
         Kind { words, part: Part::from_cloud(&cloud), cloud }
     }
 
-    /// What rows say of a method that asks its points.
+    /// Returns the label for the rows of a method on these points.
     pub(super) fn label(&self, method: &'static str) -> Label {
         Label {
             method,
@@ -37,15 +37,16 @@ impl Kind {
     }
 }
 
-/// The word for points that count for the area over their number.
+/// Name of weights that are the total area over the number of points.
 pub(super) const EQUAL: &str = "equal";
-/// The word for points that count for their cells.
+/// Name of weights that are the areas of the points' cells.
 pub(super) const CELLS: &str = "cells";
 
-/// So many points of a mesh, spread in both ways and weighed in both, each carried to where it belongs.
+/// Samples about `count` points on a mesh in both patterns, with both kinds of weights. `carry` maps each cloud to the
+/// true surface.
 ///
 /// # Errors
-/// A count that no cloud has.
+/// If no cloud can have this number of points.
 pub(super) fn kinds(
     mesh: &Mesh,
     count: usize,
@@ -55,8 +56,8 @@ pub(super) fn kinds(
     let mut kinds = Vec::new();
     for pattern in Pattern::ALL {
         let cells = match pattern {
-            Pattern::Random => Cloud::random(mesh, count, seed)?.weighed(mesh),
-            Pattern::Blue => Cloud::blue(mesh, count, seed)?,
+            Pattern::Random => Cloud::uniform(mesh, count, seed)?.with_voronoi_weights(mesh),
+            Pattern::Blue => Cloud::blue_noise(mesh, count, seed)?,
         };
         let alike = equal(&cells, mesh);
         for (word, cloud) in [(EQUAL, alike), (CELLS, cells)] {
@@ -66,52 +67,53 @@ pub(super) fn kinds(
     Ok(kinds)
 }
 
-/// Who races.
+/// A competing method.
 struct Entry {
     label: Label,
-    /// Whether it remembers where it was.
+    /// True if its state depends on the previous pose, so that it must follow the path.
     walks: bool,
-    /// Whether it is judged by the thesis's magnitudes.
+    /// True if it is compared with the thesis's magnitudes.
     thesis: bool,
 }
 
-/// Methods, each with its words.
+/// Methods with their labels.
 #[derive(Default)]
 pub(super) struct Lineup<'a> {
     entries: Vec<Entry>,
     contenders: Vec<Box<dyn Contender + 'a>>,
 }
 
-/// What is true at some of the poses that methods are asked at.
+/// True values at some of the poses.
 #[derive(Clone, Copy)]
 pub(super) struct Truths<'a> {
-    /// Of the tool.
+    /// True values of the tool.
     pub(super) true_depths: &'a [(usize, Truth)],
-    /// Of the same solid with the thesis's magnitudes, for those that know no others.
+    /// True values with the thesis's magnitudes, for methods that know no others.
     pub(super) thesis: &'a [(usize, Truth)],
 }
 
 impl<'a> Lineup<'a> {
-    /// One more method.
+    /// Adds a method.
     pub(super) fn add(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
         self.entries.push(Entry { label, walks: false, thesis: false });
         self.contenders.push(contender);
     }
 
-    /// One that remembers where it was.
+    /// Adds a method that must follow the path, since its state depends on the previous pose.
     pub(super) fn add_walking(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
         self.add(label, contender);
         self.entries.last_mut().expect("it was just added").walks = true;
     }
 
-    /// One that knows the thesis's magnitudes and no others.
+    /// Adds a method that knows only the thesis's magnitudes.
     #[cfg_attr(not(feature = "peers"), expect(dead_code, reason = "only peers know no others"))]
     pub(super) fn add_of_the_thesis(&mut self, label: Label, contender: Box<dyn Contender + 'a>) {
         self.add(label, contender);
         self.entries.last_mut().expect("it was just added").thesis = true;
     }
 
-    /// A tool beside clouds: the wrench, and of each way to spread points the bound of what no place is deeper than.
+    /// Adds a tool's wrench on each cloud, and for each sampling pattern the upper bound on the depth of the whole
+    /// surface.
     pub(super) fn add_clouds(&mut self, kinds: &'a [Kind], cutter: Cutter<'a>) {
         for kind in kinds {
             let points = Points(Probe::new(&kind.part, cutter.tool()));
@@ -126,17 +128,17 @@ impl<'a> Lineup<'a> {
         }
     }
 
-    /// The words of all.
+    /// Returns the labels of all methods.
     pub(super) fn labels(&self) -> impl Iterator<Item = &Label> {
         self.entries.iter().map(|entry| &entry.label)
     }
 
-    /// Which are judged by the thesis's magnitudes.
+    /// Returns for each method whether it is compared with the thesis's magnitudes.
     pub(super) fn of_the_thesis(&self) -> impl Iterator<Item = bool> {
         self.entries.iter().map(|entry| entry.thesis)
     }
 
-    /// Errors of each, in order.
+    /// Returns the errors of each method, in order.
     pub(super) fn check(&mut self, poses: &[Pose], truths: Truths<'_>) -> Vec<Tally> {
         let both = self.entries.iter().zip(&mut self.contenders);
         both.map(|(entry, contender)| {
@@ -146,21 +148,22 @@ impl<'a> Lineup<'a> {
         .collect()
     }
 
-    /// Which share of poses each says is in contact.
+    /// Returns for each method the share of poses at which it reports contact.
     pub(super) fn alarms(&mut self, poses: &[Pose]) -> Vec<f64> {
         let share = |contender: &mut Box<dyn Contender + 'a>| {
-            let felt = poses.iter().filter(|pose| contender.query(pose).colliding > 0).count();
-            felt as f64 / poses.len().max(1) as f64
+            let evaluation =
+                poses.iter().filter(|pose| contender.query(pose).colliding > 0).count();
+            evaluation as f64 / poses.len().max(1) as f64
         };
         self.contenders.iter_mut().map(share).collect()
     }
 
-    /// Times of each, in turns.
+    /// Times all methods, interleaved, for about `seconds` at most per method.
     pub(super) fn race(&mut self, poses: &[Pose], seconds: f64) -> Vec<Times> {
         race(&mut self.contenders, poses, seconds)
     }
 
-    /// The rows of a scene; `errors` where there is contact, else the share of false alarms.
+    /// Returns the rows of a scene. `errors` has the errors where there is contact, else the share of false alarms.
     pub(super) fn rows(
         &self,
         scene: &str,

@@ -1,15 +1,15 @@
-//! This project's ways to answer, as they are raced.
+//! The methods of this project that are timed.
 
 use crate::race::contender::{Answer, Contender};
 use touchoff::certify::Certifier;
-use touchoff::{Graded, Pose, Probe, Wrench};
+use touchoff::{LodProbe, Pose, Probe, Wrench};
 
 /// The wrench of a cloud's points.
 pub(super) struct Points<'a>(pub(super) Probe<'a>);
 
-fn answer(felt: &Wrench) -> Answer {
-    let wrench = Some([felt.force, felt.torque]);
-    Answer { colliding: felt.colliding, depth: felt.depth(), wrench }
+fn answer(evaluation: &Wrench) -> Answer {
+    let wrench = Some([evaluation.force, evaluation.torque]);
+    Answer { colliding: evaluation.colliding, depth: evaluation.depth(), wrench }
 }
 
 impl Contender for Points<'_> {
@@ -22,16 +22,16 @@ impl Contender for Points<'_> {
     }
 }
 
-/// What no place of the surface is deeper than.
+/// The upper bound on the depth of the whole surface.
 pub(super) struct Bounded<'a> {
     probe: Probe<'a>,
     unseen: f64,
 }
 
 impl<'a> Bounded<'a> {
-    /// Of a probe; `None` where it is not known what lies between the points.
+    /// Wraps a probe. Returns `None` if the surface between the points has no known error bound.
     pub(super) fn new(probe: Probe<'a>) -> Option<Bounded<'a>> {
-        probe.unseen().map(|unseen| Bounded { probe, unseen })
+        probe.sampling_error_bound().map(|unseen| Bounded { probe, unseen })
     }
 }
 
@@ -41,14 +41,14 @@ impl Contender for Bounded<'_> {
     }
 
     fn query(&mut self, pose: &Pose) -> Answer {
-        // Where no point is inside, the bound alone is the answer, and nothing was felt.
+        // If no point is inside, the bound alone is the answer, and there is no contact.
         let depth = self.probe.depth_bound(pose).unwrap_or(f64::INFINITY);
         Answer { colliding: usize::from(depth > self.unseen), depth, wrench: None }
     }
 }
 
-/// What is felt within a budget of nodes.
-pub(super) struct Budgeted<'a>(pub(super) Graded<'a>);
+/// The wrench within a budget of nodes.
+pub(super) struct Budgeted<'a>(pub(super) LodProbe<'a>);
 
 impl Contender for Budgeted<'_> {
     fn name(&self) -> &'static str {
@@ -60,14 +60,14 @@ impl Contender for Budgeted<'_> {
     }
 }
 
-/// How deep the triangles are, to a tolerance: its upper end, which is safe.
+/// The certified depth of the triangles to a tolerance. The answer is the upper end of the interval, which is safe.
 pub(super) struct Proved<'a> {
     certifier: Certifier<'a>,
     tolerance: f64,
 }
 
 impl<'a> Proved<'a> {
-    /// Of a certifier.
+    /// Wraps a certifier.
     pub(super) fn new(certifier: Certifier<'a>, tolerance: f64) -> Proved<'a> {
         Proved { certifier, tolerance }
     }

@@ -1,4 +1,4 @@
-//! Run time against error: how far from the truth many ways to answer are, and how long they take.
+//! Run time against error of several methods.
 //!
 //! ```text
 //! patches in closed form ──closed──┐                    ┌──▶ rows
@@ -35,82 +35,82 @@ use crate::race::clock::pin;
 use along::Along;
 use cutter::Cutter;
 use patch::Patch;
-use touchoff::certify::Uncertified;
-use touchoff::scenes::{Path, apart, tube};
+use touchoff::certify::NotCertifiable;
+use touchoff::scenes::{ScenePath, apart, tube};
 use touchoff::{CloudError, Mesh, Pose, Tool, Unit};
 
-/// Takes each row as it is measured.
+/// Receives each row when it is measured.
 pub type Sink<'a> = &'a mut dyn FnMut(Row);
 
-/// Why there is no measurement.
+/// The reason why a measurement is impossible.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// A cloud could not be made.
     #[error(transparent)]
     Cloud(#[from] CloudError),
-    /// Nothing can be proved of the tool, so no depth is known.
+    /// Nothing can be proved about the tool, so no depth is known.
     #[error(transparent)]
-    Uncertified(#[from] Uncertified),
-    /// There is nothing to be wrong about.
+    Uncertified(#[from] NotCertifiable),
+    /// The path has no contact, so there are no errors to measure.
     #[error(
         "at no pose of {scene} is a triangle in the tool: errors are measured in contact, so take a path that has some"
     )]
     NoContact {
-        /// The scene.
+        /// The scene's name.
         scene: String,
     },
 }
 
-/// What a scene is, and what its errors are by.
+/// The description of a scene, and the values that its errors are relative to.
 #[derive(Clone, Debug)]
 pub struct Facts {
-    /// Its word.
+    /// The scene's name.
     pub scene: String,
-    /// What touches what.
+    /// Description of the tool and the part.
     pub about: String,
-    /// Whether it is a path along a part.
+    /// True if the scene is a path along a part.
     pub path: bool,
     /// Root mean squares of force, torque and depth.
     pub typical: [f64; 3],
-    /// To what share of those they are known.
+    /// Relative accuracy of the true values, as shares of `typical`.
     pub known: [f64; 3],
     /// The part's unit.
     pub unit: Unit,
 }
 
-/// All that was measured.
+/// The results of all measurements.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
-    /// Row by row.
+    /// All rows.
     pub rows: Vec<Row>,
-    /// Scene by scene.
+    /// All scenes.
     pub scenes: Vec<Facts>,
-    /// Whether the thread was kept on one core.
+    /// True if the measuring thread was pinned to one core.
     pub pinned: bool,
 }
 
-/// How far apart the ball is from the wall in the scene of that name, mm.
+/// Distance of the ball from the wall in the scene `apart`, mm.
 const GAP: f64 = 0.5;
 
-/// The words of all scenes.
+/// Returns the names of all scenes.
 pub fn scenes() -> Vec<&'static str> {
     let patches = Patch::ALL.into_iter().map(Patch::name);
-    patches.chain(Path::ALL.map(Path::name)).chain(["apart"]).collect()
+    patches.chain(ScenePath::ALL.map(ScenePath::name)).chain(["apart"]).collect()
 }
 
-/// A part of one's own, and a tool on its way along it.
+/// A user's part, and a tool with a path along it.
 pub struct Own<'t> {
     /// The part.
     pub mesh: Mesh,
-    /// The scene's word.
+    /// The scene's name.
     pub name: String,
     /// The tool.
     pub tool: &'t dyn Tool,
-    /// Where it goes.
+    /// The poses of the path.
     pub poses: Vec<Pose>,
 }
 
-/// Measures scenes by their words, and one of one's own.
+/// Measures the scenes with these names, and the user's own scene.
 ///
 /// # Errors
 /// See [`Failure`].
@@ -126,7 +126,7 @@ pub fn measure(
         measured.rows.push(row);
     };
     let mut scenes = Vec::new();
-    // Workers are not kept where this thread is.
+    // Start the worker threads before pinning this thread: they would inherit its core.
     rayon::current_num_threads();
     let pinned = pin();
     for patch in Patch::ALL.into_iter().filter(|patch| words.contains(&patch.name())) {
@@ -139,7 +139,7 @@ pub fn measure(
     }
     if let Some(Own { mesh, name, tool, poses }) = own {
         let triangles = mesh.triangles().len();
-        let about = format!("{} along a part of {triangles} triangles", tool.card().name);
+        let about = format!("{} along a part of {triangles} triangles", tool.info().name);
         let scene = Along { name, about, cutter: Cutter(tool), poses, touches: true };
         scenes.extend(along::measure(&mesh, vec![scene], plan, &mut both)?);
     }
@@ -156,13 +156,13 @@ fn along_the_tube(words: &[&str], plan: &Plan) -> Vec<Along<'static>> {
         touches,
     };
     let about = |path| match path {
-        Path::Outside => "the ball on the outer wall, the flute over the top edge",
-        Path::Inside => "the flute about the bore",
-        Path::Hold => "taper, spindle and housing driven into the rim",
+        ScenePath::Outside => "the ball on the outer wall, the flute over the top edge",
+        ScenePath::Inside => "the flute about the bore",
+        ScenePath::Hold => "taper, spindle and housing driven into the rim",
     };
-    let along = |path: Path| scene(path.name(), about(path), true, &|k| path.pose(k, count));
+    let along = |path: ScenePath| scene(path.name(), about(path), true, &|k| path.pose(k, count));
     let mut all: Vec<_> =
-        Path::ALL.into_iter().filter(|path| words.contains(&path.name())).map(along).collect();
+        ScenePath::ALL.into_iter().filter(|path| words.contains(&path.name())).map(along).collect();
     if words.contains(&"apart") {
         let about = "the ball 0.5 mm off the outer wall";
         all.push(scene("apart", about, false, &|k| apart(GAP, k, count)));
@@ -170,7 +170,7 @@ fn along_the_tube(words: &[&str], plan: &Plan) -> Vec<Along<'static>> {
     all
 }
 
-/// Says on standard error what is measured; where nobody reads that, nothing is lost.
+/// Writes progress to standard error. A failed write is ignored.
 fn progress(words: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stderr(), "{words}");

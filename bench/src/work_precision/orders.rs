@@ -1,21 +1,21 @@
-//! Orders of convergence: the slopes of errors over the number of points.
+//! Orders of convergence: the slopes of errors over the number of points, both logarithmic.
 
 use super::row::{Quantity, Row};
 
-/// What is fitted of a scene and a kind of cloud.
+/// The orders fitted for a scene and a kind of cloud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orders {
     /// The scene.
     pub scene: String,
-    /// How points are spread.
+    /// The sampling pattern.
     pub sampling: &'static str,
-    /// What they count for.
+    /// The kind of weights.
     pub weights: &'static str,
-    /// Of force, torque and depth; `None` where too few errors are above what the truth is known to.
+    /// Slopes for force, torque and depth. `None` if too few errors exceed the accuracy of the true values.
     pub slopes: [Option<f64>; 3],
 }
 
-/// Of a smooth contact whose border is a curve on the part.
+/// Returns the expected order for a smooth contact whose border is a curve on the part.
 pub fn expected(weights: &str, quantity: Quantity) -> f64 {
     match quantity {
         Quantity::Depth => -1.0,
@@ -24,7 +24,7 @@ pub fn expected(weights: &str, quantity: Quantity) -> f64 {
     }
 }
 
-/// All orders that rows tell, in their order.
+/// Fits all orders that the rows allow, in the order of the rows.
 pub fn orders(rows: &[Row]) -> Vec<Orders> {
     let mut all: Vec<Orders> = Vec::new();
     let clouds = rows.iter().filter(|row| of_a_cloud(row));
@@ -61,7 +61,7 @@ fn slope(rows: &[&Row], quantity: Quantity) -> Option<f64> {
     (points.len() >= FEWEST).then(|| order(&points))
 }
 
-/// Returns the order `p` of `y = c x^p`, by least squares of the logarithms.
+/// Returns the order `p` of `y = c x^p`, by least squares on the logarithms.
 fn order(points: &[[f64; 2]]) -> f64 {
     let logs = points.iter().map(|[x, y]| [x.ln(), y.ln()]).collect::<Vec<_>>();
     let mean = |axis: usize| logs.iter().map(|p| p[axis]).sum::<f64>() / logs.len() as f64;
@@ -114,7 +114,7 @@ mod tests {
             errors
         };
         assert!(force("centroids").iter().all(|error| *error < 1e-12), "{:?}", force("centroids"));
-        // What makes them exact is not the scene: clouds err there.
+        // The exactness comes from the centroids, not from the scene: clouds have errors there.
         assert!(force("blue").iter().all(|error| *error > 1e-6), "{:?}", force("blue"));
     }
 }

@@ -1,4 +1,4 @@
-//! The page `work-precision.md`, its diagrams and its rows.
+//! The text and the diagrams of the page `work-precision.md`.
 
 use super::choice::{Choice, Wish, fastest};
 use super::orders::{expected, orders};
@@ -9,7 +9,7 @@ use super::{Facts, Measured, Plan};
 use crate::page::{Page, Section};
 use std::fmt::{Error, Write};
 
-/// The beginning of all files' names.
+/// The prefix of all file names.
 const NAME: &str = "work-precision";
 
 fn file(scene: &str, quantity: Quantity) -> String {
@@ -20,10 +20,10 @@ fn of<'a>(measured: &'a Measured, scene: &str) -> Vec<&'a Row> {
     measured.rows.iter().filter(|row| row.scene == scene).collect()
 }
 
-/// The page with its diagrams and rows.
+/// Returns the page with its diagrams.
 ///
 /// # Errors
-/// None that a text could have.
+/// Never in practice: writing to a string cannot fail.
 pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
     let mut body = String::new();
     head(&mut body, measured, plan)?;
@@ -41,10 +41,10 @@ pub fn page(measured: &Measured, plan: &Plan) -> Result<Page, Error> {
     })
 }
 
-/// The quantities that are drawn; torque goes as force does.
+/// The quantities with diagrams. Torque behaves like force.
 const DRAWN: [Quantity; 2] = [Quantity::Force, Quantity::Depth];
 
-/// Returns the diagrams of the paths that have points.
+/// Returns the diagrams of those paths that have points.
 fn figures(measured: &Measured) -> Vec<(String, String)> {
     let mut figures = Vec::new();
     for facts in measured.scenes.iter().filter(|facts| facts.path) {
@@ -71,14 +71,14 @@ depth, under the thesis's law. On patches the truth is a closed form, on paths d
 are sums over the part's own triangles, quartered where that changes them; no error is given below what the truth is known to (`≤`).
 Of patches each size has several clouds and {} placements on each, of paths one cloud and {} poses.
 
-The command prints all rows, one object a line. **missed** is the share of poses in contact at which nothing is felt (of
+The command prints all rows, one object a line. **missed** is the share of poses in contact in which no point is inside (of
 `apart`, where nothing is in contact, at which something is). **worst** is the largest error of depth, in the part's unit.
 
 | method | what it is | setting |
 |---|---|---|
 | `cloud` | `Probe::wrench` of a cloud, `random` or `blue`; each point counts for the area over their number, `equal`, or of its cell, `cells` | points |
 | `cloud + bound` | `Probe::depth_bound`: what no place of the surface is deeper than; the error is what that is too much | points |
-| `graded` | `Graded::wrench` of the largest cloud and its levels, asked pose by pose along the path | nodes a query may look at |
+| `graded` | `LodProbe::wrench` of the largest cloud and its levels, asked pose by pose along the path | nodes a query may look at |
 | `certified` | `Certifier::deepest`: the upper end of what is proved | tolerance |
 | `centroids` | `cloud` of the centroids of equal triangles with their areas | points |
 | `brute-f64`, `brute-f32` | all points, scalar with branches; and 16 at a time, all in `f32` | points |
@@ -123,7 +123,7 @@ fn scene(page: &mut String, facts: &Facts, rows: &[&Row]) -> Result<(), Error> {
     writeln!(page)
 }
 
-/// Nothing touches: only times.
+/// Writes the section of a scene without contact: times only.
 fn apart(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     writeln!(page, "Nothing touches; this is what it takes to say so.\n")?;
     writeln!(
@@ -145,7 +145,7 @@ fn apart(page: &mut String, rows: &[&Row]) -> Result<(), Error> {
     writeln!(page)
 }
 
-/// The rows on the front of time and error, the fastest first.
+/// Returns the rows on the Pareto front of time and error, the fastest first.
 pub(super) fn beaten_by_none<'a>(rows: &[&'a Row], quantity: Quantity) -> Vec<&'a Row> {
     let place = |row: &Row| Some([row.p50_ns? as f64, quantity.error(row)?]);
     let all: Vec<[f64; 2]> = rows.iter().filter_map(|row| place(row)).collect();

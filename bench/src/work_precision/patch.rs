@@ -1,4 +1,4 @@
-//! Patches of which everything is known: what touches them, where, and what it does.
+//! Patches with known solutions: the tool, its pose, and the exact force, torque and depth.
 
 use super::contact::{Contact, DEPTH};
 use super::cutter::Cutter;
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Pose, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Oracle, fig_7_3_exact};
 
 /// A patch and its tool.
@@ -19,24 +19,25 @@ pub(super) enum Patch {
     Contact(Contact),
     /// CF8: a plane through the axis of `Fig73Exact`, larger than its section.
     Section,
-    /// CF9: a square in a plane, wholly where depth is affine.
+    /// CF9: a square that lies entirely where depth is affine.
     Affine,
 }
 
-/// Half of the square that holds the section, and how far the section's middle goes from its middle.
+/// Half the side of the square that contains the section, and the largest offset of the section's centre per
+/// coordinate, mm.
 const SHEET: f64 = 24.0;
 const ROAM: f64 = 12.0;
-/// Of the tool of fig. 7.3, its length, its largest radius, and the area of the half of its section.
+/// Length and largest radius of the tool of fig. 7.3, mm, and the area of half of its section, mm².
 const LENGTH: u32 = 20;
 const WIDE: u32 = 5;
 const HALF_SECTION: f64 = 69.785_398_163_397_45;
-/// The deepest of the section: the housing's radius.
+/// The greatest depth in the section, mm: the housing's radius.
 const DEEPEST: f64 = 5.0;
 
-/// Half of the square in the housing's end: three times a power of two, so that centroids of its triangles
-/// are numbers of few bits.
+/// Half the side of the square in the housing's end, mm. It is three times a power of two, so that the centroids of its
+/// triangles are numbers with few bits.
 const SQUARE: f64 = 0.75;
-/// How deep its middle is, how far from the axis at most, and how tilted.
+/// Depth of the square's centre, mm; its largest distance from the axis, mm; the largest tilt, rad.
 const UNDER: f64 = 2.0;
 const ASIDE: f64 = 0.5;
 const TILT: f64 = 0.4;
@@ -44,7 +45,7 @@ const TILT: f64 = 0.4;
 const UNIT: Unit = Unit::Millimetre;
 
 impl Patch {
-    /// All of them.
+    /// All patches.
     pub(super) const ALL: [Patch; 7] = [
         Patch::Contact(Contact::BallInPlane),
         Patch::Contact(Contact::SideInPlane),
@@ -55,7 +56,7 @@ impl Patch {
         Patch::Affine,
     ];
 
-    /// Its number among the closed forms.
+    /// Returns its name among the closed forms.
     pub(super) fn name(self) -> &'static str {
         match self {
             Patch::Contact(contact) => contact.name(),
@@ -64,7 +65,7 @@ impl Patch {
         }
     }
 
-    /// What touches what.
+    /// Returns a description of the tool and the patch.
     pub(super) fn about(self) -> String {
         match self {
             Patch::Contact(contact) => format!("{}; {DEPTH} deep", contact.about()),
@@ -81,7 +82,7 @@ impl Patch {
         }
     }
 
-    /// Its tool.
+    /// Returns the tool.
     pub(super) fn cutter(self) -> Cutter<'static> {
         match self {
             Patch::Contact(contact) if contact.is_of_a_sphere() => Cutter::UNIT_SPHERE,
@@ -89,13 +90,13 @@ impl Patch {
         }
     }
 
-    /// Whether the thesis's magnitudes, which are all that the peers know, are true depths here: on ball and
-    /// flute they are.
+    /// Returns whether the thesis's magnitudes, the only ones that the peers know, are true depths here. They are on
+    /// the ball and the flute.
     pub(super) fn is_of_ball_or_flute(self) -> bool {
         matches!(self, Patch::Contact(contact) if !contact.is_of_a_sphere())
     }
 
-    /// Whether its triangles are the true surface.
+    /// Returns whether the patch's triangles are the true surface.
     pub(super) fn is_flat(self) -> bool {
         match self {
             Patch::Contact(contact) => contact.is_flat(),
@@ -103,10 +104,10 @@ impl Patch {
         }
     }
 
-    /// The patch that clouds are drawn on.
+    /// Returns the patch on which clouds are sampled.
     ///
     /// # Panics
-    /// Never: the patches are sound.
+    /// Never: the patches are valid meshes.
     pub(super) fn mesh(self) -> Mesh {
         match self {
             Patch::Contact(contact) => contact.mesh(),
@@ -115,17 +116,17 @@ impl Patch {
         }
     }
 
-    /// By how much the patch is larger than what of it is inside the tool.
+    /// Returns the ratio of the patch's area to the area inside the tool.
     pub(super) fn times(self) -> f64 {
         let inside = match self {
             Patch::Contact(contact) => contact.area(),
             Patch::Section => 2.0 * HALF_SECTION,
             Patch::Affine => 4.0 * SQUARE * SQUARE,
         };
-        self.mesh().survey().area / inside
+        self.mesh().diagnostics().area / inside
     }
 
-    /// A cloud of the patch, carried to the true surface.
+    /// Projects a cloud of the patch to the true surface.
     pub(super) fn exact(self, cloud: Cloud) -> Cloud {
         match self {
             Patch::Contact(contact) => contact.exact(cloud),
@@ -133,13 +134,13 @@ impl Patch {
         }
     }
 
-    /// About so many centroids of triangles, where they make force exact.
+    /// Returns about `count` centroids of triangles, for the patch where they make the force exact.
     pub(super) fn centroids(self, count: usize) -> Option<Cloud> {
         let divisions = ((count as f64 / 2.0).sqrt().log2().round() as u32).max(1);
         (self == Patch::Affine).then(|| Cloud::centroids(&squares(1 << divisions)))
     }
 
-    /// To what share of what is typical force, torque and depth are known.
+    /// Returns the relative accuracy of the true force, torque and depth, as shares of the typical values.
     pub(super) fn known(self) -> [f64; 3] {
         const ROUNDING: f64 = 1e-15;
         match self {
@@ -148,11 +149,11 @@ impl Patch {
         }
     }
 
-    /// A pose of the tool, anywhere on the patch, and what it feels there.
+    /// Returns a random pose of the tool on the patch, and the true values there.
     ///
     /// # Panics
-    /// Never: poses are finite.
-    pub(super) fn place(self, draw: &mut Draw) -> (Pose, Truth) {
+    /// Never: the poses are finite.
+    pub(super) fn place(self, draw: &mut Rng) -> (Pose, Truth) {
         match self {
             Patch::Contact(contact) => {
                 let placed = contact.place(draw);
@@ -169,15 +170,15 @@ fn squares(divisions: u32) -> Mesh {
     shapes::plane(SQUARE, divisions, UNIT).expect("a sound square")
 }
 
-/// Integrals over half of the section: of magnitude, of its part along the axis, of the moment of the
-/// magnitude along the axis.
+/// Integrals over half of the section: of the magnitude, of the axial component of the magnitude times the direction,
+/// and of the moment of the magnitude along the axis.
 struct Half {
     integral: f64,
     along: f64,
     moment: f64,
 }
 
-/// By the middles of squares, so many to the millimetre: corners of the profile are corners of squares.
+/// Integrates by the midpoint rule on `fine` squares per millimetre. Corners of the profile are corners of squares.
 fn half_section(fine: u32) -> Half {
     let tool = fig_7_3_exact();
     let step = 1.0 / f64::from(fine);
@@ -185,9 +186,9 @@ fn half_section(fine: u32) -> Half {
     let row = |k: u32| {
         let mut sums = [0.0; 3];
         for z in (0..fine * LENGTH).map(at) {
-            if let Some(felt) = tool.sense([at(k), 0.0, z]) {
-                let m = felt.magnitude;
-                let parts = [m, m * felt.direction[2], m * z];
+            if let Some(evaluation) = tool.sense([at(k), 0.0, z]) {
+                let m = evaluation.magnitude;
+                let parts = [m, m * evaluation.direction[2], m * z];
                 sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
             }
         }
@@ -199,7 +200,7 @@ fn half_section(fine: u32) -> Half {
     Half { integral, along, moment }
 }
 
-/// The integrals, and to what share they are known: what halving the spacing changed.
+/// Returns the integrals and their relative accuracy, which is the change when the spacing was halved.
 fn section() -> &'static (Half, f64) {
     const FINE: u32 = 100;
     static SECTION: OnceLock<(Half, f64)> = OnceLock::new();
@@ -215,29 +216,29 @@ fn section() -> &'static (Half, f64) {
     })
 }
 
-fn through_the_axis(draw: &mut Draw) -> (Pose, Truth) {
+fn through_the_axis(draw: &mut Rng) -> (Pose, Truth) {
     let (half, _) = section();
     let (sin, cos) = draw.between(0.0, TAU).sin_cos();
     let axis = Vector3::new(cos, sin, 0.0);
     let [x, y] = [0; 2].map(|_| draw.between(-ROAM, ROAM));
     let tip = Point3::new(x, y, 0.0) - f64::from(LENGTH) / 2.0 * axis;
     let normal = Vector3::z();
-    // What points away from the axis is the same on both sides of it.
+    // Radial components on the two sides of the axis cancel; normal and axial ones are equal and add up.
     let force = 2.0 * (half.integral * normal - half.along * axis);
     let torque = 2.0 * half.moment * axis.cross(&normal);
     let pose = Pose::from_axis(tip, axis).expect("a finite pose");
     (pose, Truth { force, torque, depth: DEEPEST })
 }
 
-fn in_the_end(draw: &mut Draw) -> (Pose, Truth) {
+fn in_the_end(draw: &mut Rng) -> (Pose, Truth) {
     let normal = Vector3::z();
-    // The part is under the square, the tool comes from there.
+    // The part is below the square, and the tool comes from there.
     let across = normal.cross(&Vector3::from(draw.direction())).normalize();
     let axis = Rotation3::new(across * draw.between(0.0, TILT)) * -normal;
     let aside = axis.cross(&Vector3::from(draw.direction())).normalize();
     let tip = Point3::from(aside * draw.between(0.0, ASIDE) - axis * (f64::from(LENGTH) - UNDER));
     let pose = Pose::from_axis(tip, axis).expect("a finite pose");
-    // Depth is UNDER - axis · x at a place x of the square.
+    // The depth at a point x of the square is UNDER - axis · x.
     let area = 4.0 * SQUARE * SQUARE;
     let push = normal - axis;
     let slope = Vector3::new(-axis.x, -axis.y, 0.0);
@@ -261,11 +262,11 @@ mod tests {
         assert!(*known < 2e-5, "{known}");
     }
 
-    /// Only what is felt of the whole square, however it was drawn: the oracle at a fine grid says the same.
+    /// Compares with the oracle on a fine grid: the square is entirely inside, and the sums agree for random poses.
     #[test]
     fn the_square_is_wholly_in_the_end() {
         let tool = fig_7_3_exact();
-        let mut draw = Draw::new(1);
+        let mut draw = Rng::new(1);
         for _ in 0..20 {
             let (pose, truth) = in_the_end(&mut draw);
             let n = 40;
@@ -274,12 +275,12 @@ mod tests {
             for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
                 let at = |k: i32| step * (f64::from(k) + 0.5) - SQUARE;
                 let arm = Point3::new(at(i), at(j), 0.0) - pose.tip();
-                let felt = tool.sense(pose.rotation().tr_mul(&arm).into()).expect("inside");
-                let toward = pose.rotation() * Vector3::from(felt.direction);
-                let push = step * step * felt.magnitude * (Vector3::z() - toward);
+                let evaluation = tool.sense(pose.rotation().tr_mul(&arm).into()).expect("inside");
+                let toward = pose.rotation() * Vector3::from(evaluation.direction);
+                let push = step * step * evaluation.magnitude * (Vector3::z() - toward);
                 force += push;
                 torque += arm.cross(&push);
-                deepest = deepest.max(felt.depth);
+                deepest = deepest.max(evaluation.depth);
             }
             assert!((force - truth.force).norm() < 1e-9 * force.norm(), "{force} {}", truth.force);
             assert!((torque - truth.torque).norm() < 1e-3 * torque.norm());

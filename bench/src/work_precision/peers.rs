@@ -1,4 +1,4 @@
-//! Other methods, where the feature `peers` has them.
+//! Other methods, if the feature `peers` is enabled.
 
 use super::lineup::{Kind, Lineup};
 use touchoff::Mesh;
@@ -29,7 +29,7 @@ mod built {
     }
 }
 
-/// Adds those that ask points.
+/// Adds the methods that use points.
 pub(super) fn add_points(lineup: &mut Lineup<'_>, kind: &Kind) {
     #[cfg(feature = "peers")]
     built::points(lineup, kind);
@@ -37,7 +37,7 @@ pub(super) fn add_points(lineup: &mut Lineup<'_>, kind: &Kind) {
     let _ = (lineup, kind);
 }
 
-/// Adds those that ask the part's triangles: they know the solid, not the thesis's magnitudes.
+/// Adds the methods that use the part's triangles. They know the solid, not the thesis's magnitudes.
 pub(super) fn add_triangles(lineup: &mut Lineup<'_>, mesh: &Mesh) {
     #[cfg(feature = "peers")]
     built::triangles(lineup, mesh);

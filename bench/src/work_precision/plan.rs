@@ -1,38 +1,38 @@
-//! How much is measured.
+//! Extent of a measurement.
 
-/// Sizes, counts and times of a run.
+/// Sizes, counts and times of a measurement.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Points that are to be in contact on a patch, about.
+    /// Approximate numbers of points in contact on a patch, one per size.
     pub contacts: Vec<usize>,
-    /// Points of clouds of a part.
+    /// Numbers of points in the clouds of a part, one per size.
     pub points: Vec<usize>,
-    /// How many of both sizes have peers beside them: every so many.
+    /// Interval between sizes at which the peers take part, counted from the largest size.
     pub peers_every: usize,
-    /// Poses that a path of the scenes is cut into.
+    /// Number of poses per path of the scenes.
     pub path: usize,
-    /// Poses in contact at which errors are measured on a path.
+    /// Number of poses in contact at which errors are measured on a path.
     pub checks: usize,
-    /// Placements on a patch that are timed.
+    /// Number of placements on a patch that are timed.
     pub timed: usize,
-    /// Placements on each cloud of a patch at which errors are measured.
+    /// Number of placements per cloud of a patch at which errors are measured.
     pub placements: usize,
-    /// Budgets of nodes.
+    /// Budgets of nodes per query.
     pub budgets: Vec<usize>,
-    /// Tolerances that depth is proved to, in the part's unit.
+    /// Tolerances of certified depths, in the part's unit.
     pub tolerances: Vec<f64>,
-    /// To what share force and torque of a path's truth are to be known, and by how many triangles at most.
+    /// Wanted relative accuracy of the true force and torque on a path, and the limit on evaluated pieces of triangles.
     pub known: (f64, usize),
-    /// How long a method may take for a row; slower ones sit out poses.
+    /// Time limit of a method per row, s; slower methods skip poses.
     pub seconds: f64,
-    /// The same seed, the same clouds and placements.
+    /// Seed for clouds and placements.
     pub seed: u64,
-    /// Whether it is the sample.
+    /// True if this is the sample.
     pub quick: bool,
 }
 
 impl Plan {
-    /// The measurement, some minutes long.
+    /// Returns the full measurement, which takes some minutes.
     pub fn full(seed: u64) -> Plan {
         Plan {
             contacts: vec![10, 32, 100, 316, 1_000, 3_160, 10_000, 20_000],
@@ -51,7 +51,7 @@ impl Plan {
         }
     }
 
-    /// A sample of it, less than a minute long.
+    /// Returns a sample that takes less than a minute.
     pub fn quick(seed: u64) -> Plan {
         Plan {
             contacts: vec![32, 178, 1_000],
@@ -70,8 +70,8 @@ impl Plan {
         }
     }
 
-    /// How many clouds of a kind are made of a patch, where so many points are in contact: the fewer, the more
-    /// one differs from the other.
+    /// Returns the number of clouds per kind for a patch with this number of points in contact. The fewer the points,
+    /// the more clouds differ from each other.
     pub fn clouds(&self, contacts: usize) -> usize {
         match contacts {
             _ if self.quick => 6,
@@ -81,7 +81,7 @@ impl Plan {
         }
     }
 
-    /// Whether peers race at a size, by its place counted from the largest.
+    /// Returns whether peers take part at a size, given by its index from the largest.
     pub fn has_peers(&self, from_last: usize) -> bool {
         from_last.is_multiple_of(self.peers_every)
     }

@@ -1,23 +1,23 @@
-//! Time against error as diagrams.
+//! Diagrams of time against error.
 
 use super::row::{Quantity, Row};
 use crate::plot::{Axis, Plot, Series};
 
-/// Methods that belong together, with their words and their look.
+/// A group of rows that share a name and a colour.
 struct Family {
     name: String,
     look: usize,
-    /// Peers have no line from size to size, so that ours are seen.
+    /// True if the points are joined by a line. Those of peers are not, so that this project's lines remain visible.
     joined: bool,
     bold: bool,
 }
 
-/// Peers, each with its place among looks.
+/// The peers, in the order of their colour numbers from `FIRST_PEER`.
 const PEERS: [&str; 6] =
     ["brute-f64", "brute-f32", "thesis", "parry-bvh", "fidget", "parry-contact"];
 const FIRST_PEER: usize = 10;
 
-/// Which family a row is of; `None` if it has no error of that quantity, or is shown by another.
+/// Returns the family of a row, or `None` if the row has no error of that quantity or another row represents it.
 fn family(row: &Row, quantity: Quantity) -> Option<Family> {
     quantity.error(row)?;
     let (sampling, weights) = (row.sampling.unwrap_or("-"), row.weights.unwrap_or("-"));
@@ -25,7 +25,7 @@ fn family(row: &Row, quantity: Quantity) -> Option<Family> {
     let ours = |name: String, look| Some(Family { name, look, joined: true, bold: false });
     match (row.method, sampling, weights) {
         ("cloud", "centroids", _) => ours("centroids".to_owned(), 7),
-        // Depth does not know of weights.
+        // Depth does not depend on the weights.
         ("cloud", _, "equal") if depth => None,
         ("cloud", "blue", "cells") => {
             let kind = if depth { "blue" } else { "blue, cells" };
@@ -53,8 +53,8 @@ fn family(row: &Row, quantity: Quantity) -> Option<Family> {
     }
 }
 
-/// The points that no other beats, but for those that are nearer by less than a hundredth: the same sums
-/// in another order.
+/// Returns the points on the Pareto front, in the order of the front. A point is left out if its error is less than one
+/// per cent below that of a faster point: such rows are the same sums in another order.
 pub(super) fn ahead(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     const NEARER: f64 = 0.99;
     let mut corners = front(points);
@@ -67,8 +67,8 @@ pub(super) fn ahead(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     corners
 }
 
-/// Returns the points that no other is below in both coordinates (Pareto's front), from left to right. Of equal points one is kept; those
-/// that are not finite are on no front.
+/// Returns the Pareto front, from left to right: the points that no other point undercuts in both coordinates. One of
+/// several equal points is kept; points that are not finite are left out.
 fn front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut sorted: Vec<[f64; 2]> =
         points.iter().copied().filter(|p| p.iter().all(|c| c.is_finite())).collect();
@@ -82,7 +82,7 @@ fn front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     sorted
 }
 
-/// The error of a quantity over the time of a query.
+/// Plots the error of a quantity over the time of a query.
 pub(super) fn plot(rows: &[&Row], scene: &str, quantity: Quantity) -> Plot {
     let mut plot = Plot::new(
         format!("{scene}: error of the {} against time", quantity.name()),

@@ -1,4 +1,4 @@
-//! The truth of a path: depths proved of the part's triangles, force and torque of those refined.
+//! Reference values of a path: certified depths of the part's triangles, and force and torque by their refinement.
 
 use super::Failure;
 use super::cutter::Cutter;
@@ -7,45 +7,45 @@ use super::refine::{Enough, Refined};
 use super::truth::{Tally, Truth};
 use crate::race::contender::Answer;
 use rayon::prelude::*;
-use touchoff::certify::{Certifier, Facets};
+use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::{Mesh, Pose, Tool};
 
-/// How closely depths are proved, in the part's unit.
+/// Tolerance of the certified depths, in the part's unit.
 const TOLERANCE: f64 = 1e-9;
-/// Poses that one core goes through with one certifier.
+/// Number of poses that one task processes with one certifier.
 const TOGETHER: usize = 64;
 
-/// What is true at some poses, and how well it is known.
+/// The true values at some poses, and their accuracy.
 #[derive(Clone, Debug)]
 pub(super) struct Reference {
-    /// By the pose's place.
+    /// True values, each with the index of its pose.
     pub(super) truths: Vec<(usize, Truth)>,
     /// Root mean squares of force, torque and depth.
     pub(super) typical: [f64; 3],
-    /// To what share of those they are known.
+    /// Relative accuracy, as shares of `typical`.
     pub(super) known: [f64; 3],
-    /// By how much a depth may be off at most.
+    /// The largest possible error of a depth, in the part's unit.
     pub(super) depth: f64,
 }
 
-/// Those of the poses at which a triangle is in the tool for certain, deeper than rounding.
+/// Returns the poses at which a triangle is certainly inside the tool, deeper than rounding.
 ///
 /// # Errors
-/// A tool of which nothing can be certified.
+/// If nothing can be certified for the tool.
 pub(super) fn in_contact(
-    facets: &Facets,
+    bvh: &TriangleBvh,
     tool: &dyn Tool,
     poses: &[Pose],
 ) -> Result<Vec<Pose>, Failure> {
-    let depths = depths(facets, tool, poses)?;
+    let depths = depths(bvh, tool, poses)?;
     let both = poses.iter().zip(depths);
     Ok(both.filter(|(_, [low, _])| *low > 2.0 * TOLERANCE).map(|(pose, _)| *pose).collect())
 }
 
-/// Between what the depth lies at each pose.
-fn depths(facets: &Facets, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<[f64; 2]>, Failure> {
+/// Returns the interval of the depth at each pose.
+fn depths(bvh: &TriangleBvh, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<[f64; 2]>, Failure> {
     let some = |poses: &[Pose]| {
-        let mut certifier = Certifier::new(facets, tool)?;
+        let mut certifier = Certifier::new(bvh, tool)?;
         let each = poses.iter().map(|pose| certifier.deepest(pose, TOLERANCE).depth);
         Ok(each.collect::<Vec<_>>())
     };
@@ -55,25 +55,25 @@ fn depths(facets: &Facets, tool: &dyn Tool, poses: &[Pose]) -> Result<Vec<[f64; 
 }
 
 impl Reference {
-    /// Of poses in contact, evenly along them.
+    /// Computes true values at poses in contact, evenly spaced along `poses`.
     ///
     /// # Errors
-    /// A tool of which nothing can be certified.
+    /// If nothing can be certified for the tool.
     pub(super) fn new(
         mesh: &Mesh,
-        facets: &Facets,
+        bvh: &TriangleBvh,
         cutter: Cutter<'_>,
         poses: &[Pose],
         plan: &Plan,
     ) -> Result<Reference, Failure> {
-        let depths = |poses: &[Pose]| depths(facets, cutter.tool(), poses);
+        let depths = |poses: &[Pose]| depths(bvh, cutter.tool(), poses);
         Reference::of(&Refined::new(mesh, cutter.tool(), cutter.near()), poses, plan, depths)
     }
 
-    /// The same with the thesis's magnitudes: deepest are places of their own.
+    /// Computes true values with the thesis's magnitudes. Their deepest points differ from those of the true depth.
     ///
     /// # Errors
-    /// A tool of which nothing can be certified.
+    /// Never: the magnitudes are bounded without the certifier.
     #[cfg(feature = "peers")]
     pub(super) fn of_the_thesis(
         mesh: &Mesh,

@@ -1,25 +1,27 @@
-//! Force and torque of a mesh's own triangles: those that the tool reaches are quartered where that changes
-//! the sums, until what may be left is little enough.
+//! Force and torque by adaptive quadrature over a mesh's triangles. Pieces of the triangles that the tool reaches are
+//! divided into quarters until the estimated error of the sums is small enough.
 //!
-//! A piece of a triangle is what the tool feels at its centroid, times its area. By how much its quarters
-//! differ is its error; of pieces all inside, whose error falls as the square of their size, a third of the
-//! difference is taken off (Richardson). A piece whose centroid is outside may hide something: as much as
-//! the tool's distance allows, a tenth of which is taken for its error. These errors say where to go on, and
-//! far too much of the whole, since none is taken against another: how well a sum is known is by how much it
-//! changed since a quarter of the pieces had been asked. Of an error that falls as they grow a third of that is
-//! left, and less of one that falls faster; the rest is for errors that come and go.
+//! The value of a piece is the evaluation at its centroid times its area. Its error is the difference to the sum of its
+//! quarters. If all of them are inside, the error falls as the square of their size: the sum is then extrapolated by a
+//! third of the difference (Richardson), and a third of it is the error. A piece whose centroid is outside may hide
+//! some force. The bound for that follows from the tool's clearance, and a tenth of the bound counts as its error.
+//!
+//! These errors control the refinement. As an estimate for the whole sum they are far too large, since errors of
+//! opposite sign do not cancel. The accuracy of a sum is its change since a quarter of the pieces had been evaluated.
+//! An error inversely proportional to the number of pieces leaves a third of that change, and an error that falls
+//! faster leaves less. The remainder is a reserve for errors that fluctuate.
 
 use nalgebra::{Point3, Vector3, Vector6};
 use rayon::prelude::*;
-use touchoff::tool::{Ask, Felt, LANES, Points};
+use touchoff::tool::{Evaluations, LANES, Outputs, PointBatch};
 use touchoff::{Level, Mesh, Pose, Tool};
 
-/// Triangles of a part, each in a ball, and the tool that reaches some of them.
+/// Triangles of a part with bounding balls, and the tool that reaches some of them.
 pub(super) struct Refined<'a> {
     tool: &'a dyn Tool,
-    /// The same solid, of which the distance is known.
+    /// A tool of the same solid whose clearance is known.
     near: &'a dyn Tool,
-    /// The tool's unit of length in the part's.
+    /// The tool's unit of length, in the part's unit.
     length: f64,
     faces: Vec<Face>,
 }
@@ -31,23 +33,23 @@ struct Face {
     radius: f64,
 }
 
-/// When to stop.
+/// Termination criteria.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Enough {
-    /// When errors, which are far too large, add up to no more than this share of force and torque,
+    /// The sum of the errors, which overestimate by far, relative to force and torque at which the refinement ends.
     pub(super) share: f64,
-    /// or so many pieces were asked.
+    /// The number of evaluated pieces after which the refinement ends.
     pub(super) most: usize,
 }
 
-/// What the triangles do to the tool at a pose, in the world's frame; torque is about the tip.
+/// The sums over the triangles at a pose, in the world frame; the torque is about the tip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sums {
     /// The force.
     pub(super) force: Vector3<f64>,
     /// The torque.
     pub(super) torque: Vector3<f64>,
-    /// How much force and torque changed since a quarter of the pieces had been asked.
+    /// The changes of force and torque since a quarter of the pieces had been evaluated.
     pub(super) change: [f64; 2],
 }
 
@@ -61,11 +63,11 @@ struct Piece {
     /// Force and torque in the tool's frame.
     value: Vector6<f64>,
     inside: bool,
-    /// How large a force it may hide.
+    /// Estimate of the force that the piece may hide.
     hidden: f64,
 }
 
-/// A piece's quarters: what they come to, and their error.
+/// The quarters of a piece, their extrapolated sum, and the errors of force and torque.
 struct Quartered {
     pieces: [Piece; QUARTERS],
     value: Vector6<f64>,
@@ -73,26 +75,28 @@ struct Quartered {
 }
 
 const QUARTERS: usize = 4;
-/// Of what a piece may hide at most, its share of the error: on average it is less.
+/// Share of the bound on a hidden force that counts as error: on average, far less than the bound is hidden.
 const HIDDEN: f64 = 0.1;
-/// So many sums, the first of pieces as they come, there are at least: what changes says how well they are
-/// known.
+/// Minimum number of successive sums, the first over the initial pieces. Their change is the measure of accuracy.
 const ROUNDS: usize = 4;
-/// Beside the largest radius of the tool: how long a piece is that says where the tool is.
+/// Largest radius of initial pieces, as a share of the tool's largest radius. Longer ones are divided before any
+/// evaluation.
 const SHORT: f64 = 0.05;
-/// The same of an arm that makes a force a torque worth minding.
+/// Lever arm, as a share of the tool's largest radius, that sets the lower limit of the torque that errors are relative
+/// to.
 const ARM: f64 = 0.2;
 
-/// Room for evaluations.
+/// Buffers for evaluations.
 #[derive(Default)]
 struct Room {
-    points: Points,
-    felt: Felt,
+    points: PointBatch,
+    evaluation: Evaluations,
     asked: usize,
 }
 
 impl<'a> Refined<'a> {
-    /// Of a mesh and a tool, and one of the same solid that has a profile, so that its distance is known.
+    /// Collects the faces of a mesh. `near` is a tool of the same solid that has a profile, so that its clearance is
+    /// known.
     pub(super) fn new(mesh: &Mesh, tool: &'a dyn Tool, near: &'a dyn Tool) -> Refined<'a> {
         let face = |id: u32| {
             let (corners, normal) = (mesh.triangle(id), mesh.normal(id)?);
@@ -102,15 +106,15 @@ impl<'a> Refined<'a> {
             Some(Face { corners, normal, centre, radius })
         };
         let faces = (0..mesh.triangles().len() as u32).filter_map(face).collect();
-        Refined { tool, near, length: tool.card().unit.to(mesh.unit()), faces }
+        Refined { tool, near, length: tool.info().unit.factor_to(mesh.unit()), faces }
     }
 
-    /// The sums at many poses, on all cores.
+    /// Returns the sums at several poses, computed in parallel.
     pub(super) fn all(&self, poses: &[Pose], enough: Enough) -> Vec<Sums> {
         poses.par_iter().map(|pose| self.sums(pose, enough)).collect()
     }
 
-    /// The sums at a pose.
+    /// Returns the sums at a pose.
     pub(super) fn sums(&self, pose: &Pose, enough: Enough) -> Sums {
         let mut room = Room::default();
         let mut active = self.reached(pose);
@@ -123,16 +127,16 @@ impl<'a> Refined<'a> {
             let all = settled + groups.iter().map(|group| group.value).sum::<Vector6<f64>>();
             history.push((room.asked, all));
             let [force, torque] = parts(&all).map(|part| part.norm());
-            let sizes = [force, torque.max(force * ARM * self.tool.card().radius())];
+            let sizes = [force, torque.max(force * ARM * self.tool.info().radius())];
             let share = |error: &[f64; 2]| (error[0] / sizes[0]).max(error[1] / sizes[1]);
-            // Groups are large, and stay where they are.
+            // Groups are large, so only their indices are sorted.
             let shares = groups.iter().map(|group| share(&group.error));
             let mut shares: Vec<(f64, usize)> = shares.zip(0..).collect();
             shares.sort_by(|a, b| a.0.total_cmp(&b.0));
             let open: f64 = shares.iter().map(|(share, _)| share).sum();
             let left = enough.share - share(&error);
             let done = history.len() >= ROUNDS && (open <= left || room.asked > enough.most);
-            // Half of what is left is for later: where there is most to gain pieces are still large.
+            // Half of the allowed error is kept for later rounds: pieces with much to gain are still large now.
             let mut spare = left / 2.0;
             active.clear();
             for (mine, place) in shares {
@@ -147,7 +151,7 @@ impl<'a> Refined<'a> {
                 }
             }
         }
-        // Whatever was asked, the last round is not its own measure.
+        // The last round is never compared with itself, however many pieces it evaluated.
         let before = &history[..history.len().saturating_sub(1)];
         let quarter = before.iter().rfind(|(asked, _)| *asked <= room.asked / 4).or(before.first());
         let earlier = quarter.map_or(Vector6::zeros(), |(_, sums)| *sums);
@@ -156,9 +160,9 @@ impl<'a> Refined<'a> {
         Sums { force, torque, change }
     }
 
-    /// Pieces of faces that the tool may reach, so short that their own length says no more of that.
+    /// Returns the pieces of faces that the tool may reach, divided until they are short compared with the tool.
     fn reached(&self, pose: &Pose) -> Vec<Piece> {
-        let short = SHORT * self.tool.card().radius();
+        let short = SHORT * self.tool.info().radius();
         let mut pieces = Vec::new();
         for (face, known) in (0..).zip(&self.faces) {
             let far = self.near.clearance(self.inward(pose, &known.centre).into());
@@ -185,7 +189,7 @@ impl<'a> Refined<'a> {
         pose.rotation().tr_mul(&(point - pose.tip())) / self.length
     }
 
-    /// The quarters of pieces, asked.
+    /// Divides pieces into quarters and evaluates these.
     fn quarter(&self, pose: &Pose, pieces: &[Piece], room: &mut Room) -> Vec<Quartered> {
         let quarters = |piece: &Piece| {
             let [one, other] = halves(&piece.corners);
@@ -198,29 +202,29 @@ impl<'a> Refined<'a> {
         groups.map(|(whole, quarters)| Quartered::new(whole, quarters, self.length)).collect()
     }
 
-    /// What the tool feels at pieces' centroids.
+    /// Evaluates the tool at the centroids of pieces.
     fn ask(&self, pose: &Pose, pieces: &mut [Piece], room: &mut Room) {
-        let Room { points, felt, asked } = room;
+        let Room { points, evaluation, asked } = room;
         *asked += pieces.len();
         points.clear();
         pieces.iter().for_each(|piece| points.push(centroid(&piece.corners).into()));
         if points.is_empty() {
             return;
         }
-        self.tool.evaluate(Level::new(), Ask::DIRECTION, points, self.length, felt);
+        self.tool.evaluate(Level::new(), Outputs::DIRECTION, points, self.length, evaluation);
         for (at, piece) in pieces.iter_mut().enumerate() {
             let [a, b, c] = piece.corners;
             let area = (b - a).cross(&(c - a)).norm() / 2.0 * self.length * self.length;
             let (centre, radius) = ball(&piece.corners);
-            if felt.inside[at / LANES] >> (at % LANES) & 1 == 0 {
+            if evaluation.inside[at / LANES] >> (at % LANES) & 1 == 0 {
                 let deep = (radius - self.near.clearance(centre.into())).max(0.0);
-                // Both directions may be opposite.
+                // Normal and direction are unit vectors, so their difference is at most 2.
                 piece.hidden = HIDDEN * 2.0 * area * deep * self.length;
                 continue;
             }
-            let toward = Vector3::from([0, 1, 2].map(|axis: usize| felt.direction[axis][at]));
+            let toward = Vector3::from([0, 1, 2].map(|axis: usize| evaluation.direction[axis][at]));
             let normal = pose.rotation().tr_mul(&self.faces[piece.face as usize].normal);
-            let push = (normal - toward) * (area * felt.magnitude[at]);
+            let push = (normal - toward) * (area * evaluation.magnitude[at]);
             let turn = (centre * self.length).cross(&push);
             piece.inside = true;
             piece.value = Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z);
@@ -233,7 +237,7 @@ impl Piece {
         Piece { corners, face, value: Vector6::zeros(), inside: false, hidden: 0.0 }
     }
 
-    /// Whether it is not outside for certain.
+    /// Returns whether the piece may contribute to the sums.
     fn is_open(&self) -> bool {
         self.inside || self.hidden > 0.0
     }
@@ -254,7 +258,7 @@ impl Quartered {
     }
 }
 
-/// Force and torque.
+/// Splits a vector into force and torque.
 fn parts(sums: &Vector6<f64>) -> [Vector3<f64>; 2] {
     [0, 3].map(|row| sums.fixed_rows::<3>(row).into_owned())
 }
@@ -263,15 +267,15 @@ fn centroid([a, b, c]: &Corners) -> Vector3<f64> {
     (a + b + c) / 3.0
 }
 
-/// The ball about the centroid.
+/// Returns the bounding ball about the centroid.
 fn ball(corners: &Corners) -> (Vector3<f64>, f64) {
     let centre = centroid(corners);
     let squares = corners.map(|corner| (corner - centre).norm_squared());
     (centre, squares.into_iter().fold(0.0, f64::max).sqrt())
 }
 
-/// A triangle in shorter ones. Halves of a slender one would be as slender: quarters of it are like it. So that
-/// is cut across, where the longest edge has its middle.
+/// Divides a triangle into shorter ones. Repeated bisection of a slender triangle leaves it slender, since its quarters
+/// are similar to it. A slender triangle is therefore cut perpendicularly to its longest edge at the midpoint.
 fn shorter(corners: &Corners) -> Vec<Corners> {
     const SLENDER: f64 = 3.0;
     let [a, b, c] = from_longest(corners);
@@ -291,14 +295,14 @@ fn shorter(corners: &Corners) -> Vec<Corners> {
     }
 }
 
-/// Its corners, the longest edge first.
+/// Returns the corners in cyclic order, starting with the longest edge.
 fn from_longest(corners: &Corners) -> Corners {
     let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).norm_squared();
     let k = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
     [0, 1, 2].map(|i| corners[(k + i) % 3])
 }
 
-/// Both halves, by the middle of the longest edge.
+/// Returns both halves of a triangle, bisected at the midpoint of its longest edge.
 fn halves(corners: &Corners) -> [Corners; 2] {
     let [a, b, c] = from_longest(corners);
     let m = (a + b) / 2.0;
@@ -310,7 +314,7 @@ mod tests {
     use super::*;
     use crate::work_precision::contact::Contact;
     use tools_library::Fig73Exact;
-    use touchoff_tests::oracle::draw::Draw;
+    use touchoff_tests::oracle::draw::Rng;
 
     #[test]
     fn what_is_cut_across_is_shorter_and_as_large_as_before() {
@@ -334,7 +338,7 @@ mod tests {
         for contact in [Contact::BallInPlane, Contact::SideInPlane] {
             let mesh = contact.mesh();
             let refined = Refined::new(&mesh, &Fig73Exact, &Fig73Exact);
-            let mut draw = Draw::new(3);
+            let mut draw = Rng::new(3);
             for _ in 0..5 {
                 let placed = contact.place(&mut draw);
                 let sums = refined.sums(&placed.pose, enough);

@@ -1,40 +1,40 @@
-//! What is said of a method on a scene.
+//! The result of a method on a scene.
 
 use serde::Serialize;
 
-/// The law that all forces are made by.
+/// The law of all forces.
 pub const LAW: &str = "thesis";
 
-/// What a method is, beside its word: what tells its rows from each other.
+/// A method and its settings, which identify its rows within a scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Label {
-    /// The word for it.
+    /// The method's name.
     pub method: &'static str,
-    /// Points of the cloud; none of a method that asks triangles.
+    /// Number of points in the cloud; `None` for methods on triangles.
     pub points: Option<usize>,
-    /// How they are spread.
+    /// The sampling pattern.
     pub sampling: Option<&'static str>,
-    /// What each counts for: `equal`, the area over their number, or `cells`.
+    /// The weights: `equal`, the area over the number of points, or `cells`.
     pub weights: Option<&'static str>,
-    /// How closely depth is proved, in the part's unit.
+    /// Tolerance of certified depths, in the part's unit.
     pub tolerance: Option<f64>,
-    /// How many nodes a query may look at.
+    /// Maximum number of nodes visited per query.
     pub budget: Option<usize>,
 }
 
 impl Label {
-    /// A method that asks the part's triangles.
+    /// Returns the label of a method on the part's triangles.
     pub fn triangles(method: &'static str) -> Label {
         Label { method, ..Label::default() }
     }
 }
 
-/// A method on a scene. Times are of single queries, in nanoseconds. Errors are root mean squares over
-/// the poses in true contact, by the root mean square of what is true; `None` where the method has no
-/// such answer.
+/// The result of a method on a scene. Times are per query, in nanoseconds. Errors are root mean squares over the poses
+/// in true contact, relative to the root mean square of the true value. They are `None` if the method does not compute
+/// that quantity.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// The scene's word.
+    /// The scene's name.
     pub scene: String,
     /// See [`Label`].
     pub method: &'static str,
@@ -44,18 +44,18 @@ pub struct Row {
     pub sampling: Option<&'static str>,
     /// See [`Label`].
     pub weights: Option<&'static str>,
-    /// Half of the queries took no longer.
+    /// Median time per query.
     pub p50_ns: Option<u64>,
-    /// Of a hundred 99 took no longer; `None` of too few.
+    /// 99th percentile of the time per query; `None` if there are too few queries.
     pub p99_ns: Option<u64>,
-    /// Of the force.
+    /// Error of the force.
     pub err_force: Option<f64>,
-    /// Of the torque about the tip.
+    /// Error of the torque about the tip.
     pub err_torque: Option<f64>,
-    /// Of the deepest depth.
+    /// Error of the greatest depth.
     pub err_depth: Option<f64>,
-    /// The share of poses in true contact at which nothing was felt; where nothing is in contact, at which
-    /// something was.
+    /// Share of poses in true contact at which the method reports none. In a scene without contact: share of poses at
+    /// which it reports contact.
     pub missed: f64,
     /// The force law.
     pub law: &'static str,
@@ -65,20 +65,20 @@ pub struct Row {
     pub budget: Option<usize>,
     /// The largest error of depth, in the part's unit.
     pub worst_depth: Option<f64>,
-    /// Which errors were below what the truth itself is known to, and are given as that.
+    /// Quantities whose error was below the accuracy of the true value, and is given as that accuracy.
     pub floored: Vec<&'static str>,
-    /// At how many poses it was timed.
+    /// Number of timed poses.
     pub poses: usize,
-    /// At how many placements errors were measured.
+    /// Number of placements at which errors were measured.
     pub checked: usize,
-    /// Points inside on average (of a method that asks triangles, the share of poses in contact).
+    /// Mean number of points inside; for methods on triangles, the share of poses in contact.
     pub colliding: f64,
-    /// A query on average.
+    /// Mean time per query.
     pub ns_avg: f64,
 }
 
 impl Row {
-    /// What it is.
+    /// Returns the label.
     pub fn label(&self) -> Label {
         Label {
             method: self.method,
@@ -90,36 +90,36 @@ impl Row {
         }
     }
 
-    /// The median in microseconds.
+    /// Returns the median time in microseconds.
     pub fn micros(&self) -> Option<f64> {
         self.p50_ns.map(|ns| ns as f64 / 1e3)
     }
 
-    /// As one object.
+    /// Returns the row as a JSON object on one line.
     ///
     /// # Panics
-    /// Never: it is made of numbers and words.
+    /// Never: rows contain only numbers and strings.
     pub fn json(&self) -> String {
         serde_json::to_string(self).expect("a row of numbers and words")
     }
 }
 
-/// What is compared with the truth.
+/// A quantity that is compared with its true value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// The force.
     Force,
     /// The torque about the tip.
     Torque,
-    /// The deepest depth.
+    /// The greatest depth.
     Depth,
 }
 
 impl Quantity {
-    /// All three, in the order of lists.
+    /// All three, in the order used in arrays.
     pub const ALL: [Quantity; 3] = [Quantity::Force, Quantity::Torque, Quantity::Depth];
 
-    /// The word for it.
+    /// Returns the name.
     pub const fn name(self) -> &'static str {
         match self {
             Quantity::Force => "force",
@@ -128,7 +128,7 @@ impl Quantity {
         }
     }
 
-    /// Its error in a row.
+    /// Returns its error in a row.
     pub fn error(self, row: &Row) -> Option<f64> {
         match self {
             Quantity::Force => row.err_force,
@@ -143,7 +143,7 @@ pub(super) mod tests {
     use super::*;
     use serde_json::Value;
 
-    /// A row of which only some matters.
+    /// Returns a row in which only the given values matter.
     pub(crate) fn row(scene: &str, method: &'static str, ns: u64, error: f64, depth: f64) -> Row {
         Row {
             scene: scene.to_owned(),
@@ -202,7 +202,7 @@ pub(super) mod tests {
         for key in promised.iter().chain(&more) {
             assert!(object.contains_key(*key), "{key} is missing in {text}");
         }
-        // In the text they stand in this order.
+        // The keys appear in the text in this order.
         let places = promised.map(|key| text.find(&format!("\"{key}\":")).expect("the key"));
         assert!(places.is_sorted(), "{text}");
         assert!(object["p99_ns"].is_null() && object["err_force"] == 0.1);

@@ -1,13 +1,13 @@
-//! Clouds of a mesh by how their points are spread, and what each counts for.
+//! Sampling patterns and weights of clouds.
 
 use touchoff::{Cloud, Mesh};
 
-/// A pattern of points.
+/// A sampling pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
-    /// Independently of each other: [`Cloud::random`].
+    /// Points that are independent of each other: [`Cloud::uniform`].
     Random,
-    /// Evenly: [`Cloud::blue`].
+    /// Evenly spaced points: [`Cloud::blue_noise`].
     Blue,
 }
 
@@ -15,7 +15,7 @@ impl Pattern {
     /// Both, in the order of tables.
     pub(super) const ALL: [Pattern; 2] = [Pattern::Random, Pattern::Blue];
 
-    /// Returns the word for it.
+    /// Returns the name.
     pub(super) fn name(self) -> &'static str {
         match self {
             Pattern::Random => "random",
@@ -26,7 +26,7 @@ impl Pattern {
 
 /// Returns the same points with equal weights.
 pub(super) fn equal(cloud: &Cloud, mesh: &Mesh) -> Cloud {
-    let weights = vec![mesh.survey().area / cloud.len() as f64; cloud.len()];
+    let weights = vec![mesh.diagnostics().area / cloud.len() as f64; cloud.len()];
     let (points, normals) = (cloud.points().to_vec(), cloud.normals().to_vec());
     let triangles = cloud.triangles().to_vec();
     Cloud::new(points, normals, triangles, weights, cloud.unit()).expect("the lists of a cloud")

@@ -1,9 +1,9 @@
-//! The cells of a row, as text.
+//! The cells of a row as text.
 
 use super::row::Row;
 
-/// The cells behind the scene: method, setting, sampling, weights, times, errors, and how many
-/// contacts in a hundred were missed.
+/// Returns the cells after the scene: method, setting, sampling, weights, times, errors, and the percentage of missed
+/// contacts.
 pub(super) fn cells(row: &Row) -> [String; 11] {
     [
         row.method.to_owned(),
@@ -20,7 +20,7 @@ pub(super) fn cells(row: &Row) -> [String; 11] {
     ]
 }
 
-/// What is set of a method: its points, its budget, its tolerance.
+/// Returns the setting of a method: its budget, tolerance or number of points.
 pub(super) fn setting(row: &Row) -> String {
     match (row.points, row.budget, row.tolerance) {
         (_, Some(budget), _) => format!("≤ {budget}"),
@@ -30,7 +30,7 @@ pub(super) fn setting(row: &Row) -> String {
     }
 }
 
-/// A time in microseconds, three figures of it.
+/// Formats a time in microseconds with three digits.
 pub(super) fn micros(ns: Option<u64>) -> String {
     let Some(ns) = ns else { return "-".to_owned() };
     let micros = ns as f64 / 1e3;
@@ -42,12 +42,12 @@ pub(super) fn micros(ns: Option<u64>) -> String {
     format!("{micros:.decimals$}")
 }
 
-/// An error to two figures.
+/// Formats an error with two digits.
 pub(super) fn error(error: Option<f64>) -> String {
     error.map_or("-".to_owned(), |error| format!("{error:.1e}"))
 }
 
-/// An error, with a word before it if the truth is known no better.
+/// Formats an error, with `≤` before it if the true value is not known better.
 pub(super) fn marked(row: &Row, quantity: &str, value: Option<f64>) -> String {
     let floored = row.floored.contains(&quantity);
     format!("{}{}", if floored { "≤" } else { "" }, error(value))

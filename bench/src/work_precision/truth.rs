@@ -1,33 +1,32 @@
-//! What is true at a pose, and how far answers are from it.
+//! True values at a pose, and the errors of answers.
 
 use super::row::Quantity;
 use crate::race::contender::{Answer, Contender};
 use nalgebra::Vector3;
 use touchoff::Pose;
 
-/// What the true surface does to the tool at a pose. Force and torque about the tip are on the tool, in
-/// the world's frame.
+/// The true force, torque and depth at a pose. Force and torque about the tip act on the tool, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Truth {
     /// The force.
     pub(super) force: Vector3<f64>,
     /// The torque about the tip.
     pub(super) torque: Vector3<f64>,
-    /// How deep the deepest place is.
+    /// The greatest depth.
     pub(super) depth: f64,
 }
 
 impl Truth {
-    /// How large force, torque and depth are.
+    /// Returns the norms of force, torque and depth.
     pub(super) fn sizes(&self) -> [f64; 3] {
         [self.force.norm(), self.torque.norm(), self.depth]
     }
 }
 
-/// Errors as they are met.
+/// Accumulated errors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
-    /// Sums of squares of errors of force, torque and depth, and of what is true.
+    /// Sums of squares of the errors of force, torque and depth, and of the true values.
     errors: [f64; 3],
     truths: [f64; 3],
     wrench: bool,
@@ -37,20 +36,20 @@ pub(super) struct Tally {
     colliding: usize,
 }
 
-/// What errors come to.
+/// The summary of a tally.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Errors {
-    /// Of force, torque and depth, by what is typical.
+    /// Errors of force, torque and depth, relative to their typical values.
     pub(super) relative: [Option<f64>; 3],
-    /// The largest of depth.
+    /// The largest error of depth.
     pub(super) worst_depth: f64,
-    /// The share of poses at which nothing was felt.
+    /// The share of poses at which no contact was found.
     pub(super) missed: f64,
-    /// Which are given as what the truth is known to.
+    /// Quantities whose error is given as the accuracy of the true value.
     pub(super) floored: Vec<&'static str>,
-    /// At how many placements.
+    /// Number of placements.
     pub(super) checked: usize,
-    /// Points inside on average.
+    /// Mean number of points inside.
     pub(super) colliding: f64,
 }
 
@@ -73,19 +72,19 @@ impl Tally {
         }
     }
 
-    /// Adds how far off force, torque and depth may be themselves.
+    /// Adds possible errors of the true force, torque and depth.
     pub(super) fn add_sizes(&mut self, sizes: [f64; 3]) {
         self.count += 1;
         self.worst_depth = self.worst_depth.max(sizes[2]);
         self.truths.iter_mut().zip(sizes).for_each(|(sum, size)| *sum += size * size);
     }
 
-    /// The largest error of depth.
+    /// Returns the largest error of depth.
     pub(super) fn largest_depth(&self) -> f64 {
         self.worst_depth
     }
 
-    /// Adds what another one has met.
+    /// Adds the values of another tally.
     pub(super) fn join(&mut self, other: &Tally) {
         for k in 0..3 {
             self.errors[k] += other.errors[k];
@@ -98,13 +97,13 @@ impl Tally {
         self.colliding += other.colliding;
     }
 
-    /// How large force, torque and depth typically are: root mean squares.
+    /// Returns the root mean squares of the true force, torque and depth.
     pub(super) fn typical(&self) -> [f64; 3] {
         self.truths.map(|sum| (sum / self.count.max(1) as f64).sqrt())
     }
 
-    /// What they come to, where force, torque and depth are only known to these shares of what is typical;
-    /// `depth` is by how much the depth of a pose may be off.
+    /// Returns the summary. `known` has the relative accuracy of the true force, torque and depth; `depth` is the
+    /// largest possible error of a true depth.
     pub(super) fn errors(&self, known: [f64; 3], depth: f64) -> Errors {
         let mut floored = Vec::new();
         let relative = [0, 1, 2].map(|k| {
@@ -126,8 +125,8 @@ impl Tally {
     }
 }
 
-/// Asks at poses whose truth is known. One that `walks` remembers where it was, and is asked at every pose
-/// between them too.
+/// Queries a method at the poses with known true values. A method that `walks` depends on the previous pose, so it is
+/// also queried at all poses in between.
 pub(super) fn check(
     contender: &mut dyn Contender,
     walks: bool,

@@ -1,6 +1,6 @@
-//! The contract of a compiled evaluator, against 256 bits, on a few points a tool.
+//! The contract of a compiled evaluator, checked against 256 bits at a few points per tool.
 //!
-//! `cargo run --release -p touchoff-bench -- accuracy` does the same on a million.
+//! `cargo run --release -p touchoff-bench -- accuracy` checks a million points per tool.
 
 use touchoff_tests::accuracy::{measure, tools};
 
@@ -9,7 +9,7 @@ const POINTS: usize = 6_000;
 #[test]
 fn every_tool_keeps_the_contract() {
     let tools = tools();
-    // All but the thesis's own, whose magnitudes are no distances, and the two solids.
+    // All tools but the thesis's own, whose magnitudes are not distances, and the two solids.
     assert_eq!(tools.len(), tools_library::TOOLS.len() - 3);
     let mut missed = Vec::new();
     for (tool, restated) in tools {

@@ -1,4 +1,4 @@
-//! Samples of the measurements: no bar that a page of `docs/measured` is held to is missed.
+//! Samples of the measurements: the thresholds of the pages in `docs/measured` are met.
 
 mod accuracy;
 mod certified;

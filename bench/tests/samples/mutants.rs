@@ -1,5 +1,5 @@
-//! Tools broken by program in one place each: what the compiler lets pass of texts must keep the bounds
-//! that are proved of it, and what is broken after that is found out.
+//! Tools with one generated defect each. A defective source text that the compiler accepts must keep the bounds proved
+//! for it. A defect introduced after compilation must be detected.
 
 use std::path::Path;
 use tool_dsl::interpret::Interpreter;
@@ -9,15 +9,15 @@ use tool_dsl::{CheckedTool, compile};
 use touchoff_bench::mutants::{Caught, KINDS, Mutant, caught, changes, mutants};
 use touchoff_bench::parallel;
 use touchoff_tests::library::library;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Points at which bounds are tried.
+/// Number of points at which bounds are tested.
 const POINTS: usize = 400;
-/// Directions in which the surface is sought.
+/// Number of directions in which the surface is searched for.
 const WAYS: usize = 64;
 
-/// The text with each number a little larger, each comparison and each sign turned round, one at a
-/// time. Comments and the first line are left alone.
+/// Returns variants of a text: each number slightly larger, and each comparison and each sign reversed, one at a time.
+/// Comments, strings and everything before the first brace are left unchanged.
 fn broken(text: &str) -> Vec<String> {
     let mut all = Vec::new();
     let start = text.find('{').map_or(0, |at| at + 1);
@@ -52,15 +52,15 @@ fn broken(text: &str) -> Vec<String> {
     all
 }
 
-/// The distance from a point inside to the outside, from above: to the nearest point outside along
-/// some ways.
+/// Returns an upper bound of the distance from a point inside to the outside: the nearest point outside along some
+/// directions.
 fn distance(interpreter: &mut Interpreter<'_>, [d, z]: [f64; 2], size: f64) -> f64 {
     let mut inside = |p: [f64; 2]| interpreter.at([p[0].abs(), 0.0, p[1]], 1.0).is_some();
     let mut least = size;
     for k in 0..WAYS {
         let (sin, cos) = (std::f64::consts::TAU * k as f64 / WAYS as f64).sin_cos();
         let at = |s: f64| [d + s * cos, z + s * sin];
-        // Coarse steps as far as the least so far, then halving.
+        // Coarse steps up to the least distance so far, then bisection.
         let steps = 40;
         let Some(first) = (1..=steps)
             .map(|step| least * f64::from(step) / f64::from(steps))
@@ -78,8 +78,8 @@ fn distance(interpreter: &mut Interpreter<'_>, [d, z]: [f64; 2], size: f64) -> f
     least
 }
 
-/// What is wrong with the bounds that are proved of a tool, if anything.
-fn wrong(tool: &CheckedTool, proved: &Certificate, draw: &mut Draw) -> Option<String> {
+/// Returns a violation of the bounds proved for a tool, if there is one.
+fn wrong(tool: &CheckedTool, proved: &Certificate, draw: &mut Rng) -> Option<String> {
     let cell = tool.extent.cell();
     let size = cell.sides.iter().map(|side| side.high - side.low).fold(0.0, f64::max);
     let mut interpreter = Interpreter::new(tool);
@@ -87,23 +87,24 @@ fn wrong(tool: &CheckedTool, proved: &Certificate, draw: &mut Draw) -> Option<St
     for _ in 0..POINTS {
         let [x, _, z] = cell.sides;
         let p = [draw.between(x.low, x.high), draw.between(z.low, z.high)];
-        let Some(felt) = interpreter.at([p[0], 0.0, p[1]], 1.0) else { continue };
+        let Some(evaluation) = interpreter.at([p[0], 0.0, p[1]], 1.0) else { continue };
         let way = draw.direction();
         let step = 10f64.powf(draw.between(-5.0, -1.0));
         let q = [(p[0] + step * way[0]).abs(), p[1] + step * way[1]];
-        let there = interpreter.at([q[0], 0.0, q[1]], 1.0).map_or(0.0, |felt| felt.depth);
+        let there =
+            interpreter.at([q[0], 0.0, q[1]], 1.0).map_or(0.0, |evaluation| evaluation.depth);
         let moved = (q[0] - p[0]).hypot(q[1] - p[1]);
         let slack = 1e-9 + proved.tolerance;
         if let Some(most) = most
-            && (there - felt.depth).abs() > most * moved + slack
+            && (there - evaluation.depth).abs() > most * moved + slack
         {
-            return Some(format!("{} to {there} over {moved} at {p:?}", felt.depth));
+            return Some(format!("{} to {there} over {moved} at {p:?}", evaluation.depth));
         }
-        if let Some(least) = proved.least() {
-            // Between two of the ways the surface may be nearer by a little.
+        if let Some(least) = proved.lower_slope() {
+            // Between two of the directions, the surface may be slightly nearer.
             let away = distance(&mut interpreter, p, size);
-            if felt.depth < least * away * 0.99 - slack {
-                return Some(format!("{} deep and {away} from outside at {p:?}", felt.depth));
+            if evaluation.depth < least * away * 0.99 - slack {
+                return Some(format!("{} deep and {away} from outside at {p:?}", evaluation.depth));
             }
         }
     }
@@ -116,7 +117,7 @@ fn what_passes_keeps_its_bounds() {
     let (mut refused, mut jumps, mut bounded, mut open) = (0, 0, 0, 0);
     for name in ["fig_7_3.tool", "cylinder.tool", "unit_sphere.tool"] {
         let text = std::fs::read_to_string(folder.join(name)).expect("the library has the file");
-        let mut draw = Draw::new(5);
+        let mut draw = Rng::new(5);
         for text in broken(&text) {
             let Some(tool) = compile(&Source::new(name, &text)).into_tool() else {
                 refused += 1;
@@ -137,7 +138,7 @@ fn what_passes_keeps_its_bounds() {
     assert!(refused > 50 && bounded > 10, "{refused} {jumps} {bounded} {open}");
 }
 
-/// A sample of `docs/measured/proofs.md`, of every tool.
+/// A sample of the page `proofs.md`, with mutants of every tool.
 #[test]
 fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
     // A source stays on its thread.
@@ -146,7 +147,7 @@ fn broken_tools_of_the_library_are_seen_without_the_whole_ones() {
         let proved = Certificate::of(&whole);
         let reports = proved.diagnostics(&whole);
         assert!(reports.is_empty(), "{}: {reports:#?}", whole.model.name);
-        // Others than those of the table.
+        // Other mutants than those in the table.
         let mut mutants = mutants(&whole, 4, 1000 + at as u64);
         mutants.retain(|mutant| changes(&whole, &mutant.tool, 1));
         let place =

@@ -1,10 +1,10 @@
-//! Sweeps beside brute force: a sample of `docs/measured/postures.md`.
+//! Posture sweeps compared with brute force: a sample of `docs/measured/postures.md`.
 
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::postures::sweep::Sweep;
+use touchoff::postures::sweep::PostureSweep;
 use touchoff::postures::{Directions, Rules};
 use touchoff::{Mesh, Unit};
 use touchoff_bench::postures::free::{Part, Verdict};
@@ -33,7 +33,12 @@ fn sample(tools: Vec<&str>, draws: usize) {
     }
     let tally = &found.tally;
     assert_eq!(tally.postures(), tally.triangles * 120);
-    assert!(tally.known > 0 && tally.found > 0 && tally.acceptable > 0 && tally.facing > 0);
+    assert!(
+        tally.cached_obstruction > 0
+            && tally.obstructed > 0
+            && tally.acceptable > 0
+            && tally.not_facing > 0
+    );
     let sum: u64 = found.reach.iter().map(|reach| reach.postures).sum();
     assert_eq!(sum, tally.acceptable);
 }
@@ -48,7 +53,7 @@ fn so_it_is_with_corners_two_contacts_and_tools_in_inches() {
     sample(vec!["BullNose", "Lollipop", "TSlot", "Dovetail", "Woodruff", "HalfInchBallCat40"], 300);
 }
 
-/// A judge that cannot refuse is none.
+/// The validation must be able to reject a posture.
 #[test]
 fn brute_force_finds_what_is_in_the_way() {
     let low = nalgebra::Point3::new(-20.0, -20.0, -30.0);
@@ -63,12 +68,12 @@ fn brute_force_finds_what_is_in_the_way() {
     assert_eq!(judge([0.0, 0.0, 0.0], 0.0), Verdict::Free);
     assert_eq!(judge([0.0, 0.0, -0.0099], 0.0), Verdict::Free);
     assert!(matches!(judge([0.0, 0.0, -0.0101], 0.0), Verdict::Blocked(_)));
-    // The flute of 5 beside the wall may cut a little, the shank above it nothing.
+    // The flute of 5 mm may cut slightly into the wall beside it; the shank above must not.
     assert_eq!(judge([20.999, 0.0, -4.9], 0.0), Verdict::Free);
     assert!(matches!(judge([20.999, 0.0, -5.1], 0.0), Verdict::Blocked(_)));
     assert_eq!(judge([21.0001, 0.0, -5.1], 0.0), Verdict::Free);
     assert!(matches!(judge([21.0001, 0.0, -5.1], -0.001), Verdict::Blocked(_)));
-    // A part far larger than the tool has it inside.
+    // A part far larger than the tool contains it.
     let high = nalgebra::Point3::new(20.0, 20.0, 50.0);
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a block");
     let posture = Posture {
@@ -80,16 +85,16 @@ fn brute_force_finds_what_is_in_the_way() {
     assert_eq!(verdict, Verdict::Blocked(f64::INFINITY));
 }
 
-/// From the middle of a plate's top a ball is free to lean until its flute would touch: all of the half sphere
-/// above, but for what the holder or a shank that is wider than the ball keeps away.
+/// From the centre of a plate's top a ball may lean until its flute would touch. That is the whole upper hemisphere,
+/// except where the holder or a shank wider than the ball collides.
 #[test]
 fn a_plate_is_reached_from_all_above_it() {
     let plate = shapes::plane(0.5, 1, Unit::Millimetre).expect("a plate");
-    let facets = Facets::new(&plate);
+    let bvh = TriangleBvh::new(&plate);
     let directions = Directions::spread(400);
     let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
     let tool = tools_library::find("D2Ball").expect("a tool");
-    let sweep = Sweep::new((&plate, &facets), vec![tool], &directions, rules, NonZeroU16::MIN)
+    let sweep = PostureSweep::new((&plate, &bvh), vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
     let mut solid = Vec::new();
     let _: ControlFlow<()> = sweep.run(&[0], |batch| {
@@ -104,8 +109,8 @@ fn a_plate_is_reached_from_all_above_it() {
     }
 }
 
-/// A plate in the middle of a hollow block: the tool as it is fits in, so that it need not stick out farther, however
-/// far the holder is taken to go on above.
+/// A plate in the middle of a hollow block. The tool fits in as it is, so no larger stick-out is needed, however far
+/// the holder is assumed to extend above.
 #[test]
 fn no_stick_out_is_more_than_that_of_the_tool() {
     let block = |low: [f64; 3], high: [f64; 3]| {
@@ -116,18 +121,18 @@ fn no_stick_out_is_more_than_that_of_the_tool() {
     let vertices = [plate.vertices(), outer.vertices(), hollow.vertices()].concat();
     let moved = |corners: &[u32; 3], after: u32| corners.map(|corner| corner + after);
     let outside = outer.triangles().iter().map(|corners| moved(corners, 8));
-    // The void's triangles face inward.
+    // The triangles of the void face inward.
     let inside = hollow.triangles().iter().map(|corners| {
         let [a, b, c] = moved(corners, 16);
         [b, a, c]
     });
     let triangles = plate.triangles().iter().copied().chain(outside).chain(inside).collect();
     let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
-    let facets = Facets::new(&mesh);
+    let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(200);
     let rules = Rules { tolerance: 0.01, niceness: 0.1, allowed: Vec::new() };
     let tool = tools_library::find("BallEr16").expect("a tool");
-    let sweep = Sweep::new((&mesh, &facets), vec![tool], &directions, rules, NonZeroU16::MIN)
+    let sweep = PostureSweep::new((&mesh, &bvh), vec![tool], &directions, rules, NonZeroU16::MIN)
         .expect("a sweep");
     let mut needed = Vec::new();
     let _: ControlFlow<()> = sweep.run(&[0], |batch| {

@@ -1,6 +1,6 @@
-//! A sample of every item of the stress list, for every tool: no bar is missed.
+//! A sample of every item of the stress list for every tool: no limit is missed.
 //!
-//! `cargo run --release -p touchoff-bench -- stress` does the whole of it.
+//! `cargo run --release -p touchoff-bench -- stress` runs the full list.
 
 use touchoff_bench::stress::judge::{DEPTH, Judge, SIDES};
 use touchoff_bench::stress::ledger::{Item, Ledger};
@@ -17,17 +17,17 @@ fn no_bar_is_missed() {
     for item in Item::all() {
         assert!(cases(item).sum::<usize>() > 0, "{item:?}");
     }
-    // Degenerate profiles are no tools of the library, and not every tool has a meeting that a sample finds.
+    // Degenerate profiles are not library tools, and a sample does not find a point of item 3 for every tool.
     for item in Item::all().filter(|item| ![3, 9].contains(&item.0)) {
         for tool in tools_library::TOOLS {
-            let name = &tool.card().name;
+            let name = &tool.info().name;
             let own = rows.iter().filter(|row| row.item == item && row.tool == *name);
             assert!(own.map(|row| row.cases).sum::<usize>() > 0, "{item:?} of {name}");
         }
     }
 }
 
-/// A page is the same however it is made.
+/// The rows do not depend on the run.
 #[test]
 fn a_seed_gives_the_same_rows() {
     let rows = || {
@@ -37,7 +37,7 @@ fn a_seed_gives_the_same_rows() {
     assert_eq!(rows(), rows());
 }
 
-/// A tool that is another is found out.
+/// A tool compared with the true values of another must fail.
 #[test]
 fn a_wrong_tool_misses() {
     let subjects = subjects();

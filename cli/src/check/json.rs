@@ -18,7 +18,7 @@ pub(super) struct Proved<'t> {
     exact: bool,
     continuous: bool,
     tolerance: f64,
-    /// What all bounds may be off by
+    /// Amount by which all bounds may be off
     slack: f64,
     boxes: usize,
     regions: Vec<ProvedRegion<'t>>,
@@ -35,18 +35,18 @@ struct ProvedRegion<'t> {
     distance: bool,
     niceness: [f64; 2],
     falls: bool,
-    /// Of depth in f64 and in f32
+    /// Bound on the error of the computed depth, in the file's unit
     rounding: f64,
-    /// Between the direction and the steepest way down, if it is known
+    /// Angle between the direction and the way straight down the depth, if it is known
     aside_degrees: Option<[f64; 2]>,
     /// The largest such angle that is certain at a point, and the point in the tool's frame
     oblique_degrees: Option<f64>,
     oblique_at: Option<[f64; 3]>,
     /// A point in the tool's frame where niceness rises with depth
     rises_at: Option<[f64; 3]>,
-    /// Where the direction vanishes, in the tool's frame: boxes' middles
+    /// Middles of the boxes where the direction vanishes, in the tool's frame
     singular: Vec<[f64; 3]>,
-    /// Whether the direction turns on the axis
+    /// True if the direction turns on the axis
     on_axis: bool,
 }
 
@@ -54,7 +54,7 @@ struct ProvedRegion<'t> {
 struct ProvedBorder<'t> {
     between: [&'t str; 2],
     jump: [f64; 2],
-    /// Of magnitude
+    /// Jump of the magnitude
     step: [f64; 2],
     /// A point where depth jumps, in the tool's frame
     seen: Option<[f64; 3]>,
@@ -83,7 +83,7 @@ impl<'t> Proved<'t> {
             niceness: ends(niceness(facts)),
             falls: facts.falls,
             rounding: facts.rounding,
-            aside_degrees: facts.aside.map(turned),
+            aside_degrees: facts.direction_error.map(turned),
             oblique_degrees: facts.oblique.map(|(angle, _)| angle.to_degrees()),
             oblique_at: facts.oblique.map(|(_, point)| point),
             rises_at: facts.rises.map(|(_, point)| point),
@@ -104,9 +104,9 @@ impl<'t> Proved<'t> {
         };
         Proved {
             tool: &model.name,
-            unit: model.unit.word(),
+            unit: model.unit.symbol(),
             lipschitz: certificate.lipschitz(),
-            least: certificate.least(),
+            least: certificate.lower_slope(),
             exact: certificate.is_exact(),
             continuous: certificate.is_continuous(),
             tolerance: certificate.tolerance,

@@ -1,9 +1,9 @@
-//! What is wrong with files, and what is proved about those that are right.
+//! `touchoff check`: errors and warnings of files, and certificates of those without errors.
 
 mod json;
 pub(crate) mod table;
 
-use crate::arguments::Given;
+use crate::arguments::ParamArguments;
 use crate::failure::Failure;
 use crate::output::{Output, show};
 use json::Proved;
@@ -16,11 +16,15 @@ use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Certificate, RegionFacts};
 use tool_dsl::{CheckedTool, compile_with};
 
-/// The exit status where nothing is wrong but something is warned of; wrong files give 1, wrong options 2.
+/// The exit status if there are only warnings; files with errors give 1, wrong options 2.
 const WARNED: u8 = 3;
 
-/// Shows what is wrong with files, and of those that are right what is proved.
-pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<ExitCode, Failure> {
+/// Shows the diagnostics of files, and the certificates of those that compile.
+pub(crate) fn check(
+    files: &[PathBuf],
+    given: &ParamArguments,
+    json: bool,
+) -> Result<ExitCode, Failure> {
     let mut out = Output::lines();
     let (mut wrong, mut warned) = (0, false);
     for file in files {
@@ -36,7 +40,7 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
         let mut diagnostics = compiled.diagnostics().to_vec();
         let proved = compiled.tool().map(|tool| (tool, Certificate::of(tool)));
         if let Some((tool, certificate)) = &proved {
-            // What was found while it was compiled is found again.
+            // The certificate finds again some of what compilation found.
             for diagnostic in certificate.diagnostics(tool) {
                 if !diagnostics.iter().any(|known| known.span == diagnostic.span) {
                     diagnostics.push(diagnostic);
@@ -72,19 +76,19 @@ pub(crate) fn check(files: &[PathBuf], given: &Given, json: bool) -> Result<Exit
 
 fn described(tool: &CheckedTool, warnings: usize) -> String {
     let model = &tool.model;
-    let unit = model.unit.word();
+    let unit = model.unit.symbol();
     let cutting: Vec<&str> =
         model.surfaces.iter().filter(|s| s.cutting).map(|s| s.name.as_str()).collect();
     let extent = &tool.extent;
     let size = match model.domain {
         Domain::HalfPlane => format!(
             "{} {unit} long and {} {unit} in radius",
-            diagnostic::figure(extent.high - extent.low),
-            diagnostic::figure(extent.radius),
+            diagnostic::format_number(extent.high - extent.low),
+            diagnostic::format_number(extent.radius),
         ),
         Domain::Space => {
             let sides = extent.cell().sides;
-            let [x, y, z] = sides.map(|side| diagnostic::figure(side.high - side.low));
+            let [x, y, z] = sides.map(|side| diagnostic::format_number(side.high - side.low));
             format!("a solid of {x} by {y} by {z} {unit}")
         }
     };
@@ -98,7 +102,7 @@ fn described(tool: &CheckedTool, warnings: usize) -> String {
     )
 }
 
-/// What counts of a region's niceness.
+/// Returns a region's niceness with negative values as 0.
 fn niceness(facts: &RegionFacts) -> Interval {
     let [low, high] = [facts.niceness.low, facts.niceness.high].map(|end| end.max(0.0));
     Interval::new(low, high)

@@ -3,11 +3,11 @@
 use super::niceness;
 use std::io::Write;
 use tool_dsl::CheckedTool;
-use tool_dsl::diagnostic::figure;
+use tool_dsl::diagnostic::format_number;
 use tool_dsl::expr::interval::Interval;
 use tool_dsl::prove::{Border, Certificate, RegionFacts};
 
-/// Writes it.
+/// Writes the certificate as a table.
 pub(crate) fn write(
     out: &mut impl Write,
     tool: &CheckedTool,
@@ -60,7 +60,7 @@ pub(crate) fn write(
     writeln!(out)
 }
 
-/// Borders between regions, each pair once, and jumps beside the outside.
+/// Returns the borders between regions, each pair once, and the jumps at the outside.
 fn borders(tool: &CheckedTool, certificate: &Certificate) -> Vec<(Border, String)> {
     let mut borders: Vec<(Border, String)> = Vec::new();
     let shown = certificate
@@ -81,9 +81,9 @@ fn none_or(jump: Interval) -> String {
     if jump.high == 0.0 { "none".to_owned() } else { range(jump) }
 }
 
-/// Where a region's direction leads.
+/// Describes the direction of a region.
 fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
-    let mut said = match facts.aside {
+    let mut said = match facts.direction_error {
         None => "not known anywhere".to_owned(),
         Some(Interval { low: 0.0, high: 0.0 }) => "straight down the depth".to_owned(),
         Some(aside) => format!("{} from straight down", degrees(aside)),
@@ -97,15 +97,15 @@ fn direction(tool: &CheckedTool, facts: &RegionFacts) -> String {
     said
 }
 
-/// What a tool's depth is to the distance to its surface.
+/// Describes how a tool's depth relates to the distance to its surface.
 fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
-    let proved = |bound: Option<f64>| bound.map(figure);
+    let proved = |bound: Option<f64>| bound.map(format_number);
     let boxes = certificate.boxes;
     let slack = match certificate.slack {
         0.0 => String::new(),
-        slack => format!(", to within {slack:.0e} {}", tool.model.unit.word()),
+        slack => format!(", to within {slack:.0e} {}", tool.model.unit.symbol()),
     };
-    match (proved(certificate.least()), proved(certificate.lipschitz())) {
+    match (proved(certificate.lower_slope()), proved(certificate.lipschitz())) {
         _ if certificate.is_exact() => {
             format!("proved in {boxes} boxes: depth is the distance to the surface{slack}")
         }
@@ -119,7 +119,7 @@ fn verdict(tool: &CheckedTool, certificate: &Certificate) -> String {
         _ if tool.model.is_exact() => format!(
             "by construction: depth is the distance to the surface; not proved in {boxes} boxes"
         ),
-        // Regions by hand may be decided in fewer boxes.
+        // Compilation may decide hand-written regions in fewer boxes.
         _ if tool.bounds().lipschitz.is_some() => format!(
             "proved while compiling: depth is at most {} times the distance to the surface; not proved \
              once more in {boxes} boxes",
@@ -145,7 +145,7 @@ fn pair(tool: &CheckedTool, border: &Border) -> String {
 fn range(value: Interval) -> String {
     let [low, high] = [value.low, value.high].map(short);
     if !value.high.is_finite() {
-        // No bound was found, which is not to say that there is such a value.
+        // No bound was found, which does not mean that such a value exists.
         return if value.low.is_finite() {
             format!("{low} or more")
         } else {
@@ -160,7 +160,7 @@ fn degrees(turn: Interval) -> String {
     if low == high { format!("{low}°") } else { format!("{low}° to {high}°") }
 }
 
-/// Four digits are enough to read.
+/// Formats a number with four digits, which are enough to read.
 fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

@@ -1,4 +1,4 @@
-//! What is kept of a session: a table of its states, a map of its postures.
+//! Recordings of a session: a table of its states, and a map of its postures.
 
 use crate::failure::Failure;
 use crate::output::unwritable;
@@ -6,14 +6,14 @@ use crate::postures::map::check_part;
 use crate::postures::usual;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use touchoff::haptic::{Samples, State};
-use touchoff::postures::{Identity, MapError, PostureMap, Recorded, Recorder, Rules};
+use touchoff::haptic::{SessionState, StateStream};
+use touchoff::postures::{MapError, MapIdentity, PostureMap, Recorder, RecorderStats, Rules};
 use touchoff::{AtomicFile, Mesh, Tool};
 
 const COLUMNS: &str = "cycle,seconds,device_x,device_y,device_z,device_i,device_j,device_k,tool_x,tool_y,tool_z,\
     tool_i,tool_j,tool_k,force_x,force_y,force_z,torque_x,torque_y,torque_z,depth,colliding,put_in,held";
 
-/// All states, as a table. The file takes its name when the session is over.
+/// A table of all states. The file takes its name when the session is over.
 pub(super) struct Table {
     out: AtomicFile,
     file: PathBuf,
@@ -28,8 +28,8 @@ impl Table {
         Ok(Table { out, file: path.to_owned(), rate })
     }
 
-    fn take(&mut self, state: &State) -> std::io::Result<()> {
-        let State { cycle, wrench, push, energy, .. } = state;
+    fn take(&mut self, state: &SessionState) -> std::io::Result<()> {
+        let SessionState { cycle, wrench, wrench_on_hand: push, energy, .. } = state;
         let vectors = [
             state.device.tip().coords,
             state.device.axis(),
@@ -59,15 +59,16 @@ impl<'a> Kept<'a> {
         Kept { table, recorder, failed: 0 }
     }
 
-    /// Takes the states that there are.
-    pub(super) fn take(&mut self, samples: &mut Samples) {
+    /// Takes the states that are available.
+    pub(super) fn take(&mut self, samples: &mut StateStream) {
         for state in samples {
             let written = self.table.as_mut().map_or(Ok(()), |table| table.take(&state));
             self.table_written(written);
-            let recorded = self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.take(&state));
+            let recorded =
+                self.recorder.as_mut().map_or(Ok(()), |recorder| recorder.process(&state));
             self.recorded(recorded);
         }
-        // A disk is full when it is, not when a buffer is.
+        // Flushed here, so that a full disk is noticed at once and not only when a buffer is full.
         let written = self.table.as_mut().map_or(Ok(()), |table| table.out.flush());
         self.table_written(written);
     }
@@ -89,7 +90,7 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// Brings all of it to the disk, and says what came of it.
+    /// Writes everything to the disk, and reports the outcome.
     ///
     /// # Errors
     /// If something could not be kept, now or before.
@@ -97,7 +98,7 @@ impl<'a> Kept<'a> {
         let recorded = self.recorder.as_mut().map_or(Ok(()), Recorder::write);
         self.recorded(recorded);
         if let Some(recorder) = &self.recorder {
-            let Recorded { judged, accepted, skipped, .. } = recorder.seen();
+            let RecorderStats { judged, accepted, skipped, .. } = recorder.stats();
             say!("postures: {accepted} acceptable of {judged} judged; {skipped} states not seen");
         }
         if let Some(Table { out, file, .. }) = self.table {
@@ -107,7 +108,7 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// The map of a file, or a new one of this part and tool: as a sweep would begin it.
+/// Opens a map, or creates a new one for this part and tool, with the rules of a sweep.
 pub(super) fn map_of(
     file: &Path,
     (mesh, part): (&Mesh, &Path),
@@ -119,5 +120,5 @@ pub(super) fn map_of(
         return Ok(map);
     }
     let rules = Rules { tolerance: usual(mesh.unit()), niceness: 0.0, allowed: Vec::new() };
-    Ok(PostureMap::open(file, &Identity::new(mesh, &[tool], rules)?)?)
+    Ok(PostureMap::open(file, &MapIdentity::new(mesh, &[tool], rules)?)?)
 }

@@ -1,4 +1,4 @@
-//! The haptic loop from the command line: a device, a part and a tool for some seconds.
+//! `touchoff haptic`: the haptic loop with a device, a part and a tool for some seconds.
 
 mod kept;
 
@@ -16,18 +16,19 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::haptic::{
-    Axes, Coupling, Device, Hand, Limits, Monotonic, Realtime, Recorded, Rendering, Report,
-    Session, Settings, State, Tremor, Watch, check_core, run, watched,
+    Coupling, Device, DeviceAxes, DeviceLimits, LoopReport, MonotonicClock, PlaybackDevice,
+    Realtime, Rendering, Session, SessionSettings, SessionState, SimulatedHand, StatePublisher,
+    Tremor, check_core, run, state_channel,
 };
 use touchoff::postures::Recorder;
-use touchoff::tool::{Card, Shape};
+use touchoff::tool::{Symmetry, ToolInfo};
 use touchoff::{Part, Pose, Probe, Tool, Unit};
 
-/// States that a record can be behind: some seconds.
+/// Number of states by which recordings may lag behind the loop: 65 s at 1 kHz.
 const ROOM: usize = 1 << 16;
-/// So often a second the screen is told.
+/// Status lines per second.
 const SHOWN: f64 = 4.0;
 
 /// Runs the loop.
@@ -43,11 +44,11 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
     let found = Found::find(&wanted.tool, &wanted.given)?;
     let tool = found.tool();
     let unit = wanted.part.unit;
-    let loaded = part::load(&wanted.part, Some(tool.card()), Fine::Points)?;
+    let loaded = part::load(&wanted.part, Some(tool.info()), Fine::Points)?;
     let map = match (&wanted.postures, &loaded.mesh) {
         (None, _) => None,
         (Some(file), Some(mesh)) => {
-            Some((map_of(file, (mesh, &wanted.part.part), tool)?, Facets::new(mesh)))
+            Some((map_of(file, (mesh, &wanted.part.part), tool)?, TriangleBvh::new(mesh)))
         }
         (Some(_), None) => {
             let file = wanted.part.part.display().to_string();
@@ -56,34 +57,34 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
     };
     let part = loaded.part;
     let table = wanted.record.as_deref().map(|path| Table::create(path, wanted.rate));
-    let recorder = map.as_ref().map(|(map, facets)| Recorder::new(map, (&part, facets), tool));
+    let recorder = map.as_ref().map(|(map, bvh)| Recorder::new(map, (&part, bvh), tool));
     let record = Kept::new(table.transpose()?, recorder.transpose()?);
-    let axes = match tool.card().shape {
-        Shape::Revolved => Axes::Five,
-        Shape::Solid { .. } => Axes::Six,
+    let axes = match tool.info().symmetry {
+        Symmetry::Revolved => DeviceAxes::Five,
+        Symmetry::Solid { .. } => DeviceAxes::Six,
     };
-    let limits = Limits {
+    let limits = DeviceLimits {
         axes,
         force: wanted.most_force,
         stiffness: wanted.device_stiffness,
-        ..Limits::default()
+        ..DeviceLimits::default()
     };
-    let start = above(&part, tool.card(), unit);
-    // However short, a cycle is run.
+    let start = above(&part, tool.info(), unit);
+    // At least one cycle is run, however short the duration.
     let cycles = (wanted.seconds * wanted.rate).round().max(1.0) as u64;
     match wielded {
         Wielded::Hand => {
             let wish = pressing(start, unit);
             let tremor = Tremor { size: 0.02, frequency: 10.0, seed: wanted.part.seed };
-            let hand = Hand::new(limits, wanted.rate, wish)?
-                .held_at(Point3::origin(), unit)?
-                .trembling(&tremor)?;
+            let hand = SimulatedHand::new(limits, wanted.rate, wish)?
+                .with_centre(Point3::origin(), unit)?
+                .with_tremor(&tremor)?;
             wield(hand, (wanted, json, cycles), (&part, tool), record)
         }
         Wielded::Path(path) => {
-            let program = program::read(&path, tool.card(), unit)?;
-            let poses: Vec<Pose> = program.stops.iter().map(|stop| stop.pose).collect();
-            let played = Recorded::new(poses, cycles, limits).map_err(Failure::Motion)?;
+            let program = program::read(&path, tool.info(), unit)?;
+            let poses: Vec<Pose> = program.locations.iter().map(|stop| stop.pose).collect();
+            let played = PlaybackDevice::new(poses, cycles, limits).map_err(Failure::Motion)?;
             wield(played, (wanted, json, cycles), (&part, tool), record)
         }
         #[cfg(not(unix))]
@@ -92,8 +93,8 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
         }
         #[cfg(unix)]
         Wielded::Spacenav => {
-            use touchoff::haptic::spacenav::{Flight, SOCKET, Spacenav};
-            let flight = Flight { way: 100.0, turn: 1.0 };
+            use touchoff::haptic::spacenav::{SOCKET, Spacenav, SpeedGains};
+            let flight = SpeedGains { linear: 100.0, angular: 1.0 };
             let mouse = Spacenav::open(Path::new(SOCKET), (start, unit), (wanted.rate, flight))
                 .map_err(|source| Failure::Spacenav { socket: SOCKET, source })?;
             wield(mouse, (wanted, json, cycles), (&part, tool), record)
@@ -101,36 +102,36 @@ pub(crate) fn haptic(wanted: &Haptic, json: bool) -> Result<(), Failure> {
     }
 }
 
-/// How far over the part a hand begins, and how deep it presses, mm.
+/// Height above the part at which a hand begins, and depth to which it presses, in mm.
 const OVER: f64 = 2.0;
 const DEEP: f64 = 3.0;
 
-/// The tool upright over the highest point of the part.
-fn above(part: &Part, card: &Card, unit: Unit) -> Pose {
+/// Returns the pose of the tool upright above the highest point of the part.
+fn above(part: &Part, info: &ToolInfo, unit: Unit) -> Pose {
     let tree = part.tree();
     let points = (0..tree.len()).map(|place| tree.point(place));
     let highest = points.max_by(|a, b| a.z.total_cmp(&b.z)).unwrap_or_default();
-    let tip = highest + Vector3::z() * (OVER * Unit::Millimetre.to(unit));
-    match card.shape {
-        Shape::Revolved => Pose::from_axis(tip, Vector3::z()),
-        Shape::Solid { .. } => Pose::from_quaternion(tip, [0.0, 0.0, 0.0, 1.0]),
+    let tip = highest + Vector3::z() * (OVER * Unit::Millimetre.factor_to(unit));
+    match info.symmetry {
+        Symmetry::Revolved => Pose::from_axis(tip, Vector3::z()),
+        Symmetry::Solid { .. } => Pose::from_quaternion(tip, [0.0, 0.0, 0.0, 1.0]),
     }
     .expect("a point of a part is finite, and upright is a direction")
 }
 
-/// A hand that presses down and lets go every five seconds, and goes round in circles of a millimetre
-/// meanwhile.
+/// Returns the motion of a hand that presses down and lets go every five seconds. Meanwhile it goes round once a
+/// second, on circles with a radius of up to a millimetre.
 fn pressing(start: Pose, unit: Unit) -> impl FnMut(f64) -> Pose {
-    let mm = Unit::Millimetre.to(unit);
+    let mm = Unit::Millimetre.factor_to(unit);
     move |time| {
         let turn = std::f64::consts::TAU * time;
         let down = 0.5 - 0.5 * (turn / 5.0).cos();
         let way = Vector3::new(turn.cos() - 1.0, turn.sin(), -OVER - DEEP) * (down * mm);
-        start.shifted(way).unwrap_or(start)
+        start.translated(way).unwrap_or(start)
     }
 }
 
-/// Runs the loop in a thread of its own, and watches it from this one.
+/// Runs the loop in a thread of its own, and monitors it from this one.
 fn wield(
     mut device: impl Device + Send,
     (wanted, json, cycles): (&Haptic, bool, u64),
@@ -142,26 +143,26 @@ fn wield(
         true => Rendering::Direct { scaled: true, damping: 0.0 },
         false => Rendering::Coupled(Coupling::of(&limits)),
     };
-    let settings = Settings {
+    let settings = SessionSettings {
         stiffness: wanted.stiffness,
         rendering: Some(rendering),
-        ..Settings::new(wanted.rate)
+        ..SessionSettings::new(wanted.rate)
     };
-    let probe = Probe::new(part, tool).law(wanted.law);
-    // Made before memory is locked, so that a lock which has no room for it is refused and said.
+    let probe = Probe::new(part, tool).with_law(wanted.law);
+    // Created before memory is locked, so that a lock which has no room for it is refused and reported.
     let mut session = Session::new(probe, &settings, limits)?;
-    let (mut watch, mut latest, mut samples) = watched(ROOM);
+    let (mut watch, mut latest, mut samples) = state_channel(ROOM);
     let stop = stopped_by_signals();
-    let mut looped = |watch: &mut Watch| {
+    let mut looped = |watch: &mut StatePublisher| {
         let realtime = Realtime {
             priority: wanted.realtime.then_some(80),
             core: wanted.core,
             locked: wanted.realtime,
         };
-        for refused in realtime.ask() {
+        for refused in realtime.apply() {
             say!("{refused}");
         }
-        let clock = &mut Monotonic::new(Duration::from_micros(wanted.awake));
+        let clock = &mut MonotonicClock::new(Duration::from_micros(wanted.awake));
         run((&mut session, &mut device), (clock, cycles), watch, &stop)
     };
     let report = std::thread::scope(|scope| {
@@ -187,8 +188,8 @@ fn wield(
     if stop.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
 }
 
-/// Returns a flag that Ctrl-C and the other signals that end a program set, so that a session ends in order and
-/// what was recorded is kept. The second signal ends the program at once.
+/// Returns a flag that Ctrl-C and the other termination signals set, so that a session ends in order and its
+/// recordings are kept. A second signal ends the program at once.
 fn stopped_by_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -203,21 +204,21 @@ fn stopped_by_signals() -> Arc<AtomicBool> {
     stop
 }
 
-/// Where it is, on one line.
-fn show(state: &State, rate: f64) {
+/// Prints the current state on one line.
+fn show(state: &SessionState, rate: f64) {
     let [x, y, z] = [0, 1, 2].map(|k| state.tool.tip()[k]);
     say!(
         "{:>8.2} s  tip {x:>9.3} {y:>9.3} {z:>9.3}  depth {:>7.4}  force {:>7.3} N  torque {:>8.2} N·mm",
         state.cycle as f64 / rate,
         state.wrench.depth(),
-        state.push.force.norm(),
-        state.push.torque.norm(),
+        state.wrench_on_hand.force.norm(),
+        state.wrench_on_hand.torque.norm(),
     );
 }
 
-/// What came of it, for programs.
+/// The report of a run, for programs.
 #[derive(Serialize)]
-struct Said<'a> {
+struct RunSummary<'a> {
     device: &'a str,
     rate: f64,
     cycles: u64,
@@ -246,7 +247,7 @@ struct Times {
 }
 
 impl Times {
-    fn of(times: &touchoff::haptic::Times) -> Times {
+    fn of(times: &touchoff::haptic::LatencyHistogram) -> Times {
         let at = |share: f64| times.value_at_quantile(share);
         Times { p50: at(0.5), p99: at(0.99), p999: at(0.999), max: times.max() }
     }
@@ -258,26 +259,26 @@ impl Times {
     }
 }
 
-fn said(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
+fn said(report: &LoopReport, wanted: &Haptic) -> Result<(), Failure> {
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
     let faults = report.faults;
-    let said = Said {
+    let said = RunSummary {
         device: wanted.device[0].as_str(),
         rate: wanted.rate,
         cycles: report.cycles,
         missed: report.missed,
-        left_out: report.left_out,
+        left_out: report.skipped,
         stalls: report.stalls,
-        took_ns: Times::of(&report.took),
-        late_ns: Times::of(&report.late),
-        peak_force: report.peak[0],
-        peak_torque: report.peak[1],
+        took_ns: Times::of(&report.durations),
+        late_ns: Times::of(&report.start_delays),
+        peak_force: report.peak_wrench[0],
+        peak_torque: report.peak_wrench[1],
         put_in: energy.put_in,
         held: energy.held,
         generated: energy.generated,
         taken_out: energy.taken_out,
-        faults: [faults.no_pose, faults.jumps, faults.gone, faults.not_pushed],
-        lost: report.lost,
+        faults: [faults.no_pose, faults.jumps, faults.not_responding, faults.failed_writes],
+        lost: report.dropped_states,
         law: wanted.law.to_string(),
     };
     let mut out = Output::lines();
@@ -287,20 +288,20 @@ fn said(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
     Ok(())
 }
 
-fn told(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
+fn told(report: &LoopReport, wanted: &Haptic) -> Result<(), Failure> {
     let mut out = Output::lines();
     let energy = report.last.map(|state| state.energy).unwrap_or_default();
     let faults = report.faults;
-    let Report { cycles, missed, left_out, stalls, .. } = report;
+    let LoopReport { cycles, missed, skipped: left_out, stalls, .. } = report;
     let of = wanted.rate;
     writeln!(
         out,
         "{cycles} cycles at {of} Hz, {missed} missed their deadline, {left_out} left out; law {}",
         wanted.law
     )?;
-    writeln!(out, "  took, µs:   {}", Times::of(&report.took).shown())?;
-    writeln!(out, "  late, µs:   {}", Times::of(&report.late).shown())?;
-    let [force, torque] = report.peak;
+    writeln!(out, "  took, µs:   {}", Times::of(&report.durations).shown())?;
+    writeln!(out, "  late, µs:   {}", Times::of(&report.start_delays).shown())?;
+    let [force, torque] = report.peak_wrench;
     writeln!(out, "  at most:    {force:.3} N, {torque:.2} N·mm")?;
     writeln!(
         out,
@@ -310,10 +311,10 @@ fn told(report: &Report, wanted: &Haptic) -> Result<(), Failure> {
     let wrong = [
         (faults.no_pose, "cycles without a pose"),
         (faults.jumps, "jumps of the device"),
-        (faults.gone, "cycles without an answer"),
-        (faults.not_pushed, "pushes that failed"),
+        (faults.not_responding, "cycles without an answer"),
+        (faults.failed_writes, "pushes that failed"),
         (*stalls, "stalls of clock or thread"),
-        (report.lost, "states not recorded"),
+        (report.dropped_states, "states not recorded"),
     ];
     for (count, what) in wrong.into_iter().filter(|(count, _)| *count > 0) {
         writeln!(out, "  {count} {what}")?;

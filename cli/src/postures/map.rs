@@ -1,4 +1,4 @@
-//! What a map knows, and where else it goes.
+//! `touchoff map`: a summary of a posture map, and its other formats.
 
 use super::picture;
 use crate::arguments::postures::Map as Wanted;
@@ -9,7 +9,7 @@ use crate::part;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use touchoff::postures::{Directions, PartStamp, PostureMap, colour};
+use touchoff::postures::{Directions, PartFingerprint, PostureMap, colormap};
 use touchoff::{AtomicFile, Escaped, Mesh};
 
 #[derive(Serialize)]
@@ -24,7 +24,7 @@ struct Summary<'a> {
     swept: u32,
 }
 
-/// Says what a map is, and writes it in other forms.
+/// Prints a summary of a map, and writes it in other formats.
 pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let inputs = std::iter::once(&*wanted.map).chain(wanted.part.as_deref());
     refuse_inputs(wanted.to.iter().map(|to| &**to), inputs)?;
@@ -33,7 +33,7 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         Some(part) => Some(belonging(&map, &wanted.map, part)?),
         None => None,
     };
-    // What is wrong with a name is said before anything is written.
+    // Wrong names are reported before anything is written.
     let forms: Vec<Form> = wanted.to.iter().map(|file| Form::of(file)).collect::<Result<_, _>>()?;
     for (form, file) in forms.iter().zip(&wanted.to) {
         if mesh.is_none() && matches!(form, Form::Ply | Form::Png) {
@@ -48,7 +48,7 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
             (Form::Json, _) => map.write_json(&mut out)?,
             (Form::Ply, Some(mesh)) => {
                 let nicest = nicest(&map)?;
-                map.write_ply(&mut out, mesh, |niceness| colour(niceness / nicest))?;
+                map.write_ply(&mut out, mesh, |niceness| colormap(niceness / nicest))?;
             }
             (Form::Png, Some(mesh)) => {
                 let directions = Directions::from(map.identity().directions.clone());
@@ -63,7 +63,7 @@ pub(crate) fn map(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     told(&map, json)
 }
 
-/// The greatest niceness of all postures, or 1.
+/// Returns the greatest niceness of all postures; 1 if none is above 0.
 fn nicest(map: &PostureMap) -> Result<f64, Failure> {
     let mut nicest: f64 = 0.0;
     for entry in map.rows()? {
@@ -72,20 +72,26 @@ fn nicest(map: &PostureMap) -> Result<f64, Failure> {
     Ok(if nicest > 0.0 { nicest } else { 1.0 })
 }
 
-/// The part that a map is of.
+/// Reads the part of a map.
+///
+/// # Errors
+/// If it cannot be read, or is not the map's.
 pub(super) fn belonging(map: &PostureMap, file: &Path, part: &Path) -> Result<Mesh, Failure> {
     let mesh = part::mesh(part, map.identity().part.unit, "--part")?;
     check_part(map, file, (&mesh, part))?;
     Ok(mesh)
 }
 
-/// Holds a map to a part.
+/// Checks that a map is of a part.
+///
+/// # Errors
+/// [`Failure::OtherPart`] if it is not.
 pub(crate) fn check_part(
     map: &PostureMap,
     file: &Path,
     (mesh, part): (&Mesh, &Path),
 ) -> Result<(), Failure> {
-    if PartStamp::of(mesh) == map.identity().part {
+    if PartFingerprint::of(mesh) == map.identity().part {
         return Ok(());
     }
     let [map, part] = [file, part].map(|file| file.display().to_string());
@@ -96,7 +102,7 @@ fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
     let (identity, coverage) = (map.identity(), map.coverage()?);
     let summary = Summary {
         triangles: coverage.triangles,
-        unit: identity.part.unit.word(),
+        unit: identity.part.unit.symbol(),
         tools: identity.tools.iter().map(|tool| &*tool.name).collect(),
         directions: identity.directions.len(),
         tolerance: identity.rules.tolerance,
@@ -123,7 +129,7 @@ fn told(map: &PostureMap, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a file's name asks for.
+/// An output format, chosen by the file's extension.
 enum Form {
     Csv,
     Json,

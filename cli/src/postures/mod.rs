@@ -1,4 +1,4 @@
-//! Where tools stand well at a part: found without a hand, looked at, led over.
+//! The posture commands: sweeps, maps and paths.
 
 pub(crate) mod map;
 pub(crate) mod path;
@@ -8,12 +8,12 @@ pub(crate) mod sweep;
 
 use touchoff::{Mesh, Unit};
 
-/// A share of the whole.
+/// Formats a share of a whole in percent.
 fn percent(part: f64, whole: f64) -> String {
     format!("{:.1} %", 100.0 * part / if whole > 0.0 { whole } else { 1.0 })
 }
 
-/// Of some triangles how many there are, and their area as a share of the part's.
+/// The number of triangles in a set, and their total area.
 #[derive(Clone, Copy, Default)]
 struct Share {
     triangles: usize,
@@ -21,7 +21,7 @@ struct Share {
 }
 
 impl Share {
-    /// Those of a mesh that are meant.
+    /// Counts the triangles of a mesh for which `meant` holds.
     fn of_all(mesh: &Mesh, meant: impl Fn(u32) -> bool) -> Share {
         let ids = (0..mesh.triangles().len() as u32).filter(|id| meant(*id));
         ids.fold(Share::default(), |share, id| Share {
@@ -36,7 +36,7 @@ impl Share {
     }
 }
 
-/// The tolerance if none is given: a hundredth of a millimetre.
+/// Returns the default tolerance, a hundredth of a millimetre, in a unit.
 pub(crate) fn usual(unit: Unit) -> f64 {
-    0.01 * Unit::Millimetre.to(unit)
+    0.01 * Unit::Millimetre.factor_to(unit)
 }

@@ -1,7 +1,7 @@
-//! A program over all that a tool reaches.
+//! `touchoff path`: a program over all that a tool reaches.
 
 use super::map::belonging;
-use crate::arguments::Given;
+use crate::arguments::ParamArguments;
 use crate::arguments::postures::Path as Wanted;
 use crate::failure::Failure;
 use crate::files::{Found, ending};
@@ -10,10 +10,10 @@ use crate::part;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use touchoff::certify::Facets;
-use touchoff::postures::path::{Pattern, path as lead};
+use touchoff::certify::TriangleBvh;
+use touchoff::postures::path::{Pattern, plan_path as lead};
 use touchoff::postures::{Directions, PostureMap, Rules};
-use touchoff::program::{Cutter, Heading, apt_word};
+use touchoff::program::{AptHeader, Cutter, apt_unit};
 use touchoff::{Motion, Pose, Program};
 
 #[derive(Serialize)]
@@ -22,16 +22,16 @@ struct Summary {
     places: usize,
     left_out: usize,
     lifts: usize,
-    /// The root mean square turn of the axis from place to place, in degrees, before and after.
+    /// The root mean square turn of the axis from point to point, in degrees, before and after smoothing.
     turns: [f64; 2],
-    /// How far the tip goes in feed, and in rapid traverse, in the part's unit.
+    /// The length of the tip's path in feed and in rapid traverse, in the part's unit.
     way: [f64; 2],
-    /// Stops at which the spindle is below the tip, and the line of the first.
+    /// Number of cutter locations with the spindle below the tip, and that of the first, counted from 1.
     upside_down: usize,
     first_upside_down: Option<usize>,
 }
 
-/// Leads a tool over a part, and writes the program.
+/// Plans a path of a tool over a part, and writes the program.
 pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let apt = match ending(&wanted.to).as_deref() {
         Some("apt") => true,
@@ -42,13 +42,13 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let map = PostureMap::read(&wanted.map)?;
     let unit = map.identity().part.unit;
     if apt {
-        apt_word(unit)?;
+        apt_unit(unit)?;
     }
-    let found = Found::find(&wanted.tool, &Given::default())?;
+    let found = Found::find(&wanted.tool, &ParamArguments::default())?;
     let (tool, identity) = (found.tool(), map.identity());
-    let index = identity.tool(tool.card()).ok_or_else(|| Failure::OtherTool {
+    let index = identity.tool(tool.info()).ok_or_else(|| Failure::OtherTool {
         map: wanted.map.display().to_string(),
-        tool: tool.card().name.to_string(),
+        tool: tool.info().name.to_string(),
     })?;
     let mesh = belonging(&map, &wanted.map, &wanted.part)?;
     let mut access = vec![Vec::new(); mesh.triangles().len()];
@@ -65,27 +65,27 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
         stepover: wanted.stepover,
         step: wanted.step.unwrap_or(0.5 * wanted.stepover),
     };
-    let facets = Facets::new(&mesh);
-    part::has_inside(&facets, &wanted.part, wanted.surface_only)?;
+    let bvh = TriangleBvh::new(&mesh);
+    part::has_inside(&bvh, &wanted.part, wanted.surface_only)?;
     let directions = Directions::from(identity.directions.clone());
-    let led = lead((&mesh, &facets), (tool, &rules), (&directions, &access), &pattern)?;
+    let led = lead((&mesh, &bvh), (tool, &rules), (&directions, &access), &pattern)?;
     let below = |(pose, _): &(Pose, bool)| pose.axis().z < 0.0;
     let summary = Summary {
-        stops: led.stops.len(),
-        places: led.places,
+        stops: led.locations.len(),
+        places: led.contact_points,
         left_out: led.left_out,
-        lifts: led.lifts,
+        lifts: led.retracts,
         turns: led.turns.map(f64::to_degrees),
-        way: ways(&led.stops),
-        upside_down: led.stops.iter().filter(|stop| below(stop)).count(),
-        first_upside_down: led.stops.iter().position(below).map(|stop| stop + 1),
+        way: ways(&led.locations),
+        upside_down: led.locations.iter().filter(|stop| below(stop)).count(),
+        first_upside_down: led.locations.iter().position(below).map(|stop| stop + 1),
     };
     let name = wanted.to.display().to_string();
-    let program = Program::new(&name, Some(unit), led.stops)?;
+    let program = Program::new(&name, Some(unit), led.locations)?;
     let mut text = Vec::new();
     if apt {
         let part = wanted.part.file_stem().unwrap_or_default().to_string_lossy();
-        let heading = Heading { part: &part, cutter: Cutter::of(tool.card(), unit) };
+        let heading = AptHeader { part: &part, cutter: Cutter::of(tool.info(), unit) };
         program.write_apt(&mut text, &heading)?;
     } else {
         program.write_csv(&mut text).map_err(|source| unwritable(&wanted.to, source))?;
@@ -117,13 +117,13 @@ pub(crate) fn path(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// How far the tip goes in feed, and in rapid traverse.
+/// Returns the length of the tip's path in feed and in rapid traverse.
 fn ways(stops: &[(Pose, bool)]) -> [f64; 2] {
     let mut ways = [0.0; 2];
     for pair in stops.windows(2) {
         let [(from, _), (to, rapid)] = [pair[0], pair[1]];
         if let Ok(motion) = Motion::new(&from, &to) {
-            ways[usize::from(rapid)] += motion.way().norm();
+            ways[usize::from(rapid)] += motion.displacement().norm();
         }
     }
     ways

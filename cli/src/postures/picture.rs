@@ -1,4 +1,4 @@
-//! A map on its part, in a fixed set of views.
+//! Pictures of a map on its part, in a fixed set of views.
 
 use super::render::{VIEWS, render};
 use crate::arguments::postures::Shown;
@@ -8,19 +8,19 @@ use resvg::tiny_skia::{Pixmap, PremultipliedColorU8, Transform};
 use resvg::usvg::{Options, Tree};
 use std::fmt::Write;
 use tool_dsl::draw::lettering::{scale, strokes, width};
-use touchoff::postures::{Directions, PostureMap, Row, colour};
+use touchoff::postures::{Directions, MapRow, PostureMap, colormap};
 use touchoff::{Mesh, Unit};
 
-/// Of a view, pixels a side.
+/// Side of a view, in pixels.
 const SIDE: usize = 700;
-/// Of the legend, pixels from top to bottom.
+/// Height of the legend, in pixels.
 const LEGEND: usize = 110;
-/// How high capitals are.
+/// Height of capital letters, in pixels.
 const LETTER: f64 = 15.0;
-/// What nothing is known of.
+/// Colour of triangles without a value.
 const NOTHING: [u8; 3] = [200, 200, 200];
 
-/// A map on its part as a PNG.
+/// Renders a map on its part as a PNG.
 pub(super) fn of(
     map: &PostureMap,
     directions: &Directions,
@@ -34,11 +34,11 @@ pub(super) fn of(
     }
     let known = || values.iter().copied().flatten();
     let (low, high) = (known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max));
-    // From nothing at all, but for stick-outs, of which the least is what the tool has.
+    // The scale begins at 0, except for stick-outs: the least of these is a property of the tool.
     let low = if by == Shown::Stickout { low.min(high) } else { 0.0 };
     let share = |value: f64| if high > low { (value - low) / (high - low) } else { 1.0 };
     let colours: Vec<[u8; 3]> =
-        values.iter().map(|value| value.map_or(NOTHING, |value| colour(share(value)))).collect();
+        values.iter().map(|value| value.map_or(NOTHING, |value| colormap(share(value)))).collect();
     let pixels = |reason: &dyn std::fmt::Display| Failure::Pixels(reason.to_string());
     let (wide, tall) = (2 * SIDE, 2 * SIDE + LEGEND);
     let mut sheet =
@@ -63,12 +63,12 @@ fn opaque([r, g, b]: [u8; 3]) -> PremultipliedColorU8 {
     PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(PremultipliedColorU8::TRANSPARENT)
 }
 
-/// What is shown of a triangle.
-fn value(row: &Row, directions: &Directions, by: Shown) -> Option<f64> {
+/// Returns the value shown for a triangle, if it has one.
+fn value(row: &MapRow, directions: &Directions, by: Shown) -> Option<f64> {
     match by {
         Shown::Niceness => row.best.first().map(|best| best.niceness),
         Shown::Access => {
-            // From where any tool comes.
+            // The union of the directions of all tools.
             let mut all = vec![0u64; row.access.first()?.directions.len()];
             for access in &row.access {
                 all.iter_mut().zip(&access.directions).for_each(|(all, word)| *all |= word);
@@ -83,7 +83,7 @@ fn value(row: &Row, directions: &Directions, by: Shown) -> Option<f64> {
     }
 }
 
-/// The colours and what they mean, and the names of the views, as SVG the size of the sheet.
+/// Returns the colour scale with its labels, and the names of the views, as an SVG of the sheet's size.
 fn legend(by: Shown, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
     let (wide, tall) = (2 * SIDE, 2 * SIDE + LEGEND);
     let mut svg =
@@ -130,9 +130,9 @@ fn legend(by: Shown, [low, high]: [f64; 2], unit: Unit, any: bool) -> String {
     const STEPS: usize = 120;
     let step = (right - left) / STEPS as f64;
     for k in 0..STEPS {
-        // A little wider, so that nothing shows between.
+        // A little wider than a step, so that no gap shows.
         let place = [left + step * k as f64, step + 0.5];
-        svg += &swatch(place, colour((k as f64 + 0.5) / STEPS as f64));
+        svg += &swatch(place, colormap((k as f64 + 0.5) / STEPS as f64));
     }
     svg + "</svg>"
 }

@@ -1,15 +1,15 @@
-//! A mesh seen from far away, a colour a triangle.
+//! Orthographic rendering of a mesh, with one colour per triangle.
 
 use nalgebra::Vector3;
 use touchoff::Mesh;
 
-/// From where a part is looked at.
+/// A view of a part.
 #[derive(Clone, Copy)]
 pub(super) struct View {
     pub(super) name: &'static str,
-    /// From the part to the eye.
+    /// Direction from the part to the eye.
     pub(super) toward: [f64; 3],
-    /// What is up; not along the other.
+    /// Upward direction in the picture; not parallel to `toward`.
     pub(super) up: [f64; 3],
 }
 
@@ -27,14 +27,14 @@ pub(super) struct Image {
     pub(super) pixels: Vec<[u8; 3]>,
 }
 
-/// Every pixel is so many squared.
+/// Samples per pixel along each side, for antialiasing.
 const FINER: usize = 2;
-/// How much of a picture is left free on each side.
+/// Free margin on each side, as a fraction of the picture.
 const MARGIN: f64 = 0.04;
-/// How bright what lies in the shade is.
+/// Brightness of what lies in the shade, from 0 to 1.
 const SHADE: f64 = 0.45;
 
-/// Draws a mesh in a square of so many pixels a side on white; what is turned away is seen from behind.
+/// Draws a mesh on white, in a square of `side` by `side` pixels. Triangles that face away are seen from behind.
 pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize) -> Image {
     let toward = Vector3::from(view.toward).normalize();
     let right = Vector3::from(view.up).cross(&toward).normalize();
@@ -77,13 +77,13 @@ pub(super) fn render(mesh: &Mesh, colours: &[[u8; 3]], view: &View, side: usize)
     Image { side, pixels }
 }
 
-/// From where to where a mesh reaches along a direction.
+/// Returns the extent of a mesh along a direction.
 fn span(mesh: &Mesh, way: &Vector3<f64>) -> [f64; 2] {
     let along = mesh.vertices().iter().map(|vertex| vertex.coords.dot(way));
     along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
 }
 
-/// Visits the pixels whose middles lie in a triangle, with how near they are there.
+/// Visits the pixels whose centres lie in a triangle, with the third coordinate there.
 fn fill([a, b, c]: [[f64; 3]; 3], side: usize, mut visit: impl FnMut(usize, f64)) {
     let cross = |p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]| {
         (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])

@@ -1,7 +1,7 @@
-//! A part and tools, every triangle in every direction.
+//! `touchoff sweep`: a part and tools, every triangle in every direction.
 
 use super::{Share, percent, usual};
-use crate::arguments::Given;
+use crate::arguments::ParamArguments;
 use crate::arguments::postures::Sweep as Wanted;
 use crate::failure::Failure;
 use crate::files::{Found, length};
@@ -13,33 +13,33 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
-use touchoff::certify::Facets;
-use touchoff::postures::sweep::{Batch, Sweep, Tally};
-use touchoff::postures::{Directions, Identity, PostureMap, Row, Rules};
+use touchoff::certify::TriangleBvh;
+use touchoff::postures::sweep::{Batch, PostureSweep, SweepStats};
+use touchoff::postures::{Directions, MapIdentity, MapRow, PostureMap, Rules};
 use touchoff::{Mesh, Tool, Unit};
 
-/// What is told of all of it.
+/// Summary of a sweep.
 #[derive(Serialize)]
 struct Summary {
     triangles: usize,
     directions: usize,
     tools: Vec<OfTool>,
-    /// Whether it is known what is inside the part; otherwise its surface alone was looked at.
+    /// True if the inside of the part is known; otherwise only its surface was checked.
     inside_known: bool,
-    /// Triangles that have an acceptable posture.
+    /// Number of triangles with an acceptable posture.
     reached: usize,
-    /// Their part of the area.
+    /// Their share of the part's area.
     area: f64,
-    /// Batches that an earlier sweep had done.
+    /// Number of batches that an earlier sweep had done.
     before: usize,
     batches: usize,
     seconds: f64,
-    tally: Told,
+    tally: SweepStatsRow,
 }
 
-/// How postures of this run were decided.
+/// Number of postures of this run by outcome.
 #[derive(Serialize)]
-struct Told {
+struct SweepStatsRow {
     postures: u64,
     facing: u64,
     plain: u64,
@@ -52,18 +52,17 @@ struct Told {
 #[derive(Serialize)]
 struct OfTool {
     name: String,
-    /// Triangles that it reaches.
+    /// Number of triangles that the tool reaches.
     reached: usize,
-    /// Triangles of which it has the best posture.
+    /// Number of triangles at which it has the best posture.
     best: usize,
-    /// How far it sticks out at least: for the triangle that asks for the least, and the one that asks for
-    /// the most.
+    /// Least stick-out, in the part's unit: the smallest and the largest over the triangles.
     stickout: Option<[f64; 2]>,
 }
 
-/// What is known of the part, row by row.
+/// Counts, collected row by row.
 struct Count {
-    /// Of each triangle, whether a tool reaches it.
+    /// Per triangle, true if it has a posture.
     reached: Vec<bool>,
     tools: Vec<OfTool>,
 }
@@ -71,7 +70,7 @@ struct Count {
 impl Count {
     fn new(mesh: &Mesh, tools: &[&dyn Tool]) -> Count {
         let none = |tool: &&dyn Tool| OfTool {
-            name: tool.card().name.to_string(),
+            name: tool.info().name.to_string(),
             reached: 0,
             best: 0,
             stickout: None,
@@ -82,7 +81,7 @@ impl Count {
         }
     }
 
-    fn add(&mut self, triangle: u32, row: &Row) {
+    fn add(&mut self, triangle: u32, row: &MapRow) {
         if let Some(best) = row.best.first() {
             self.reached[triangle as usize] = true;
             self.tools[usize::from(best.tool)].best += 1;
@@ -98,18 +97,18 @@ impl Count {
     }
 }
 
-/// Sweeps, and tells what came of it.
+/// Sweeps a part with tools, and prints a summary.
 pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let inputs = wanted.tools.iter().map(Path::new).chain([&*wanted.mesh.part]);
     refuse_inputs(wanted.out.as_deref(), inputs)?;
-    let nothing = Given::default();
+    let nothing = ParamArguments::default();
     let found: Vec<Found> =
         wanted.tools.iter().map(|name| Found::find(name, &nothing)).collect::<Result<_, _>>()?;
     let tools: Vec<&dyn Tool> = found.iter().map(Found::tool).collect();
     let unit = wanted.mesh.unit;
     let mesh = part::mesh(&wanted.mesh.part, unit, "sweep")?;
-    let facets = Facets::new(&mesh);
-    part::has_inside(&facets, &wanted.mesh.part, wanted.surface_only)?;
+    let bvh = TriangleBvh::new(&mesh);
+    part::has_inside(&bvh, &wanted.mesh.part, wanted.surface_only)?;
     let rules = Rules {
         tolerance: wanted.tolerance.unwrap_or_else(|| usual(unit)),
         niceness: wanted.niceness,
@@ -117,12 +116,12 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     };
     let directions = Directions::spread(wanted.directions.into());
     let sweep =
-        Sweep::new((&mesh, &facets), tools.clone(), &directions, rules.clone(), wanted.keep)?;
+        PostureSweep::new((&mesh, &bvh), tools.clone(), &directions, rules.clone(), wanted.keep)?;
     let map = match &wanted.out {
         Some(file) => {
-            let identity = Identity::new(&mesh, &tools, rules)?
-                .directions(directions.list().to_vec())
-                .keeping(wanted.keep);
+            let identity = MapIdentity::new(&mesh, &tools, rules)?
+                .with_directions(directions.list().to_vec())
+                .with_keep(wanted.keep);
             Some(PostureMap::open(file, &identity)?)
         }
         None => None,
@@ -131,9 +130,9 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let open = left(&sweep, map.as_ref())?;
     let bar = bar(open.len());
     let start = Instant::now();
-    let mut tally = Tally::default();
+    let mut tally = SweepStats::default();
     let stopped = sweep.run(&open, |batch: Batch| {
-        tally += batch.tally;
+        tally += batch.stats;
         bar.inc(1);
         match &map {
             Some(map) => {
@@ -161,19 +160,19 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     let summary = Summary {
         triangles: mesh.triangles().len(),
         directions: directions.list().len(),
-        inside_known: facets.has_inside(),
+        inside_known: bvh.has_inside(),
         reached: reached.triangles,
         area: reached.area / all.area,
         tools: count.tools,
         before: sweep.batches() - open.len(),
         batches: sweep.batches(),
         seconds,
-        tally: Told {
+        tally: SweepStatsRow {
             postures: tally.postures(),
-            facing: tally.facing,
-            plain: tally.plain,
-            known: tally.known,
-            found: tally.found,
+            facing: tally.not_facing,
+            plain: tally.below_niceness,
+            known: tally.cached_obstruction,
+            found: tally.obstructed,
             undecided: tally.undecided,
             acceptable: tally.acceptable,
         },
@@ -189,8 +188,8 @@ pub(crate) fn sweep(wanted: &Wanted, json: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The batches that are not in the map.
-fn left(sweep: &Sweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
+/// Returns the batches that are not in the map.
+fn left(sweep: &PostureSweep<'_>, map: Option<&PostureMap>) -> Result<Vec<usize>, Failure> {
     let Some(map) = map else { return Ok((0..sweep.batches()).collect()) };
     let swept = map.swept()?;
     let is_open = |batch: &usize| sweep.triangles(*batch).iter().any(|id| !swept.contains(id));

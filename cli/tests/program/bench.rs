@@ -1,4 +1,4 @@
-//! The program as it is run here: its words, its rows, and a folder to run it in.
+//! The test bench: runs the program, reads its words and rows, and provides a folder.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ pub(super) fn rows(output: &Output) -> Vec<Value> {
     stdout(output).lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 
-/// A folder with a block, 6 × 6 × 2 under z = 0, and a path into it.
+/// A folder with a block of 6 × 6 × 2 below z = 0, and a path into it.
 pub(super) struct Bench {
     pub(super) folder: tempfile::TempDir,
 }
@@ -50,7 +50,7 @@ impl Bench {
         path.display().to_string()
     }
 
-    /// `touchoff run` with a part, a path and a tool of this folder, and more.
+    /// Runs `touchoff run` with a part, a path and a tool of this folder, and more arguments.
     pub(super) fn run(&self, part: &str, path: &str, tool: &str, more: &[&str]) -> Output {
         let place = |name: &str| self.folder.path().join(name).display().to_string();
         let (part, path) = (place(part), place(path));
@@ -63,12 +63,12 @@ impl Bench {
         touchoff(&all)
     }
 
-    /// A run that fails with status 1 and says all of `words`, and writes no row.
+    /// Asserts that a run fails with status 1, prints all of `words`, and writes no row.
     pub(super) fn refused(&self, part: &str, path: &str, tool: &str, words: &[&str]) {
         self.refused_with(1, (part, path, tool), words);
     }
 
-    /// The same of a program that cannot be taken, with status 2.
+    /// Asserts the same of a program that is refused, with status 2.
     pub(super) fn refused_program(&self, path: &str, words: &[&str]) {
         self.refused_with(2, ("block.stl", path, "D2Ball"), words);
     }
@@ -97,8 +97,8 @@ pub(super) struct Gouging {
 }
 
 impl Bench {
-    /// Writes a stand-in for the impeller and its program: a tube, and a flank pass of a 2 mm cutter about its
-    /// outer wall, 0.03 mm in it, and up to 0.15 mm about the 280th of its 361 positions.
+    /// Writes a stand-in for the impeller and its program: a tube, and a flank pass of a 2 mm cutter around its
+    /// outer wall. The cutter is 0.03 mm deep in the wall, and up to 0.15 mm near the 280th of its 361 positions.
     pub(super) fn gouging(&self) -> Gouging {
         self.part("tube.stl", &touchoff::scenes::tube());
         let mut text =
@@ -115,7 +115,8 @@ impl Bench {
     }
 }
 
-/// The shared parts and programs, if they are there: a checkout alone has none, and a stand-in is asked the same.
+/// Returns the folder of shared parts and programs, if it exists. A checkout alone has none; the stand-in then
+/// serves for the same tests.
 pub(super) fn shared() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     if !folder.is_dir() {

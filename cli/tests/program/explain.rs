@@ -1,4 +1,4 @@
-//! `touchoff explain` as a user meets it.
+//! `touchoff explain` from the user's side.
 
 use super::bench::{stderr, stdout, touchoff};
 use std::process::Output;

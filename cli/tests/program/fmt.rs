@@ -1,4 +1,4 @@
-//! `touchoff fmt` as a user meets it.
+//! `touchoff fmt` from the user's side.
 
 use super::bench::{stderr, stdout};
 use std::io::Write;
@@ -100,7 +100,7 @@ fn names_that_are_no_utf8_are_names() {
         let output = output.expect("the program runs");
         assert!(output.status.success(), "{command}: {}", stderr(&output));
     }
-    // The tool is found; the part is what is missing.
+    // The tool is found; only the part is missing.
     let output = Command::new(env!("CARGO_BIN_EXE_touchoff"))
         .args(["verify", "--part", "none.stl", "--unit", "mm", "--program", "none.apt", "--tool"])
         .arg(&file)

@@ -1,4 +1,4 @@
-//! The haptic loop as a user starts it.
+//! `touchoff haptic` from the user's side.
 
 use crate::bench::{Bench, rows, stderr, stdout, touchoff};
 use std::process::Output;
@@ -47,7 +47,7 @@ fn a_hand_is_told_of_in_words() {
     }
 }
 
-/// A process may have so many more blocks in a file, and not one more.
+/// A limit on the size of files stands for a full disk.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_disk_that_is_full_is_told_when_it_is() {
@@ -70,7 +70,7 @@ fn a_disk_that_is_full_is_told_when_it_is() {
     let told = lines.iter().position(|line| line.contains("nothing is recorded from here on"));
     let told = told.unwrap_or_else(|| panic!("{lines:?}"));
     assert!(lines[told].contains("record.csv") && lines[told].contains("File too large"));
-    // The loop goes on: it shows where it is after that too.
+    // The loop goes on, and still shows its state.
     assert!(lines[told..].iter().any(|line| line.contains("  tip ")), "{lines:?}");
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1), "{lines:?}");
@@ -128,7 +128,7 @@ fn a_session_that_is_interrupted_keeps_its_record() {
             .spawn()
             .expect("the program runs");
         let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
-        // It runs when it shows where it is.
+        // The session runs once it shows its state.
         let shown = lines.by_ref().map_while(Result::ok).find(|line| line.contains("  tip "));
         assert!(shown.is_some());
         let sent =

@@ -1,4 +1,4 @@
-//! The program as a user meets it: what it prints, and how it refuses.
+//! The program from the user's side: its output and its refusals.
 
 mod bench;
 mod explain;
@@ -59,7 +59,7 @@ fn what_is_proved_stands_in_each_row() {
         let more = ["--json", "--certify", tolerance, "--points", points];
         bench.run("block.stl", "path.csv", "D2Ball", &more)
     };
-    // Of a cloud of three points none is likely to be near; the triangles are all there.
+    // A cloud of three points is unlikely to have one near the tool, but the triangles are all there.
     let output = run("1e-9", "3");
     let found = rows(&output);
     let number = |value: &Value| value.as_f64().expect("a number");
@@ -74,7 +74,7 @@ fn what_is_proved_stands_in_each_row() {
     for wrong in ["-1", "NaN", "deep"] {
         assert_eq!(run(wrong, "3").status.code(), Some(2), "{wrong}");
     }
-    // Without a profile, by how fast its depth changes.
+    // A tool without a profile is certified by how fast its depth changes.
     let field = bench.run("block.stl", "path.csv", "Fig73", &["--certify", "1e-2"]);
     assert!(stderr(&field).contains("proved: 1 of 2 poses in contact"), "{}", stderr(&field));
 }
@@ -315,16 +315,16 @@ fn paths_that_are_none_are_refused() {
     }
 }
 
-/// The rows of a program that a 2 mm ball cutter follows.
-fn felt(part: &str, path: &str, points: &str) -> Vec<Value> {
+/// Returns the rows of a 2 mm ball cutter along a program.
+fn evaluation(part: &str, path: &str, points: &str) -> Vec<Value> {
     rows(&touchoff(&[
         "run", "--part", part, "--unit", "mm", "--tool", "D2Ball", "--path", path, "--points",
         points, "--json",
     ]))
 }
 
-/// The stand-in gouges by 0.03 and, about its 280th position, by up to 0.15. The impeller's program does too: the
-/// ball by up to about 0.03, the flank by about 0.15.
+/// The stand-in gouges by 0.03 mm, and near its 280th position by up to 0.15 mm. The impeller's program gouges too:
+/// the ball by up to about 0.03 mm, the flank by about 0.15 mm.
 #[test]
 fn a_flank_pass_is_felt_to_gouge() {
     let deepest = |surface: &str, rows: &[Value]| {
@@ -334,10 +334,10 @@ fn a_flank_pass_is_felt_to_gouge() {
         |rows: &[Value]| rows.iter().filter(|row| row["depth"].as_f64() > Some(0.01)).count();
     let bench = Bench::new();
     let made = bench.gouging();
-    let rows = felt(&made.part, &made.program, "200000");
+    let rows = evaluation(&made.part, &made.program, "200000");
     assert_eq!((rows.len(), gouging(&rows)), (363, 361));
     for surface in ["ball", "flute", "shank"] {
-        // Two positions of rapid traverse are before and after; points lie some 0.06 apart.
+        // The pass lies between two positions in rapid traverse; points are some 0.06 mm apart.
         let [before, near] = [&rows[1..240], &rows[270..293]].map(|rows| deepest(surface, rows));
         assert!((0.02..0.031).contains(&before), "{surface}: {before}");
         assert!((0.14..0.151).contains(&near), "{surface}: {near}");
@@ -345,7 +345,7 @@ fn a_flank_pass_is_felt_to_gouge() {
     if let Some(data) = shared() {
         let place = |name: &str| data.join(name).display().to_string();
         let rows =
-            felt(&place("parts/impeller.stl"), &place("paths/impeller_flank.apt"), "1000000");
+            evaluation(&place("parts/impeller.stl"), &place("paths/impeller_flank.apt"), "1000000");
         assert_eq!(rows.len(), 1302);
         let ball = deepest("ball", &rows);
         assert!((0.025..0.045).contains(&ball), "{ball}");
@@ -391,7 +391,7 @@ fn files_are_drawn() {
     assert_eq!(touchoff(&["draw", &bad]).status.code(), Some(1));
 }
 
-/// A solid without an axis feels its spin: rows of an axis do not place it, quaternions do.
+/// Spin matters for a solid without an axis: rows with an axis do not place it, quaternions do.
 #[test]
 fn a_solid_wants_full_poses() {
     let bench = Bench::new();

@@ -1,11 +1,12 @@
-//! `touchoff bench`: a row per method, for the built-in part and for one's own.
+//! `touchoff bench`: one row per method, for the built-in part and for the user's own.
 
 use super::bench::{rows, stderr, touchoff};
 use serde_json::Value;
 use touchoff::Unit;
 use touchoff::mesh::shapes;
 
-/// Errors fall with points, no depth is off by more than its bound, and what is certified is within its tolerance.
+/// Errors fall with the number of points, no depth is off by more than its bound, and certified depths are within
+/// their tolerance.
 #[test]
 fn clouds_are_judged_by_certified_depth() {
     let rows = rows(&touchoff(&["bench", "--quick", "--json"]));
@@ -28,7 +29,7 @@ fn clouds_are_judged_by_certified_depth() {
     assert!(certified.iter().all(|row| row["points"].is_null() && row["err_force"].is_null()));
 }
 
-/// A block of 6 by 6 by 2, and a ball with a diameter of 2 that goes 0.25 deep into its top: all answers are known.
+/// A block of 6 by 6 by 2, and a ball of diameter 2 that goes 0.25 deep into its top: all answers are known.
 #[test]
 fn a_part_of_ones_own_is_measured() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! What becomes of the program where its output cannot be written, or must not be.
+//! Outputs that cannot be written, or must not be.
 
 use crate::bench::{Bench, stderr, touchoff};
 use std::fs;
@@ -6,7 +6,7 @@ use std::io;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// 0.5 deep in the block, and never outside of it again.
+/// A program that cuts 0.5 deep through the block, and one that stays clear of it.
 const GOUGES: &str =
     "UNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\nGOTO/9,0,-0.5,0,0,1\nFINI\n";
 const CLEAR: &str = "UNITS/MM\nGOTO/-9,0,1,0,0,1\nGOTO/9,0,1,0,0,1\nFINI\n";
@@ -16,7 +16,7 @@ const GOOD: &str = "tool Good {
 }
 ";
 
-/// The program's exit status and messages, its standard output going to `out`.
+/// Runs the program with its standard output going to `out`, and returns its exit status and messages.
 fn into(out: impl Into<Stdio>, arguments: &[&str]) -> (Option<i32>, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_touchoff"))
         .args(arguments)
@@ -27,14 +27,14 @@ fn into(out: impl Into<Stdio>, arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), stderr(&output))
 }
 
-/// A pipe that nobody reads any more.
+/// Returns a pipe whose reader is closed.
 fn closed() -> io::PipeWriter {
     let (reader, writer) = io::pipe().expect("a pipe");
     drop(reader);
     writer
 }
 
-/// Commands that write something on standard output, and their exit statuses.
+/// Returns commands that write to standard output, and their exit statuses.
 fn commands(bench: &Bench) -> Vec<(Vec<String>, i32)> {
     let place = |name: &str| bench.folder.path().join(name).display().to_string();
     bench.write("gouges.apt", GOUGES);
@@ -109,7 +109,7 @@ fn a_full_disk_under_standard_output_is_an_error() {
     }
 }
 
-/// Runs the program with room for that many blocks of 512 bytes in each file.
+/// Runs the program with room for `blocks` blocks of 512 bytes in each file.
 #[cfg(target_os = "linux")]
 fn with_room(blocks: u32, arguments: &[&str]) -> Output {
     // The signal that would end the program is ignored, so that writing fails as on a full disk.
@@ -119,7 +119,7 @@ fn with_room(blocks: u32, arguments: &[&str]) -> Output {
     Command::new("sh").args(shell).args(arguments).output().expect("a shell")
 }
 
-/// Names in a folder, and what is in these files.
+/// Returns the names of the files in a folder, and their contents.
 fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder).expect("a folder").flatten();
     let mut all: Vec<(String, Vec<u8>)> = entries
@@ -133,7 +133,7 @@ fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// A swept map of the block, in the file `block.postures`.
+/// Sweeps the block into the map `block.postures`, and returns its path.
 fn swept(bench: &Bench) -> String {
     let place = |name: &str| bench.folder.path().join(name).display().to_string();
     let (part, map) = (place("block.stl"), place("block.postures"));
@@ -200,7 +200,7 @@ fn a_full_disk_leaves_old_files_and_no_others() {
         assert!(said.contains("File too large") && said.contains("error: "), "{command:?}: {said}");
         assert!(before() == kept, "{command:?}: something is changed or left");
     }
-    // A link to a device is written to as such.
+    // A link to a device is followed, and the device written to.
     #[cfg(unix)]
     {
         let link = bench.folder.path().join("full.svg");

@@ -1,4 +1,4 @@
-//! Parts as a user brings them, and what is said of their points.
+//! Parts as users bring them, and the messages about their points.
 
 use crate::bench::{Bench, rows, stderr, touchoff};
 use serde_json::Value;
@@ -32,7 +32,7 @@ fn a_tolerance_picks_as_many_points_as_it_takes() {
     assert_eq!(both.status.code(), Some(2));
 }
 
-/// What would take too many points is proved; what is only to be saved cannot be.
+/// A tolerance that needs too many points is proved in a run; for points that are only saved it is refused.
 #[test]
 fn a_fine_tolerance_is_proved() {
     let bench = Bench::new();
@@ -76,7 +76,7 @@ fn points_are_spread_as_is_asked_for() {
 fn points_without_triangles_are_felt_and_their_error_is_called_an_estimate() {
     let bench = Bench::new();
     let mesh = Mesh::read_stl(bench.folder.path().join("block.stl"), Unit::Millimetre);
-    let cloud = Cloud::blue(&mesh.expect("the block"), 3_000, 1).expect("a cloud");
+    let cloud = Cloud::blue_noise(&mesh.expect("the block"), 3_000, 1).expect("a cloud");
     let mut ply = String::from("ply\nformat ascii 1.0\nelement vertex 3000\n");
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
         ply += &format!("property double {name}\n");
@@ -107,14 +107,14 @@ fn saved_parts_are_felt_as_they_were() {
     let output = sample("block.touchoff", &["--points", "5000"]);
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stderr(&output).contains("5000 points"), "{}", stderr(&output));
-    let felt = |part: &str| {
+    let evaluation = |part: &str| {
         let mut found = rows(&run(&bench, part, &["--points", "5000"]));
         for row in &mut found {
             row["ns"] = Value::Null;
         }
         found
     };
-    assert_eq!(felt("block.touchoff"), felt("block.stl"));
+    assert_eq!(evaluation("block.touchoff"), evaluation("block.stl"));
     let refused = sample("block.part", &[]);
     assert!(stderr(&refused).contains("block.touchoff` instead of"), "{}", stderr(&refused));
     let nowhere = sample("no/such/folder/block.touchoff", &[]);

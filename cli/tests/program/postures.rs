@@ -1,4 +1,4 @@
-//! Sweeps, maps and paths: what they print and write, and what is wrong with them said.
+//! Sweeps, maps and paths: their output, their files and their error messages.
 
 use crate::bench::{Bench, stderr, stdout, touchoff};
 use serde_json::Value;
@@ -7,7 +7,7 @@ use touchoff::Unit;
 use touchoff::mesh::shapes;
 use touchoff::postures::PostureMap;
 
-/// A tube, and where a map of it goes.
+/// A tube, and the file for its map.
 struct Tube {
     bench: Bench,
     part: String,
@@ -59,10 +59,10 @@ fn a_sweep_fills_a_map_that_becomes_a_program_without_findings() {
     assert_eq!(told["reached"], 384, "a ball of 1 mm comes everywhere in a tube of 12: {told}");
     let [slim, stout] = [0, 1].map(|k: usize| &told["tools"][k]);
     assert_eq!((&slim["reached"], &slim["stickout"]), (&384.into(), &Value::Null), "{told}");
-    // It is 30 out of its nut, of which 18 cut.
+    // The stout tool sticks 30 mm out of its nut, of which 18 mm cut.
     assert_eq!((&stout["reached"], &stout["stickout"][0]), (&384.into(), &18.0.into()), "{told}");
 
-    // Nothing is done twice, and what is told is the same.
+    // Nothing is done twice, and the summary is the same.
     let again = object(&tube.sweep("D2Ball,BallEr16", &["--json"]));
     assert_eq!((&again["before"], &again["tally"]["postures"]), (&again["batches"], &0.into()));
     assert_eq!((&again["tools"], &again["area"]), (&told["tools"], &told["area"]));
@@ -179,7 +179,7 @@ fn a_map_that_is_damaged_or_in_use_is_refused() {
     assert!(tube.sweep("D2Ball", &[]).status.success());
     let open = PostureMap::resume(&tube.map).expect("a map");
     refused(&tube.sweep("D2Ball", &[]), &["another process"]);
-    // To look at it is another matter.
+    // Reading it is still possible.
     let shown = touchoff(&["map", &tube.map]);
     assert!(stdout(&shown).contains("384 of 384 triangles"), "{}", stderr(&shown));
     drop(open);

@@ -1,4 +1,4 @@
-//! Certificates of the library, stages of a tool, and how severe a file's faults are.
+//! Certificates of the library, stages of a tool, and exit statuses by severity.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -22,8 +22,8 @@ fn library() -> Vec<PathBuf> {
     tools
 }
 
-/// After a change of the proofs: `INSTA_UPDATE=always cargo test -p touchoff-cli --test program`, and
-/// read the difference.
+/// After a change of the proofs, run `INSTA_UPDATE=always cargo test -p touchoff-cli --test program` and read the
+/// difference.
 #[test]
 fn certificates_of_the_library() {
     let output = touchoff(&["check"], &library());

@@ -1,4 +1,4 @@
-//! Programs that are checked: a line or an object a finding, and exit statuses for scripts.
+//! `touchoff verify`: one line or object per finding, and exit statuses for scripts.
 
 use crate::bench::{Bench, shared, stderr, stdout, touchoff};
 use nalgebra::Point3;
@@ -7,7 +7,8 @@ use std::process::Output;
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Unit};
 
-/// Clear, then 0.5 into the block between two points that are clear of it, then out in rapid traverse.
+/// Starts clear, goes 0.5 deep into the block between two points that are clear of it, and leaves in rapid
+/// traverse.
 const PROGRAM: &str = "PARTNO/BLOCK\nUNITS/MM\nGOTO/-9,0,3,0,0,1\nGOTO/-9,0,-0.5,0,0,1\n\
                        GOTO/9,0,-0.5,0,0,1\nRAPID\nGOTO/9,0,3,0,0,1\nFINI\n";
 
@@ -64,7 +65,7 @@ fn a_finding_is_an_object_for_programs() {
     for key in ["tip", "axis", "point"] {
         assert_eq!(row[key].as_array().map(Vec::len), Some(3), "{key} of {row}");
     }
-    // A margin: the shank begins 5 up, and so stays 4.5 above the block's top.
+    // A margin: the shank begins 5 above the tip, so it stays 4.5 above the block's top.
     let found = rows(&["--allow", "ball=inf", "--allow", "shank=-4.6"]);
     let [row] = &found[..] else { panic!("{found:?}") };
     assert_eq!((&row["kind"], &row["surface"]), (&"near".into(), &"shank".into()));
@@ -86,7 +87,7 @@ fn a_tool_file_takes_its_values() {
         let all = [&["--allow", "ball=inf", "--allow", "shank=-1"], more].concat();
         verify(&bench, "block.apt", "own.tool", &all).status.code()
     };
-    // The shank begins a radius up, 0.5 above the block where the ball is as deep in it.
+    // The shank begins one radius above the tip: 0.5 above the block, in which the ball is as deep.
     assert_eq!(status(&[]), Some(1));
     assert_eq!(status(&["--set", "D=6"]), Some(0));
 }
@@ -134,7 +135,7 @@ fn motions_of_a_solid_are_proved_with_their_spin() {
     assert_eq!(deep["kind"], "deep");
     assert!((deep["depth"][0].as_f64().expect("a number") - 0.25).abs() < 2e-3, "{deep}");
     assert_eq!(deep["quaternion"].as_array().map(Vec::len), Some(4), "{deep}");
-    // Half a turn either way.
+    // Half a turn is ambiguous: either way is as short.
     bench.write("half.csv", "0,0,9,0,0,0,1\n0,0,9,0,0,1,0\n");
     let half = verify(&bench, "half.csv", "Block", &["--anyway"]);
     assert!(
@@ -181,7 +182,7 @@ fn words_that_could_move_the_tool_are_refused() {
     assert!(stderr(&output).contains(": COOLNT, FEDRAT (2), PARTNO"), "{}", stderr(&output));
 }
 
-/// Nothing compared, no verdict.
+/// A program that is compared with nothing has no verdict.
 #[test]
 fn a_program_that_never_comes_near_is_not_verified() {
     let bench = Bench::new();
@@ -203,12 +204,12 @@ fn a_program_that_never_comes_near_is_not_verified() {
     }
     let output = verify(&bench, "far.apt", "D2Ball", &["--anyway"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    // Both ends are far away; the way between them is not.
+    // Both ends are far away, but the motion between them is not.
     bench.write("across.csv", "-900,0,0.5,0,0,1\n900,0,0.5,0,0,1\n");
     let output = verify(&bench, "across.csv", "D2Ball", &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(stderr(&output).contains("nearest approach: 0."), "{}", stderr(&output));
-    // Nothing can be so deep that it would be found.
+    // No depth can be large enough to be a finding.
     for more in [&["--tolerance", "10"][..], &["--resolution", "10"]] {
         let output = verify(&bench, "across.csv", "D2Ball", more);
         let said = stderr(&output);
@@ -221,7 +222,7 @@ fn a_program_that_never_comes_near_is_not_verified() {
     assert!(stderr(&output).contains("one.csv:1: holds one position"), "{}", stderr(&output));
 }
 
-/// Of a mesh without an inside no verdict is given but of its surface.
+/// A mesh without an inside has a verdict on its surface only.
 #[test]
 fn a_part_without_an_inside_is_not_verified() {
     let bench = Bench::new();
@@ -291,7 +292,7 @@ fn a_buried_tool_is_said_to_be_inside() {
     assert!(stdout(&output).contains("wholly inside the material"), "{}", stdout(&output));
 }
 
-/// The depths of all findings of a program at a tolerance of 0.01 mm.
+/// Returns the depths of all findings of a program at a tolerance of 0.01 mm.
 fn found(part: &str, program: &str) -> Vec<f64> {
     let all = ["verify", "--part", part, "--unit", "mm", "--tool", "D2Ball", "--program", program];
     let output = touchoff(&[&all[..], &["--tolerance", "0.01", "--json"]].concat());

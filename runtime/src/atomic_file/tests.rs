@@ -42,7 +42,7 @@ fn what_a_killed_process_left_is_removed_and_nothing_else() {
     let found = names(folder.path());
     assert_eq!(found.len(), 5, "{found:?}");
     assert!(kept.iter().all(|name| found.contains(&(*name).to_owned())), "{found:?}");
-    // The one that is being written is not taken for abandoned.
+    // The file being written is not treated as abandoned.
     live.commit().expect("written");
     assert!(place("b").exists());
 }
@@ -61,7 +61,7 @@ fn permissions_are_those_of_the_old_file_or_of_any_new_one() {
     AtomicFile::write(&new, "x").expect("written");
     assert_eq!(mode(&new), 0o604);
     fs::set_permissions(&new, fs::Permissions::from_mode(0o400)).expect("set");
-    // To some users everything is permitted.
+    // Some users, such as root, may write every file.
     if OpenOptions::new().write(true).open(&new).is_err() {
         let refused = AtomicFile::create(&new).expect_err("not to be written");
         assert_eq!(refused.kind(), io::ErrorKind::PermissionDenied);
@@ -75,7 +75,7 @@ fn links_and_devices_are_written_as_what_they_are() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     fs::create_dir(place("in")).expect("a folder");
-    // To a file that is there, over two links, and to one that is not yet there.
+    // Links to an existing file, over two links, and to a file that does not exist yet.
     for (link, to) in [("one", "in/two"), ("in/two", "file"), ("open", "in/later")] {
         symlink(to, place(link)).expect("a link");
     }

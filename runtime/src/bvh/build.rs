@@ -1,20 +1,20 @@
-//! From items to the levels of boxes above them.
+//! Construction: the kd order of items, and the levels of boxes above them.
 
 use super::{Boxes, Frame, WIDTH};
-use crate::cores;
+use crate::parallel;
 use nalgebra::Point3;
 
-/// Fewer items are put in order by one core.
+/// Subtrees whose left half has fewer items are sorted on one core.
 const ALONE: usize = 1 << 12;
 
-/// Something on its way to a leaf, by its place in the frame.
+/// An item to be sorted: its representative point in the tree's frame, and its index.
 #[derive(Clone, Copy)]
-pub(crate) struct Item {
+pub(crate) struct BuildItem {
     pub(crate) at: [f64; 3],
     pub(crate) index: u32,
 }
 
-/// A box by its ends.
+/// A box as its lowest and highest corners.
 #[derive(Clone, Copy)]
 pub(crate) struct Bounds {
     pub(crate) low: [f64; 3],
@@ -22,6 +22,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
+    /// Returns the bounding box of points; without any, low is +∞ and high is -∞.
     pub(crate) fn of(places: impl IntoIterator<Item = [f64; 3]>) -> Bounds {
         let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
         for place in places {
@@ -33,12 +34,12 @@ impl Bounds {
         bounds
     }
 
-    /// About boxes.
+    /// Returns the bounding box of boxes.
     pub(crate) fn around(boxes: &[Bounds]) -> Bounds {
         Bounds::of(boxes.iter().flat_map(|bounds| [bounds.low, bounds.high]))
     }
 
-    /// The squared distance of a place; 0 inside.
+    /// Returns the squared distance of a point from the box; 0 inside.
     pub(crate) fn away(&self, at: [f64; 3]) -> f64 {
         let mut squared = 0.0;
         for (axis, at) in at.into_iter().enumerate() {
@@ -58,23 +59,23 @@ impl Bounds {
 }
 
 impl Frame {
-    /// The frame of what has these places.
+    /// Returns the frame of a set of points.
     pub(crate) fn around(places: impl IntoIterator<Item = [f64; 3]>) -> Frame {
         let whole = Bounds::of(places);
         let scale = power_of_two(whole.size());
         let origin = Point3::from([0, 1, 2].map(|axis| whole.middle(axis)));
-        // A box about boxes is a little larger than what is in them.
+        // A box around boxes is slightly larger than their contents.
         let size = outward(whole.size() / scale * (1.0 + 1e-6));
         Frame { origin, scale, size }
     }
 
-    /// A place as the frame has it.
+    /// Returns a point in this frame and its unit.
     pub(crate) fn inside(&self, place: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| (place[axis] - self.origin[axis]) / self.scale)
     }
 }
 
-/// From the root's children down to those boxes, side by side.
+/// Builds all levels over leaf boxes, from the root's children down to the given boxes.
 pub(crate) fn levels(mut boxes: Vec<Bounds>) -> Vec<Vec<Boxes>> {
     let mut levels = Vec::new();
     loop {
@@ -89,13 +90,13 @@ pub(crate) fn levels(mut boxes: Vec<Bounds>) -> Vec<Vec<Boxes>> {
     levels
 }
 
-/// The power of two next to a size; 1 for a single point.
+/// Returns the power of two next above a size, or 1 for a single point. Exponents are limited to ±1000.
 fn power_of_two(size: f64) -> f64 {
     if size > 0.0 { 2f64.powi((size.log2().ceil() as i32).clamp(-1000, 1000)) } else { 1.0 }
 }
 
-/// Kd order: across the longest side, the left part a power of two of full leaves.
-pub(crate) fn order(items: &mut [Item]) {
+/// Sorts items into kd order: across the longest side, with a power of two of full leaves on the left.
+pub(crate) fn order(items: &mut [BuildItem]) {
     if items.len() <= WIDTH {
         return;
     }
@@ -104,7 +105,7 @@ pub(crate) fn order(items: &mut [Item]) {
     let bounds = Bounds::of(items.iter().map(|item| item.at));
     let size = |axis: usize| bounds.high[axis] - bounds.low[axis];
     let axis = (0..3).fold(0, |best, axis| if size(axis) > size(best) { axis } else { best });
-    // Equal coordinates are told apart by the index, so the order is the cloud's alone.
+    // Equal coordinates are ordered by index, so the order depends on the items alone.
     items.select_nth_unstable_by(left, |a, b| {
         a.at[axis].total_cmp(&b.at[axis]).then(a.index.cmp(&b.index))
     });
@@ -113,7 +114,7 @@ pub(crate) fn order(items: &mut [Item]) {
         order(low);
         order(high);
     } else {
-        cores::both(|| order(low), || order(high));
+        parallel::both(|| order(low), || order(high));
     }
 }
 
@@ -126,7 +127,7 @@ fn side_by_side(bounds: &[Bounds]) -> Boxes {
 }
 
 impl Boxes {
-    /// Puts a box, or none if it has no inside, at its place.
+    /// Stores a box in a lane. An empty box (low above high) becomes an absent one.
     pub(crate) fn put(&mut self, lane: usize, bounds: &Bounds) {
         for axis in 0..3 {
             let [low, high] = [bounds.low[axis], bounds.high[axis]];
@@ -138,7 +139,7 @@ impl Boxes {
     }
 }
 
-/// The box about boxes as they are stored.
+/// Returns the bounding box of sixteen stored boxes.
 pub(crate) fn around(boxes: &Boxes) -> Bounds {
     let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
     for axis in 0..3 {
@@ -153,7 +154,7 @@ pub(crate) fn around(boxes: &Boxes) -> Bounds {
     bounds
 }
 
-/// The nearest `f32` that is no smaller.
+/// Returns the smallest `f32` that is at least `value`.
 pub(crate) fn outward(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) < value { near.next_up() } else { near }

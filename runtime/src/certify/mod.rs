@@ -1,70 +1,74 @@
-//! What lies between the points of a cloud: how deep a tool is in a part's triangles, proved.
+//! Certified interference of a tool and a part's triangles: penetration depth, clearance and motions, with proved
+//! bounds.
 //!
 //! ```text
 //! pose ──look──▶ nodes ──hull──▶ triangles ──batch──▶ eight at a time ──facet, course──▶ deepest
 //!                 f32              f32                  f64                 f64
 //! ```
 //!
-//! A [`Certifier`] searches a tree of triangles, [`Facets`], by branch and bound: what cannot be deeper
-//! than what was found is left. Depth is that of the tool's profile, the distance to its surface; bounds
-//! come from its pieces (`hull`), and where they leave a triangle open, from its edges and the one line
-//! in it on which depth can be greatest (`facet`, `course`).
+//! A point cloud says nothing about the surface between its points, so a [`Certifier`] searches the triangles
+//! themselves. It traverses a bounding volume hierarchy, [`TriangleBvh`], by branch and bound, and prunes what
+//! cannot be deeper than the deepest point found so far. Depth is the distance to the surface that the tool's
+//! profile describes. Bounds come from the segments of the profile (`bounds/hull`). Where they leave a triangle
+//! undecided, its edges are searched, and the one line in it on which depth can be greatest (`triangle/local`,
+//! `triangle/line_search`).
 //!
-//! **Rounding.** Every place is known to within a part in 2^46 of the tool's and the part's size, and
-//! answers are widened by that. Thin triangles are known less well: their *skew* is added. `rounding` derives
-//! both.
+//! **Rounding.** The coordinates of a point are known to within 2^-46 of the sizes of tool and part together, and
+//! every answer is widened by that. The bound is larger for thin triangles: their *skew* is added. `rounding`
+//! derives both.
 
-mod along;
-mod answer;
-mod apart;
-mod body;
 mod bounds;
+mod clearance;
 mod containment;
+mod motion_depth;
 mod part;
-mod question;
+mod query;
 mod rounding;
+mod search;
 mod space;
 mod sweep;
+mod tool_model;
 mod triangle;
-mod work;
+mod verdict;
 
-pub use answer::{
-    AllowanceError, Along, Clear, Clearance, Penetration, Sweep, Uncertified, Witness,
-};
 #[cfg(feature = "postures")]
 pub(crate) use containment::Containment;
-pub use part::Facets;
 #[cfg(feature = "postures")]
 pub(crate) use part::Location;
+pub use part::TriangleBvh;
+pub use verdict::{
+    AllowanceError, Clearance, MotionDepth, MotionVerdict, NotCertifiable, Penetration,
+    PoseVerdict, Witness,
+};
 
 use crate::bvh::QuerySetup;
 use crate::pose::Pose;
-use crate::tool::{Card, Tool};
-use apart::Apart;
-use body::Body;
-use body::field::Field;
-use body::owners::Owners;
-use body::section::Section;
+use crate::tool::{Tool, ToolInfo};
+use clearance::ClearanceQuery;
 #[cfg(not(feature = "postures"))]
 use containment::Containment;
-use containment::Cores;
+use containment::CorePoints;
 use fearless_simd::Level;
 #[cfg(feature = "postures")]
 use nalgebra::{Point3, Vector3};
-use question::Question;
+use query::DepthQuery;
+use search::{QuerySetting, SearchState};
 use std::slice;
 use sweep::Sweeper;
-use triangle::course::Goal;
-use work::{Setting, Work};
+use tool_model::ToolModel;
+use tool_model::field::Field;
+use tool_model::owners::Owners;
+use tool_model::section::Section;
+use triangle::line_search::Goal;
 
-/// A tool beside a part's triangles, ready to be asked what is proved at one pose after another.
+/// A tool at a part's triangles: it answers queries at one pose after another with proved bounds.
 ///
-/// Memory is kept between questions, and each begins at the triangle that the last one ended at. What
-/// is asked about is the tool's surface as its profile draws it.
+/// Memory is kept between queries, and each query begins at the triangle at which the last one ended. The tool is
+/// represented by its profile, or by its depth function if it has no profile.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
-/// use touchoff::certify::{Certifier, Facets};
+/// use touchoff::certify::{Certifier, TriangleBvh};
 /// use touchoff::{Pose, Unit, mesh::shapes};
 ///
 /// touchoff::tool! {
@@ -81,180 +85,187 @@ use work::{Setting, Work};
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let low = Point3::new(-20.0, -20.0, -10.0);
 /// let block = shapes::cuboid(low, Point3::new(20.0, 20.0, 0.0), Unit::Millimetre)?;
-/// let facets = Facets::new(&block);
-/// let mut certifier = Certifier::new(&facets, &Ball)?;
+/// let bvh = TriangleBvh::new(&block);
+/// let mut certifier = Certifier::new(&bvh, &Ball)?;
 /// let pose = Pose::from_axis(Point3::new(0.3, 0.1, -0.5), Vector3::z())?;
 /// let [low, high] = certifier.deepest(&pose, 1e-9).depth;
 /// assert!(low <= 0.5 && 0.5 <= high && high - low < 2e-9);
 /// # Ok(()) }
 /// ```
 pub struct Certifier<'a> {
-    setting: Setting<'a>,
-    card: &'a Card,
-    /// How deep the tool is, whichever surface it is.
-    whole: Question,
-    /// Of each surface, once it was asked for.
-    each: Vec<Option<Question>>,
-    /// Of each surface, how deep it may be in the part's unit, and what to ask for that, if anything was
-    /// allowed.
+    setting: QuerySetting<'a>,
+    info: &'a ToolInfo,
+    /// The query for the depth of the whole tool.
+    whole: DepthQuery,
+    /// The query for the depth of each surface, made on first use.
+    each: Vec<Option<DepthQuery>>,
+    /// The allowance of each surface in the part's unit, and the queries that check them; `None` if no allowance was
+    /// set.
     allowed: Vec<f64>,
-    rules: Option<Vec<Question>>,
-    /// Points of what may not be in the part: by the rules, of all of the tool, and of each surface with how
-    /// deep it may be, in the tool's unit.
-    cores: Cores,
-    whole_cores: Cores,
-    each_cores: Vec<Option<(f64, Cores)>>,
-    /// Of the surfaces whose distance was asked for last, what to ask for it.
-    apart: Option<Apart>,
+    rules: Option<Vec<DepthQuery>>,
+    /// Points of the restricted interior of the tool, the region that may not be inside the part: by the allowances,
+    /// of the whole tool, and of each surface with its allowed depth in the tool's unit.
+    cores: CorePoints,
+    whole_cores: CorePoints,
+    each_cores: Vec<Option<(f64, CorePoints)>>,
+    /// The clearance query for the surfaces of the last call.
+    apart: Option<ClearanceQuery>,
     budget: u32,
-    work: Work,
+    work: SearchState,
     sweeper: Sweeper,
 }
 
 impl<'a> Certifier<'a> {
-    /// A certifier of a tool beside a part.
+    /// Creates a certifier for a tool at a part.
     ///
     /// # Errors
-    /// Where neither the distance from the tool is known nor how fast its depth changes; see
-    /// [`Uncertified`].
-    pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Certifier<'a>, Uncertified> {
-        let (card, level) = (tool.card(), Level::new());
-        let length = card.unit.to(facets.unit());
-        let setup = QuerySetup::new(&facets.frame, card, length);
-        let part = f64::from(facets.frame.size) * facets.frame.scale / length;
-        let error = rounding::place(card, part);
-        let (body, error) = match Section::new(card, error) {
-            Some(section) => (Body::Profile(section), error),
+    /// [`NotCertifiable`] if the tool has no profile and no bound is proved on the rate at which its depth changes.
+    pub fn new(bvh: &'a TriangleBvh, tool: &'a dyn Tool) -> Result<Certifier<'a>, NotCertifiable> {
+        let (info, level) = (tool.info(), Level::new());
+        let length = info.unit.factor_to(bvh.unit());
+        let setup = QuerySetup::new(&bvh.frame, info, length);
+        let part = f64::from(bvh.frame.size) * bvh.frame.scale / length;
+        let error = rounding::point_error_bound(info, part);
+        let (body, error) = match Section::new(info, error) {
+            Some(section) => (ToolModel::Profile(section), error),
             None => match Field::new(tool, level) {
                 Some(field) => {
                     let error = field.error + field.steep * error;
-                    (Body::Field(field), error)
+                    (ToolModel::Field(field), error)
                 }
-                None => return Err(Uncertified { tool: card.name.to_string() }),
+                None => return Err(NotCertifiable { tool: info.name.to_string() }),
             },
         };
-        let surfaces = card.surfaces.len();
-        let (size, exact) = (card.size(), card.exact());
-        let setting = Setting { facets, body, size, exact, setup, level, length, error };
-        let whole = setting.question(0.0, |_| true);
+        let surfaces = info.surfaces.len();
+        let (size, exact) = (info.size(), info.is_exact());
+        let setting = QuerySetting { bvh, body, size, exact, setup, level, length, error };
+        let whole = setting.depth_query(0.0, |_| true);
         Ok(Certifier {
             whole,
             each: (0..surfaces).map(|_| None).collect(),
             allowed: vec![0.0; surfaces],
             rules: None,
-            cores: Cores::whole(card),
-            whole_cores: Cores::whole(card),
+            cores: CorePoints::whole(info),
+            whole_cores: CorePoints::whole(info),
             each_cores: (0..surfaces).map(|_| None).collect(),
             apart: None,
             budget: 1 << 20,
-            work: Work::default(),
+            work: SearchState::default(),
             sweeper: Sweeper::default(),
-            card,
+            info,
             setting,
         })
     }
 
-    /// With a budget: how many nodes, triangles and intervals of edges a question may look at. When it
-    /// is spent, the answer is what is known until then. The default is a million.
+    /// Sets the budget of a query: the number of nodes, triangles and intervals of edges that it may examine. When
+    /// the budget is spent, the answer is the bound proved until then. The default is 2^20.
     #[must_use]
-    pub fn budget(mut self, budget: u32) -> Certifier<'a> {
+    pub fn with_budget(mut self, budget: u32) -> Certifier<'a> {
         self.budget = budget;
         self
     }
 
-    /// With another SIMD level than the best of this machine.
+    /// Sets the SIMD level. The default is the best of this machine.
     #[must_use]
-    pub fn level(mut self, level: Level) -> Certifier<'a> {
+    pub fn with_level(mut self, level: Level) -> Certifier<'a> {
         self.setting.level = level;
-        if let Body::Field(field) = &mut self.setting.body {
+        if let ToolModel::Field(field) = &mut self.setting.body {
             field.level = level;
         }
         self
     }
 
-    /// With an allowance for a surface of the tool: how deep it may be in the part, in the part's unit,
-    /// where it is the nearest surface; infinity for as deep as it will. Below 0 it is a margin: how far the
-    /// surface has to keep from all of the part. [`Certifier::clear`] goes by it; no allowance is 0.
+    /// Sets the allowance of a surface: the depth in the part, in the part's unit, that it may have where it is the
+    /// nearest surface. Infinity allows any depth. A negative allowance is a margin: the distance that the surface
+    /// has to keep from all of the part. [`Certifier::check_pose`] and [`Certifier::check_motion`] use the
+    /// allowances; the default is 0.
     ///
     /// # Errors
-    /// If there is no such surface, or the allowance is not a number or keeps infinitely far, or it is a margin
-    /// of a tool without a profile: how far places outside are from which surface its file does not say.
-    pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Certifier<'a>, AllowanceError> {
+    /// [`AllowanceError::NoSurface`] if there is no such surface, [`AllowanceError::NoLength`] if the allowance is
+    /// NaN or negative infinity. [`AllowanceError::NoMargin`] if it is negative and the tool has no profile: the
+    /// distances of outside points from each surface are then unknown.
+    pub fn with_allowance(
+        mut self,
+        surface: &str,
+        allowed: f64,
+    ) -> Result<Certifier<'a>, AllowanceError> {
         if allowed.is_nan() || allowed / self.setting.length == f64::NEG_INFINITY {
             return Err(AllowanceError::NoLength { surface: surface.to_owned(), allowed });
         }
-        let surfaces = &self.card.surfaces;
+        let surfaces = &self.info.surfaces;
         let Some(index) = surfaces.iter().position(|known| known.name == surface) else {
             let known: Vec<String> = surfaces.iter().map(|s| format!("`{}`", s.name)).collect();
             return Err(AllowanceError::NoSurface {
-                tool: self.card.name.to_string(),
+                tool: self.info.name.to_string(),
                 surface: surface.to_owned(),
                 known: known.join(", "),
             });
         };
-        if let (Body::Field(_), true) = (&self.setting.body, allowed < 0.0) {
-            let (tool, surface) = (self.card.name.to_string(), surface.to_owned());
+        if let (ToolModel::Field(_), true) = (&self.setting.body, allowed < 0.0) {
+            let (tool, surface) = (self.info.name.to_string(), surface.to_owned());
             return Err(AllowanceError::NoMargin { tool, surface });
         }
         self.allowed[index] = allowed;
         let length = self.setting.length;
         let allowed: Vec<f64> = self.allowed.iter().map(|allowed| allowed / length).collect();
-        self.rules = Some(Question::all(&self.setting, &allowed));
-        self.cores = Cores::new(allowed);
+        self.rules = Some(DepthQuery::all(&self.setting, &allowed));
+        self.cores = CorePoints::new(allowed);
         Ok(self)
     }
 
-    /// The deepest penetration of the part's triangles into the tool. The interval is no wider than the
-    /// tolerance, in the part's unit, and what rounding adds; a tolerance below that, or 0, is taken as
-    /// that. Where triangles are thinner than the tolerance, or the budget is spent, it is wider.
+    /// Computes the deepest penetration of the part's triangles into the tool. The interval is at most as wide as the
+    /// tolerance, in the part's unit, plus the rounding error bound. A tolerance below that bound, 0 or NaN is
+    /// replaced by it. The interval is wider where triangles are thinner than the tolerance, or if the budget is
+    /// spent.
     pub fn deepest(&mut self, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, whole, work, budget, .. } = self;
         penetration(setting, whole, work, pose, (tolerance, *budget))
     }
 
-    /// The deepest penetration where a surface, by its place in the card's list, is the nearest: the
-    /// same, of that surface alone. Where two are as near, both count. Of a tool without a profile that
-    /// surface is the nearest whose region has the place.
+    /// Computes the deepest penetration where one surface, given by its index in the tool's list, is the nearest.
+    /// Points as near to two surfaces count for both. For a tool without a profile, the nearest surface of a point is
+    /// that of the region that contains it. The interval is that of [`Certifier::deepest`].
     ///
     /// # Panics
     /// If there is no such surface.
     pub fn deepest_on(&mut self, surface: usize, pose: &Pose, tolerance: f64) -> Penetration {
         let Certifier { setting, each, work, budget, .. } = self;
         let question =
-            each[surface].get_or_insert_with(|| setting.question(0.0, |other| other == surface));
+            each[surface].get_or_insert_with(|| setting.depth_query(0.0, |other| other == surface));
         penetration(setting, question, work, pose, (tolerance, *budget))
     }
 
-    /// Whether the tool is clear of the part, or no deeper in it than is [allowed](Certifier::allow). It
-    /// stops at the first point that is.
-    pub fn clear(&mut self, pose: &Pose) -> Clear {
+    /// Checks whether the tool is clear of the part, or at most as deep in it as is
+    /// [allowed](Certifier::with_allowance). The search stops at the first point that is deeper.
+    pub fn check_pose(&mut self, pose: &Pose) -> PoseVerdict {
         match self.touches(pose) {
-            Touch::Yes(witness) => Clear::Touching(witness),
-            Touch::Undecided(high) => Clear::Undecided(high),
-            Touch::No => match self.containment(pose) {
-                Containment::Inside(surface) => Clear::Inside(surface),
-                Containment::Outside => Clear::Clear,
-                Containment::Unknown => Clear::SurfaceOnly,
-                Containment::Undecided => Clear::Undecided(0.0),
+            ContactVerdict::Yes(witness) => PoseVerdict::Touching(witness),
+            ContactVerdict::Undecided(high) => PoseVerdict::Undecided(high),
+            ContactVerdict::No => match self.containment(pose) {
+                Containment::Inside(surface) => PoseVerdict::Inside(surface),
+                Containment::Outside => PoseVerdict::Clear,
+                Containment::Unknown => PoseVerdict::SurfaceOnly,
+                Containment::Undecided => PoseVerdict::Undecided(0.0),
             },
         }
     }
 
-    /// Returns where what may not be in the part is. Call only if no triangle touches it.
+    /// Locates the restricted interior of the tool relative to the part. Call only if no triangle is in contact with
+    /// it.
     pub(crate) fn containment(&mut self, pose: &Pose) -> Containment {
-        let cores = (self.card, &mut self.cores);
+        let cores = (self.info, &mut self.cores);
         self.setting.containment(cores, pose, 4.0 * self.setting.error)
     }
 
-    /// Returns whether all of the tool is wholly inside the material and touches no triangle, whatever is
-    /// allowed; `None` where that is not known: the part has no inside, or rounding decides.
+    /// Returns whether the whole tool is inside the material and touches no triangle, whatever the allowances.
+    /// Returns `None` if that is unknown: the part has no inside, rounding decides, or the budget is spent.
     pub fn is_buried(&mut self, pose: &Pose) -> Option<bool> {
-        let Certifier { setting, card, whole, whole_cores, work, budget, .. } = self;
+        let Certifier { setting, info, whole, whole_cores, work, budget, .. } = self;
         match touches(setting, slice::from_ref(whole), work, pose, *budget) {
-            Touch::Yes(_) => Some(false),
-            Touch::Undecided(_) => None,
-            Touch::No => {
-                match setting.containment((card, whole_cores), pose, 4.0 * setting.error) {
+            ContactVerdict::Yes(_) => Some(false),
+            ContactVerdict::Undecided(_) => None,
+            ContactVerdict::No => {
+                match setting.containment((info, whole_cores), pose, 4.0 * setting.error) {
                     Containment::Inside(_) => Some(true),
                     Containment::Outside => Some(false),
                     Containment::Unknown | Containment::Undecided => None,
@@ -263,47 +274,48 @@ impl<'a> Certifier<'a> {
         }
     }
 
-    /// Returns the greatest depth that a surface can have, by its place in the card's list, in the part's
-    /// unit: that of the deepest point of the tool that it is the nearest to, to a hundredth. It has it
-    /// where the part's surface passes the middle of the tool. `None` where it is not found in time.
+    /// Returns an upper bound on the depth that a surface, given by its index in the tool's list, can have, in the
+    /// part's unit. The depth occurs where the part's surface passes through the deepest point of the tool to which
+    /// that surface is the nearest. The bound is at most 1 % above it unless a fixed budget is spent first; `None` if
+    /// the budget is spent before any such point is found.
     ///
     /// # Panics
     /// If there is no such surface.
-    pub fn greatest_depth(&self, surface: usize) -> Option<f64> {
-        assert!(surface < self.card.surfaces.len());
+    pub fn max_possible_depth(&self, surface: usize) -> Option<f64> {
+        assert!(surface < self.info.surfaces.len());
         let depth = match &self.setting.body {
-            Body::Profile(section) => {
+            ToolModel::Profile(section) => {
                 Owners::of(section, |other| other == surface).greatest_depth(section)
             }
-            Body::Field(field) => {
-                let owners = Owners::of_regions(self.card, |_, of| of.surface == surface);
-                field.deepest(&owners, 0.0, 1.01)?.map_or(0.0, |(_, depth)| depth.value)
+            ToolModel::Field(field) => {
+                let owners = Owners::of_regions(self.info, |_, of| of.surface == surface);
+                field.deepest(&owners, 0.0, 1.01)?.map_or(0.0, |(.., bound)| bound)
             }
         };
         Some(depth * self.setting.length)
     }
 
-    /// Returns whether what may not be in the part is one piece: the points that are deeper than their limit by twice
-    /// what rounding adds, which [`Certifier::is_too_deep`] tells.
+    /// Returns whether the restricted interior is one connected piece: the points deeper than their limit by more
+    /// than twice the rounding error, as in [`Certifier::is_too_deep`].
     #[cfg(feature = "postures")]
     pub(crate) fn is_one_piece(&mut self) -> bool {
-        self.setting.is_one_piece((self.card, &mut self.cores), self.setting.error)
+        self.setting.is_one_piece((self.info, &mut self.cores), self.setting.error)
     }
 
-    /// Begins as if nothing had been asked yet.
+    /// Resets the starting triangle, as if no query had been made.
     #[cfg(feature = "postures")]
     pub(crate) fn forget(&mut self) {
         self.work.forget();
     }
 
-    /// Whether a triangle of the part is in the tool, deeper than is allowed.
-    pub(crate) fn touches(&mut self, pose: &Pose) -> Touch {
+    /// Checks whether a triangle of the part is deeper in the tool than is allowed.
+    pub(crate) fn touches(&mut self, pose: &Pose) -> ContactVerdict {
         let Certifier { setting, whole, rules, work, budget, .. } = self;
         let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
         touches(setting, rules, work, pose, *budget)
     }
 
-    /// Whether a place of the part, in the world, is surely deeper than is [allowed](Certifier::allow).
+    /// Returns whether a point in world coordinates is certainly deeper than is [allowed](Certifier::with_allowance).
     #[cfg(feature = "postures")]
     pub(crate) fn is_too_deep(
         &mut self,
@@ -323,22 +335,22 @@ impl<'a> Certifier<'a> {
     }
 }
 
-/// Whether a triangle is deeper than is allowed.
-pub(crate) enum Touch {
+/// The result of comparing the depth of triangles with the allowances.
+pub(crate) enum ContactVerdict {
     No,
     Yes(Witness),
-    /// By no more than this, in the part's unit.
+    /// No triangle exceeds its allowance by more than this, in the part's unit.
     Undecided(f64),
 }
 
-/// Returns whether a triangle is deeper than rules allow.
+/// Checks whether a triangle is deeper than the rules allow.
 fn touches(
-    setting: &Setting<'_>,
-    rules: &[Question],
-    work: &mut Work,
+    setting: &QuerySetting<'_>,
+    rules: &[DepthQuery],
+    work: &mut SearchState,
     pose: &Pose,
     budget: u32,
-) -> Touch {
+) -> ContactVerdict {
     let touch = 2.0 * setting.error;
     let mut open: Option<f64> = None;
     for rule in rules {
@@ -346,7 +358,7 @@ fn touches(
         let enough = rule.limit + touch;
         let goal = Goal { least, tolerance: touch, enough, budget };
         if rule.limit < 0.0 {
-            setting.look(work, pose);
+            setting.set_pose(work, pose);
             work.outside(setting, rule, pose, goal);
         } else {
             work.inside(setting, rule, pose, goal);
@@ -354,31 +366,31 @@ fn touches(
         if let Some(best) = &work.best
             && work.search.best > goal.enough + work.skew
         {
-            return Touch::Yes(setting.witness(best, pose));
+            return ContactVerdict::Yes(setting.witness(best, pose));
         }
         if work.best.is_some() || work.search.open() {
             let high = work.search.most.max(work.search.wanted()) + touch + work.skew;
             open = Some(open.unwrap_or(0.0).max(high - rule.limit));
         }
     }
-    open.map_or(Touch::No, |high| Touch::Undecided(high * setting.length))
+    open.map_or(ContactVerdict::No, |high| ContactVerdict::Undecided(high * setting.length))
 }
 
-/// The deepest place that owners have.
+/// Computes the deepest penetration of a query.
 fn penetration(
-    setting: &Setting<'_>,
-    question: &Question,
-    work: &mut Work,
+    setting: &QuerySetting<'_>,
+    question: &DepthQuery,
+    work: &mut SearchState,
     pose: &Pose,
     (tolerance, budget): (f64, u32),
 ) -> Penetration {
-    // Written so that what is not a number is no tolerance.
+    // Written so that a NaN tolerance is replaced.
     let tolerance = (4.0 * setting.error).max(tolerance / setting.length);
     let goal = Goal { least: setting.error, tolerance, enough: f64::INFINITY, budget };
     work.inside(setting, question, pose, goal);
     let more = setting.error + work.skew;
     let (low, high) = match work.best {
-        // Slabs reach farther by the error, so that a place outside may count as that deep.
+        // Slabs are widened by the error, so a point outside may be measured as that deep.
         Some(_) => (work.search.best - more - setting.error, work.search.best + tolerance),
         None => (0.0, setting.error),
     };

@@ -1,4 +1,4 @@
-//! Points and vectors as three numbers.
+//! Vector arithmetic on arrays of three numbers.
 
 pub(crate) type Point = [f64; 3];
 

@@ -1,34 +1,37 @@
-//! What dividing a surface among the points on it tells: the area of each point's cell, and how far
-//! from all points the surface gets.
+//! Voronoi cells of points on a surface: the area of each point's cell, and the covering radius.
 
-use super::diagram::{Room, Sites, area};
 use super::pieces::Surface;
-use crate::cores;
-use crate::mesh::Sum;
+use super::voronoi::{ClipBuffers, VoronoiSites, area};
+use crate::mesh::CompensatedSum;
+use crate::parallel;
 use nalgebra::Point3;
 
-/// σ² in squared spacings.
+/// σ² of the `voronoi` module, in squared spacings.
 const TURNED: f64 = 2.25;
-/// Pieces that one core takes at a time.
+/// Pieces per parallel task.
 const TOGETHER: usize = 256;
-/// The most points that are held against the cells of a piece at first, and the least where there are many pieces.
+/// Initial limits on the number of points tested against the cells of a piece: the upper limit, and the
+/// lower limit for surfaces with many pieces.
 const MOST_CROWD: usize = 1 << 14;
 const LEAST_CROWD: usize = 1 << 10;
-/// Those of all pieces, if that leaves enough for each.
+/// Total for all pieces, unless the lower limit per piece requires more.
 const MOST_CROWDS: usize = 1 << 26;
-/// How far a corner can be from where it is computed, of the part's size and of the radius: 9000u, with unit roundoff u.
+/// Bound on the distance between a corner and its computed position, relative to the part's size and to
+/// the radius: 9000u, with unit roundoff u.
 ///
-/// A corner of a piece errs by u of the part's size where it is put together, and by 5u of the cut edge for each of the cuts
-/// that made the piece. Each cut halves the longer of two extents, so that these edges add up to less than six times the
-/// triangle's: 120u of the part's size in all. A cell's corner errs by 5u of its distance for each line that cut it (see
-/// `diagram`), which holds up to 1700 lines, and the distance itself by 4u.
+/// A corner of a piece errs by u of the part's size where it is computed, and by 5u of the cut edge for
+/// each cut that made the piece. Each cut halves the longer of two extents, so these edges add up to
+/// less than six times the triangle's longest edge: 120u of the part's size in all. A cell's corner errs
+/// by 5u of its distance for each line that cut it (see `voronoi`), which allows up to 1700 lines. The
+/// distance itself errs by 4u.
 const ROUNDED: f64 = 1e-12;
-/// Cells are shown to fill a piece, but for rounding (see `diagram`). Where they do not by these parts of its area, something
-/// else went wrong, or its area is rounding itself, and nothing is taken from them: of weights, and of the covering radius.
+/// Fractions of a piece's area that its cells must fill, for the covering radius of the piece in the
+/// first pass and in the refined pass. Cells fill a piece except for rounding (see `voronoi`). If they
+/// do not, something else went wrong or the area itself is mere rounding, so the cells are not used.
 const FILLED: f64 = 1.0 - 1e-6;
 const WHOLE: f64 = 1.0 - 1e-9;
 
-/// A place far from all points.
+/// A surface point far from all points of the cloud.
 #[derive(Clone, Copy)]
 pub(super) struct Hole {
     pub(super) place: Point3<f64>,
@@ -36,31 +39,32 @@ pub(super) struct Hole {
     pub(super) distance: f64,
 }
 
-/// Of each point the area of its cell, and how far the surface gets from all points at most.
+/// The area of each point's cell, and the covering radius.
 pub(super) struct Cells {
     pub(super) areas: Vec<f64>,
     pub(super) radius: f64,
 }
 
-/// What points have of some pieces.
+/// The result of dividing several pieces among the points.
 struct Divided {
-    /// Of pieces that were divided among all points that have a part.
+    /// Areas of the cells in the pieces that were divided completely, by point.
     shares: Vec<(u32, f64)>,
-    /// How far each piece gets from all points at most.
+    /// An upper bound on the distance between each piece and its nearest points; infinite if unknown.
     reaches: Vec<f64>,
-    /// The other pieces, and those shares that were found.
+    /// The pieces that were not divided completely, with the cell areas found.
     crowded: Vec<(usize, Vec<(u32, f64)>)>,
 }
 
-fn add(areas: &mut [Sum], shares: Vec<(u32, f64)>) {
+fn add(areas: &mut [CompensatedSum], shares: Vec<(u32, f64)>) {
     shares.into_iter().for_each(|(site, share)| areas[site as usize].add(share));
 }
 
 impl Surface {
-    /// Divides the surface. A piece that more points have a part of than can be looked at is shared among those that
-    /// were, and gets no farther from all points than its farthest corner from one of them.
-    pub(super) fn cells(&self, sites: &Sites<'_>) -> Cells {
-        let mut areas = vec![Sum::default(); sites.points.len()];
+    /// Divides the surface among the points. If more points have a share of a piece than the work limit
+    /// allows, the piece is shared among those examined. Its distance from all points is then bounded by
+    /// that of its farthest corner from one of them.
+    pub(super) fn cells(&self, sites: &VoronoiSites<'_>) -> Cells {
+        let mut areas = vec![CompensatedSum::default(); sites.points.len()];
         let mut farthest = vec![0.0; self.pieces.len()];
         let mut crowded = vec![];
         let mut note = |some: &[usize], most: usize, crowded: &mut Vec<_>| {
@@ -74,25 +78,26 @@ impl Surface {
         };
         let all: Vec<usize> = (0..self.pieces.len()).collect();
         note(&all, self.crowd(), &mut crowded);
-        // Once more, with as much work as there may be: mostly there are few of them.
+        // Divide the incomplete pieces once more with all the work allowed; there are usually few of
+        // them.
         let most = self.work(sites) / crowded.len().max(1);
         if most > self.crowd() {
             let some: Vec<usize> = crowded.drain(..).map(|(piece, _)| piece).collect();
             note(&some, most, &mut crowded);
         }
         crowded.into_iter().for_each(|(_, shares)| add(&mut areas, shares));
-        let areas = areas.into_iter().map(Sum::value).collect();
+        let areas = areas.into_iter().map(CompensatedSum::value).collect();
         Cells { areas, radius: self.radius(sites, &farthest) }
     }
 
-    /// Returns how many points may be held against cells beyond what is usual.
-    fn work(&self, sites: &Sites<'_>) -> usize {
+    /// Returns the number of points that may be tested against cells in addition to the usual ones.
+    fn work(&self, sites: &VoronoiSites<'_>) -> usize {
         let any = if self.coarse() { 1 << 22 } else { 1 << 26 };
         256 * (sites.points.len() + self.pieces.len()) + any
     }
 
-    /// Returns how many points are held against the cells of a piece at first: usual are some hundred, and some thousand
-    /// where pieces are long.
+    /// Returns the initial limit on the number of points tested against the cells of a piece. The usual
+    /// number is some hundred, or some thousand where pieces are long.
     fn crowd(&self) -> usize {
         if self.coarse() {
             return 2 * LEAST_CROWD;
@@ -100,11 +105,11 @@ impl Surface {
         (MOST_CROWDS / self.pieces.len().max(1)).clamp(LEAST_CROWD, MOST_CROWD)
     }
 
-    /// Divides some pieces, holding `most` points against the cells of each.
-    fn shares(&self, sites: &Sites<'_>, some: &[usize], most: usize) -> Vec<Divided> {
+    /// Divides the pieces `some`, testing at most about `most` points against the cells of each.
+    fn shares(&self, sites: &VoronoiSites<'_>, some: &[usize], most: usize) -> Vec<Divided> {
         let turned = TURNED * self.spacing * self.spacing;
-        cores::ranges(some.len(), TOGETHER, |range| {
-            let mut room = Room::default();
+        parallel::ranges(some.len(), TOGETHER, |range| {
+            let mut room = ClipBuffers::default();
             let (mut shares, mut crowded) = (vec![], vec![]);
             let mut reaches = Vec::with_capacity(range.len());
             for index in range {
@@ -115,7 +120,7 @@ impl Surface {
                     shares.push((site, area(cell, &piece.normal)));
                     reach = cell.iter().map(|(v, _)| v.norm_squared()).fold(reach, f64::max);
                 });
-                // What rounding left over or out.
+                // Distribute the area that rounding left over or out.
                 let sum: f64 = shares[from..].iter().map(|(_, share)| share).sum();
                 let all = f64::from(piece.copies) * piece.area;
                 if sum > 0.0 {
@@ -123,7 +128,7 @@ impl Surface {
                 } else {
                     shares.push((room.met[0], all));
                 }
-                // Cells that do not fill the piece tell nothing of what they leave.
+                // Cells that do not fill the piece give no bound for the rest.
                 let fills = whole && sum >= FILLED * piece.area;
                 reaches.push(if fills { reach.sqrt() } else { f64::INFINITY });
                 if !whole {
@@ -134,12 +139,12 @@ impl Surface {
         })
     }
 
-    /// How far the surface gets from all points, of pieces that get no farther than given.
-    fn radius(&self, sites: &Sites<'_>, farthest: &[f64]) -> f64 {
+    /// Returns the covering radius, given an upper bound on the distance of each piece.
+    fn radius(&self, sites: &VoronoiSites<'_>, farthest: &[f64]) -> f64 {
         let mut order: Vec<usize> = (0..self.pieces.len()).collect();
         order.sort_unstable_by(|a, b| farthest[*b].total_cmp(&farthest[*a]));
         let mut radius = 0f64;
-        let mut room = Room::default();
+        let mut room = ClipBuffers::default();
         let mut work = self.work(sites);
         for index in order {
             if farthest[index] <= radius {
@@ -153,7 +158,7 @@ impl Surface {
             });
             work = work.saturating_sub(room.held);
             if !whole || filled < WHOLE * piece.area {
-                // No place is farther from all points than from one.
+                // The nearest point is at most as far from any surface point as this one is.
                 let one = sites.points[room.met[0] as usize];
                 most = self.corners(piece).iter().map(|c| (c - one).norm()).fold(0.0, f64::max);
             }
@@ -162,30 +167,30 @@ impl Surface {
         radius * (1.0 + ROUNDED) + self.rounded()
     }
 
-    /// How far a place can be from where it is computed.
+    /// Returns a bound on the distance between a surface point and its computed position.
     pub(super) fn rounded(&self) -> f64 {
         self.size * ROUNDED
     }
 
-    /// How far each piece gets from all points, before there is any.
+    /// Returns the upper bound on the distance of each piece before there are any points: infinity.
     pub(super) fn farthest(&self) -> Vec<f64> {
         vec![f64::INFINITY; self.pieces.len()]
     }
 
-    /// Where the surface is farther from all points than a distance, but nowhere near as far: each
-    /// more than once. `farthest` is how far each piece got from fewer points, and is brought up to
-    /// date where it may be that far. `work` is how many more
-    /// points may be held against cells.
+    /// Returns the corners of cells where the surface is farther than `distance` from all points; each
+    /// hole appears more than once. `farthest` holds the distance of each piece from an earlier, smaller
+    /// set of points and is updated where it exceeds `distance`. `work` is the number of points that may
+    /// still be tested against cells, and is decreased.
     pub(super) fn holes(
         &self,
-        sites: &Sites<'_>,
+        sites: &VoronoiSites<'_>,
         distance: f64,
         farthest: &mut [f64],
         work: &mut usize,
     ) -> Vec<Hole> {
         let may: Vec<usize> = (0..farthest.len()).filter(|i| farthest[*i] > distance).collect();
-        let found = cores::ranges(may.len(), TOGETHER, |range| {
-            let mut room = Room::default();
+        let found = parallel::ranges(may.len(), TOGETHER, |range| {
+            let mut room = ClipBuffers::default();
             let (mut holes, mut farthest, mut held) = (vec![], vec![], 0);
             for index in range {
                 let piece = &self.pieces[may[index]];

@@ -1,63 +1,63 @@
-//! Why there is no such cloud.
+//! Errors of building point clouds.
 
-use super::{MOST_BLUE, NORMAL_TOLERANCE};
+use super::{MAX_BLUE_NOISE_POINTS, NORMAL_TOLERANCE};
 use crate::mesh::LARGEST_COORDINATE;
 
-/// Lists that make no cloud, or a wish for one that cannot be.
+/// Reasons why lists do not form a cloud, or why a requested cloud cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CloudError {
-    /// There is nothing to touch.
+    /// The cloud would have no points.
     #[error("the cloud has no point: ask for one at least")]
     Empty,
-    /// More points than 32-bit indices can tell apart.
+    /// There are more points than 32-bit indices can number.
     #[error("{count} points are more than 32-bit indices can tell apart: ask for fewer")]
     TooMany {
-        /// How many were asked for.
+        /// The requested number of points.
         count: usize,
     },
-    /// More points than can be spread evenly.
+    /// There are more points than [`MAX_BLUE_NOISE_POINTS`].
     #[error(
-        "{count} points are more than {MOST_BLUE}, the most that are spread evenly: take random ones"
+        "{count} points are more than {MAX_BLUE_NOISE_POINTS}, the most that are spread evenly: take random ones"
     )]
-    TooManyBlue {
-        /// How many were asked for.
+    TooManyBlueNoise {
+        /// The requested number of points.
         count: usize,
     },
-    /// A covering radius that is no length.
+    /// The covering radius is not a positive finite length.
     #[error("{radius} is no covering radius: give a finite length above 0")]
     Radius {
-        /// What was asked for.
+        /// The requested covering radius.
         radius: f64,
     },
-    /// A covering radius that wants too many points.
+    /// The covering radius needs too many points.
     #[error(
         "a covering radius of {radius} wants about {needed:.1e} points, more than {most}, \
          which would have one of about {instead:.2e}: ask for that, or ask the triangles \
          (`certify`), between which nothing lies"
     )]
     TooFine {
-        /// What was asked for.
+        /// The requested covering radius.
         radius: f64,
-        /// About how many points it wants.
+        /// The approximate number of points it needs.
         needed: f64,
-        /// The most that there can be.
+        /// The maximum number of points.
         most: usize,
-        /// About what so many points as there can be have.
+        /// The approximate covering radius of that maximum number of points.
         instead: f64,
     },
-    /// The lists do not belong together.
+    /// The lists have different lengths.
     #[error(
         "{points} points, {normals} normals, {triangles} triangle ids and {weights} weights: give \
          one of each for every point"
     )]
     Lengths {
-        /// How many points there are.
+        /// The number of points.
         points: usize,
-        /// How many normals there are.
+        /// The number of normals.
         normals: usize,
-        /// How many triangle ids there are.
+        /// The number of triangle ids.
         triangles: usize,
-        /// How many weights there are.
+        /// The number of weights.
         weights: usize,
     },
     /// A coordinate is NaN, infinite or too large.
@@ -71,7 +71,7 @@ pub enum CloudError {
         /// The coordinate.
         coordinate: f64,
     },
-    /// A normal is not a direction.
+    /// A normal is not a unit vector.
     #[error(
         "the normal of point {point} has norm {norm}: give a unit vector (within \
          {NORMAL_TOLERANCE} of 1)"
@@ -79,10 +79,10 @@ pub enum CloudError {
     Normal {
         /// The point's index.
         point: usize,
-        /// The normal's norm; NaN when a component is.
+        /// The normal's norm; NaN if a component is NaN.
         norm: f64,
     },
-    /// A weight is not an area.
+    /// A weight is not a valid area.
     #[error("the weight of point {point} is {weight}: give a finite area, 0 or more")]
     Weight {
         /// The point's index.

@@ -1,15 +1,15 @@
-//! Many short lists in one.
+//! Many short lists in one allocation.
 
-/// A list for each of some points, one after the other.
+/// Consecutive lists of indices, in one vector.
 #[derive(Default)]
 pub(super) struct Lists {
     items: Vec<u32>,
-    /// Where each ends.
+    /// The end of each list in `items`.
     ends: Vec<usize>,
 }
 
 impl Lists {
-    /// Adds to the last list.
+    /// Appends to the last list.
     pub(super) fn push(&mut self, item: u32) {
         self.items.push(item);
     }
@@ -19,7 +19,7 @@ impl Lists {
         self.ends.push(self.items.len());
     }
 
-    /// Those of each, in order.
+    /// Concatenates several collections of lists, in order.
     pub(super) fn joined(some: Vec<Lists>) -> Lists {
         let [items, lists] = some.iter().fold([0; 2], |[items, lists], some| {
             [items + some.items.len(), lists + some.ends.len()]
@@ -33,7 +33,7 @@ impl Lists {
         all
     }
 
-    /// One of the lists.
+    /// Returns the list at index `place`.
     pub(super) fn of(&self, place: u32) -> &[u32] {
         let place = place as usize;
         let start = if place == 0 { 0 } else { self.ends[place - 1] };

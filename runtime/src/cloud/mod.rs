@@ -1,44 +1,46 @@
-//! The part as points: where the tool can be touched, which way is out there, and for how much
-//! of the surface each point stands.
+//! Weighted point clouds on a part's surface: positions, outward normals, and the area that each point
+//! represents.
 
-mod blue;
+mod blue_noise;
 mod cells;
-mod copies;
-mod diagram;
-mod draw;
+mod decimate;
+mod duplicates;
 mod error;
-mod guess;
+mod estimate;
 mod lists;
-mod near;
 #[cfg(test)]
 mod odd;
 mod pieces;
-mod thin;
+mod point_grid;
+mod sampling;
+mod voronoi;
 
 pub use error::CloudError;
 
-use crate::mesh::{Mesh, Points, area_and_normal, coordinate_holds};
+use crate::keywords::words;
+use crate::mesh::{Mesh, OrientedPoints, area_and_normal, is_valid_coordinate};
 use crate::unit::Unit;
-use crate::words::words;
 use cells::Cells;
-use diagram::Sites;
-use draw::Facets;
 use nalgebra::{Point3, Vector3};
 use pieces::Surface;
+use sampling::AreaSampler;
+use voronoi::VoronoiSites;
 
-/// Points whose normals are at more than 107°, a cosine below this, are on two sides of something thin.
+/// Cosine of the angle between normals (107°) below which two points lie on opposite sides of something
+/// thin.
 const SAME_SIDE: f64 = -0.3;
 
-/// How far the norm of a given normal may be from 1 before it is refused rather than normalised: files have normals with a
-/// few decimals. A choice of what is taken for a mistake; what is kept has a norm of 1.
+/// Largest deviation of a given normal's norm from 1: files round normals to a few decimals. A normal
+/// within this tolerance is normalised, any other is refused. The value is a choice of what counts as a
+/// mistake.
 pub const NORMAL_TOLERANCE: f64 = 1e-3;
 
 /// A weighted point cloud on a part's surface.
 ///
-/// All four lists have the same, non-zero length. Points are in the world's frame and in
-/// [`Cloud::unit`]; normals are unit vectors out of the material; triangles are the ids of the
-/// mesh's triangles that the points lie on; weights are areas, in the unit's square, so that
-/// `Σ weight · f(point)` approximates the integral of f over the surface.
+/// All four lists have the same, non-zero length. Points are in the world frame and in [`Cloud::unit`].
+/// Normals are unit vectors out of the material. Triangles are the ids of the mesh's triangles that the
+/// points lie on. Weights are areas, in the square of the unit, so that `Σ weight · f(point)`
+/// approximates the integral of f over the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cloud {
     points: Vec<Point3<f64>>,
@@ -46,108 +48,116 @@ pub struct Cloud {
     triangles: Vec<u32>,
     weights: Vec<f64>,
     unit: Unit,
-    cover: Option<Cover>,
+    cover: Option<CoveringRadius>,
 }
 
-/// How points are spread over a mesh.
+/// Methods of distributing points over a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Sampling {
-    /// Evenly: [`Cloud::blue`].
+pub enum SamplingMethod {
+    /// Evenly: [`Cloud::blue_noise`].
     #[default]
-    Blue,
-    /// Each for itself: [`Cloud::random`], weighed by the area of their cells.
-    Random,
+    BlueNoise,
+    /// Independently: [`Cloud::uniform`], with the areas of the points' cells as weights.
+    Uniform,
 }
 
-words!(Sampling, "blue, random", Blue "blue", Random "random");
+words!(SamplingMethod, "blue, random", BlueNoise "blue", Uniform "random");
 
-/// The most points that are spread evenly: they want some 12 GiB while they are.
-pub const MOST_BLUE: usize = 20_000_000;
+/// Maximum number of points for blue-noise sampling. That many points need some 12 GiB of memory during
+/// sampling.
+pub const MAX_BLUE_NOISE_POINTS: usize = 20_000_000;
 
-/// How far a surface gets from the points of a cloud.
+/// The covering radius of a cloud: the largest distance from a surface point to the nearest point of the
+/// cloud.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cover {
-    /// The covering radius, or a bound on it: from any place of the surface to the nearest point.
+pub struct CoveringRadius {
+    /// The covering radius or an upper bound on it, in the cloud's unit.
     pub radius: f64,
-    /// Whether it is proved, of a mesh, or estimated, from the points alone.
+    /// `true` if the radius is proved for a mesh, `false` if it is estimated from the points alone.
     pub proved: bool,
 }
 
 impl Cloud {
-    /// `count` points drawn independently and uniformly by area, each with the weight
-    /// `area / count`. A sum over the cloud differs from the integral by a standard deviation of
-    /// order `count^-1/2`, whatever the integrand's smoothness: four times the points, half the
-    /// error. [`Cloud::weighed`] gives them weights that do better.
+    /// Draws `count` points independently and uniformly by area, each with the weight `area / count`. A
+    /// sum over the cloud differs from the integral by a standard deviation of order `count^-1/2`,
+    /// whatever the integrand's smoothness: four times the points halve the error.
+    /// [`Cloud::with_voronoi_weights`] computes better weights.
     ///
-    /// The same mesh, count and seed give the same cloud on every machine, and the first points
-    /// of a longer cloud are those of a shorter one. Each point takes three draws of PCG64 (its
-    /// triangle and two barycentric coordinates, folded back into the triangle).
+    /// The same mesh, count and seed give the same cloud on every machine, and the first points of a
+    /// longer cloud are those of a shorter one. Each point takes three draws of PCG64: its triangle and
+    /// two barycentric coordinates, folded back into the triangle.
     ///
     /// # Errors
-    /// A count of 0, or beyond 32 bits.
-    pub fn random(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
-        let facets = Facets::of(mesh);
+    /// Fails for a count of 0 or beyond 32 bits.
+    pub fn uniform(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
+        let facets = AreaSampler::of(mesh);
         check_count(count)?;
         Ok(facets.random(mesh, count, seed))
     }
 
-    /// `count` points spread evenly, no two close together and no place far from all, each with
-    /// the area of its cell for a weight, and how far the surface gets from them ([`Cloud::cover`]).
+    /// Distributes `count` points evenly: no two are close together, and no part of the surface is far
+    /// from all. Each has the area of its cell as weight, and the cloud has a covering radius
+    /// ([`Cloud::covering_radius`]).
     ///
-    /// Of four times as many random points the most crowded are taken away, until 96 in 100 of those
-    /// wanted are left; the others are put, one by one, where the surface is farthest from all: so
-    /// edges and corners of the part get points where that helps. The same mesh, count and seed
-    /// give the same cloud, however many cores there are.
+    /// The most crowded of four times as many random points are removed until 96 % of `count` are left.
+    /// The remaining points are inserted one by one where the surface is farthest from all others, so
+    /// edges and corners of the part get points where they help. The same mesh, count and seed give the
+    /// same cloud for any number of cores.
     ///
     /// # Errors
-    /// A count of 0, or more than [`MOST_BLUE`].
-    pub fn blue(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
+    /// Fails for a count of 0 or more than [`MAX_BLUE_NOISE_POINTS`].
+    pub fn blue_noise(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud, CloudError> {
         check_count(count)?;
-        if count > MOST_BLUE {
-            return Err(CloudError::TooManyBlue { count });
+        if count > MAX_BLUE_NOISE_POINTS {
+            return Err(CloudError::TooManyBlueNoise { count });
         }
-        let facets = Facets::of(mesh);
+        let facets = AreaSampler::of(mesh);
         let surface = Surface::new(mesh, &facets, count);
-        Ok(blue::blue(mesh, &facets, &surface, count, seed).weighed_on(&surface))
+        Ok(blue_noise::blue(mesh, &facets, &surface, count, seed).weighted_on(&surface))
     }
 
-    /// `count` points spread as is said, weighed, their cover known.
+    /// Samples `count` points with the given method, with the areas of their cells as weights and a
+    /// known covering radius.
     ///
     /// # Errors
-    /// A count of 0, or beyond 32 bits.
+    /// Fails for a count of 0 or beyond 32 bits, and for more than [`MAX_BLUE_NOISE_POINTS`] with
+    /// [`SamplingMethod::BlueNoise`].
     pub fn sample(
         mesh: &Mesh,
-        sampling: Sampling,
+        sampling: SamplingMethod,
         count: usize,
         seed: u64,
     ) -> Result<Cloud, CloudError> {
         match sampling {
-            Sampling::Blue => Cloud::blue(mesh, count, seed),
-            Sampling::Random => Ok(Cloud::random(mesh, count, seed)?.weighed(mesh)),
+            SamplingMethod::BlueNoise => Cloud::blue_noise(mesh, count, seed),
+            SamplingMethod::Uniform => {
+                Ok(Cloud::uniform(mesh, count, seed)?.with_voronoi_weights(mesh))
+            }
         }
     }
 
-    /// As many points as it takes for no place of the surface to be farther than `radius` from all
-    /// of them, but no more than `most`: about `0.8 · area / radius²` of [`Sampling::Blue`].
+    /// Samples as many points as it takes for a covering radius of at most `radius`, but no more than
+    /// `most`. With [`SamplingMethod::BlueNoise`] these are about `0.8 · area / radius²` points.
     ///
     /// # Errors
-    /// A radius that is no length, or that wants more than `most` points or [`MOST_BLUE`].
-    pub fn covering(
+    /// Fails if `radius` is not positive and finite, or needs more than `most` points or
+    /// [`MAX_BLUE_NOISE_POINTS`].
+    pub fn with_covering_radius(
         mesh: &Mesh,
         radius: f64,
-        sampling: Sampling,
+        sampling: SamplingMethod,
         most: usize,
         seed: u64,
     ) -> Result<Cloud, CloudError> {
-        let most = most.min(MOST_BLUE);
+        let most = most.min(MAX_BLUE_NOISE_POINTS);
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(CloudError::Radius { radius });
         }
-        let area = Facets::of(mesh).spread;
-        // The covering radius in roots of a point's share, as it usually is.
+        let area = AreaSampler::of(mesh).spread;
+        // Typical covering radius, divided by the square root of the area per point.
         let mut usual = match sampling {
-            Sampling::Blue => 0.91,
-            Sampling::Random => 2.1,
+            SamplingMethod::BlueNoise => 0.91,
+            SamplingMethod::Uniform => 2.1,
         };
         loop {
             let needed = area * (usual / radius).powi(2);
@@ -160,7 +170,7 @@ impl Cloud {
             match cloud.cover {
                 Some(cover) if cover.radius > radius => {
                     let here = cover.radius * (count as f64 / area).sqrt();
-                    // Where few points are far apart more of them soon do better than that.
+                    // Where few points are far apart, more of them soon do better than that.
                     usual *= (1.005 * here / usual).clamp(1.005, 2.0);
                 }
                 _ => return Ok(cloud),
@@ -168,62 +178,64 @@ impl Cloud {
         }
     }
 
-    /// Points of a surface that is not known as a mesh, with unit normals out of the material. Where no
-    /// areas are given they are estimated from how close neighbours are, and so is the
-    /// [cover](Cloud::cover). Where no faces are given each point is its own.
+    /// Builds a cloud from points of a surface without a mesh, with unit normals out of the material.
+    /// Without given areas, these are estimated from the distances between neighbours. The [covering
+    /// radius](Cloud::covering_radius) is always estimated that way. Without given faces, each point has
+    /// its own.
     ///
     /// # Errors
     /// See [`Cloud::new`].
-    pub fn from_points(points: Points, unit: Unit) -> Result<Cloud, CloudError> {
-        let Points { places, normals, faces, areas } = points;
+    pub fn from_points(points: OrientedPoints, unit: Unit) -> Result<Cloud, CloudError> {
+        let OrientedPoints { places, normals, faces, areas } = points;
         let count = places.len();
         let faces = faces.unwrap_or_else(|| (0..count as u32).collect());
         let estimated = areas.is_none();
         let weights = areas.unwrap_or_else(|| vec![0.0; count]);
         let mut cloud = Cloud::new(places, normals, faces, weights, unit)?;
-        let (areas, radius) = guess::guess(&cloud.points, &cloud.normals);
-        cloud.cover = radius.map(|radius| Cover { radius, proved: false });
+        let (areas, radius) = estimate::estimate(&cloud.points, &cloud.normals);
+        cloud.cover = radius.map(|radius| CoveringRadius { radius, proved: false });
         if estimated {
             cloud.weights = areas;
         }
         Ok(cloud)
     }
 
-    /// The same points, each with the area of its cell on the mesh that they were taken from, in the same unit: the
-    /// places that it is nearest to, of those on its side of an edge or of a thin sheet. Their sum
-    /// is the mesh's area to rounding. And the cloud's [cover](Cloud::cover).
+    /// Returns the same points, weighted by the areas of their cells on the mesh that they were sampled
+    /// from, in the same unit. A point's cell is the part of the surface nearest to it among the points
+    /// on the same side of an edge or of a thin sheet. The weights add up to the mesh's area, except for
+    /// rounding. The cloud also gets a proved [covering radius](Cloud::covering_radius).
     #[must_use]
-    pub fn weighed(self, mesh: &Mesh) -> Cloud {
-        let surface = Surface::new(mesh, &Facets::of(mesh), self.len());
-        self.weighed_on(&surface)
+    pub fn with_voronoi_weights(self, mesh: &Mesh) -> Cloud {
+        let surface = Surface::new(mesh, &AreaSampler::of(mesh), self.len());
+        self.weighted_on(&surface)
     }
 
-    fn weighed_on(mut self, surface: &Surface) -> Cloud {
+    fn weighted_on(mut self, surface: &Surface) -> Cloud {
         let Cells { areas, radius } =
-            surface.cells(&Sites::new(surface, &self.points, &self.normals));
+            surface.cells(&VoronoiSites::new(surface, &self.points, &self.normals));
         self.weights = areas;
-        self.cover = Some(Cover { radius, proved: true });
+        self.cover = Some(CoveringRadius { radius, proved: true });
         self
     }
 
-    /// `count` of the points, or all if there are fewer, spread as evenly as can be, weighed anew
-    /// ([`Cloud::weighed`]).
+    /// Selects `count` of the points, or all if there are fewer, spread as evenly as possible, and
+    /// computes new weights ([`Cloud::with_voronoi_weights`]).
     #[must_use]
-    pub fn thinned(&self, mesh: &Mesh, count: usize) -> Cloud {
-        let facets = Facets::of(mesh);
+    pub fn decimated(&self, mesh: &Mesh, count: usize) -> Cloud {
+        let facets = AreaSampler::of(mesh);
         let mut cloud = Cloud::with_capacity(count.min(self.len()), self.unit);
-        for index in thin::thin(&self.points, &self.normals, facets.spread, count.max(1)) {
+        for index in decimate::decimate(&self.points, &self.normals, facets.spread, count.max(1)) {
             let index = index as usize;
             cloud.push(self.points[index], self.normals[index], self.triangles[index], 0.0);
         }
         let surface = Surface::new(mesh, &facets, cloud.len());
-        cloud.weighed_on(&surface)
+        cloud.weighted_on(&surface)
     }
 
-    /// One point for each triangle that has an area: its centroid, with that area as weight.
-    /// Sums over it are exact, but for rounding, for functions that are affine on each triangle;
-    /// for smooth ones the error is of second order in the length of the edges, and of first
-    /// order where the integrand begins or ends within triangles, as contact does.
+    /// Places one point at the centroid of each triangle that has an area, with that area as weight.
+    /// Sums over the cloud are exact, except for rounding, for functions that are affine on each
+    /// triangle. For smooth functions the error is of second order in the length of the edges. It is of
+    /// first order where the integrand begins or ends within triangles, as contact does.
     pub fn centroids(mesh: &Mesh) -> Cloud {
         let mut cloud = Cloud::with_capacity(mesh.triangles().len(), mesh.unit());
         for (id, corners) in (0..).zip(mesh.corners()) {
@@ -235,15 +247,15 @@ impl Cloud {
         cloud
     }
 
-    /// A cloud made elsewhere: n points in the world's frame and in `unit`, n normals out of the
-    /// material, n ids of the triangles they lie on (any numbers that tell the caller what was
-    /// touched), n areas in the square of `unit`.
+    /// Builds a cloud from n points in the world frame and in `unit`, n normals out of the material, n
+    /// ids of the triangles they lie on, and n areas in the square of `unit`. The ids may be any numbers
+    /// that tell the caller which triangle was touched.
     ///
     /// Normals whose norm is within [`NORMAL_TOLERANCE`] of 1 are normalised, others refused.
     ///
     /// # Errors
-    /// No points or too many, lists of different lengths, a number that is not finite, a normal
-    /// that is no unit vector, a negative weight.
+    /// Fails for no points or too many, lists of different lengths, a number that is not finite, a
+    /// normal that is not a unit vector, or a negative weight.
     pub fn new(
         points: Vec<Point3<f64>>,
         mut normals: Vec<Vector3<f64>>,
@@ -293,44 +305,44 @@ impl Cloud {
         self.weights.push(weight);
     }
 
-    /// The points, in the world's frame and in [`Cloud::unit`].
+    /// Returns the points, in the world frame and in [`Cloud::unit`].
     pub fn points(&self) -> &[Point3<f64>] {
         &self.points
     }
 
-    /// The unit normal at each point, out of the material.
+    /// Returns the unit normal at each point, out of the material.
     pub fn normals(&self) -> &[Vector3<f64>] {
         &self.normals
     }
 
-    /// The id of the mesh's triangle that each point lies on.
+    /// Returns the id of the mesh's triangle that each point lies on.
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
 
-    /// The area for which each point stands, in the square of [`Cloud::unit`].
+    /// Returns the area that each point represents, in the square of [`Cloud::unit`].
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
-    /// How far the surface gets from the points; `None` where that is not known.
-    pub fn cover(&self) -> Option<Cover> {
+    /// Returns the covering radius, or `None` if it is unknown.
+    pub fn covering_radius(&self) -> Option<CoveringRadius> {
         self.cover
     }
 
-    /// The unit of length.
+    /// Returns the unit of length.
     pub fn unit(&self) -> Unit {
         self.unit
     }
 
-    /// How many points there are: one at least.
+    /// Returns the number of points, at least one.
     #[expect(clippy::len_without_is_empty, reason = "a cloud is never empty")]
     pub fn len(&self) -> usize {
         self.points.len()
     }
 }
 
-/// Whether 32-bit indices can tell so many points apart.
+/// Fails unless `count` is at least 1 and fits 32-bit indices.
 fn check_count(count: usize) -> Result<(), CloudError> {
     match count {
         0 => Err(CloudError::Empty),
@@ -339,18 +351,18 @@ fn check_count(count: usize) -> Result<(), CloudError> {
     }
 }
 
-/// Whether a point is somewhere.
+/// Fails unless all coordinates of a point are valid.
 pub(crate) fn check_place(point: usize, place: &Point3<f64>) -> Result<(), CloudError> {
-    match place.iter().find(|&&c| !coordinate_holds(c)) {
+    match place.iter().find(|&&c| !is_valid_coordinate(c)) {
         Some(&coordinate) => Err(CloudError::Coordinate { point, coordinate }),
         None => Ok(()),
     }
 }
 
-/// A normal of length 1, from one that nearly is.
+/// Normalises a normal whose norm is within [`NORMAL_TOLERANCE`] of 1; fails otherwise.
 pub(crate) fn unit_normal(point: usize, normal: Vector3<f64>) -> Result<Vector3<f64>, CloudError> {
     let norm = normal.norm();
-    // NaN is near nothing, and so refused.
+    // NaN fails this comparison and is refused.
     if (norm - 1.0).abs() <= NORMAL_TOLERANCE {
         Ok(normal / norm)
     } else {

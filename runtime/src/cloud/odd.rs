@@ -1,7 +1,7 @@
-//! Surfaces and points as damaged files and scanners have them: long, coincident, crowded.
+//! Tests with surfaces and points as damaged files and scanners produce them: long, coincident, crowded.
 
-use super::draw::Facets;
 use super::pieces::Surface;
+use super::sampling::AreaSampler;
 use super::*;
 use crate::mesh::shapes;
 
@@ -14,10 +14,10 @@ fn mesh(triangles: &[[[f64; 3]; 3]]) -> Mesh {
 }
 
 fn pieces(mesh: &Mesh, count: usize) -> usize {
-    Surface::new(mesh, &Facets::of(mesh), count).pieces.len()
+    Surface::new(mesh, &AreaSampler::of(mesh), count).pieces.len()
 }
 
-/// Returns how far the corners of triangles and places between them are from all points.
+/// Returns the largest distance of sampled points of the triangles from their nearest cloud points.
 fn farthest(mesh: &Mesh, cloud: &Cloud) -> f64 {
     let between = |[a, b, c]: [Point3<f64>; 3], k: usize| {
         let (u, v) = ((k % 11) as f64 / 10.0, (k / 11) as f64 / 10.0);
@@ -41,15 +41,15 @@ fn long_triangles_have_pieces_in_proportion_to_points() {
     for (mesh, count) in [(&long, 5), (&long, 2_000), (&slivers, 5), (&slivers, 2_000)] {
         let triangles = mesh.triangles().len();
         let pieces = pieces(mesh, count);
-        // By what `pieces` says of the coarser grain.
+        // The bound follows from the coarser grain described in `pieces`.
         assert!(pieces <= 2 * triangles + count, "{pieces} of {triangles} for {count}");
     }
     for (mesh, count) in [(&long, 5), (&slivers, 500)] {
-        let cloud = Cloud::blue(mesh, count, 1).expect("a cloud");
-        let cover = cloud.cover().expect("it is known");
+        let cloud = Cloud::blue_noise(mesh, count, 1).expect("a cloud");
+        let cover = cloud.covering_radius().expect("it is known");
         assert!(cover.proved && cover.radius >= farthest(mesh, &cloud), "{cover:?}");
         let sum: f64 = cloud.weights().iter().sum();
-        assert!((sum / mesh.survey().area - 1.0).abs() < 1e-9, "{sum}");
+        assert!((sum / mesh.diagnostics().area - 1.0).abs() < 1e-9, "{sum}");
     }
 }
 
@@ -60,14 +60,15 @@ fn coincident_triangles_are_divided_once() {
     let copies = (0..30).flat_map(|copy| tube.triangles().iter().map(move |t| turned(*t, copy)));
     let copies = Mesh::new(tube.vertices().to_vec(), copies.collect(), UNIT).expect("a mesh");
     assert_eq!(pieces(&copies, 2_000), pieces(&tube, 2_000));
-    let [one, all] = [&tube, &copies].map(|mesh| Cloud::blue(mesh, 2_000, 1).expect("a cloud"));
+    let [one, all] =
+        [&tube, &copies].map(|mesh| Cloud::blue_noise(mesh, 2_000, 1).expect("a cloud"));
     let sum = |cloud: &Cloud| cloud.weights().iter().sum::<f64>();
     assert!((sum(&all) / sum(&one) - 30.0).abs() < 1e-6);
-    let [one, all] = [one, all].map(|cloud| cloud.cover().expect("it is known").radius);
+    let [one, all] = [one, all].map(|cloud| cloud.covering_radius().expect("it is known").radius);
     assert!(all < 1.1 * one, "as evenly spread: {all} {one}");
 }
 
-/// Of a surface of many layers fewer points crowd each other than its area lets expect.
+/// On a surface of many layers, fewer points crowd each other than its area suggests.
 #[test]
 fn nearly_coincident_triangles_keep_a_proved_cover() {
     let layer = |k: u32| {
@@ -75,8 +76,8 @@ fn nearly_coincident_triangles_keep_a_proved_cover() {
         [[0.0, 0.0, z], [10.0, 0.0, z], [0.0, 10.0, z]]
     };
     let layers = mesh(&(0..200).map(layer).collect::<Vec<_>>());
-    let cloud = Cloud::blue(&layers, 1_000, 1).expect("a cloud");
-    let cover = cloud.cover().expect("it is known");
+    let cloud = Cloud::blue_noise(&layers, 1_000, 1).expect("a cloud");
+    let cover = cloud.covering_radius().expect("it is known");
     assert!(cover.proved && cover.radius >= farthest(&layers, &cloud), "{cover:?}");
     assert!(cover.radius < 2.0, "{cover:?}");
     let sum: f64 = cloud.weights().iter().sum();
@@ -91,7 +92,7 @@ fn coincident_points_share_a_cell() {
         places.extend(vec![Point3::new(15.0, 15.0, 0.0); repeated]);
         let normal = |k: usize| Vector3::new(tilt * k as f64, 0.0, 1.0).normalize();
         let normals = (0..places.len()).map(|k| normal(k.saturating_sub(900))).collect();
-        Cloud::from_points(Points { places, normals, faces: None, areas: None }, UNIT)
+        Cloud::from_points(OrientedPoints { places, normals, faces: None, areas: None }, UNIT)
             .expect("a cloud")
     };
     let one = of(0, 0.0);
@@ -102,27 +103,27 @@ fn coincident_points_share_a_cell() {
         let shared: f64 = many.weights()[900..].iter().sum::<f64>() + many.weights()[465];
         assert!((shared / whole - 1.0).abs() < 1e-3, "{shared} for {whole}");
         assert_eq!(many.weights()[..400], one.weights()[..400]);
-        assert_eq!(many.cover(), one.cover());
+        assert_eq!(many.covering_radius(), one.covering_radius());
     }
-    let alone = Points {
+    let alone = OrientedPoints {
         places: vec![Point3::origin(); 5_000],
         normals: vec![Vector3::z(); 5_000],
         faces: None,
         areas: None,
     };
-    assert_eq!(Cloud::from_points(alone, UNIT).expect("a cloud").cover(), None);
+    assert_eq!(Cloud::from_points(alone, UNIT).expect("a cloud").covering_radius(), None);
 }
 
 #[test]
 fn coincident_points_are_thinned() {
     let tube = shapes::tube(3.0, 5.0, 13.116, 24, 2, UNIT).expect("a tube");
-    let cloud = Cloud::random(&tube, 100, 1).expect("a cloud");
+    let cloud = Cloud::uniform(&tube, 100, 1).expect("a cloud");
     let repeated = |count: usize| {
         let all = (0..count).map(|k| k % 100);
         let points = all.clone().map(|k| cloud.points()[k]).collect();
         let normals = all.map(|k| cloud.normals()[k]).collect();
         let cloud = Cloud::new(points, normals, vec![0; count], vec![0.0; count], UNIT);
-        cloud.expect("a cloud").thinned(&tube, 200)
+        cloud.expect("a cloud").decimated(&tube, 200)
     };
     let thinned = repeated(60_000);
     assert_eq!(thinned.len(), 200);

@@ -1,35 +1,36 @@
-//! A surface in pieces that are handy to divide among points.
+//! Division of a surface into pieces of a convenient size for the Voronoi diagram.
 //!
-//! **How many there are.** A triangle whose box is `l` by `w` is met by about `(l/s + 1)(w/s + 1)` cells of points
-//! at a spacing `s`, and is cut until that is [`MET`] at most. Each cut halves the longer side, so a piece that was
-//! cut has more than `MET / 2`, and the cuts add at most two thirds to the sum over all pieces: a sum `E` over the
-//! triangles makes at most `E / 16` pieces beside one for each triangle. Of parts with an ordinary shape `E` is a few
-//! times the number of points and triangles. Where it is more than [`MOST_MET`] times that and [`ANY_MET`], triangles are long
-//! against the spacing, and are cut by a coarser grain instead, at which `E` is [`COARSE_MET`] times the number of
-//! points and triangles. So there are never more than `5 triangles + 4 points + 2^20` pieces. What is computed of
-//! them holds for pieces of any size.
+//! **Number of pieces.** A triangle whose box is `l` by `w` meets about `(l/s + 1)(w/s + 1)` cells of
+//! points at a spacing `s`, and is cut until that is at most [`MET`]. Each cut halves the longer side,
+//! so a piece that was cut has more than `MET / 2`, and the cuts add at most two thirds to the sum over
+//! all pieces. A sum `E` over the triangles therefore makes at most `E / 16` pieces in addition to one
+//! per triangle. For parts with an ordinary shape, `E` is a few times the number of points and
+//! triangles. If it is more than [`MOST_MET`] times that and [`ANY_MET`], triangles are long compared
+//! with the spacing. They are then cut by a coarser grain, at which `E` is [`COARSE_MET`] times the
+//! number of points and triangles. There are therefore never more than `5 triangles + 4 points + 2^20`
+//! pieces. Results computed from the pieces hold for pieces of any size.
 
-use super::diagram::{Corner, EDGE, area, clip};
-use super::draw::Facets;
+use super::sampling::AreaSampler;
+use super::voronoi::{Corner, EDGE, area, clip};
 use crate::mesh::{Mesh, area_and_normal};
 use nalgebra::{Point3, Vector3};
 use std::ops::Range;
 
-/// Triangles are cut until about as many points have a cell in each.
+/// Triangles are cut until about as many points have a cell in each piece.
 pub(super) const MET: f64 = 64.0;
-/// Cells that triangles meet, for each point and each triangle, before they are cut by a coarser grain.
+/// Cells that triangles meet, per point and per triangle, before a coarser grain is used.
 const MOST_MET: f64 = 64.0;
-/// As many in any case.
+/// Number of cells that is always allowed.
 const ANY_MET: f64 = (1 << 24) as f64;
-/// Cells that they meet at the coarser grain, for each point and each triangle.
+/// Cells that triangles meet at the coarser grain, per point and per triangle.
 const COARSE_MET: f64 = 16.0;
 
-/// Triangles in handy pieces. Those without an area are in it too: they are edges, and a tool may be
-/// as deep there.
+/// Triangles cut into pieces. Triangles without area are included: they are edges, and a tool may be
+/// just as deep there.
 pub(super) struct Surface {
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<SurfacePiece>,
     corners: Vec<Point3<f64>>,
-    /// The root of a point's share of the area.
+    /// The square root of the area per point.
     pub(super) spacing: f64,
     /// The spacing that triangles are cut for.
     grain: f64,
@@ -38,30 +39,30 @@ pub(super) struct Surface {
 }
 
 /// A convex part of a triangle.
-pub(super) struct Piece {
+pub(super) struct SurfacePiece {
     pub(super) triangle: u32,
-    /// Coincident pieces that it stands for, itself included.
+    /// The number of coincident pieces that this piece represents, including itself.
     pub(super) copies: u32,
     corners: Range<usize>,
-    /// The triangle's; zero if it has no area.
+    /// The triangle's unit normal; zero if the triangle has no area.
     pub(super) normal: Vector3<f64>,
     pub(super) area: f64,
 }
 
-/// What the pieces of a triangle have of it.
-struct Of {
+/// Properties of a triangle that all of its pieces share.
+struct TrianglePieces {
     triangle: u32,
     copies: u32,
-    /// A corner, which others are given from.
+    /// The corner that other corners are given relative to.
     from: Point3<f64>,
     normal: Vector3<f64>,
-    /// Along the longest side, and across it.
+    /// Directions along the longest side, and across it in the triangle's plane.
     axes: [Vector3<f64>; 2],
 }
 
 impl Surface {
-    /// Of a mesh that is to have so many points.
-    pub(super) fn new(mesh: &Mesh, facets: &Facets, count: usize) -> Surface {
+    /// Divides a mesh for `count` points.
+    pub(super) fn new(mesh: &Mesh, facets: &AreaSampler, count: usize) -> Surface {
         let spacing = (facets.spread / count as f64).sqrt();
         let [low, high] = mesh.bounds();
         let size = low.coords.amax().max(high.coords.amax());
@@ -73,22 +74,29 @@ impl Surface {
                 let (area, normal) = area_and_normal(&corners).unwrap_or_default();
                 let from = corners[0];
                 let whole = corners.map(|corner| (corner - from, EDGE)).to_vec();
-                let of = Of { triangle, copies, from, normal, axes: axes(&corners, &normal) };
+                let of = TrianglePieces {
+                    triangle,
+                    copies,
+                    from,
+                    normal,
+                    axes: axes(&corners, &normal),
+                };
                 surface.add(&of, whole, area);
             }
         }
         surface
     }
 
-    /// Adds a part of a triangle, cut across where it is longer until few points have a cell in each.
-    fn add(&mut self, of: &Of, part: Vec<Corner>, area: f64) {
-        let Of { triangle, copies, from, normal, axes } = *of;
+    /// Adds a part of a triangle. It is cut across its longer extent until few points have a cell in
+    /// each piece.
+    fn add(&mut self, of: &TrianglePieces, part: Vec<Corner>, area: f64) {
+        let TrianglePieces { triangle, copies, from, normal, axes } = *of;
         let ends = ends(&part, &axes);
         if met(&ends, self.grain) <= MET {
             let start = self.corners.len();
             self.corners.extend(part.iter().map(|(corner, _)| from + corner));
             let corners = start..self.corners.len();
-            self.pieces.push(Piece { triangle, copies, corners, normal, area });
+            self.pieces.push(SurfacePiece { triangle, copies, corners, normal, area });
             return;
         }
         let [long, wide] = ends.map(|[low, high]| high - low);
@@ -102,7 +110,7 @@ impl Surface {
         let sizes = [&one, &other].map(|part| self::area(part, &normal));
         let all = sizes[0] + sizes[1];
         for (part, size) in [one, other].into_iter().zip(sizes) {
-            // Where rounding leaves no area there is still a way along.
+            // If rounding leaves no area, the part still has a length, so it is divided evenly.
             let share = if all > 0.0 { size / all } else { 0.5 };
             self.add(of, part, share * area);
         }
@@ -113,13 +121,14 @@ impl Surface {
         self.grain > self.spacing
     }
 
-    /// The corners of a piece.
-    pub(super) fn corners(&self, piece: &Piece) -> &[Point3<f64>] {
+    /// Returns the corners of a piece.
+    pub(super) fn corners(&self, piece: &SurfacePiece) -> &[Point3<f64>] {
         &self.corners[piece.corners.clone()]
     }
 }
 
-/// Returns the direction of the longest side of a triangle and that across it in its plane.
+/// Returns the direction of a triangle's longest side and the direction across it in the triangle's
+/// plane.
 fn axes([a, b, c]: &[Point3<f64>; 3], normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let edges = [b - a, c - b, a - c].into_iter();
     let longest =
@@ -128,7 +137,7 @@ fn axes([a, b, c]: &[Point3<f64>; 3], normal: &Vector3<f64>) -> [Vector3<f64>; 2
     [along, normal.cross(&along)]
 }
 
-/// Returns between which coordinates some corners lie along two axes.
+/// Returns the ranges of the corners' coordinates along two axes.
 fn ends(part: &[Corner], axes: &[Vector3<f64>; 2]) -> [[f64; 2]; 2] {
     axes.map(|axis| {
         let along = || part.iter().map(|(v, _)| v.dot(&axis));
@@ -136,15 +145,15 @@ fn ends(part: &[Corner], axes: &[Vector3<f64>; 2]) -> [[f64; 2]; 2] {
     })
 }
 
-/// Returns about how many cells of points at a spacing a box meets.
+/// Returns the approximate number of cells of points at a spacing that a box meets.
 fn met(ends: &[[f64; 2]; 2], spacing: f64) -> f64 {
     let [long, wide] = ends.map(|[low, high]| high - low);
     (long / spacing + 1.0) * (wide / spacing + 1.0)
 }
 
-/// Returns the spacing that a mesh is cut for: that of its points, or the next power of two of it at which there
-/// are not too many pieces.
-fn grain(mesh: &Mesh, facets: &Facets, spacing: f64, count: usize) -> f64 {
+/// Returns the spacing that a mesh is cut for. It is the points' spacing, or that times the smallest
+/// power of two for which there are not too many pieces.
+fn grain(mesh: &Mesh, facets: &AreaSampler, spacing: f64, count: usize) -> f64 {
     let triangles = (0..).zip(mesh.corners()).filter(|(id, _)| facets.copies.count(*id) > 0);
     let boxes: Vec<[[f64; 2]; 2]> = triangles
         .map(|(_, corners)| {

@@ -1,4 +1,4 @@
-use super::draw::fraction;
+use super::sampling::fraction;
 use super::*;
 use crate::mesh::shapes;
 use rand_core::SeedableRng;
@@ -11,7 +11,7 @@ fn cuboid() -> Mesh {
     shapes::cuboid(Point3::origin(), high, UNIT).expect("a cuboid")
 }
 
-/// Pearson's statistic of counts that should be in proportion to `shares`.
+/// Returns Pearson's chi-square statistic of counts that should be proportional to `shares`.
 fn chi_square(counts: &[f64], shares: &[f64]) -> f64 {
     let scale = counts.iter().sum::<f64>() / shares.iter().sum::<f64>();
     let terms = counts.iter().zip(shares.iter().map(|share| share * scale));
@@ -21,10 +21,10 @@ fn chi_square(counts: &[f64], shares: &[f64]) -> f64 {
 #[test]
 fn random_points_lie_on_the_surface_and_share_its_area() {
     let mesh = shapes::tube(3.0, 5.0, 13.116, 96, 23, UNIT).expect("a tube");
-    let cloud = Cloud::random(&mesh, 20_000, 7).expect("a cloud");
+    let cloud = Cloud::uniform(&mesh, 20_000, 7).expect("a cloud");
     assert_eq!((cloud.len(), cloud.unit()), (20_000, UNIT));
     let sum: f64 = cloud.weights().iter().sum();
-    assert!((sum / mesh.survey().area - 1.0).abs() < 1e-11, "{sum}");
+    assert!((sum / mesh.diagnostics().area - 1.0).abs() < 1e-11, "{sum}");
     for i in 0..cloud.len() {
         let id = cloud.triangles()[i];
         assert_eq!(Some(cloud.normals()[i]), mesh.normal(id));
@@ -36,10 +36,10 @@ fn random_points_lie_on_the_surface_and_share_its_area() {
 #[test]
 fn random_points_are_uniform() {
     let mesh = cuboid();
-    let cloud = Cloud::random(&mesh, 60_000, 3).expect("a cloud");
+    let cloud = Cloud::uniform(&mesh, 60_000, 3).expect("a cloud");
     let areas: Vec<f64> = (0..12).map(|id| mesh.area(id)).collect();
     let mut counts = vec![0.0; 12];
-    // On the side z = 0, which is 1 by 2, also by cells, whose shares are equal.
+    // Also count grid cells of equal share on the side z = 0, which is 1 by 2.
     let mut cells = vec![0.0; 32];
     for (point, &id) in cloud.points().iter().zip(cloud.triangles()) {
         counts[id as usize] += 1.0;
@@ -47,7 +47,7 @@ fn random_points_are_uniform() {
             cells[(point.x * 4.0) as usize + 4 * (point.y * 4.0) as usize] += 1.0;
         }
     }
-    // 11 and 31 degrees of freedom: chance goes beyond these once in a thousand seeds.
+    // With 11 and 31 degrees of freedom, chance exceeds these values once in a thousand seeds.
     let (sides, cells) = (chi_square(&counts, &areas), chi_square(&cells, &[1.0; 32]));
     assert!(sides < 31.3 && cells < 61.1, "{sides} {cells}");
 }
@@ -56,10 +56,10 @@ fn random_points_are_uniform() {
 fn a_seed_is_a_cloud() {
     let mesh = cuboid();
     let [a, b, c] = [(100, 1), (200, 1), (100, 2)]
-        .map(|(count, seed)| Cloud::random(&mesh, count, seed).expect("a cloud"));
+        .map(|(count, seed)| Cloud::uniform(&mesh, count, seed).expect("a cloud"));
     assert_eq!(a.points(), &b.points()[..100]);
     assert_ne!(a.points(), c.points());
-    // The stream is a promise: clouds in published measurements are named by their seed.
+    // The stream must stay the same: clouds in published measurements are identified by their seed.
     let first = Point3::new(0.13120038523973798, 2.0, 0.06919470014228546);
     assert_eq!((a.triangles()[0], a.points()[0]), (7, first));
 }
@@ -69,12 +69,12 @@ fn degenerate_triangles_are_never_touched() {
     let vertices = cuboid().vertices().to_vec();
     let triangles = vec![[0, 0, 1], [0, 1, 2], [3, 3, 3], [4, 5, 6], [7, 6, 7]];
     let mesh = Mesh::new(vertices, triangles, UNIT).expect("a mesh");
-    let cloud = Cloud::random(&mesh, 1000, 0).expect("a cloud");
+    let cloud = Cloud::uniform(&mesh, 1000, 0).expect("a cloud");
     assert!(cloud.triangles().iter().all(|id| [1, 3].contains(id)));
     assert_eq!(Cloud::centroids(&mesh).triangles(), [1, 3]);
-    assert_eq!(Cloud::random(&mesh, 0, 0), Err(CloudError::Empty));
+    assert_eq!(Cloud::uniform(&mesh, 0, 0), Err(CloudError::Empty));
     if let Some(count) = (u32::MAX as usize).checked_add(1) {
-        assert_eq!(Cloud::random(&mesh, count, 0), Err(CloudError::TooMany { count }));
+        assert_eq!(Cloud::uniform(&mesh, count, 0), Err(CloudError::TooMany { count }));
     }
 }
 
@@ -84,7 +84,7 @@ fn centroids_are_exact_for_affine_integrands() {
     let cloud = Cloud::centroids(&mesh);
     let affine = |p: &Point3<f64>| 1.0 + 2.0 * p.x - 3.0 * p.y + 4.0 * p.z;
     let sum: f64 = cloud.points().iter().zip(cloud.weights()).map(|(p, w)| w * affine(p)).sum();
-    // By symmetry the mean of the surface is the middle of the box.
+    // By symmetry, the mean of the surface is the centre of the box.
     assert!((sum - 28.0 * affine(&Point3::new(0.5, 1.0, 2.0))).abs() < 1e-12, "{sum}");
     // The divergence theorem: the weighted normals of a closed surface cancel.
     let normals = cloud.normals().iter().zip(cloud.weights()).map(|(n, w)| n * *w);
@@ -114,10 +114,10 @@ fn clouds_from_elsewhere_are_checked() {
 }
 
 fn random(mesh: &Mesh, count: usize) -> Cloud {
-    Cloud::random(mesh, count, 5).expect("a cloud")
+    Cloud::uniform(mesh, count, 5).expect("a cloud")
 }
 
-/// Sample elimination as it is described: one at a time, with all distances.
+/// Reference implementation of sample elimination: one point at a time, with all distances.
 fn thinned_one_by_one(cloud: &Cloud, area: f64, count: usize) -> Vec<u32> {
     let all = cloud.len();
     let reach = 2.0 * (area / (2.0 * 3f64.sqrt() * count as f64)).sqrt();
@@ -142,11 +142,11 @@ fn all_at_once_leave_as_one_by_one() {
     let tube = shapes::tube(1.0, 2.0, 3.0, 64, 3, UNIT).expect("a tube");
     for (mesh, count) in [(cuboid(), 100), (cuboid(), 399), (tube, 60)] {
         let cloud = random(&mesh, 400);
-        let area = mesh.survey().area;
-        let thinned = thin::thin(&cloud.points, &cloud.normals, area, count);
+        let area = mesh.diagnostics().area;
+        let thinned = decimate::decimate(&cloud.points, &cloud.normals, area, count);
         let expected = thinned_one_by_one(&cloud, area, count);
         assert_eq!(thinned.len(), count);
-        // Single precision may tell apart otherwise what is as crowded to seven figures.
+        // Single precision may decide differently between points whose crowding agrees to seven figures.
         let other = thinned.iter().filter(|index| !expected.contains(index)).count();
         assert!(other * 50 <= count, "{other} of {count} are others");
     }
@@ -156,13 +156,13 @@ fn all_at_once_leave_as_one_by_one() {
 fn without_neighbours_as_many_are_left_as_are_asked_for() {
     let far = |i: u32| Point3::new(f64::from(i), 0.0, 0.0);
     let points: Vec<_> = (0..9).map(far).collect();
-    let left = thin::thin(&points, &[Vector3::z(); 9], 1e-6, 4);
+    let left = decimate::decimate(&points, &[Vector3::z(); 9], 1e-6, 4);
     assert_eq!(left, [0, 1, 2, 3]);
-    let same = thin::thin(&[Point3::origin(); 9], &[Vector3::z(); 9], 1.0, 4);
+    let same = decimate::decimate(&[Point3::origin(); 9], &[Vector3::z(); 9], 1.0, 4);
     assert_eq!(same.len(), 4);
 }
 
-/// Places all over a mesh, with the triangles that they lie on.
+/// Returns grid points on all triangles of a mesh, with the triangles' ids.
 fn places(mesh: &Mesh, fine: u32) -> impl Iterator<Item = (u32, Point3<f64>)> {
     let steps = (0..=fine).flat_map(move |i| (0..=fine - i).map(move |j| (i, j)));
     (0..).zip(mesh.corners()).flat_map(move |(id, [a, b, c])| {
@@ -175,13 +175,14 @@ fn nearest(cloud: &Cloud, place: &Point3<f64>) -> f64 {
     cloud.points().iter().map(|p| (p - place).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// Two sheets back to back, so close that a point is nearer to the other sheet than to its neighbours.
+/// Returns two sheets back to back, so close that a point is nearer to the other sheet than to its
+/// neighbours.
 fn sheets() -> Mesh {
     let high = Point3::new(4.0, 4.0, 0.01);
     shapes::cuboid(Point3::origin(), high, UNIT).expect("a sheet")
 }
 
-/// Long and thin: the triangles' angles are near 0 and 180 degrees.
+/// Returns long, thin triangles with angles near 0 and 180 degrees.
 fn slivers() -> Mesh {
     let at = |x: f64, y: f64| Point3::new(x, y, 0.0);
     let vertices =
@@ -197,20 +198,20 @@ fn nothing_is_farther_than_the_covering_radius() {
     let doubled = Mesh::new(cuboid().vertices().to_vec(), doubled, UNIT).expect("a mesh");
     for mesh in [cuboid(), ball, sheets(), slivers(), doubled] {
         for count in [1, 2, 3, 10, 300] {
-            let blue = Cloud::blue(&mesh, count, 1).expect("a cloud");
-            let random = random(&mesh, count).weighed(&mesh);
+            let blue = Cloud::blue_noise(&mesh, count, 1).expect("a cloud");
+            let random = random(&mesh, count).with_voronoi_weights(&mesh);
             for cloud in [blue, random] {
-                let cover = cloud.cover().expect("a cover");
+                let cover = cloud.covering_radius().expect("a cover");
                 assert!(cover.proved && cloud.len() == count);
                 let fine = if mesh.triangles().len() > 100 { 6 } else { 60 };
                 let far = places(&mesh, fine).map(|(_, place)| nearest(&cloud, &place));
                 let far = far.fold(0.0, f64::max);
-                // It is no looser than the grid is coarse.
+                // The bound is tight up to the resolution of the grid.
                 let coarse = 0.9;
                 assert!(far <= cover.radius, "{count}: {far} beyond {}", cover.radius);
                 assert!(far >= coarse * cover.radius, "{count}: {far} for {}", cover.radius);
                 let sum: f64 = cloud.weights().iter().sum();
-                assert!((sum / mesh.survey().area - 1.0).abs() < 1e-13, "{count}: {sum}");
+                assert!((sum / mesh.diagnostics().area - 1.0).abs() < 1e-13, "{count}: {sum}");
             }
         }
     }
@@ -218,9 +219,9 @@ fn nothing_is_farther_than_the_covering_radius() {
 
 #[test]
 fn weights_are_the_areas_of_cells() {
-    // On a plane every place belongs to the nearest point.
+    // On a plane every position belongs to the nearest point.
     let mesh = shapes::plane(1.0, 3, UNIT).expect("a plane");
-    let cloud = random(&mesh, 40).weighed(&mesh);
+    let cloud = random(&mesh, 40).with_voronoi_weights(&mesh);
     let fine = 150;
     let mut counted = vec![0.0; 40];
     let mut all = 0.0;
@@ -238,13 +239,13 @@ fn weights_are_the_areas_of_cells() {
 #[test]
 fn the_sides_of_a_sheet_are_weighed_apart() {
     let mesh = sheets();
-    let cloud = Cloud::blue(&mesh, 400, 1).expect("a cloud");
+    let cloud = Cloud::blue_noise(&mesh, 400, 1).expect("a cloud");
     let side = |up: f64| {
         let of = cloud.normals().iter().zip(cloud.weights()).filter(|(n, _)| n.z * up > 0.5);
         of.map(|(_, weight)| *weight).sum::<f64>()
     };
     let [top, bottom] = [side(1.0), side(-1.0)];
-    // The rim has hardly any points: its area is the sides'.
+    // The rim has hardly any points, so its area goes to the sides.
     assert!((top - 16.0).abs() < 0.12 && (bottom - 16.0).abs() < 0.12, "{top} {bottom}");
     let count = cloud.normals().iter().filter(|n| n.z > 0.5).count();
     assert!((180..=220).contains(&count), "{count}");
@@ -256,11 +257,11 @@ fn a_blue_cloud_is_the_same_on_any_number_of_cores() {
     let tube = shapes::tube(3.0, 5.0, 13.0, 96, 4, UNIT).expect("a tube");
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| Cloud::blue(&tube, 20_000, 3).expect("a cloud"))
+        pool.install(|| Cloud::blue_noise(&tube, 20_000, 3).expect("a cloud"))
     };
     let one = on(1);
-    assert!(one.cover().is_some_and(|cover| {
-        cover.radius * (one.len() as f64 / tube.survey().area).sqrt() <= 0.95
+    assert!(one.covering_radius().is_some_and(|cover| {
+        cover.radius * (one.len() as f64 / tube.diagnostics().area).sqrt() <= 0.95
     }));
     assert_eq!(one, on(2));
     assert_eq!(one, on(5));
@@ -269,21 +270,35 @@ fn a_blue_cloud_is_the_same_on_any_number_of_cores() {
 #[test]
 fn a_radius_says_how_many_points() {
     let mesh = cuboid();
-    for sampling in [Sampling::Blue, Sampling::Random] {
+    for sampling in [SamplingMethod::BlueNoise, SamplingMethod::Uniform] {
         for radius in [10.0, 0.5, 0.05] {
-            let cloud = Cloud::covering(&mesh, radius, sampling, MOST_BLUE, 1).expect("a cloud");
-            let found = cloud.cover().expect("a cover").radius;
+            let cloud =
+                Cloud::with_covering_radius(&mesh, radius, sampling, MAX_BLUE_NOISE_POINTS, 1)
+                    .expect("a cloud");
+            let found = cloud.covering_radius().expect("a cover").radius;
             assert!(found <= radius, "{found} of {radius}");
-            let spare = if sampling == Sampling::Blue { 0.85 } else { 0.7 };
+            let spare = if sampling == SamplingMethod::BlueNoise { 0.85 } else { 0.7 };
             assert!(cloud.len() < 5 || found > spare * radius, "{found} of {radius}");
         }
     }
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refused = Cloud::covering(&mesh, radius, Sampling::Blue, MOST_BLUE, 1);
+        let refused = Cloud::with_covering_radius(
+            &mesh,
+            radius,
+            SamplingMethod::BlueNoise,
+            MAX_BLUE_NOISE_POINTS,
+            1,
+        );
         assert!(matches!(refused, Err(CloudError::Radius { .. })), "{refused:?}");
     }
-    let refused =
-        Cloud::covering(&mesh, 1e-5, Sampling::Blue, MOST_BLUE, 1).expect_err("too many points");
+    let refused = Cloud::with_covering_radius(
+        &mesh,
+        1e-5,
+        SamplingMethod::BlueNoise,
+        MAX_BLUE_NOISE_POINTS,
+        1,
+    )
+    .expect_err("too many points");
     let text = refused.to_string();
     assert!(text.contains("wants about 2.3e11 points") && text.contains("certify"), "{text}");
 }
@@ -293,31 +308,33 @@ fn of_points_alone_cells_are_estimated() {
     let mesh = shapes::tube(3.0, 5.0, 13.0, 512, 8, UNIT).expect("a tube");
     let points = |cloud: Cloud, areas: Option<Vec<f64>>| {
         let Cloud { points, normals, .. } = cloud;
-        Cloud::from_points(Points { places: points, normals, faces: None, areas }, UNIT)
+        Cloud::from_points(OrientedPoints { places: points, normals, faces: None, areas }, UNIT)
     };
-    for (cloud, close, near) in
-        [(Cloud::blue(&mesh, 5_000, 1), 0.05, 0.25), (Cloud::random(&mesh, 5_000, 1), 0.15, 0.5)]
-    {
-        let cloud = cloud.expect("a cloud").weighed(&mesh);
+    for (cloud, close, near) in [
+        (Cloud::blue_noise(&mesh, 5_000, 1), 0.05, 0.25),
+        (Cloud::uniform(&mesh, 5_000, 1), 0.15, 0.5),
+    ] {
+        let cloud = cloud.expect("a cloud").with_voronoi_weights(&mesh);
         let guessed = points(cloud.clone(), None).expect("points");
-        let cover = guessed.cover().expect("a cover");
-        let radius = cloud.cover().expect("a cover").radius;
+        let cover = guessed.covering_radius().expect("a cover");
+        let radius = cloud.covering_radius().expect("a cover").radius;
         assert!(!cover.proved && (cover.radius / radius - 1.0).abs() < near, "{cover:?} {radius}");
         let area: f64 = guessed.weights().iter().sum();
-        assert!((area / mesh.survey().area - 1.0).abs() < close, "{area}");
+        assert!((area / mesh.diagnostics().area - 1.0).abs() < close, "{area}");
         let given = points(cloud.clone(), Some(cloud.weights().to_vec())).expect("points");
         assert_eq!(given.weights(), cloud.weights());
     }
     let same = vec![Point3::origin(); 20];
-    let all = Points { places: same, normals: vec![Vector3::z(); 20], faces: None, areas: None };
+    let all =
+        OrientedPoints { places: same, normals: vec![Vector3::z(); 20], faces: None, areas: None };
     let cloud = Cloud::from_points(all.clone(), UNIT).expect("points");
     assert!(cloud.weights().iter().all(|weight| *weight == 0.0));
-    let negative = Points { areas: Some(vec![-1.0; 20]), ..all };
+    let negative = OrientedPoints { areas: Some(vec![-1.0; 20]), ..all };
     let refused = Cloud::from_points(negative, UNIT);
     assert_eq!(refused, Err(CloudError::Weight { point: 0, weight: -1.0 }));
 }
 
-/// Points in the same place, and places mirrored in the surface: nearness leaves open whose a place is.
+/// Coincident points, and points mirrored in the surface: distance alone does not decide the owner.
 #[test]
 fn points_that_are_as_near_lose_nothing() {
     let at = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
@@ -327,10 +344,11 @@ fn points_that_are_as_near_lose_nothing() {
         let count = points.len();
         let (normals, ids) = (vec![Vector3::z(); count], vec![0; count]);
         let cloud = Cloud::new(points, normals, ids, vec![0.0; count], UNIT).expect("a cloud");
-        let cloud = cloud.weighed(&mesh);
+        let cloud = cloud.with_voronoi_weights(&mesh);
         let far = places(&mesh, 40).map(|(_, place)| nearest(&cloud, &place)).fold(0.0, f64::max);
-        let radius = cloud.cover().expect("a cover").radius;
-        // The covering radius is at a corner of the triangle or between points: the grid is close.
+        let radius = cloud.covering_radius().expect("a cover").radius;
+        // The covering radius is attained at a corner of the triangle or between points, so the grid's
+        // value is close.
         assert!(far <= radius && radius <= 1.1 * far + 0.3, "{far} {radius} {:?}", cloud.points());
         let sum: f64 = cloud.weights().iter().sum();
         assert!((sum / 400.0 - 1.0).abs() < 1e-12, "{sum}");
@@ -362,10 +380,10 @@ fn what_has_no_area_is_covered_too() {
     let mut triangles = cuboid().triangles().to_vec();
     triangles.push([0, 8, 9]);
     let mesh = Mesh::new(vertices, triangles, UNIT).expect("a mesh");
-    for cloud in [Cloud::blue(&mesh, 50, 1), Cloud::random(&mesh, 50, 1)] {
-        let cloud = cloud.expect("a cloud").weighed(&mesh);
+    for cloud in [Cloud::blue_noise(&mesh, 50, 1), Cloud::uniform(&mesh, 50, 1)] {
+        let cloud = cloud.expect("a cloud").with_voronoi_weights(&mesh);
         let far = places(&mesh, 50).map(|(_, place)| nearest(&cloud, &place)).fold(0.0, f64::max);
-        let radius = cloud.cover().expect("a cover").radius;
+        let radius = cloud.covering_radius().expect("a cover").radius;
         assert!(far <= radius && radius < 1.1 * far, "{far} {radius}");
         let sum: f64 = cloud.weights().iter().sum();
         assert!((sum / 28.0 - 1.0).abs() < 1e-12, "{sum}");
@@ -375,20 +393,22 @@ fn what_has_no_area_is_covered_too() {
 #[test]
 fn points_that_repeat_share_their_cells() {
     let mesh = shapes::plane(1.0, 4, UNIT).expect("a plane");
-    let cloud = Cloud::blue(&mesh, 500, 1).expect("a cloud");
+    let cloud = Cloud::blue_noise(&mesh, 500, 1).expect("a cloud");
     let thrice = |list: &[Point3<f64>]| [list, list, list].concat();
     let points = |places: Vec<Point3<f64>>, areas| {
         let normals = vec![Vector3::z(); places.len()];
-        Cloud::from_points(Points { places, normals, faces: None, areas }, UNIT)
+        Cloud::from_points(OrientedPoints { places, normals, faces: None, areas }, UNIT)
     };
     let [one, three] = [cloud.points().to_vec(), thrice(cloud.points())]
         .map(|places| points(places, None).expect("points"));
     let sum = |cloud: &Cloud| cloud.weights().iter().sum::<f64>();
-    assert!((sum(&one) - sum(&three)).abs() < 1e-9 && one.cover() == three.cover());
-    // Nothing tells how far the surface gets from one point.
+    assert!(
+        (sum(&one) - sum(&three)).abs() < 1e-9 && one.covering_radius() == three.covering_radius()
+    );
+    // A single point gives no estimate of the covering radius.
     for count in [1, 20] {
         let alone = points(vec![Point3::origin(); count], None).expect("points");
-        assert_eq!(alone.cover(), None);
+        assert_eq!(alone.covering_radius(), None);
     }
     let short = points(vec![Point3::origin(); 20], Some(vec![1.0]));
     assert!(matches!(short, Err(CloudError::Lengths { weights: 1, .. })), "{short:?}");

@@ -1,144 +1,155 @@
-//! What a hand holds.
+//! Haptic devices: the trait, force and torque limits, and devices that play back poses.
 
 use crate::motion::{Motion, MotionError};
 use crate::pose::{Pose, PoseError};
 use nalgebra::Vector3;
 
-/// A force in N and a torque in N·mm about the tool's compliance centre, in the world's frame.
+/// A force in N and a torque in N·mm about the tool's compliance centre, in the world frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Push {
-    /// The force.
+pub struct DeviceWrench {
+    /// The force, N.
     pub force: Vector3<f64>,
-    /// The torque.
+    /// The torque, N·mm.
     pub torque: Vector3<f64>,
 }
 
-impl Push {
-    /// The same, so much as large.
+impl DeviceWrench {
+    /// Returns the wrench multiplied by a factor.
     #[must_use]
-    pub fn scaled(&self, by: f64) -> Push {
-        Push { force: self.force * by, torque: self.torque * by }
+    pub fn scaled(&self, by: f64) -> DeviceWrench {
+        DeviceWrench { force: self.force * by, torque: self.torque * by }
     }
 
-    /// Both together.
+    /// Returns the sum of two wrenches.
     #[must_use]
-    pub fn and(&self, other: &Push) -> Push {
-        Push { force: self.force + other.force, torque: self.torque + other.torque }
+    pub fn and(&self, other: &DeviceWrench) -> DeviceWrench {
+        DeviceWrench { force: self.force + other.force, torque: self.torque + other.torque }
     }
 }
 
-/// What turns a device knows.
+/// The rotational degrees of freedom of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
-    /// Where the tip is and how the axis stands; the spin is neither known nor pushed.
+pub enum DeviceAxes {
+    /// The tip's position and the axis's direction; spin is neither measured nor driven.
     Five,
-    /// All.
+    /// All rotations.
     Six,
 }
 
-/// What a device can do to a hand.
+/// Force, torque and stiffness limits of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Which turns it knows.
-    pub axes: Axes,
+pub struct DeviceLimits {
+    /// The rotational degrees of freedom.
+    pub axes: DeviceAxes,
     /// The largest force, N.
     pub force: f64,
     /// The largest torque, N·mm.
     pub torque: f64,
-    /// The stiffest spring that it can render to a hand without shaking, N/mm.
+    /// The largest stiffness that the device can render without instability, N/mm.
     pub stiffness: f64,
-    /// The same against turning, N·mm/rad.
-    pub turning: f64,
+    /// The largest rotational stiffness that the device can render, N·mm/rad.
+    pub turning_stiffness: f64,
 }
 
-/// A desktop device of middling strength.
-impl Default for Limits {
-    fn default() -> Limits {
-        Limits { axes: Axes::Five, force: 8.0, torque: 200.0, stiffness: 1.0, turning: 1000.0 }
+/// Values of a desktop device of medium strength.
+impl Default for DeviceLimits {
+    fn default() -> DeviceLimits {
+        DeviceLimits {
+            axes: DeviceAxes::Five,
+            force: 8.0,
+            torque: 200.0,
+            stiffness: 1.0,
+            turning_stiffness: 1000.0,
+        }
     }
 }
 
-/// A device could not say where it is, or could not push.
+/// Reasons why a device could not report its pose or apply a wrench.
 #[derive(Debug, thiserror::Error)]
 pub enum DeviceError {
-    /// What it said is no pose.
+    /// The reported data is not a valid pose.
     #[error("the device says that it is nowhere: {0}")]
     Pose(#[from] PoseError),
-    /// It does not answer; it may again.
+    /// The device does not answer at the moment.
     #[error("the device does not answer: {0}")]
-    Gone(std::io::Error),
-    /// There is nothing left to play.
+    NotResponding(std::io::Error),
+    /// The recorded poses have all been played.
     #[error("the device has played all it had")]
     Ended,
 }
 
-/// A haptic device: says where the hand wants the tool, and pushes the hand. Both are called once a cycle
-/// in the loop, where nothing may wait: what has no news says again what it said last.
+/// A haptic device: reports the tool pose that the hand commands, and applies a wrench to the hand. The
+/// loop calls both functions once per cycle, so neither may block: a device without new data returns the
+/// previous pose.
 pub trait Device {
-    /// Where the tool is wanted, in the world and the part's unit.
+    /// Returns the commanded tool pose, in the world frame and the part's unit.
     ///
     /// # Errors
-    /// If the device does not know. The loop holds on to the pose before, and asks again.
+    /// Fails if the device does not know the pose. The loop keeps the previous pose and asks again.
     fn pose(&mut self) -> Result<Pose, DeviceError>;
 
-    /// Pushes the hand from now on.
+    /// Applies a wrench to the hand until the next call.
     ///
     /// # Errors
-    /// If the device cannot. The loop goes on.
-    fn push(&mut self, push: &Push) -> Result<(), DeviceError>;
+    /// Fails if the device cannot apply the wrench. The loop continues.
+    fn apply(&mut self, push: &DeviceWrench) -> Result<(), DeviceError>;
 
-    /// What it can do.
-    fn limits(&self) -> Limits;
+    /// Returns the limits of the device.
+    fn limits(&self) -> DeviceLimits;
 }
 
-/// Poses one after another, as a function says; pushes nobody.
-pub struct Scripted<F> {
+/// A device that reports poses computed by a function and ignores wrenches.
+pub struct ScriptedDevice<F> {
     script: F,
-    limits: Limits,
+    limits: DeviceLimits,
     cycle: u64,
 }
 
-impl<F: FnMut(u64) -> Result<Pose, DeviceError>> Scripted<F> {
-    /// The pose of each cycle, counted from 0.
-    pub fn new(limits: Limits, script: F) -> Scripted<F> {
-        Scripted { script, limits, cycle: 0 }
+impl<F: FnMut(u64) -> Result<Pose, DeviceError>> ScriptedDevice<F> {
+    /// Creates a device whose pose in each cycle, counted from 0, is computed by `script`.
+    pub fn new(limits: DeviceLimits, script: F) -> ScriptedDevice<F> {
+        ScriptedDevice { script, limits, cycle: 0 }
     }
 }
 
-impl<F: FnMut(u64) -> Result<Pose, DeviceError>> Device for Scripted<F> {
+impl<F: FnMut(u64) -> Result<Pose, DeviceError>> Device for ScriptedDevice<F> {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
         let cycle = self.cycle;
         self.cycle += 1;
         (self.script)(cycle)
     }
 
-    fn push(&mut self, _: &Push) -> Result<(), DeviceError> {
+    fn apply(&mut self, _: &DeviceWrench) -> Result<(), DeviceError> {
         Ok(())
     }
 
-    fn limits(&self) -> Limits {
+    fn limits(&self) -> DeviceLimits {
         self.limits
     }
 }
 
-/// A path that was recorded or programmed, played once from its first pose to its last.
-pub struct Recorded {
+/// A device that plays a recorded or programmed path once, from its first pose to its last.
+pub struct PlaybackDevice {
     poses: Vec<Pose>,
     motions: Vec<Motion>,
-    /// Poses of the path a cycle.
+    /// Poses of the path per cycle.
     pace: f64,
-    limits: Limits,
+    limits: DeviceLimits,
     cycle: u64,
 }
 
-impl Recorded {
-    /// A path that lasts so many cycles; as many cycles come between any two poses that follow each other. Full
-    /// poses are played as they are given, without what is between.
+impl PlaybackDevice {
+    /// Creates a device that plays a path in `cycles` cycles, with the same number of cycles between any
+    /// two successive poses. If all poses have a spin, they are played as given, without interpolation.
     ///
     /// # Errors
-    /// If between two poses the axis turns to its opposite.
-    pub fn new(poses: Vec<Pose>, cycles: u64, limits: Limits) -> Result<Recorded, MotionError> {
-        let full = poses.iter().all(Pose::is_full);
+    /// Fails if poses are interpolated and the axes of two successive poses are antiparallel.
+    pub fn new(
+        poses: Vec<Pose>,
+        cycles: u64,
+        limits: DeviceLimits,
+    ) -> Result<PlaybackDevice, MotionError> {
+        let full = poses.iter().all(Pose::has_spin);
         let motions = match full {
             true => Vec::new(),
             false => {
@@ -147,11 +158,11 @@ impl Recorded {
             }
         };
         let pace = poses.len().saturating_sub(1) as f64 / cycles.max(1) as f64;
-        Ok(Recorded { poses, motions, pace, limits, cycle: 0 })
+        Ok(PlaybackDevice { poses, motions, pace, limits, cycle: 0 })
     }
 }
 
-impl Device for Recorded {
+impl Device for PlaybackDevice {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
         let at = self.cycle as f64 * self.pace;
         let place = at as usize;
@@ -165,11 +176,11 @@ impl Device for Recorded {
         }
     }
 
-    fn push(&mut self, _: &Push) -> Result<(), DeviceError> {
+    fn apply(&mut self, _: &DeviceWrench) -> Result<(), DeviceError> {
         Ok(())
     }
 
-    fn limits(&self) -> Limits {
+    fn limits(&self) -> DeviceLimits {
         self.limits
     }
 }

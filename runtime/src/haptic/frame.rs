@@ -1,17 +1,17 @@
-//! Poses compared about a tool's compliance centre, in millimetres and radians.
+//! Differences of poses about a tool's compliance centre, in millimetres and radians.
 
-use super::device::Axes;
+use super::device::DeviceAxes;
 use crate::pose::{Pose, PoseError};
 use nalgebra::{Point3, Rotation3, Vector3, Vector6};
 
-/// What poses are compared about.
+/// The reference point and units for differences of poses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
-    /// The compliance centre, in the tool's frame and the part's unit.
+    /// The compliance centre, in the tool frame and the part's unit.
     pub(super) centre: Point3<f64>,
-    /// The part's unit in mm.
+    /// The length of the part's unit in mm.
     pub(super) unit: f64,
-    pub(super) axes: Axes,
+    pub(super) axes: DeviceAxes,
 }
 
 impl Frame {
@@ -19,17 +19,18 @@ impl Frame {
         pose.tip().coords + pose.rotation() * self.centre.coords
     }
 
-    /// The way of the centre and the turn from one pose to another, in the world's frame. Of five axes the
-    /// turn is the shortest that takes one axis to the other.
+    /// Returns the displacement of the centre (mm) and the rotation vector (rad) from one pose to
+    /// another, in the world frame. With five axes, the rotation is the shortest that takes one tool
+    /// axis to the other.
     pub(super) fn between(&self, from: &Pose, to: &Pose) -> Vector6<f64> {
         let way = (self.centre_of(to) - self.centre_of(from)) * self.unit;
         let turn = match self.axes {
-            Axes::Five => {
+            DeviceAxes::Five => {
                 let (sine, cosine) = (from.axis().cross(&to.axis()), from.axis().dot(&to.axis()));
                 let size = sine.norm();
                 if size > 0.0 { sine * (size.atan2(cosine) / size) } else { Vector3::zeros() }
             }
-            Axes::Six => {
+            DeviceAxes::Six => {
                 let turn = to.rotation() * from.rotation().transpose();
                 Rotation3::from_matrix_unchecked(turn).scaled_axis()
             }
@@ -37,16 +38,16 @@ impl Frame {
         join(&way, &turn)
     }
 
-    /// A pose after such a way and turn.
+    /// Returns a pose after the displacement and rotation of `step`, as returned by `between`.
     ///
     /// # Errors
-    /// If the result is no pose: the step is NaN or leads out of all bounds.
+    /// Fails if the result is not a valid pose: the step is NaN or leads out of bounds.
     pub(super) fn moved(&self, pose: &Pose, step: &Vector6<f64>) -> Result<Pose, PoseError> {
         let [way, turn] = halves(step);
         let turned = Rotation3::from_scaled_axis(turn);
         let centre = self.centre_of(pose) + way / self.unit;
         let about = Point3::from(centre - turned * (self.centre_of(pose) - pose.tip().coords));
-        pose.carried(turned.into_inner(), about)
+        pose.rotated_to(turned.into_inner(), about)
     }
 }
 
@@ -70,11 +71,11 @@ mod tests {
             Pose::from_quaternion(Point3::new(1., 2., 3.), [0.5, 0.5, 0.5, 0.5]).expect("a pose");
         let b =
             Pose::from_quaternion(Point3::new(1.5, 2., 2.), [0.6, 0.0, 0.0, 0.8]).expect("a pose");
-        let frame = Frame { centre, unit: 25.4, axes: Axes::Six };
+        let frame = Frame { centre, unit: 25.4, axes: DeviceAxes::Six };
         let moved = frame.moved(&a, &frame.between(&a, &b)).expect("a pose");
         assert!((moved.tip() - b.tip()).norm() < 1e-13);
         assert!((moved.rotation() - b.rotation()).norm() < 1e-13);
-        let frame = Frame { centre: Point3::origin(), axes: Axes::Five, ..frame };
+        let frame = Frame { centre: Point3::origin(), axes: DeviceAxes::Five, ..frame };
         let moved = frame.moved(&a, &frame.between(&a, &b)).expect("a pose");
         assert!((moved.tip() - b.tip()).norm() < 1e-13);
         assert!((moved.axis() - b.axis()).norm() < 1e-13);

@@ -1,96 +1,96 @@
-//! A simulated hand that holds a device: with it the loop is closed, and whether that is stable can be
-//! computed and not only felt.
+//! A simulated hand that holds a device. It closes the loop, so that stability can be computed and not
+//! only felt.
 
 use super::frame::{Frame, halves, join};
 use super::setting::{self, SettingError};
-use super::{Device, DeviceError, Limits, Push};
+use super::{Device, DeviceError, DeviceLimits, DeviceWrench};
 use crate::pose::{Pose, PoseError};
 use crate::unit::Unit;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector2, Vector3, Vector6};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// What a handle and the hand about it are to a push: a mass, a damper to the ground, and a spring to where the
-/// hand wants it; the same for turning.
+/// Impedance of a handle and the hand that holds it: a mass, a damper to ground and a spring to the
+/// commanded position; likewise in rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grip {
-    /// kg
+pub struct HandImpedance {
+    /// Mass, kg.
     pub mass: f64,
-    /// N·s/mm
+    /// Damping, N·s/mm.
     pub damping: f64,
-    /// N/mm
+    /// Stiffness, N/mm.
     pub stiffness: f64,
-    /// kg·mm²
+    /// Moment of inertia, kg·mm².
     pub inertia: f64,
-    /// N·mm·s/rad
+    /// Rotational damping, N·mm·s/rad.
     pub turning_damping: f64,
-    /// N·mm/rad
-    pub turning: f64,
+    /// Rotational stiffness, N·mm/rad.
+    pub turning_stiffness: f64,
 }
 
-/// The light grip of three fingers about a stylus, in round figures: 0.1 kg, 5 N·s/m, 0.2 N/mm.
-impl Default for Grip {
-    fn default() -> Grip {
-        Grip {
+/// The light grip of three fingers on a stylus, in round figures: 0.1 kg, 5 N·s/m, 0.2 N/mm.
+impl Default for HandImpedance {
+    fn default() -> HandImpedance {
+        HandImpedance {
             mass: 0.1,
             damping: 0.005,
             stiffness: 0.2,
             inertia: 250.0,
             turning_damping: 12.5,
-            turning: 500.0,
+            turning_stiffness: 500.0,
         }
     }
 }
 
-/// How a hand trembles about where it wants to be, each coordinate by itself: noise that a filter of second
-/// order lets through about a frequency.
+/// Tremor of a hand about its commanded position, independent in each coordinate: noise filtered by a
+/// second-order resonance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tremor {
-    /// Root mean square, mm.
+    /// Root mean square amplitude, mm.
     pub size: f64,
-    /// Hz; hands have 8 to 12.
+    /// Resonance frequency, Hz; human hands have 8 to 12.
     pub frequency: f64,
-    /// The same seed, the same trembling.
+    /// Seed of the random generator; equal seeds give equal tremor.
     pub seed: u64,
 }
 
-/// A hand with a device in it.
-pub struct Hand<F> {
+/// A simulated hand that holds a device.
+pub struct SimulatedHand<F> {
     wish: F,
     frame: Frame,
-    limits: Limits,
+    limits: DeviceLimits,
     period: f64,
     cycle: u64,
-    way: Swing,
-    turn: Swing,
-    at: Option<At>,
-    push: Push,
-    tremor: Option<Trembling>,
-    /// What encoders tell apart, mm and rad; 0 for everything.
+    way: Oscillator,
+    turn: Oscillator,
+    at: Option<HandleState>,
+    push: DeviceWrench,
+    tremor: Option<TremorFilter>,
+    /// Encoder resolutions, mm and rad; 0 for exact values.
     steps: [f64; 2],
 }
 
-/// Where the handle is, and how fast in mm/s and rad/s.
+/// The pose of the handle, its initial pose, and its velocity in mm/s and rad/s.
 #[derive(Clone, Copy)]
-struct At {
+struct HandleState {
     pose: Pose,
     start: Pose,
     speed: Vector6<f64>,
 }
 
-impl<F: FnMut(f64) -> Pose> Hand<F> {
-    /// A hand that wants the tool where a function of the time in seconds says, with a device of that many
-    /// cycles a second. It begins there, at rest.
+impl<F: FnMut(f64) -> Pose> SimulatedHand<F> {
+    /// Creates a hand that commands the tool pose `wish` as a function of time in seconds, with a device
+    /// of `rate` cycles per second. The handle starts at the first commanded pose, at rest.
     ///
     /// # Errors
-    /// If the rate or a limit is out of its range.
-    pub fn new(limits: Limits, rate: f64, wish: F) -> Result<Hand<F>, SettingError> {
+    /// Fails if the rate or a limit is out of its range.
+    pub fn new(limits: DeviceLimits, rate: f64, wish: F) -> Result<SimulatedHand<F>, SettingError> {
         limits.check()?;
         let frame = Frame { centre: Point3::origin(), unit: 1.0, axes: limits.axes };
         let period = setting::period(rate)?;
-        let [way, turn] = Swing::both(&Grip::default(), period)?;
-        let (push, steps) = (Push::default(), [0.0; 2]);
-        Ok(Hand {
+        let [way, turn] = Oscillator::both(&HandImpedance::default(), period)?;
+        let (push, steps) = (DeviceWrench::default(), [0.0; 2]);
+        Ok(SimulatedHand {
             wish,
             frame,
             limits,
@@ -105,55 +105,63 @@ impl<F: FnMut(f64) -> Pose> Hand<F> {
         })
     }
 
-    /// With another grip.
+    /// Sets the impedance of the hand.
     ///
     /// # Errors
-    /// If a number of the grip is out of its range.
-    pub fn grip(mut self, grip: &Grip) -> Result<Hand<F>, SettingError> {
+    /// Fails if a number of the impedance is out of its range.
+    pub fn with_impedance(
+        mut self,
+        grip: &HandImpedance,
+    ) -> Result<SimulatedHand<F>, SettingError> {
         grip.check()?;
-        [self.way, self.turn] = Swing::both(grip, self.period)?;
+        [self.way, self.turn] = Oscillator::both(grip, self.period)?;
         Ok(self)
     }
 
-    /// Held at another point of the tool than its tip, in the tool's frame and the part's unit.
+    /// Sets the point of the tool at which it is held, in the tool frame and in `unit`; the default is
+    /// the tip.
     ///
     /// # Errors
-    /// If a coordinate is not finite.
-    pub fn held_at(mut self, centre: Point3<f64>, unit: Unit) -> Result<Hand<F>, SettingError> {
+    /// Fails if a coordinate is not finite.
+    pub fn with_centre(
+        mut self,
+        centre: Point3<f64>,
+        unit: Unit,
+    ) -> Result<SimulatedHand<F>, SettingError> {
         setting::centre(&centre)?;
         self.frame.centre = centre;
-        self.frame.unit = unit.to(Unit::Millimetre);
+        self.frame.unit = unit.factor_to(Unit::Millimetre);
         Ok(self)
     }
 
-    /// Trembling.
+    /// Adds tremor.
     ///
     /// # Errors
-    /// If its size or its frequency is out of its range.
-    pub fn trembling(mut self, tremor: &Tremor) -> Result<Hand<F>, SettingError> {
+    /// Fails if its amplitude or frequency is out of its range.
+    pub fn with_tremor(mut self, tremor: &Tremor) -> Result<SimulatedHand<F>, SettingError> {
         tremor.check(self.period)?;
-        self.tremor = Some(Trembling::new(tremor, self.period));
+        self.tremor = Some(TremorFilter::new(tremor, self.period));
         Ok(self)
     }
 
-    /// With encoders that tell so many mm and radians apart; 0 for all.
+    /// Adds encoders with resolutions in mm and rad; 0 for exact values.
     ///
     /// # Errors
-    /// If either is negative or not finite.
-    pub fn encoders(mut self, way: f64, turn: f64) -> Result<Hand<F>, SettingError> {
+    /// Fails if a resolution is negative or not finite.
+    pub fn with_encoders(mut self, way: f64, turn: f64) -> Result<SimulatedHand<F>, SettingError> {
         setting::not_negative("step of the encoders in mm", way)?;
         setting::not_negative("step of the encoders in rad", turn)?;
         self.steps = [way, turn];
         Ok(self)
     }
 
-    /// Where the handle truly is.
-    pub fn is_at(&self) -> Option<Pose> {
+    /// Returns the true pose of the handle, or `None` before the first cycle.
+    pub fn pose_of_handle(&self) -> Option<Pose> {
         self.at.map(|at| at.pose)
     }
 
-    /// What an encoder says.
-    fn encoded(&self, at: &At) -> Result<Pose, PoseError> {
+    /// Returns the pose as quantised by the encoders.
+    fn encoded(&self, at: &HandleState) -> Result<Pose, PoseError> {
         if self.steps == [0.0; 2] {
             return Ok(at.pose);
         }
@@ -167,7 +175,7 @@ impl<F: FnMut(f64) -> Pose> Hand<F> {
     }
 }
 
-impl<F: FnMut(f64) -> Pose> Device for Hand<F> {
+impl<F: FnMut(f64) -> Pose> Device for SimulatedHand<F> {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
         let mut wish = (self.wish)(self.cycle as f64 * self.period);
         if let Some(tremor) = &mut self.tremor {
@@ -175,55 +183,60 @@ impl<F: FnMut(f64) -> Pose> Device for Hand<F> {
         }
         self.cycle += 1;
         let at = match self.at {
-            None => At { pose: wish, start: wish, speed: Vector6::zeros() },
+            None => HandleState { pose: wish, start: wish, speed: Vector6::zeros() },
             Some(at) => {
                 let [off, turned] = halves(&self.frame.between(&wish, &at.pose));
                 let [speed, spin] = halves(&at.speed);
                 let (off, speed) = self.way.after(off, speed, &self.push.force);
                 let (turned, spin) = self.turn.after(turned, spin, &self.push.torque);
                 let pose = self.frame.moved(&wish, &join(&off, &turned))?;
-                At { pose, speed: join(&speed, &spin), ..at }
+                HandleState { pose, speed: join(&speed, &spin), ..at }
             }
         };
         self.at = Some(at);
         Ok(self.encoded(&at)?)
     }
 
-    fn push(&mut self, push: &Push) -> Result<(), DeviceError> {
+    fn apply(&mut self, push: &DeviceWrench) -> Result<(), DeviceError> {
         self.push = *push;
         Ok(())
     }
 
-    fn limits(&self) -> Limits {
+    fn limits(&self) -> DeviceLimits {
         self.limits
     }
 }
 
-/// What a mass on a spring and a damper does in a cycle under a force that does not change: exactly, by the
-/// exponential of its matrix.
+/// Discrete-time model of a mass on a spring and a damper under a force that is constant over a cycle:
+/// exact, by the matrix exponential.
 #[derive(Clone, Copy, Debug)]
-struct Swing {
+struct Oscillator {
     own: Matrix2<f64>,
     by_force: Vector2<f64>,
 }
 
-/// N in kg·mm/s².
+/// One newton in kg·mm/s².
 const NEWTON: f64 = 1000.0;
 
-impl Swing {
-    fn both(grip: &Grip, period: f64) -> Result<[Swing; 2], SettingError> {
+impl Oscillator {
+    fn both(grip: &HandImpedance, period: f64) -> Result<[Oscillator; 2], SettingError> {
         let way = ("mass of the grip in kg", [grip.mass, grip.damping, grip.stiffness]);
-        let turn =
-            ("inertia of the grip in kg·mm²", [grip.inertia, grip.turning_damping, grip.turning]);
-        Ok([Swing::new(way, period)?, Swing::new(turn, period)?])
+        let turn = (
+            "inertia of the grip in kg·mm²",
+            [grip.inertia, grip.turning_damping, grip.turning_stiffness],
+        );
+        Ok([Oscillator::new(way, period)?, Oscillator::new(turn, period)?])
     }
 
+    /// Computes the model for a mass (kg or kg·mm²), a damping and a stiffness; `what` names the mass in errors.
+    ///
     /// # Errors
-    /// If the mass is so small beside damper and spring that its motion in a period overflows.
+    /// Fails if the mass is so small compared with damping and stiffness that its motion in a period
+    /// overflows.
     fn new(
         (what, [mass, damping, stiffness]): (&'static str, [f64; 3]),
         period: f64,
-    ) -> Result<Swing, SettingError> {
+    ) -> Result<Oscillator, SettingError> {
         let by = NEWTON / mass;
         let rates = Matrix3::new(
             0.0,
@@ -241,13 +254,13 @@ impl Swing {
             let range = "one that is not so small beside damping and stiffness";
             return Err(SettingError { what, value: mass, range });
         }
-        Ok(Swing {
+        Ok(Oscillator {
             own: after.fixed_view::<2, 2>(0, 0).into_owned(),
             by_force: after.fixed_view::<2, 1>(0, 2).into_owned(),
         })
     }
 
-    /// Where it is from where it is wanted, and its speed, a cycle later.
+    /// Returns the offset from the commanded position and the velocity, one cycle later.
     fn after(
         &self,
         off: Vector3<f64>,
@@ -262,19 +275,20 @@ impl Swing {
     }
 }
 
-struct Trembling {
+struct TremorFilter {
     draw: Pcg64Mcg,
-    /// `x' = a x + b y + noise` of the last two.
+    /// The last two outputs of the recursion `x' = a x + b y + noise`.
     last: [Vector3<f64>; 2],
     own: [f64; 2],
     noise: f64,
 }
 
-/// Of the poles: how far inside the unit circle.
+/// Damping ratio of the resonance: the poles' distance from the unit circle, relative to the angle per
+/// cycle.
 const DAMPED: f64 = 0.1;
 
-impl Trembling {
-    fn new(tremor: &Tremor, period: f64) -> Trembling {
+impl TremorFilter {
+    fn new(tremor: &Tremor, period: f64) -> TremorFilter {
         let angle = std::f64::consts::TAU * tremor.frequency * period;
         let radius = (-DAMPED * angle).exp();
         let own = [2.0 * radius * angle.cos(), -radius * radius];
@@ -284,7 +298,7 @@ impl Trembling {
         let draw = Pcg64Mcg::seed_from_u64(tremor.seed);
         // Uniform noise between -1 and 1 has a variance of a third.
         let noise = tremor.size * (3.0 / gain).sqrt();
-        Trembling { draw, last: [Vector3::zeros(); 2], own, noise }
+        TremorFilter { draw, last: [Vector3::zeros(); 2], own, noise }
     }
 
     fn next(&mut self) -> Vector3<f64> {

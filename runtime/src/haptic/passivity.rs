@@ -1,61 +1,63 @@
-//! Whether the hand ever gets back more energy than it put in, and what is done about it.
+//! Passivity observer and controller: the hand must not get back more energy than it put in.
 //!
-//! The device pushes the same way from one cycle to the next, so what it does to the hand between two poses is
-//! known exactly: its push times the way (Stramigioli et al., *Sampled data systems passivity and discrete
-//! port-Hamiltonian systems*, 2005). Of what the hand put in, contact and coupling hold some as energy; when they
-//! hold more than was put in, some came from nowhere, and the hand would be given it. The controller takes it
-//! out again with a damper that is as strong as that needs (Hannaford and Ryu, *Time-domain passivity control
-//! of haptic interfaces*, 2002; with energy to follow, Ryu, Preusche, Hannaford and Hirzinger, 2005).
+//! The device applies a constant wrench from one cycle to the next, so its work on the hand between two
+//! poses is known exactly: wrench times displacement (Stramigioli et al., *Sampled data systems
+//! passivity and discrete port-Hamiltonian systems*, 2005). Contact and coupling store part of the
+//! energy that the hand put in. If they store more than was put in, the excess was generated, and the
+//! hand could receive it. The controller dissipates the excess with a damper of the required strength
+//! (Hannaford and Ryu, *Time-domain passivity control of haptic interfaces*, 2002; with energy tracking,
+//! Ryu, Preusche, Hannaford and Hirzinger, 2005).
 
-use super::Push;
+use super::DeviceWrench;
 use super::coupling::{as_push, as_vector};
 use nalgebra::Vector6;
 
-/// Energy in N·mm, since the hand began.
+/// Energy balance since the session began or restarted, in N·mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
-    /// What the hand put in, less what it got back.
+pub struct EnergyBalance {
+    /// The energy that the hand put in, less what it got back.
     pub put_in: f64,
-    /// What contact and coupling hold.
+    /// The energy stored in contact and coupling.
     pub held: f64,
-    /// How much more was ever held than had been put in: what came from nowhere.
+    /// The largest excess of stored over supplied energy: the generated energy.
     pub generated: f64,
-    /// What the controller took out.
+    /// The energy that the controller dissipated.
     pub taken_out: f64,
 }
 
-/// Counts the energy.
+/// The energy balance and the controller's damper.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Passivity {
-    pub(super) energy: Energy,
-    /// The part of the last push that is the controller's.
+    pub(super) energy: EnergyBalance,
+    /// The controller's share of the last wrench.
     damping: Vector6<f64>,
-    /// What is missing.
+    /// The excess of stored over supplied energy, N·mm.
     missing: f64,
 }
 
 impl Passivity {
-    /// The hand went so far against the last push.
-    pub(super) fn moved(&mut self, push: &Push, way: &Vector6<f64>) {
+    /// Accounts for a displacement of the hand under the last wrench.
+    pub(super) fn moved(&mut self, push: &DeviceWrench, way: &Vector6<f64>) {
         self.energy.put_in -= as_vector(push).dot(way);
         self.energy.taken_out -= self.damping.dot(way);
     }
 
-    /// What was not asked of the hand.
+    /// Accounts for stored energy that does not come from the hand but counts as supplied.
     pub(super) fn given(&mut self, energy: f64) {
         self.energy.put_in += energy;
     }
 
-    /// That so much is held now.
+    /// Updates the stored energy and the excess.
     pub(super) fn holds(&mut self, held: f64) {
         self.energy.held = held;
         self.missing = held - self.energy.put_in;
         self.energy.generated = self.energy.generated.max(self.missing);
     }
 
-    /// A damper against the way of the last cycle that takes out what is missing, if the next way is as long,
-    /// and never brakes harder than springs as stiff as the device can render would in that time.
-    pub(super) fn damped(&mut self, way: &Vector6<f64>, stiffest: &Vector6<f64>) -> Push {
+    /// Returns a damper wrench against the displacement of the last cycle. It dissipates the excess if
+    /// the next displacement is equally long. It is never stronger than [`BRAKE`] times the force of the
+    /// stiffest springs that the device can render over that displacement.
+    pub(super) fn damped(&mut self, way: &Vector6<f64>, stiffest: &Vector6<f64>) -> DeviceWrench {
         let brake = stiffest.component_mul(way);
         let work = brake.dot(way);
         self.damping = if self.missing > 0.0 && work > 0.0 {
@@ -67,6 +69,6 @@ impl Passivity {
     }
 }
 
-/// The strongest damper, in what a spring would push after the same way. A damper of a half is half as stiff
-/// over a cycle as what the device can bear.
+/// Largest damper force, relative to the force of the stiffest renderable spring over the same
+/// displacement. At 0.5, the damper is half as stiff over a cycle as the device can bear.
 const BRAKE: f64 = 0.5;

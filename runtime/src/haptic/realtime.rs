@@ -1,4 +1,4 @@
-//! What a thread can ask the system for, so that nothing else comes between its cycles.
+//! Real-time scheduling of a thread: priority, core and memory locking.
 
 #[cfg(unix)]
 use thread_priority::{
@@ -8,39 +8,41 @@ use thread_priority::{
 
 use std::fmt;
 
-/// What is asked for.
+/// Real-time properties requested for a thread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Realtime {
-    /// Before all threads that have no such priority, from 1 to 99: first in, first out.
+    /// First-in-first-out real-time priority, from 1 to 99, ahead of all threads without one; `None` for
+    /// no change.
     pub priority: Option<u8>,
-    /// Only on that core, counted from 0.
+    /// The only core to run on, counted from 0; `None` for any.
     pub core: Option<usize>,
-    /// With all of the process's memory kept in place.
+    /// `true` to lock all memory of the process.
     pub locked: bool,
 }
 
-/// Something that the system did not grant. The loop runs without it.
+/// A request that the system refused. The loop runs without it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refused {
-    /// The priority.
+pub enum RealtimeError {
+    /// The priority was refused.
     #[error("no real-time priority ({0}): start as root, or allow it with `ulimit -r`")]
     Priority(String),
-    /// The core.
+    /// The core was refused.
     #[error("not kept on core {core}: this process may run on {}", Listed(.cores))]
     Core {
-        /// The core that was asked for.
+        /// The requested core.
         core: usize,
-        /// Those that there are for this process, in ascending order.
+        /// The cores available to this process, in ascending order.
         cores: Vec<usize>,
     },
-    /// The memory.
+    /// Memory locking was refused.
     #[error("memory is not locked ({0}): start as root, or allow it with `ulimit -l`")]
     Memory(String),
 }
 
 impl Realtime {
-    /// Asks for it, for the thread that calls. What was refused is said; the rest holds.
-    pub fn ask(&self) -> Vec<Refused> {
+    /// Applies the requests to the calling thread. Returns those that were refused; the others take
+    /// effect.
+    pub fn apply(&self) -> Vec<RealtimeError> {
         let mut refused = Vec::new();
         if let Some(core) = self.core
             && let Err(error) = stay_on(core)
@@ -50,12 +52,12 @@ impl Realtime {
         if self.locked
             && let Err(error) = memory()
         {
-            refused.push(Refused::Memory(error));
+            refused.push(RealtimeError::Memory(error));
         }
         if let Some(priority) = self.priority
             && let Err(error) = first(priority)
         {
-            refused.push(Refused::Priority(error));
+            refused.push(RealtimeError::Priority(error));
         }
         refused
     }
@@ -64,25 +66,25 @@ impl Realtime {
 /// Checks that this process may run on a core, counted from 0.
 ///
 /// # Errors
-/// [`Refused::Core`] with those that it may run on.
-pub fn check_core(core: usize) -> Result<(), Refused> {
+/// Returns [`RealtimeError::Core`] with the available cores if it may not.
+pub fn check_core(core: usize) -> Result<(), RealtimeError> {
     let ids = core_affinity::get_core_ids().unwrap_or_default();
     let cores: Vec<usize> = ids.into_iter().map(|id| id.id).collect();
-    if cores.contains(&core) { Ok(()) } else { Err(Refused::Core { core, cores }) }
+    if cores.contains(&core) { Ok(()) } else { Err(RealtimeError::Core { core, cores }) }
 }
 
-/// Keeps the thread on a core.
-fn stay_on(core: usize) -> Result<(), Refused> {
-    // Checked first: the system's set of cores has an end, beyond which it may not be asked.
+/// Binds the calling thread to a core.
+fn stay_on(core: usize) -> Result<(), RealtimeError> {
+    // Check first: the system's core set has a fixed size, beyond which no core may be requested.
     check_core(core)?;
     if core_affinity::set_for_current(core_affinity::CoreId { id: core }) {
         return Ok(());
     }
     let ids = core_affinity::get_core_ids().unwrap_or_default();
-    Err(Refused::Core { core, cores: ids.into_iter().map(|id| id.id).collect() })
+    Err(RealtimeError::Core { core, cores: ids.into_iter().map(|id| id.id).collect() })
 }
 
-/// Cores as ranges: `core 0 to 7, 12`.
+/// A list of cores, displayed as ranges: `core 0 to 7, 12`.
 struct Listed<'a>(&'a [usize]);
 
 impl fmt::Display for Listed<'_> {
@@ -135,7 +137,7 @@ mod tests {
     fn cores_that_there_are_not_are_refused_with_those_that_there_are() {
         for core in [1024, 4096, usize::MAX] {
             let realtime = Realtime { core: Some(core), ..Realtime::default() };
-            let [Refused::Core { core: refused, cores }] = &realtime.ask()[..] else {
+            let [RealtimeError::Core { core: refused, cores }] = &realtime.apply()[..] else {
                 panic!("{core} was granted")
             };
             assert_eq!(*refused, core);
@@ -143,7 +145,7 @@ mod tests {
                 assert_eq!(check_core(*core), Ok(()));
             }
         }
-        let error = |cores| Refused::Core { core: 9, cores }.to_string();
+        let error = |cores| RealtimeError::Core { core: 9, cores }.to_string();
         assert!(error(vec![0, 1, 2, 5, 7, 8]).ends_with("may run on core 0 to 2, 5, 7 to 8"));
         assert!(error(vec![]).ends_with("cores that the system does not name"));
     }

@@ -1,35 +1,36 @@
-//! A session in time: so many cycles a second, in a thread of its own.
+//! Running a session at a fixed rate, in a thread of its own.
 
-use super::{Device, Faults, Session, State};
-use crate::tool::Senses;
+use super::{Device, DeviceFaults, Session, SessionState};
+use crate::tool::BatchEvaluator;
 use hdrhistogram::Histogram;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// A clock that can be waited for.
+/// A clock with a wait function.
 pub trait Clock {
-    /// The time since some moment; it may be wrong.
+    /// Returns the time since a fixed moment. The value may be wrong.
     fn now(&mut self) -> Duration;
-    /// Waits until that time, or longer.
+    /// Waits until the given time or later.
     fn wait_until(&mut self, time: Duration);
 }
 
-/// The system's monotonic clock: sleeps until shortly before, and looks at it again and again from then on.
+/// The system's monotonic clock. It sleeps until shortly before the time to wait for, then spins.
 #[derive(Clone, Copy, Debug)]
-pub struct Monotonic {
+pub struct MonotonicClock {
     start: Instant,
-    /// For so long it is awake.
+    /// The time to spin before each deadline.
     awake: Duration,
 }
 
-impl Monotonic {
-    /// Awake for so long before each moment that is waited for; what the system takes to wake a thread.
-    pub fn new(awake: Duration) -> Monotonic {
-        Monotonic { start: Instant::now(), awake }
+impl MonotonicClock {
+    /// Creates a clock that spins for `awake` before each deadline. Choose the time that the system
+    /// takes to wake a thread.
+    pub fn new(awake: Duration) -> MonotonicClock {
+        MonotonicClock { start: Instant::now(), awake }
     }
 }
 
-impl Clock for Monotonic {
+impl Clock for MonotonicClock {
     fn now(&mut self) -> Duration {
         self.start.elapsed()
     }
@@ -44,11 +45,11 @@ impl Clock for Monotonic {
     }
 }
 
-/// No time at all: cycles follow each other as fast as they can.
+/// A clock without real time: cycles follow each other as fast as possible.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Unhurried(Duration);
+pub struct SimulatedClock(Duration);
 
-impl Clock for Unhurried {
+impl Clock for SimulatedClock {
     fn now(&mut self) -> Duration {
         self.0
     }
@@ -58,119 +59,119 @@ impl Clock for Unhurried {
     }
 }
 
-/// How often something took how long, in ns, to three digits.
-pub type Times = Histogram<u64>;
+/// A histogram of durations in ns, with three significant digits.
+pub type LatencyHistogram = Histogram<u64>;
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Clone, Debug)]
-pub struct Report {
-    /// Cycles that were done.
+pub struct LoopReport {
+    /// The number of completed cycles.
     pub cycles: u64,
-    /// Cycles that missed their deadline: they ended after the next one was due.
+    /// The number of cycles that missed their deadline: they ended after the next one was due.
     pub missed: u64,
-    /// Cycles that were left out for that.
-    pub left_out: u64,
-    /// How often time went on by more than a second at once, or back: a clock that was set, a thread that was
-    /// starved. Cycles begin anew there.
+    /// The number of cycles skipped to catch up.
+    pub skipped: u64,
+    /// The number of time jumps: a cycle began more than a second late, or the clock went back by more
+    /// than a period (a clock that was set, or a starved thread). The schedule restarts there.
     pub stalls: u64,
     /// Durations of cycles: one entry per cycle. The last bin, a minute, also counts all above.
-    pub took: Times,
-    /// Delays of their beginnings: one entry per cycle, those that count as a stall too. The last bin, a minute, also
-    /// counts all above; a cycle before which the clock went back counts as on time.
-    pub late: Times,
-    /// What was wrong with the device.
-    pub faults: Faults,
+    pub durations: LatencyHistogram,
+    /// Delays of cycle starts: one entry per cycle, including stalls. The last bin, a minute, also
+    /// counts all above. A cycle before which the clock went back counts as on time.
+    pub start_delays: LatencyHistogram,
+    /// Faults of the device.
+    pub faults: DeviceFaults,
     /// The largest force, N, and the largest torque, N·mm.
-    pub peak: [f64; 2],
+    pub peak_wrench: [f64; 2],
     /// The last state.
-    pub last: Option<State>,
-    /// States for which there was no room in the record.
-    pub lost: u64,
+    pub last: Option<SessionState>,
+    /// The number of states dropped because the stream was full.
+    pub dropped_states: u64,
 }
 
-impl Report {
-    fn new() -> Report {
-        // From 1 ns to a minute, to a part in a thousand: bounds that are in order.
+impl LoopReport {
+    fn new() -> LoopReport {
+        // From 1 ns to a minute, with a relative resolution of a thousandth.
         let times = Histogram::new_with_bounds(1, 60_000_000_000, 3).expect("bounds in order");
-        Report {
+        LoopReport {
             cycles: 0,
             missed: 0,
-            left_out: 0,
+            skipped: 0,
             stalls: 0,
-            took: times.clone(),
-            late: times,
-            faults: Faults::default(),
-            peak: [0.0; 2],
+            durations: times.clone(),
+            start_delays: times,
+            faults: DeviceFaults::default(),
+            peak_wrench: [0.0; 2],
             last: None,
-            lost: 0,
+            dropped_states: 0,
         }
     }
 
-    fn note(&mut self, state: &State) {
-        let sizes = [state.push.force.norm(), state.push.torque.norm()];
-        self.peak = [0, 1].map(|k: usize| self.peak[k].max(sizes[k]));
+    fn note(&mut self, state: &SessionState) {
+        let sizes = [state.wrench_on_hand.force.norm(), state.wrench_on_hand.torque.norm()];
+        self.peak_wrench = [0, 1].map(|k: usize| self.peak_wrench[k].max(sizes[k]));
         self.last = Some(*state);
     }
 }
 
-/// The loop's end of what others see: the latest state, and a record of all.
-pub struct Watch {
-    latest: triple_buffer::Input<Option<State>>,
-    record: rtrb::Producer<State>,
+/// The loop's end of the state channel: publishes the latest state and a stream of all states.
+pub struct StatePublisher {
+    latest: triple_buffer::Input<Option<SessionState>>,
+    record: rtrb::Producer<SessionState>,
 }
 
-/// The latest state, for one reader, who never keeps the loop waiting, nor is kept waiting.
-pub struct Latest(triple_buffer::Output<Option<State>>);
+/// The latest state, for one reader. Reading is wait-free for both sides.
+pub struct LatestState(triple_buffer::Output<Option<SessionState>>);
 
-impl Latest {
-    /// The latest state; `None` as long as there is none.
-    pub fn read(&mut self) -> Option<&State> {
+impl LatestState {
+    /// Returns the latest state, or `None` before the first one.
+    pub fn read(&mut self) -> Option<&SessionState> {
         self.0.read().as_ref()
     }
 }
 
-/// All states in order, as long as they are taken before there is no room left.
-pub struct Samples(rtrb::Consumer<State>);
+/// All states in order, as long as the reader takes them before the buffer is full.
+pub struct StateStream(rtrb::Consumer<SessionState>);
 
-impl Iterator for Samples {
-    type Item = State;
+impl Iterator for StateStream {
+    type Item = SessionState;
 
-    /// The next state; `None` if there is none yet.
-    fn next(&mut self) -> Option<State> {
+    /// Returns the next state, or `None` if there is none yet.
+    fn next(&mut self) -> Option<SessionState> {
         self.0.pop().ok()
     }
 }
 
-impl Samples {
-    /// Whether the loop is over: nothing comes after what is left.
-    pub fn are_all(&self) -> bool {
+impl StateStream {
+    /// Returns whether the loop has ended: no states follow those still in the stream.
+    pub fn is_closed(&self) -> bool {
         self.0.is_abandoned()
     }
 }
 
-/// Both ends, with room for a record of that many states.
-pub fn watched(room: usize) -> (Watch, Latest, Samples) {
+/// Creates both ends of a state channel, with a buffer for `room` states in the stream.
+pub fn state_channel(room: usize) -> (StatePublisher, LatestState, StateStream) {
     let (latest, seen) = triple_buffer::triple_buffer(&None);
     let (record, taken) = rtrb::RingBuffer::new(room);
-    (Watch { latest, record }, Latest(seen), Samples(taken))
+    (StatePublisher { latest, record }, LatestState(seen), StateStream(taken))
 }
 
-/// A second.
+/// Delay of a cycle that counts as a stall.
 const STALL: Duration = Duration::from_secs(1);
 
-/// Lets cycles happen, each at its time after the start whatever those before it took, until so many are over,
-/// the device has nothing left to play, or it is told to stop. What comes too late for its time is left out,
-/// and counts as over.
-pub fn run<T: Senses + ?Sized>(
+/// Runs cycles at their scheduled times, independent of the duration of earlier cycles. The run ends
+/// after `cycles` cycles, when the device has ended, or when `stop` is set. Cycles whose time has passed
+/// are skipped and count toward `cycles`.
+pub fn run<T: BatchEvaluator + ?Sized>(
     (session, device): (&mut Session<'_, T>, &mut impl Device),
     (clock, cycles): (&mut impl Clock, u64),
-    watch: &mut Watch,
+    watch: &mut StatePublisher,
     stop: &AtomicBool,
-) -> Report {
-    let mut report = Report::new();
+) -> LoopReport {
+    let mut report = LoopReport::new();
     let period = session.period();
     let mut due = clock.now();
-    while report.cycles + report.left_out < cycles && !stop.load(Ordering::Relaxed) {
+    while report.cycles + report.skipped < cycles && !stop.load(Ordering::Relaxed) {
         clock.wait_until(due);
         let began = clock.now();
         let late = began.saturating_sub(due);
@@ -186,17 +187,17 @@ pub fn run<T: Senses + ?Sized>(
         if let Some(state) = state {
             report.note(&state);
             watch.latest.write(Some(state));
-            report.lost += u64::from(watch.record.push(state).is_err());
+            report.dropped_states += u64::from(watch.record.push(state).is_err());
         }
-        report.late.saturating_record(nanoseconds(late));
+        report.start_delays.saturating_record(nanoseconds(late));
         let ended = clock.now();
-        report.took.saturating_record(nanoseconds(ended.saturating_sub(began)));
+        report.durations.saturating_record(nanoseconds(ended.saturating_sub(began)));
         due += period;
-        // As many periods as have gone by whole.
+        // The number of whole periods that have passed.
         let behind = ended.saturating_sub(due).as_nanos() / period.as_nanos().max(1);
         let behind = u32::try_from(behind.min(u128::from(cycles))).unwrap_or(u32::MAX);
         report.missed += u64::from(ended > due);
-        report.left_out += u64::from(behind);
+        report.skipped += u64::from(behind);
         due += period * behind;
     }
     report.faults = session.faults();

@@ -1,26 +1,30 @@
-//! Ranges of the numbers that a loop, a device and a simulated hand are set up with.
+//! Ranges of the numbers that configure a loop, a device and a simulated hand.
 //!
-//! A period of NaN or infinity would make every pose of the loop NaN, so the constructors check all numbers and
-//! the cycles check none.
+//! A period of NaN or infinity would make every pose of the loop NaN, so the constructors check all
+//! numbers and the cycles check none.
 
-use super::{Axes, Coupling, Fastest, Grip, Limits, Rendering, Settings, Tremor};
+use super::{
+    Coupling, DeviceAxes, DeviceLimits, HandImpedance, Rendering, SessionSettings, SpeedLimit,
+    Tremor,
+};
 use nalgebra::Point3;
 use std::ops::RangeInclusive;
 
-/// A number that a haptic loop cannot run with: the constructors of [`Session`](super::Session) and
-/// [`Hand`](super::Hand) return it.
+/// A number that a haptic loop cannot run with. It is returned by the constructors of
+/// [`Session`](super::Session) and [`SimulatedHand`](super::SimulatedHand).
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the {what} is {value}: give {range}")]
 pub struct SettingError {
     /// The name and the unit of the number.
     pub what: &'static str,
-    /// The value that was given.
+    /// The given value.
     pub value: f64,
-    /// The values that it may have.
+    /// The range of valid values.
     pub range: &'static str,
 }
 
-/// Rates of a loop, Hz. The fastest has a period of a microsecond, which clocks and deadlines still resolve.
+/// Rates of a loop, Hz. The fastest has a period of a microsecond, which clocks and deadlines still
+/// resolve.
 const RATES: RangeInclusive<f64> = 1e-3..=1e6;
 
 const ABOVE_ZERO: &str = "a finite number above 0";
@@ -53,9 +57,15 @@ pub(super) fn centre(centre: &Point3<f64>) -> Result<(), SettingError> {
     centre.iter().try_for_each(|part| check(part.is_finite(), ("compliance centre", *part), FINITE))
 }
 
-impl Limits {
+impl DeviceLimits {
     pub(super) fn check(&self) -> Result<(), SettingError> {
-        let Limits { axes: Axes::Five | Axes::Six, force, torque, stiffness, turning } = *self;
+        let DeviceLimits {
+            axes: DeviceAxes::Five | DeviceAxes::Six,
+            force,
+            torque,
+            stiffness,
+            turning_stiffness: turning,
+        } = *self;
         above_zero("largest force of the device in N", force)?;
         above_zero("largest torque of the device in N·mm", torque)?;
         above_zero("stiffness of the device in N/mm", stiffness)?;
@@ -63,9 +73,9 @@ impl Limits {
     }
 }
 
-impl Settings {
+impl SessionSettings {
     pub(super) fn check(&self) -> Result<(), SettingError> {
-        let Settings { rate, stiffness, rendering, passive: _, fastest } = *self;
+        let SessionSettings { rate, stiffness, rendering, passive: _, fastest } = *self;
         period(rate)?;
         above_zero("stiffness of contact", stiffness)?;
         match rendering {
@@ -75,7 +85,7 @@ impl Settings {
             Some(Rendering::Coupled(coupling)) => coupling.check()?,
             None => {}
         }
-        let Fastest { way, turn } = fastest;
+        let SpeedLimit { linear: way, angular: turn } = fastest;
         let speeds = [("largest speed in mm/s", way), ("largest turning speed in rad/s", turn)];
         speeds.into_iter().try_for_each(|speed| {
             check(speed.1 > 0.0, speed, "a number above 0, or infinity to accept any speed")
@@ -85,16 +95,23 @@ impl Settings {
 
 impl Coupling {
     fn check(&self) -> Result<(), SettingError> {
-        let Coupling { stiffness, turning, damping } = *self;
+        let Coupling { stiffness, turning_stiffness: turning, damping } = *self;
         above_zero("stiffness of the coupling in N/mm", stiffness)?;
         above_zero("rotational stiffness of the coupling in N·mm/rad", turning)?;
         not_negative("damping of the coupling in s", damping)
     }
 }
 
-impl Grip {
+impl HandImpedance {
     pub(super) fn check(&self) -> Result<(), SettingError> {
-        let Grip { mass, damping, stiffness, inertia, turning_damping, turning } = *self;
+        let HandImpedance {
+            mass,
+            damping,
+            stiffness,
+            inertia,
+            turning_damping,
+            turning_stiffness: turning,
+        } = *self;
         above_zero("mass of the grip in kg", mass)?;
         above_zero("inertia of the grip in kg·mm²", inertia)?;
         not_negative("damping of the grip in N·s/mm", damping)?;
@@ -105,7 +122,8 @@ impl Grip {
 }
 
 impl Tremor {
-    /// The filter has its resonance at the frequency, which a loop can only have up to half its rate.
+    /// Checks the settings. The filter resonates at the frequency, so it must not exceed half the loop's
+    /// rate.
     pub(super) fn check(&self, period: f64) -> Result<(), SettingError> {
         not_negative("size of the tremor in mm", self.size)?;
         let what = ("frequency of the tremor in Hz", self.frequency);

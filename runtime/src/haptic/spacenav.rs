@@ -1,13 +1,15 @@
-//! A SpaceMouse, by the protocol of `spacenavd`: a Unix socket that sends, for each event, eight 32-bit
-//! integers of the machine's byte order: what it is (0 motion, 1 a button pressed, 2 released), how far the cap
-//! is pushed along x (right), y (up) and z (away from the user) and turned about them, and the time since the
-//! last event in ms.
+//! A SpaceMouse, by the protocol of `spacenavd`.
 //!
-//! It pushes nobody: it is flown with, the cap's displacement being the tool's speed.
+//! The daemon's Unix socket sends eight 32-bit integers in the machine's byte order per event. The first
+//! is the kind of event: 0 motion, 1 button pressed, 2 button released. Then follow the displacements of
+//! the cap along x (right), y (up) and z (away from the user), the rotations about these axes, and the
+//! time since the last event in ms.
+//!
+//! The device applies no force. It controls speed: the cap's displacement sets the tool's velocity.
 
 use super::frame::{Frame, join};
 use super::setting;
-use super::{Axes, Device, DeviceError, Limits, Push};
+use super::{Device, DeviceAxes, DeviceError, DeviceLimits, DeviceWrench};
 use crate::pose::Pose;
 use crate::unit::Unit;
 use nalgebra::{Point3, Vector3};
@@ -19,59 +21,60 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Where `spacenavd` listens.
+/// The socket of `spacenavd`.
 pub const SOCKET: &str = "/run/spnav.sock";
 
-/// How fast it flies with the cap pushed all the way.
+/// Speeds at full displacement of the cap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flight {
-    /// mm/s
-    pub way: f64,
-    /// rad/s
-    pub turn: f64,
+pub struct SpeedGains {
+    /// Linear speed, mm/s.
+    pub linear: f64,
+    /// Angular speed, rad/s.
+    pub angular: f64,
 }
 
-/// What the cap says when it is pushed all the way, about.
+/// Approximate reading at full displacement of the cap.
 const FULL: f64 = 350.0;
-/// A cap that is held says so again within this time.
+/// Longest time between events while the cap is held.
 const SILENT: Duration = Duration::from_millis(250);
-/// So long after a daemon went away it is called again.
+/// Time between attempts to reconnect to the daemon.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// What the cap does, as far as is known.
+/// The last known state of the cap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cap {
     Pushed([i32; 6]),
     Gone,
 }
 
-/// A SpaceMouse. Reading it is a thread's of its own, so that the loop never waits for it; a daemon that goes
-/// away is called again until it is there.
+/// A SpaceMouse. A separate thread reads it, so that the loop never waits. If the daemon goes away, the
+/// thread reconnects until it is back.
 pub struct Spacenav {
     cap: triple_buffer::Output<Cap>,
     pose: Pose,
     frame: Frame,
     period: f64,
-    flight: Flight,
+    flight: SpeedGains,
     reader: Option<JoinHandle<()>>,
     stop: Arc<AtomicBool>,
 }
 
 impl Spacenav {
-    /// A device of so many cycles a second, with the tool at a pose to begin with, in the part's unit.
+    /// Creates a device of `rate` cycles per second, with the tool initially at the pose `start`, in the
+    /// part's unit.
     ///
     /// # Errors
-    /// If nobody listens at the socket; of kind [`InvalidInput`](io::ErrorKind::InvalidInput) and with a
-    /// [`SettingError`](super::SettingError) inside if the rate or a speed is out of its range.
+    /// Fails if nothing listens at the socket. Fails with [`InvalidInput`](io::ErrorKind::InvalidInput),
+    /// with a [`SettingError`](super::SettingError) inside, if the rate or a speed is out of its range.
     pub fn open(
         socket: &Path,
         (start, unit): (Pose, Unit),
-        (rate, flight): (f64, Flight),
+        (rate, flight): (f64, SpeedGains),
     ) -> io::Result<Spacenav> {
         let wrong = |error| io::Error::new(io::ErrorKind::InvalidInput, error);
         let period = setting::period(rate).map_err(wrong)?;
-        setting::above_zero("speed of flight in mm/s", flight.way).map_err(wrong)?;
-        setting::above_zero("turning speed of flight in rad/s", flight.turn).map_err(wrong)?;
+        setting::above_zero("speed of flight in mm/s", flight.linear).map_err(wrong)?;
+        setting::above_zero("turning speed of flight in rad/s", flight.angular).map_err(wrong)?;
         let stream = connected(socket)?;
         let (news, cap) = triple_buffer::triple_buffer(&Cap::Pushed([0; 6]));
         let stop = Arc::new(AtomicBool::new(false));
@@ -79,8 +82,8 @@ impl Spacenav {
             let (socket, stop) = (socket.to_owned(), Arc::clone(&stop));
             std::thread::spawn(move || listen(stream, &socket, news, &stop))
         };
-        let axes = if start.is_full() { Axes::Six } else { Axes::Five };
-        let unit = unit.to(Unit::Millimetre);
+        let axes = if start.has_spin() { DeviceAxes::Six } else { DeviceAxes::Five };
+        let unit = unit.factor_to(Unit::Millimetre);
         let frame = Frame { centre: Point3::origin(), unit, axes };
         Ok(Spacenav { cap, pose: start, frame, period, flight, reader: Some(reader), stop })
     }
@@ -92,7 +95,7 @@ fn connected(socket: &Path) -> io::Result<UnixStream> {
     Ok(stream)
 }
 
-/// Reads events until it is told to stop.
+/// Reads events until `stop` is set.
 fn listen(
     mut stream: UnixStream,
     socket: &Path,
@@ -113,7 +116,7 @@ fn listen(
                 }
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            // Nothing moves.
+            // No event within the timeout: the cap is at rest.
             Err(error)
                 if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) =>
             {
@@ -132,7 +135,7 @@ fn listen(
     }
 }
 
-/// How far the cap is pushed and turned, if the event says so.
+/// Returns the displacements and rotations of the cap if the event is a motion.
 fn motion(event: &[u8; 32]) -> Option<[i32; 6]> {
     let number = |at: usize| {
         let bytes = [0, 1, 2, 3].map(|k| event[4 * at + k]);
@@ -147,24 +150,24 @@ impl Device for Spacenav {
             Cap::Pushed(pushed) => pushed.map(|part| f64::from(part) / FULL),
             Cap::Gone => {
                 let gone = io::Error::new(io::ErrorKind::NotConnected, "spacenavd went away");
-                return Err(DeviceError::Gone(gone));
+                return Err(DeviceError::NotResponding(gone));
             }
         };
-        // The world's z is up, its y away from the user. Of a turn about the cap's z the sign is the other one,
-        // as everywhere that goes by this daemon: right, up and away are a left-handed frame.
-        let way = Vector3::new(x, z, y) * (self.flight.way * self.period);
-        let turn = Vector3::new(about_x, about_z, about_y) * (self.flight.turn * self.period);
+        // World z is up and y points away from the user. Right, up and away form a left-handed frame,
+        // but the daemon and all its clients use the opposite sign for turns about the cap's z.
+        let way = Vector3::new(x, z, y) * (self.flight.linear * self.period);
+        let turn = Vector3::new(about_x, about_z, about_y) * (self.flight.angular * self.period);
         self.pose = self.frame.moved(&self.pose, &join(&way, &turn))?;
         Ok(self.pose)
     }
 
-    fn push(&mut self, _: &Push) -> Result<(), DeviceError> {
+    fn apply(&mut self, _: &DeviceWrench) -> Result<(), DeviceError> {
         Ok(())
     }
 
-    fn limits(&self) -> Limits {
-        // It pushes nobody; what is shown to the eye is that of a small desktop device.
-        Limits { axes: self.frame.axes, ..Limits::default() }
+    fn limits(&self) -> DeviceLimits {
+        // The device applies no force; for display it has the limits of a small desktop device.
+        DeviceLimits { axes: self.frame.axes, ..DeviceLimits::default() }
     }
 }
 
@@ -172,7 +175,7 @@ impl Drop for Spacenav {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(reader) = self.reader.take() {
-            // It panics at nothing.
+            // The thread does not panic.
             let _ = reader.join();
         }
     }

@@ -1,28 +1,28 @@
-//! Faces of any number of corners, made into triangles.
+//! Triangulation of polygonal faces.
 
 use std::ops::Range;
 
 use nalgebra::{Point3, Vector3};
 
-use super::words::Place;
+use super::location::SourceLocation;
 use super::{Mesh, MeshError, weld};
 use crate::unit::Unit;
 
-/// How much of a polygon's area the triangles of its fan may face the other way: what rounding
-/// leaves beside corners that are nearly in line, no more.
+/// Largest fraction of a polygon's area that triangles of its fan may have with the opposite
+/// orientation. It covers the rounding at corners that are nearly in line, and no more.
 const FOLD: f64 = 1e-3;
 
-/// The triangles of a file's faces, in its order: a polygon is fanned about its first corner.
+/// The triangles of a file's faces, in the file's order. A polygon becomes a fan about its first corner.
 #[derive(Default)]
 pub(super) struct Faces {
     triangles: Vec<[u32; 3]>,
-    /// Where each face of more than three corners stands, and its triangles.
-    polygons: Vec<(Place, Range<usize>)>,
+    /// The location and the range of triangles of each face with more than three corners.
+    polygons: Vec<(SourceLocation, Range<usize>)>,
 }
 
 impl Faces {
-    /// A face of three corners or more.
-    pub(super) fn push(&mut self, place: Place, corners: &[u32]) {
+    /// Adds a face of three or more corners.
+    pub(super) fn push(&mut self, place: SourceLocation, corners: &[u32]) {
         let start = self.triangles.len();
         if let [first, others @ ..] = corners {
             self.triangles.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
@@ -36,7 +36,7 @@ impl Faces {
         self.triangles.is_empty()
     }
 
-    /// The vertices that faces have, by their numbers in order, and where they are.
+    /// Returns the ascending indices of the vertices that faces use, and their positions.
     pub(super) fn used(&self, vertices: &[Point3<f64>]) -> (Vec<usize>, Vec<Point3<f64>>) {
         let mut is_used = vec![false; vertices.len()];
         self.triangles.as_flattened().iter().for_each(|vertex| is_used[*vertex as usize] = true);
@@ -45,9 +45,9 @@ impl Faces {
         (used, places)
     }
 
-    /// The first polygon that its fan does not fill: some of its triangles face the other way.
-    /// Every index must be in range.
-    pub(super) fn folded(&self, vertices: &[Point3<f64>]) -> Option<Place> {
+    /// Returns the location of the first polygon that its fan does not fill, because some of its
+    /// triangles face the other way. Every index must be in range.
+    pub(super) fn folded(&self, vertices: &[Point3<f64>]) -> Option<SourceLocation> {
         let folds = |triangles: &[[u32; 3]]| {
             let area = |triangle: &[u32; 3]| {
                 let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
@@ -62,8 +62,8 @@ impl Faces {
         folded.map(|(place, _)| *place)
     }
 
-    /// The mesh, in which corners with equal coordinates are one vertex whatever their indices.
-    /// Every index must be in range.
+    /// Builds the mesh. Corners with equal coordinates become one vertex, whatever their indices. Every
+    /// index must be in range.
     pub(super) fn weld(&self, vertices: &[Point3<f64>], unit: Unit) -> Result<Mesh, MeshError> {
         let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices[vertex as usize]);
         weld(&self.triangles.iter().map(corners).collect::<Vec<_>>(), unit)

@@ -1,135 +1,135 @@
-//! Reading OBJ. The reader is our own because `tobj` names no line in its errors, panics on an
-//! index such as `1/-9` and gives every group vertices of its own.
+//! Reading OBJ. The crate has its own reader because `tobj` names no line in its errors, panics on an
+//! index such as `1/-9`, and gives every group its own vertices.
 
 use nalgebra::Point3;
 
 use super::faces::Faces;
-use super::stray::{Stray, stray};
-use super::words::{Place, Words, number, shown};
-use super::{LARGEST_COORDINATE, Mesh, MeshError, coordinate_holds};
+use super::location::{SourceLocation, Tokens, number, shown};
+use super::outlier::{Outlier, find_outlier};
+use super::{LARGEST_COORDINATE, Mesh, MeshError, is_valid_coordinate};
 use crate::unit::Unit;
 
-/// Why an OBJ file could not be read. Lines count from 1.
+/// Reasons why an OBJ file could not be read. Lines count from 1.
 #[derive(Debug, thiserror::Error)]
 pub enum ObjError {
-    /// A line says something else than it must.
+    /// A line does not match the grammar.
     #[error(
         "{file}, line {line}: expected {expected}, found {found}: mend the line, or export the \
          part again"
     )]
     Expected {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
-        /// What should stand there.
+        /// The expected content.
         expected: &'static str,
-        /// What does.
+        /// The content found instead.
         found: String,
     },
-    /// A line may hold a part of the surface in a form that is not read.
+    /// A line may describe surface geometry in an unsupported form.
     #[error(
         "{file}, line {line}: `{word}` is not read and may be a part of the surface: export the part as faces, \
          `f` lines"
     )]
     Unread {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
-        /// The word that it begins with.
+        /// The first word of the line.
         word: String,
     },
-    /// A vertex is nowhere.
+    /// A coordinate of a vertex is not finite or too large.
     #[error(
         "{file}, line {line}: the coordinate `{coordinate}` is not a finite number within \
          {LARGEST_COORDINATE:e}: repair the mesh where it was made"
     )]
     Coordinate {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
         /// The coordinate as written.
         coordinate: String,
     },
-    /// A face names a vertex that is not there.
+    /// A face names a vertex that does not exist.
     #[error(
         "{file}, line {line}: the face names vertex {index}, but {vertices} come before it: \
          vertices count from 1, or back from -1; export the part again"
     )]
     Index {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
-        /// The vertex it names.
+        /// The vertex index in the face.
         index: i64,
-        /// How many vertices come before.
+        /// The number of vertices before the face.
         vertices: usize,
     },
-    /// A polygon is not filled by triangles from its first corner.
+    /// The fan of triangles from the first corner of a polygon does not fill it.
     #[error(
         "{file}, {place}: the polygon is too hollow or too bent to be cut into triangles from its \
          first corner: export the part in triangles"
     )]
     Folded {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the face stands.
-        place: Place,
+        /// The location of the face in the file.
+        place: SourceLocation,
     },
-    /// There is no surface.
+    /// The file has no faces.
     #[error(
         "{file} has no faces, lines such as `f 1 2 3`: it is no OBJ file, or it holds points or \
          curves only: export the part as a mesh"
     )]
     NoFaces {
-        /// The file.
+        /// The file name.
         file: String,
     },
     /// A vertex is far outside the rest of the part.
     #[error("{file}, {place}: {stray}: mend the coordinate, or export or copy the part again")]
     Stray {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the vertex stands.
-        place: Place,
-        /// What is wrong with it.
-        stray: Stray,
+        /// The location of the vertex in the file.
+        place: SourceLocation,
+        /// The outlying coordinate and its statistics.
+        stray: Outlier,
     },
-    /// The file is in order, but what it holds is no mesh.
+    /// The file is well formed, but its content is not a mesh.
     #[error("{file}: {source}")]
     Mesh {
-        /// The file.
+        /// The file name.
         file: String,
-        /// What is wrong with the mesh.
+        /// The defect of the mesh.
         source: MeshError,
     },
 }
 
-/// Words whose lines hold no surface: attributes of vertices, points and lines, names, materials, and
-/// how faces are shaded.
+/// Keywords whose lines hold no surface: attributes of vertices, points and lines, names, materials, and
+/// the shading of faces.
 const SKIPPED: [&[u8]; 13] = [
     b"vn", b"vt", b"vp", b"p", b"l", b"o", b"g", b"s", b"mg", b"mtllib", b"usemtl", b"usemap",
     b"maplib",
 ];
 
 impl Mesh {
-    /// Reads the faces of an OBJ file as a mesh, whose numbers are in `unit` (OBJ states none);
-    /// `name` stands for the file in errors. No bytes make it panic.
+    /// Reads the faces of an OBJ file as a mesh, whose numbers are in `unit` (OBJ states none). Errors
+    /// name the file as `name`. No input makes this function panic.
     ///
-    /// Of all its lines those of `v` and `f` are read, names, materials and attributes are skipped, and
-    /// any other, such as a free-form surface, is refused. Faces may be written with indices from 1 or back from -1 and
-    /// with or without `/vt/vn`; objects, groups and materials all become one mesh. Polygons and
-    /// equal corners are treated as in [`Mesh::from_ply`]. The format does not say how much there
-    /// is: a file that was cut off between faces shows as a leak in the [survey](Mesh::survey).
+    /// The reader uses the lines `v` and `f`, skips names, materials and attributes, and refuses any
+    /// other line, such as a free-form surface. Indices may count from 1, or back from -1, with or
+    /// without `/vt/vn`. Objects, groups and materials all become one mesh. Polygons and equal corners
+    /// are treated as in [`Mesh::from_ply`]. The format does not declare the number of its elements, so
+    /// a file that was cut off between faces shows as a leak in the [diagnostics](Mesh::diagnostics).
     ///
     /// # Errors
     /// See [`ObjError`].
     pub fn from_obj(bytes: &[u8], name: &str, unit: Unit) -> Result<Mesh, ObjError> {
         let file = || name.to_owned();
-        let mut lines = Lines { words: Words::new(bytes), name };
+        let mut lines = Lines { words: Tokens::new(bytes), name };
         let mut vertices = Vec::new();
         let mut faces = Faces::default();
         let mut corners = Vec::new();
@@ -137,7 +137,7 @@ impl Mesh {
             match lines.word() {
                 Some(b"v") => vertices.push(lines.vertex()?),
                 Some(b"f") => {
-                    let place = Place::Line(lines.words.line);
+                    let place = SourceLocation::Line(lines.words.line);
                     lines.face(vertices.len(), &mut corners)?;
                     faces.push(place, &corners);
                 }
@@ -156,7 +156,7 @@ impl Mesh {
             return Err(ObjError::Folded { file: file(), place });
         }
         let (used, corners) = faces.used(&vertices);
-        if let Some((at, _, stray)) = stray(&corners) {
+        if let Some((at, _, stray)) = find_outlier(&corners) {
             return Err(ObjError::Stray { file: file(), place: line_of(bytes, used[at]), stray });
         }
         let mesh = faces.weld(&vertices, unit);
@@ -164,30 +164,30 @@ impl Mesh {
     }
 }
 
-/// The line of a vertex of a sound file.
-fn line_of(bytes: &[u8], vertex: usize) -> Place {
-    let mut lines = Lines { words: Words::new(bytes), name: "" };
+/// Returns the line of a vertex in a valid file.
+fn line_of(bytes: &[u8], vertex: usize) -> SourceLocation {
+    let mut lines = Lines { words: Tokens::new(bytes), name: "" };
     let mut left = vertex + 1;
     while lines.next() {
         left -= usize::from(lines.word() == Some(b"v"));
         if left == 0 {
             break;
         }
-        // Lines may go on.
+        // A line may continue after a `\`, so read all of its words before skipping the rest.
         while lines.word().is_some() {}
         lines.words.skip_line();
     }
-    Place::Line(lines.words.line)
+    SourceLocation::Line(lines.words.line)
 }
 
-/// The lines of a file, each of which may go on after a `\` and end in a comment.
+/// The lines of a file. A line may continue after a `\` and end in a comment.
 struct Lines<'a, 'n> {
-    words: Words<'a>,
+    words: Tokens<'a>,
     name: &'n str,
 }
 
 impl<'a> Lines<'a, '_> {
-    /// Whether there is another line.
+    /// Advances to the next line and returns whether there is one.
     fn next(&mut self) -> bool {
         self.words.skip_space();
         !self.words.rest.is_empty()
@@ -215,15 +215,15 @@ impl<'a> Lines<'a, '_> {
         ObjError::Expected { file: self.name.to_owned(), line: self.words.line, expected, found }
     }
 
-    /// The coordinates after `v`. What may follow them, a weight or a colour, says nothing of
-    /// where the vertex is.
+    /// Reads the coordinates after `v`. A weight or a colour may follow them; it does not affect the
+    /// position.
     fn vertex(&mut self) -> Result<Point3<f64>, ObjError> {
         let expected = "a coordinate, such as 1.5 or 2e-3";
         let mut vertex = Point3::origin();
         for coordinate in vertex.iter_mut() {
             let word = self.word().ok_or_else(|| self.expected(expected, None))?;
             *coordinate = number(word).ok_or_else(|| self.expected(expected, Some(word)))?;
-            if !coordinate_holds(*coordinate) {
+            if !is_valid_coordinate(*coordinate) {
                 let (file, line) = (self.name.to_owned(), self.words.line);
                 return Err(ObjError::Coordinate { file, line, coordinate: shown(word) });
             }
@@ -231,7 +231,7 @@ impl<'a> Lines<'a, '_> {
         Ok(vertex)
     }
 
-    /// The corners after `f`, of `vertices` so far.
+    /// Reads the corners after `f` and checks them against the `vertices` read before.
     fn face(&mut self, vertices: usize, corners: &mut Vec<u32>) -> Result<(), ObjError> {
         let expected = "a corner such as 7, 7/1 or 7//2: a face has three or more";
         corners.clear();
@@ -295,7 +295,7 @@ mod tests {
         refused.expect_err("it should be refused").to_string()
     }
 
-    /// A line that may be a part of the surface is not passed over.
+    /// A line that may describe surface geometry is refused, not skipped.
     #[test]
     fn a_surface_that_is_not_read_is_refused() {
         let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -315,7 +315,11 @@ mod tests {
         let text = cuboid_file();
         for text in [text.clone(), text.replace('\n', "\r\n"), text.replace('\n', "\r")] {
             let mesh = Mesh::from_obj(text.as_bytes(), "", UNIT).expect("a cuboid");
-            assert!(mesh.survey().solid() && mesh.vertices().len() == 8, "{}", mesh.survey());
+            assert!(
+                mesh.diagnostics().is_solid() && mesh.vertices().len() == 8,
+                "{}",
+                mesh.diagnostics()
+            );
             assert!(mesh.corners().eq(cuboid().corners()));
         }
         let latin = [b"# caf\xE9\n", TRIANGLE.as_bytes()].concat();
@@ -374,7 +378,7 @@ mod tests {
         let whole = text.trim_end().trim_end_matches("/1").len();
         for length in 0..whole {
             if let Ok(mesh) = Mesh::from_obj(&text.as_bytes()[..length], "", UNIT) {
-                assert!(!mesh.survey().closed(), "{length}");
+                assert!(!mesh.diagnostics().is_closed(), "{length}");
             }
         }
     }
@@ -387,7 +391,7 @@ mod tests {
         for _ in 0..5000 {
             let bytes = mangled(&seed, &words, &mut random);
             if let Ok(mesh) = Mesh::from_obj(&bytes, "", UNIT) {
-                let survey = mesh.survey();
+                let survey = mesh.diagnostics();
                 assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
             }
         }

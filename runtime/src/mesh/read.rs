@@ -1,86 +1,87 @@
-//! Reading a part from a file of any format there is a reader for.
+//! Reading a part from a file of any supported format.
 
 use std::io;
 use std::path::Path;
 
-use super::{Mesh, ObjError, PlyError, Points, StlError, ply};
+use super::{Mesh, ObjError, OrientedPoints, PlyError, StlError, ply};
 use crate::input;
 use crate::unit::Unit;
 
-/// What a file holds of a part.
+/// The content of a part file.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// Its surface.
+pub enum Geometry {
+    /// A surface mesh.
     Mesh(Mesh),
-    /// Points of its surface.
-    Points(Points),
+    /// Points of the surface.
+    Points(OrientedPoints),
 }
 
-/// Why a file could not be read.
+/// Reasons why a file could not be read.
 #[derive(Debug, thiserror::Error)]
-pub enum ShapeError {
-    /// The file system would not give it.
+pub enum GeometryError {
+    /// The file system refused to read the file.
     #[error("cannot read {file}: {source}: check the path and its permissions")]
     Unreadable {
-        /// The file.
+        /// The file name.
         file: String,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// Nothing tells what it is.
+    /// The format is not recognised.
     #[error(
         "{file} is of no known format: read are meshes in STL, PLY and OBJ (`.stl`, `.ply`, \
          `.obj`) and points with normals in PLY: convert the part to one of these"
     )]
     Unknown {
-        /// The file.
+        /// The file name.
         file: String,
     },
-    /// It is no sound STL file.
+    /// The file is not a valid STL file.
     #[error(transparent)]
     Stl(#[from] StlError),
-    /// It is no sound PLY file.
+    /// The file is not a valid PLY file.
     #[error(transparent)]
     Ply(#[from] PlyError),
-    /// It is no sound OBJ file.
+    /// The file is not a valid OBJ file.
     #[error(transparent)]
     Obj(#[from] ObjError),
 }
 
-impl Shape {
-    /// Reads a file whose lengths are in `unit`: PLY where it begins with `ply`, otherwise STL,
-    /// PLY or OBJ by its name. PLY with faces is a mesh, without any it is points.
+impl Geometry {
+    /// Reads a file whose lengths are in `unit`. A file that begins with `ply` is read as PLY; otherwise
+    /// the file extension decides between STL, PLY and OBJ. PLY with faces is a mesh, PLY without faces
+    /// is points.
     ///
     /// # Errors
-    /// All that is wrong with the file, with its name and the place.
-    pub fn read(path: impl AsRef<Path>, unit: Unit) -> Result<Shape, ShapeError> {
+    /// Every defect of the file is reported with the file name and the location.
+    pub fn read(path: impl AsRef<Path>, unit: Unit) -> Result<Geometry, GeometryError> {
         let path = path.as_ref();
         let file = path.display().to_string();
         match input::read(path) {
-            Ok(bytes) => Shape::from_bytes(&bytes, &file, unit),
-            Err(source) => Err(ShapeError::Unreadable { file, source }),
+            Ok(bytes) => Geometry::from_bytes(&bytes, &file, unit),
+            Err(source) => Err(GeometryError::Unreadable { file, source }),
         }
     }
 
-    /// The same as [`Shape::read`] for a file already in memory, whose name is `name`. No bytes
-    /// make it panic.
+    /// Reads a file already in memory, like [`Geometry::read`]; `name` is its file name. No input makes
+    /// this function panic.
     ///
     /// # Errors
-    /// See [`Shape::read`].
-    pub fn from_bytes(bytes: &[u8], name: &str, unit: Unit) -> Result<Shape, ShapeError> {
+    /// See [`Geometry::read`].
+    pub fn from_bytes(bytes: &[u8], name: &str, unit: Unit) -> Result<Geometry, GeometryError> {
         let extension = Path::new(name).extension().unwrap_or_default();
         let is = |known: &str| extension.eq_ignore_ascii_case(known);
         Ok(if ply::begins(bytes) || is("ply") {
             match ply::has_faces(bytes, name)? {
-                true => Shape::Mesh(Mesh::from_ply(bytes, name, unit)?),
-                false => Shape::Points(Points::from_ply(bytes, name)?),
+                true => Geometry::Mesh(Mesh::from_ply(bytes, name, unit)?),
+                false => Geometry::Points(OrientedPoints::from_ply(bytes, name)?),
             }
         } else if is("stl") {
-            Shape::Mesh(Mesh::from_stl(bytes, name, unit)?)
+            Geometry::Mesh(Mesh::from_stl(bytes, name, unit)?)
         } else if is("obj") {
-            Shape::Mesh(Mesh::from_obj(bytes, name, unit)?)
+            Geometry::Mesh(Mesh::from_obj(bytes, name, unit)?)
         } else {
-            return Err(ShapeError::Unknown { file: name.to_owned() });
+            return Err(GeometryError::Unknown { file: name.to_owned() });
         })
     }
 }
@@ -92,16 +93,16 @@ mod tests {
     const UNIT: Unit = Unit::Millimetre;
 
     fn says(bytes: &[u8], name: &str) -> String {
-        Shape::from_bytes(bytes, name, UNIT).expect_err("it should be refused").to_string()
+        Geometry::from_bytes(bytes, name, UNIT).expect_err("it should be refused").to_string()
     }
 
     #[test]
     fn chooses_by_content_and_by_name() {
-        let triangle = Shape::from_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "a.OBJ", UNIT);
-        let Ok(Shape::Mesh(mesh)) = triangle else { panic!("{triangle:?}") };
+        let triangle = Geometry::from_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "a.OBJ", UNIT);
+        let Ok(Geometry::Mesh(mesh)) = triangle else { panic!("{triangle:?}") };
         let mut stl = Vec::new();
         mesh.write_stl(&mut stl).expect("written");
-        assert_eq!(Shape::from_bytes(&stl, "a.stl", UNIT).expect("STL"), Shape::Mesh(mesh));
+        assert_eq!(Geometry::from_bytes(&stl, "a.stl", UNIT).expect("STL"), Geometry::Mesh(mesh));
 
         let xyz = "property float x\nproperty float y\nproperty float z\n";
         let normal = "property float nx\nproperty float ny\nproperty float nz\n";
@@ -109,10 +110,13 @@ mod tests {
         let list = "element face 1\nproperty list uchar int vertex_index\n";
         let mesh = format!("{header}{list}end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
         let points = format!("{header}{normal}end_header\n{}", "0 0 0 0 0 1\n".repeat(3));
-        let read = Shape::from_bytes(mesh.as_bytes(), "whatever.stl", UNIT);
-        assert!(matches!(read, Ok(Shape::Mesh(_))), "{read:?}");
-        let read = Shape::from_bytes(points.as_bytes(), "part", UNIT);
-        assert!(matches!(&read, Ok(Shape::Points(points)) if points.places.len() == 3), "{read:?}");
+        let read = Geometry::from_bytes(mesh.as_bytes(), "whatever.stl", UNIT);
+        assert!(matches!(read, Ok(Geometry::Mesh(_))), "{read:?}");
+        let read = Geometry::from_bytes(points.as_bytes(), "part", UNIT);
+        assert!(
+            matches!(&read, Ok(Geometry::Points(points)) if points.places.len() == 3),
+            "{read:?}"
+        );
     }
 
     #[test]
@@ -122,7 +126,7 @@ mod tests {
         assert!(says(b"solid", "part.ply").contains("is no PLY file"));
         assert!(says(b"", "part.stl").contains("is empty"));
         assert!(says(b"", "part.obj").contains("has no faces"));
-        let missing = Shape::read("no/such/part.ply", UNIT).expect_err("no such file");
+        let missing = Geometry::read("no/such/part.ply", UNIT).expect_err("no such file");
         assert!(missing.to_string().contains("cannot read no/such/part.ply"), "{missing}");
     }
 }

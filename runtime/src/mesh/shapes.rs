@@ -1,8 +1,7 @@
-//! Meshes the project ships because it makes them, as parts for examples, tests and benchmarks,
-//! and the way of any mesh into an STL file.
+//! Generated meshes, as parts for examples, tests and benchmarks, and STL output for any mesh.
 //!
-//! Measures are in the given unit; triangles are counter-clockwise seen from outside. Each
-//! function refuses, with [`MeshError::Shape`], measures that its shape cannot have.
+//! Dimensions are in the given unit, and triangles are counter-clockwise seen from outside. Each
+//! function returns [`MeshError::Shape`] if its dimensions are invalid.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -13,19 +12,20 @@ use super::stl::{HEADER, RECORD};
 use super::{Mesh, MeshError, area_and_normal};
 use crate::unit::Unit;
 
-/// The most triangles a shape may be made of: 2^25, some gigabytes of mesh and more than any
-/// part needs.
-pub const MOST_TRIANGLES: u64 = 1 << 25;
+/// Maximum number of triangles of a generated shape: 2^25, some gigabytes of mesh and more than any part
+/// needs.
+pub const MAX_TRIANGLES: u64 = 1 << 25;
 
-/// A tube about the z axis from z = 0 to `height`, closed and oriented outward: its inside is a
-/// bore. It has `segments` flat sides, whose edges lie on the radii, and its walls are cut into
-/// `layers` along the height; `4 segments (layers + 1)` triangles.
+/// Generates a tube about the z axis from z = 0 to `height`, closed and oriented outward; its inside is
+/// a bore. It has `segments` flat sides, whose edges lie on the radii, and `layers` along the height,
+/// hence `4 segments (layers + 1)` triangles.
 ///
-/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the
-/// thesis's.
+/// `tube(3.0, 5.0, 13.116, 96, 23, Unit::Millimetre)` has the inner radius and the area of the thesis's
+/// tube.
 ///
 /// # Errors
-/// Unless `0 < inner < outer`, `height > 0`, `segments >= 3`, `layers >= 1`.
+/// Fails unless `0 < inner < outer`, `height > 0`, `segments >= 3`, `layers >= 1` and there are at most
+/// [`MAX_TRIANGLES`].
 pub fn tube(
     inner: f64,
     outer: f64,
@@ -34,7 +34,7 @@ pub fn tube(
     layers: u32,
     unit: Unit,
 ) -> Result<Mesh, MeshError> {
-    let fits = 4 * u128::from(segments) * (u128::from(layers) + 1) <= MOST_TRIANGLES.into();
+    let fits = 4 * u128::from(segments) * (u128::from(layers) + 1) <= MAX_TRIANGLES.into();
     if !(0.0 < inner && inner < outer && 0.0 < height && segments >= 3 && layers >= 1 && fits) {
         let rule = "it needs 0 < inner radius < outer radius, height > 0, 3 segments or more, \
                     1 layer or more, and at most 2^25 triangles";
@@ -78,11 +78,11 @@ pub fn tube(
     Mesh::new(vertices, triangles, unit)
 }
 
-/// A box with the given lowest and highest corner, closed and oriented outward; 12 triangles, two
-/// to a side, the sides in the order -x, +x, -y, +y, -z, +z.
+/// Generates a box with the given lowest and highest corner, closed and oriented outward. It has 12
+/// triangles, two per side, with the sides in the order -x, +x, -y, +y, -z, +z.
 ///
 /// # Errors
-/// Unless `min < max` in each coordinate.
+/// Fails unless `min < max` in each coordinate.
 pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, MeshError> {
     if !(0..3).all(|axis| min[axis] < max[axis]) {
         let rule = "its lowest corner must be below its highest in x, in y and in z";
@@ -101,13 +101,13 @@ pub fn cuboid(min: Point3<f64>, max: Point3<f64>, unit: Unit) -> Result<Mesh, Me
     Mesh::new(vertices, sides.into_iter().flat_map(halves).collect(), unit)
 }
 
-/// A square sheet in z = 0 about the origin, `2 half_width` wide, open, its normals +z, cut into
-/// `divisions`² squares; `2 divisions²` triangles.
+/// Generates an open square sheet in z = 0 about the origin, with edges of length `2 half_width` and
+/// normals +z. It is divided into `divisions`² squares, hence `2 divisions²` triangles.
 ///
 /// # Errors
-/// Unless `half_width > 0` and `divisions >= 1`.
+/// Fails unless `half_width > 0`, `divisions >= 1` and there are at most [`MAX_TRIANGLES`].
 pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshError> {
-    let fits = 2 * u128::from(divisions).pow(2) <= MOST_TRIANGLES.into();
+    let fits = 2 * u128::from(divisions).pow(2) <= MAX_TRIANGLES.into();
     if !(0.0 < half_width && divisions >= 1 && fits) {
         let rule = "it needs a half width > 0, 1 division or more, and at most 2^25 triangles";
         return Err(MeshError::Shape { shape: "plane", rule });
@@ -124,11 +124,12 @@ pub fn plane(half_width: f64, divisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     Mesh::new(vertices, triangles, unit)
 }
 
-/// A ball about the origin, closed and oriented outward: an icosahedron whose triangles are cut
-/// into four `subdivisions` times; `20 · 4^subdivisions` triangles, vertices on the sphere.
+/// Generates a sphere about the origin, closed and oriented outward. The triangles of an icosahedron are
+/// divided into four `subdivisions` times, hence `20 · 4^subdivisions` triangles; all vertices lie on
+/// the sphere.
 ///
 /// # Errors
-/// Unless `radius > 0` and `subdivisions <= 10`.
+/// Fails unless `radius > 0` and `subdivisions <= 10`.
 pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshError> {
     if !(0.0 < radius && subdivisions <= 10) {
         let rule = "it needs a radius > 0 and at most 10 subdivisions";
@@ -162,9 +163,9 @@ pub fn sphere(radius: f64, subdivisions: u32, unit: Unit) -> Result<Mesh, MeshEr
     Mesh::new(vertices, triangles, unit)
 }
 
-/// The faces of the icosahedron: the triples of corners next to each other, turned outward.
+/// Returns the faces of the icosahedron: the triples of adjacent corners, oriented outward.
 fn icosahedron(corners: &[Vector3<f64>]) -> Vec<[u32; 3]> {
-    // Neighbours see each other under 63.4 degrees, others under 116.6 or more.
+    // Adjacent corners subtend 63.4 degrees at the centre, others 116.6 degrees or more.
     let near = |a: usize, b: usize| corners[a].dot(&corners[b]) > 0.0;
     let mut faces = Vec::new();
     for a in 0..corners.len() {
@@ -179,22 +180,22 @@ fn icosahedron(corners: &[Vector3<f64>]) -> Vec<[u32; 3]> {
     faces
 }
 
-/// The two triangles of a four-sided face.
+/// Splits a four-sided face into two triangles.
 fn halves([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
 impl Mesh {
-    /// Writes the mesh as binary STL, in its own unit, which the header's text names.
-    /// Coordinates are rounded to `f32`, as the format demands.
+    /// Writes the mesh as binary STL, in its own unit, which is named in the header text. Coordinates
+    /// are rounded to `f32`, as the format requires.
     ///
     /// # Errors
-    /// What `out` says, and `InvalidInput` for a coordinate beyond the range of `f32`.
+    /// Returns the errors of `out`, and `InvalidInput` for a coordinate beyond the range of `f32`.
     pub fn write_stl(&self, out: &mut impl Write) -> io::Result<()> {
         let mut bytes = Vec::with_capacity(HEADER + RECORD * self.triangles.len());
         bytes.extend(format!("binary STL in {} by touchoff", self.unit).bytes());
         bytes.resize(80, b' ');
-        // `Mesh::new` has seen to it that the ids, and so their count, fit.
+        // `Mesh::new` guarantees that the ids fit 32 bits, and hence their count.
         bytes.extend((self.triangles.len() as u32).to_le_bytes());
         for corners in self.corners() {
             let normal = area_and_normal(&corners).map_or(Vector3::zeros(), |(_, n)| n);
@@ -213,11 +214,11 @@ impl Mesh {
         out.write_all(&bytes)
     }
 
-    /// Writes the mesh as ASCII STL, in its own unit, with all digits: reading it again gives
-    /// the same corners to the bit.
+    /// Writes the mesh as ASCII STL, in its own unit, with all digits: reading it again yields bitwise
+    /// the same corners.
     ///
     /// # Errors
-    /// What `out` says.
+    /// Returns the errors of `out`.
     pub fn write_stl_ascii(&self, out: &mut impl Write) -> io::Result<()> {
         let mut out = io::BufWriter::new(out);
         writeln!(out, "solid touchoff, in {}", self.unit)?;
@@ -252,13 +253,13 @@ mod tests {
             [(3.0, 5.0, 13.116, 96, 23), (1e-9, 2e-9, 1e-9, 3, 1), (1.0, 1e6, 0.1, 7, 2)]
         {
             let mesh = tube(inner, outer, height, segments, layers, UNIT).expect("a tube");
-            let survey = mesh.survey();
+            let survey = mesh.diagnostics();
             let n = f64::from(segments);
             let base = n / 2.0 * (2.0 * PI / n).sin() * (outer * outer - inner * inner);
             let around = 2.0 * n * (PI / n).sin() * (outer + inner);
             assert!(near(survey.area, 2.0 * base + around * height), "{survey}");
             assert!(near(survey.volume, base * height), "{survey}");
-            assert!(survey.solid() && survey.findings().len() == 1, "{survey}");
+            assert!(survey.is_solid() && survey.findings().len() == 1, "{survey}");
             assert_eq!(survey.triangles as u32, 4 * segments * (layers + 1));
         }
     }
@@ -266,17 +267,17 @@ mod tests {
     #[test]
     fn the_other_shapes_are_what_they_say() {
         let [low, high] = [Point3::new(-1.0, 0.0, 2.0), Point3::new(1.0, 3.0, 6.0)];
-        let survey = cuboid(low, high, UNIT).expect("a cuboid").survey();
-        assert!(survey.solid() && (survey.area, survey.volume) == (52.0, 24.0), "{survey}");
+        let survey = cuboid(low, high, UNIT).expect("a cuboid").diagnostics();
+        assert!(survey.is_solid() && (survey.area, survey.volume) == (52.0, 24.0), "{survey}");
 
         let sheet = plane(2.0, 4, UNIT).expect("a plane");
-        let survey = sheet.survey();
+        let survey = sheet.diagnostics();
         assert_eq!((survey.area, survey.open_edges, survey.triangles), (16.0, 16, 32));
-        assert!(survey.oriented() && sheet.normal(31) == Some(Vector3::z()));
+        assert!(survey.is_oriented() && sheet.normal(31) == Some(Vector3::z()));
 
         for subdivisions in 0..6u32 {
-            let survey = sphere(3.0, subdivisions, UNIT).expect("a sphere").survey();
-            assert!(survey.solid() && survey.triangles == 20 << (2 * subdivisions), "{survey}");
+            let survey = sphere(3.0, subdivisions, UNIT).expect("a sphere").diagnostics();
+            assert!(survey.is_solid() && survey.triangles == 20 << (2 * subdivisions), "{survey}");
             let short = 1.0 - survey.volume / (36.0 * PI);
             assert!(short > 0.0 && short < 0.6 / f64::from(1 << (2 * subdivisions)), "{short}");
         }
@@ -323,7 +324,7 @@ mod tests {
                 .zip(again.corners().flatten())
                 .all(|(a, b)| { a.iter().zip(b.iter()).all(|(a, b)| f64::from(*a as f32) == *b) })
         );
-        assert!(again.survey().solid() && again.survey().opposed_normals == 0);
+        assert!(again.diagnostics().is_solid() && again.diagnostics().opposed_normals == 0);
 
         let far = sphere(1e40, 0, UNIT).expect("a large sphere");
         let error = far.write_stl(&mut Vec::new()).expect_err("f32 cannot hold it");

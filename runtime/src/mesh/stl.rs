@@ -1,45 +1,45 @@
-//! Reading STL, binary and ASCII. The reader is our own because `stl_io` names no line or triangle in its
-//! errors and takes a binary file whose header begins with `solid` for text.
+//! Reading STL, binary and ASCII. The crate has its own reader because `stl_io` names no line or
+//! triangle in its errors and takes a binary file whose header begins with `solid` for text.
 
 use std::io;
 
 use nalgebra::{Point3, Vector3};
 
-use super::stray::{Stray, stray};
-use super::words::{Place, Words, number, shown};
-use super::{LARGEST_COORDINATE, MeshError, area_and_normal, coordinate_holds};
+use super::location::{SourceLocation, Tokens, number, shown};
+use super::outlier::{Outlier, find_outlier};
+use super::{LARGEST_COORDINATE, MeshError, area_and_normal, is_valid_coordinate};
 
 /// Bytes of a binary file before its first triangle: 80 of header, 4 of count.
 pub(super) const HEADER: usize = 84;
-/// Bytes of a triangle in a binary file: 12 numbers, 2 bytes of attributes.
+/// Bytes per triangle in a binary file: 12 numbers of 4 bytes, 2 bytes of attributes.
 pub(super) const RECORD: usize = 50;
 
-/// Why an STL file could not be read. Lines count from 1, triangles and bytes from 0.
+/// Reasons why an STL file could not be read. Lines count from 1, triangles and bytes from 0.
 #[derive(Debug, thiserror::Error)]
 pub enum StlError {
-    /// The file system would not give it.
+    /// The file system refused to read the file.
     #[error("cannot read {file}: {source}: check the path and its permissions")]
     Unreadable {
-        /// The file.
+        /// The file name.
         file: String,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// Not a single byte.
+    /// The file is empty.
     #[error("{file} is empty: export or copy it again")]
     Empty {
-        /// The file.
+        /// The file name.
         file: String,
     },
-    /// It does not begin with `solid` and is too short to be binary.
+    /// The file does not begin with `solid` and is too short to be binary.
     #[error(
         "{file} is no STL file: it has {bytes} bytes, does not begin with `solid` as ASCII STL \
          does, and a binary one has at least {HEADER}: convert the part to STL"
     )]
     NotStl {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Its length.
+        /// The file length in bytes.
         bytes: usize,
     },
     /// A binary file ends before its last triangle.
@@ -48,43 +48,43 @@ pub enum StlError {
          = {expected} bytes, but the file has {found}: export or copy it again"
     )]
     Truncated {
-        /// The file.
+        /// The file name.
         file: String,
-        /// How many triangles the header promises.
+        /// The number of triangles declared in the header.
         triangles: u32,
-        /// How many bytes they make.
+        /// The file length that this number requires, in bytes.
         expected: u64,
-        /// How many bytes there are.
+        /// The number of bytes found.
         found: u64,
     },
-    /// A binary file goes on after its last triangle.
+    /// A binary file continues after its last triangle.
     #[error(
         "{file} has {found} bytes, but as binary STL its header promises {triangles} triangles = \
          {expected} bytes, and what follows is unknown: export it again, one solid to a file"
     )]
     Trailing {
-        /// The file.
+        /// The file name.
         file: String,
-        /// How many triangles the header promises.
+        /// The number of triangles declared in the header.
         triangles: u32,
-        /// How many bytes they make.
+        /// The file length that this number requires, in bytes.
         expected: u64,
-        /// How many bytes there are.
+        /// The number of bytes found.
         found: u64,
     },
-    /// An ASCII file says something else than it must.
+    /// An ASCII file does not match the grammar.
     #[error(
         "{file}, line {line}: expected {expected}, found `{found}`: mend the line, or export \
              the part again"
     )]
     Expected {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
-        /// What should stand there.
+        /// The expected content.
         expected: &'static str,
-        /// The word that does.
+        /// The word found instead.
         found: String,
     },
     /// An ASCII file ends before its last `endsolid`.
@@ -93,37 +93,37 @@ pub enum StlError {
              or copy it again"
     )]
     Unended {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The last line.
+        /// The last line number, from 1.
         line: usize,
-        /// What should have followed.
+        /// The content expected next.
         expected: &'static str,
     },
-    /// A vertex of an ASCII file is nowhere.
+    /// A coordinate of a vertex in an ASCII file is not finite or too large.
     #[error(
         "{file}, line {line}: the coordinate `{coordinate}` is not a finite number within \
          {LARGEST_COORDINATE:e}: repair the mesh where it was made"
     )]
     LineCoordinate {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
         /// The coordinate as written.
         coordinate: String,
     },
-    /// A vertex of a binary file is nowhere.
+    /// A coordinate of a vertex in a binary file is not finite.
     #[error(
         "{file}, triangle {triangle} (from 0), byte {byte}: the coordinate {coordinate} is not a \
          finite number: repair the mesh where it was made"
     )]
     TriangleCoordinate {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The triangle.
+        /// The triangle's index, from 0.
         triangle: usize,
-        /// Where in the file the coordinate stands.
+        /// The byte offset of the coordinate in the file.
         byte: usize,
         /// The coordinate.
         coordinate: f32,
@@ -133,36 +133,36 @@ pub enum StlError {
         "{file}, triangle {triangle} (from 0), {place}: {stray}: mend the coordinate, or export or copy the part again"
     )]
     Stray {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The triangle.
+        /// The triangle's index, from 0.
         triangle: usize,
         /// Where in the file the vertex stands.
-        place: Place,
-        /// What is wrong with it.
-        stray: Stray,
+        place: SourceLocation,
+        /// The outlying coordinate and its statistics.
+        stray: Outlier,
     },
-    /// The file is in order, but what it holds is no mesh.
+    /// The file is well formed, but its content is not a mesh.
     #[error("{file}: {source}")]
     Mesh {
-        /// The file.
+        /// The file name.
         file: String,
-        /// What is wrong with the mesh.
+        /// The defect of the mesh.
         source: MeshError,
     },
 }
 
-/// What a file holds: the corners of each facet, in the file's order.
+/// The content of a file: the corners of each facet, in the file's order.
 #[derive(Default)]
-pub(super) struct Facets {
+pub(super) struct StlFacets {
     pub(super) corners: Vec<[Point3<f64>; 3]>,
     pub(super) opposed_normals: usize,
 }
 
-impl Facets {
+impl StlFacets {
     fn push(&mut self, stated: Vector3<f64>, corners: [Point3<f64>; 3]) {
-        // More than 120 degrees from the winding's: a careless or stale normal is none of our
-        // business, one that points the other way is a sign that the winding may be wrong.
+        // The threshold is 120 degrees from the winding's normal. A careless or stale normal is
+        // harmless, but a normal in the opposite direction indicates that the winding may be wrong.
         let norm = stated.norm();
         if let Some((_, normal)) = area_and_normal(&corners)
             && normal.dot(&stated) < -0.5 * norm
@@ -173,30 +173,30 @@ impl Facets {
     }
 }
 
-/// Reads a whole file, or says why not; there is no partial result.
+/// Reads a whole file, or returns the reason for its refusal; there is no partial result.
 ///
-/// A file is binary when its length is what its count says, whatever its header begins with.
-/// Failing that it is text when it begins with `solid` and its first bytes hold no NUL, which a
-/// binary file's count nearly always does.
+/// A file is binary if its length agrees with its count, whatever its header begins with. Otherwise it
+/// is text if it begins with `solid` and its first 84 bytes hold no NUL, which the header and count of a
+/// binary file nearly always do.
 ///
 /// A vertex far outside all others is refused.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
+pub(super) fn read(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
     let (facets, is_text) = facets(bytes, name)?;
-    let Some((corner, axis, stray)) = stray(facets.corners.as_flattened()) else {
+    let Some((corner, axis, stray)) = find_outlier(facets.corners.as_flattened()) else {
         return Ok(facets);
     };
     let triangle = corner / 3;
     let place = if is_text {
         line_of(bytes, corner)
     } else {
-        Place::Byte(HEADER + RECORD * triangle + 4 * (3 + 3 * (corner % 3) + axis))
+        SourceLocation::Byte(HEADER + RECORD * triangle + 4 * (3 + 3 * (corner % 3) + axis))
     };
     Err(StlError::Stray { file: name.to_owned(), triangle, place, stray })
 }
 
-/// The line of a corner of a sound text.
-fn line_of(bytes: &[u8], corner: usize) -> Place {
-    let mut words = Words::new(bytes);
+/// Returns the line of a corner in a valid text file.
+fn line_of(bytes: &[u8], corner: usize) -> SourceLocation {
+    let mut words = Tokens::new(bytes);
     let mut left = corner + 1;
     while left > 0
         && let Some(word) = words.next()
@@ -206,11 +206,11 @@ fn line_of(bytes: &[u8], corner: usize) -> Place {
         }
         left -= usize::from(word.eq_ignore_ascii_case(b"vertex"));
     }
-    Place::Line(words.line)
+    SourceLocation::Line(words.line)
 }
 
-/// The facets of a file, and whether it is text.
-fn facets(bytes: &[u8], name: &str) -> Result<(Facets, bool), StlError> {
+/// Reads the facets of a file and returns them with `true` if the file is text.
+fn facets(bytes: &[u8], name: &str) -> Result<(StlFacets, bool), StlError> {
     let file = || name.to_owned();
     if bytes.is_empty() {
         return Err(StlError::Empty { file: file() });
@@ -220,7 +220,7 @@ fn facets(bytes: &[u8], name: &str) -> Result<(Facets, bool), StlError> {
         (count, body)
     });
     let is_text = !bytes.iter().take(HEADER).any(|&byte| byte == 0)
-        && Words::new(bytes).next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+        && Tokens::new(bytes).next().is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     match binary {
         Some((triangles, body)) => {
             let expected = RECORD as u64 * u64::from(triangles);
@@ -243,8 +243,8 @@ fn facets(bytes: &[u8], name: &str) -> Result<(Facets, bool), StlError> {
     }
 }
 
-fn read_binary(body: &[u8], name: &str) -> Result<Facets, StlError> {
-    let mut facets = Facets::default();
+fn read_binary(body: &[u8], name: &str) -> Result<StlFacets, StlError> {
+    let mut facets = StlFacets::default();
     let (records, _) = body.as_chunks::<RECORD>();
     for (triangle, record) in records.iter().enumerate() {
         let (words, _attributes) = record.as_chunks::<4>();
@@ -266,11 +266,11 @@ fn read_binary(body: &[u8], name: &str) -> Result<Facets, StlError> {
     Ok(facets)
 }
 
-fn read_ascii(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
-    let mut facets = Facets::default();
-    let mut text = Ascii { words: Words::new(bytes), name };
+fn read_ascii(bytes: &[u8], name: &str) -> Result<StlFacets, StlError> {
+    let mut facets = StlFacets::default();
+    let mut text = Ascii { words: Tokens::new(bytes), name };
     loop {
-        // The name of a solid, of any words or none, runs to the end of its line.
+        // The name of a solid, of any number of words, extends to the end of its line.
         text.keyword("`solid`, or the end of the file", b"solid")?;
         text.words.skip_line();
         while text.either("`facet` or `endsolid`", b"facet", b"endsolid")? {
@@ -284,9 +284,9 @@ fn read_ascii(bytes: &[u8], name: &str) -> Result<Facets, StlError> {
     }
 }
 
-/// The grammar of ASCII STL, one function for each of its phrases.
+/// A parser for ASCII STL, with one function per phrase of the grammar.
 struct Ascii<'a> {
-    words: Words<'a>,
+    words: Tokens<'a>,
     name: &'a str,
 }
 
@@ -314,7 +314,7 @@ impl<'a> Ascii<'a> {
         }
     }
 
-    /// Whether the first of two keywords is next; an error when neither is.
+    /// Returns whether the next word is keyword `a`; fails if it is neither `a` nor `b`.
     fn either(&mut self, expected: &'static str, a: &[u8], b: &[u8]) -> Result<bool, StlError> {
         let word = self.word(expected)?;
         let is_a = word.eq_ignore_ascii_case(a);
@@ -325,14 +325,14 @@ impl<'a> Ascii<'a> {
         }
     }
 
-    /// A number, with the word that it is.
+    /// Reads a number and returns it with its word.
     fn number(&mut self, expected: &'static str) -> Result<(f64, &'a [u8]), StlError> {
         let word = self.word(expected)?;
         let number = number(word).ok_or_else(|| self.unexpected(expected, word))?;
         Ok((number, word))
     }
 
-    /// The rest of a facet after its first word.
+    /// Reads the rest of a facet after its first word.
     fn facet(&mut self) -> Result<(Vector3<f64>, [Point3<f64>; 3]), StlError> {
         self.keyword("`normal`", b"normal")?;
         let mut stated = Vector3::zeros();
@@ -346,7 +346,7 @@ impl<'a> Ascii<'a> {
             self.keyword("`vertex`: a facet has three", b"vertex")?;
             for coordinate in corner.iter_mut() {
                 let (number, word) = self.number("a coordinate, such as 1.5 or 2e-3")?;
-                if !coordinate_holds(number) {
+                if !is_valid_coordinate(number) {
                     let (file, line) = (self.name.to_owned(), self.words.line);
                     let coordinate = shown(word);
                     return Err(StlError::LineCoordinate { file, line, coordinate });

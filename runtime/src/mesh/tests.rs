@@ -1,4 +1,4 @@
-//! Reading, welding and refusing meshes.
+//! Tests of reading, welding and refusing meshes.
 
 use super::*;
 use rand_core::{Rng, SeedableRng};
@@ -146,7 +146,7 @@ fn welds_what_only_noise_tells_apart() {
     assert_eq!(mesh.triangles()[2..], [[0, 3, 2], [4, 1, 2]]);
 }
 
-/// A file with up to four places changed, cut off or with a word put in.
+/// Returns a file with up to four random defects: a changed byte, a truncation or an inserted word.
 pub(super) fn mangled(file: &[u8], words: &[&[u8]], random: &mut rand_pcg::Pcg64) -> Vec<u8> {
     let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
     let mut bytes = file.to_vec();
@@ -171,7 +171,7 @@ fn survives_any_bytes() {
         for _ in 0..5000 {
             let bytes = mangled(&seed, &words, &mut random);
             if let Ok(mesh) = Mesh::from_stl(&bytes, "", UNIT) {
-                let survey = mesh.survey();
+                let survey = mesh.diagnostics();
                 assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
                 assert!(!survey.to_string().is_empty());
             }
@@ -179,7 +179,7 @@ fn survives_any_bytes() {
     }
 }
 
-/// The shared parts, if they are there: a checkout alone has none.
+/// Returns the folder of shared parts, if it exists: a checkout alone has none.
 fn shared() -> Option<PathBuf> {
     let parts = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/parts");
     if parts.is_dir() {
@@ -189,7 +189,7 @@ fn shared() -> Option<PathBuf> {
     None
 }
 
-/// The area of a tube with flat sides, by its edges and its height.
+/// Returns the area of a tube with flat sides, by its radii and its height.
 fn area_of_tube([inner, outer]: [f64; 2], height: f64, sides: u32) -> f64 {
     let (angle, sides) = (std::f64::consts::PI / f64::from(sides), f64::from(sides));
     let walls = 2.0 * angle.sin() * (inner + outer) * height;
@@ -197,7 +197,7 @@ fn area_of_tube([inner, outer]: [f64; 2], height: f64, sides: u32) -> f64 {
     sides * (walls + rings)
 }
 
-/// Parts of each kind and unit, made here and read from files, then the shared ones.
+/// Checks parts of each kind and unit, made here and read from files, then the shared ones.
 #[test]
 fn reads_parts_from_stl_files() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -245,14 +245,14 @@ fn reads_parts_from_stl_files() {
     for (path, unit, triangles, area, off) in parts {
         let file = path.display();
         let mesh = Mesh::read_stl(&path, unit).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let survey = mesh.survey();
+        let survey = mesh.diagnostics();
         assert_eq!((survey.triangles, mesh.unit()), (triangles, unit), "{file}");
-        assert!(survey.solid(), "{file}: {survey}");
+        assert!(survey.is_solid(), "{file}: {survey}");
         assert!((survey.area / area - 1.0).abs() < off, "{file}: {} of {area}", survey.area);
     }
 }
 
-/// A mesh in ASCII PLY, with its first triangles.
+/// Returns a mesh in ASCII PLY, with its first `triangles` triangles.
 fn ply(mesh: &Mesh, triangles: usize) -> String {
     let corners = mesh.vertices().iter().map(|p| format!("{} {} {}\n", p.x, p.y, p.z));
     let faces = mesh.triangles()[..triangles].iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n"));
@@ -264,7 +264,7 @@ fn ply(mesh: &Mesh, triangles: usize) -> String {
     )
 }
 
-/// Whole parts and parts with holes, made here and read from files, then the shared ones.
+/// Checks whole parts and parts with holes, made here and read from files, then the shared ones.
 #[test]
 fn reads_parts_from_ply_files() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -288,9 +288,9 @@ fn reads_parts_from_ply_files() {
     }
     for (path, triangles, closed) in parts {
         let file = path.display();
-        let shape = Shape::read(&path, UNIT).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let Shape::Mesh(mesh) = shape else { panic!("{file} has faces") };
-        let survey = mesh.survey();
-        assert_eq!((survey.triangles, survey.closed()), (triangles, closed), "{file}: {survey}");
+        let shape = Geometry::read(&path, UNIT).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let Geometry::Mesh(mesh) = shape else { panic!("{file} has faces") };
+        let survey = mesh.diagnostics();
+        assert_eq!((survey.triangles, survey.is_closed()), (triangles, closed), "{file}: {survey}");
     }
 }

@@ -1,20 +1,20 @@
-//! Edges and shells of a mesh: how often edges are used, which triangles form a piece, which pieces are inside out.
+//! Edges and shells of a mesh: uses of each edge, connected pieces, and pieces that are inside out.
 
 use super::{Mesh, area_and_normal};
 
-/// The numbers of edges by their uses.
+/// Numbers of edges by their uses.
 pub(super) struct Edges {
     /// Edges with an odd number of uses.
     pub(super) open: usize,
-    /// Edges with an even number of uses, but not as many one way as the other.
+    /// Edges with an even number of uses that are not equally many in both directions.
     pub(super) crossed: usize,
-    /// Edges of more than two triangles.
+    /// Edges used by more than two triangles.
     pub(super) shared: usize,
 }
 
 impl Edges {
-    /// Counts edges by sorting: all uses of an edge are put into a bucket by its lower vertex,
-    /// and each bucket, which holds a handful, is sorted by the higher one.
+    /// Counts edges by sorting. All uses of an edge go into the bucket of its lower vertex; each bucket,
+    /// with a handful of entries, is sorted by the higher vertex.
     pub(super) fn of(mesh: &Mesh) -> Edges {
         let mut starts = vec![0usize; mesh.vertices().len() + 1];
         for [from, to] in edge_uses(mesh) {
@@ -45,15 +45,16 @@ impl Edges {
     }
 }
 
-/// The directed edges of all triangles but those that name a vertex twice: these have collapsed
-/// into an edge or a point, and what they would add cancels.
+/// Iterates over the directed edges of all triangles, except triangles that name a vertex twice. These
+/// have collapsed into an edge or a point, and their contributions would cancel.
 fn edge_uses(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
     let whole = |[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
     mesh.triangles().iter().filter(whole).flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
 }
 
-/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece goes on across
-/// edges of two triangles only, so that pieces which touch in a vertex or along an edge are told apart.
+/// Returns the triangles of pieces with a negative volume: voids, or pieces that are inside out. A piece
+/// continues only across edges of exactly two triangles, so pieces that touch in a vertex or along an
+/// edge are separate.
 pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
     let [low, high] = mesh.bounds();
     let origin = nalgebra::center(&low, &high);
@@ -81,8 +82,8 @@ pub(crate) fn inverted(mesh: &Mesh) -> Vec<u32> {
     (0..parent.len() as u32).filter(|id| volumes[root(&mut parent, *id) as usize] < 0.0).collect()
 }
 
-/// The shell of each vertex and how many there are, by union and find. A vertex that no triangle
-/// uses is in none, and its entry says nothing.
+/// Returns the shell index of each vertex and the number of shells, by union-find. The entry of a vertex
+/// that no triangle uses is meaningless.
 pub(super) fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
     const UNUSED: u32 = u32::MAX;
     let mut parent = vec![UNUSED; mesh.vertices().len()];
@@ -98,7 +99,7 @@ pub(super) fn shells(mesh: &Mesh) -> (Vec<u32>, usize) {
             parent[vertex as usize] = least;
         }
     }
-    // A root is the lowest vertex of its shell, so it is numbered before the others.
+    // The root is the lowest vertex of its shell, so it is numbered before the others.
     let mut count = 0;
     let mut shell_of = vec![0; parent.len()];
     for vertex in 0..parent.len() {

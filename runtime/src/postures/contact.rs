@@ -1,53 +1,54 @@
-//! Where on its cutting surfaces a tool can touch a face.
+//! Contact sites: points of a tool's cutting profile that can touch a face.
 
-use crate::tool::{Card, Circle};
+use crate::tool::{Circle, ToolInfo};
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::PI;
 
-/// Places of the profile where a cutting surface bulges out, each with the normals that it has there, or,
-/// at a corner, that it may be touched along.
+/// Sites of the profile where a cutting surface is convex: arcs with their normals, and corners with the
+/// normals along which they may be touched.
 #[derive(Clone, Debug)]
-pub(crate) struct Sites {
-    sites: Vec<Site>,
-    /// How far the tool reaches.
+pub(crate) struct ContactSites {
+    sites: Vec<ContactSite>,
+    /// Size of the tool, in the part's unit.
     size: f64,
 }
 
-/// A tool that touches a face.
+/// A contact of a tool with a face.
 pub(crate) struct Contact {
-    /// Where its tip is.
+    /// Position of the tip.
     pub(crate) tip: Point3<f64>,
-    /// The place of its half plane that touches, a hair inside of the surfaces on either side of it. Both touch, so
-    /// that a contact is as nice as the less nice of them.
+    /// The touching point in the tool's half plane as `[d, z]`, moved slightly into the surface on either side
+    /// of it. Both surfaces touch, so the niceness of the contact is the lesser of the two.
     pub(crate) within: [[f64; 2]; 2],
 }
 
-/// An arc, or a corner as an arc of no radius; lengths in the part's unit.
+/// An arc, or a corner as an arc of radius 0. Lengths are in the part's unit.
 #[derive(Clone, Copy, Debug)]
-struct Site {
+struct ContactSite {
     centre: [f64; 2],
     radius: f64,
-    /// Between which angles of the half plane, from d toward z, its normals lie.
+    /// Range of its normals' angles in the half plane, from d toward z, in radians.
     angles: [f64; 2],
-    /// Into a corner, nearer to what is before it and to what is after it; of an arc that is the opposite of
-    /// the normal.
+    /// Two directions into a corner's material, nearer to the surface before it and to the surface after it. An
+    /// arc has `None`: its inward direction is the opposite of the normal.
     inward: Option<[[f64; 2]; 2]>,
 }
 
-/// A part of a circle, or of the tool, that rounding stays below by far.
+/// Tolerance of angles in radians, and of lengths relative to the circle or the tool; far above rounding
+/// errors.
 const SAME: f64 = 1e-9;
 
-impl Sites {
-    /// Those of a tool, its unit of length in the part's.
-    pub(crate) fn new(card: &Card, length: f64) -> Sites {
-        let cuts = |surface: usize| card.surfaces[surface].cutting;
+impl ContactSites {
+    /// Collects the sites of a tool. `length` is the factor from the tool's unit of length to the part's.
+    pub(crate) fn new(info: &ToolInfo, length: f64) -> ContactSites {
+        let cuts = |surface: usize| info.surfaces[surface].cutting;
         let mut sites = Vec::new();
-        // The half plane beyond the axis is the mirror image.
-        let mut before = card.outline.first().map(|first| {
+        // The profile continues beyond the axis as its mirror image.
+        let mut before = info.outline.first().map(|first| {
             let [d, z] = heading(first.from, first.to, first.circle, 0);
             ([d, -z], cuts(first.surface))
         });
-        for piece in card.outline.iter() {
+        for piece in info.outline.iter() {
             let [start, end] = [0, 1].map(|end| heading(piece.from, piece.to, piece.circle, end));
             let cutting = cuts(piece.surface);
             if let Some((last, cut)) = before
@@ -57,14 +58,14 @@ impl Sites {
                 let turn = cross(last, start).atan2(dot(last, start));
                 if turn > SAME {
                     let from = normal(last);
-                    // The corner's material is half a turn less `turn` wide, about the opposite of the
-                    // normals' middle.
+                    // The corner's material spans an angle of π less `turn` about the opposite of the mean
+                    // normal.
                     let into = |side: f64| {
                         let (sine, cosine) =
                             (from + 0.5 * turn + side * 0.25 * (PI - turn)).sin_cos();
                         [-cosine, -sine]
                     };
-                    sites.push(Site {
+                    sites.push(ContactSite {
                         centre: piece.from.map(|part| part * length),
                         radius: 0.0,
                         angles: [from, from + turn],
@@ -77,7 +78,7 @@ impl Sites {
             {
                 let from = normal(start);
                 let turn = (normal(end) - from).rem_euclid(2.0 * PI);
-                sites.push(Site {
+                sites.push(ContactSite {
                     centre: centre.map(|part| part * length),
                     radius: radius * length,
                     angles: [from, from + turn],
@@ -86,17 +87,17 @@ impl Sites {
             }
             before = Some((end, cutting));
         }
-        Sites { sites, size: card.size() * length }
+        ContactSites { sites, size: info.size() * length }
     }
 
-    /// How far from the tip any of them is.
+    /// Returns the largest distance between the tip and a site, in the part's unit.
     pub(crate) fn reach(&self) -> f64 {
-        let far = |site: &Site| site.centre[0].hypot(site.centre[1]) + site.radius;
+        let far = |site: &ContactSite| site.centre[0].hypot(site.centre[1]) + site.radius;
         self.sites.iter().map(far).fold(0.0, f64::max)
     }
 
-    /// The contacts of a face with a tool whose axis has a direction: the face has a place and an outward
-    /// normal, and the tool's own is the opposite there.
+    /// Returns the contacts between a tool with the given axis and a face. The face has a point `place` and an
+    /// outward normal; the tool's outward normal at the contact is the opposite.
     pub(crate) fn contacts(
         &self,
         place: Point3<f64>,
@@ -109,13 +110,13 @@ impl Sites {
         let angle = up.atan2(out);
         self.sites.iter().filter_map(move |site| {
             let [from, to] = site.angles;
-            // Both are angles of the half plane, or a little beyond its ends.
+            // Both are angles of the half plane, or slightly beyond its ends.
             let off = (angle - from + SAME).rem_euclid(2.0 * PI) - SAME;
             if off > to - from + SAME {
                 return None;
             }
             let touched = [site.centre[0] + site.radius * out, site.centre[1] + site.radius * up];
-            // Which way is out is not known where a face is square to the axis.
+            // A face perpendicular to the axis leaves the radial direction undefined.
             if out < SAME && touched[0] > SAME * self.size {
                 return None;
             }
@@ -129,7 +130,7 @@ impl Sites {
     }
 }
 
-/// The direction of travel at the beginning or end of a piece.
+/// Returns the unit tangent at the beginning (`end` 0) or the end of a profile segment.
 fn heading(from: [f64; 2], to: [f64; 2], circle: Option<Circle>, end: usize) -> [f64; 2] {
     let Some(Circle { centre, convex, .. }) = circle else {
         return unit([to[0] - from[0], to[1] - from[1]]);
@@ -139,7 +140,7 @@ fn heading(from: [f64; 2], to: [f64; 2], circle: Option<Circle>, end: usize) -> 
     if convex { [-z, d] } else { [z, -d] }
 }
 
-/// The angle of the outward normal of what goes in a direction, its material on the left.
+/// Returns the angle of the outward normal for a direction of travel with the material on its left.
 fn normal([d, z]: [f64; 2]) -> f64 {
     (-d).atan2(z)
 }

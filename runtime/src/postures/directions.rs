@@ -1,23 +1,23 @@
-//! Directions, evenly spread over the sphere.
+//! Directions spread evenly over the sphere.
 
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Directions that a part is approached from.
+/// A list of directions from which a part is approached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
     list: Vec<[f64; 3]>,
-    /// Of each all of them, the nearest first.
+    /// Per direction, the indices of all directions by ascending angle from it.
     beside: Vec<Vec<u16>>,
 }
 
 impl Directions {
-    /// The most that a hemisphere may have.
+    /// Largest number of directions per hemisphere.
     pub const MOST: usize = 2_000;
 
-    /// Directions of which every hemisphere has about so many, at most [`Directions::MOST`]: a spiral of
-    /// twice as many, each with as large a part of the sphere (Fibonacci's lattice; González, *Measurement
-    /// of areas on a sphere using Fibonacci and latitude–longitude lattices*, 2010).
+    /// Creates directions with about `hemisphere` of them in every hemisphere, at most [`Directions::MOST`]: a
+    /// spiral of twice as many, each of which stands for an equal area of the sphere (Fibonacci's lattice;
+    /// González, *Measurement of areas on a sphere using Fibonacci and latitude–longitude lattices*, 2010).
     pub fn spread(hemisphere: usize) -> Directions {
         let count = 2 * hemisphere.min(Directions::MOST);
         let golden = PI * (3.0 - 5f64.sqrt());
@@ -31,37 +31,37 @@ impl Directions {
         Directions::from(list.collect::<Vec<_>>())
     }
 
-    /// The unit vectors.
+    /// Returns the unit vectors.
     pub fn list(&self) -> &[[f64; 3]] {
         &self.list
     }
 
-    /// How many words of bits a set of them takes.
+    /// Returns the number of 64-bit words of a set of directions.
     pub(crate) fn words(&self) -> usize {
         self.list.len().div_ceil(64)
     }
 
-    /// All directions, the nearest to one of them first, that is itself.
+    /// Returns the indices of all directions by ascending angle from one of them, which is the first.
     pub(crate) fn beside(&self, direction: usize) -> impl Iterator<Item = usize> {
         self.beside[direction].iter().map(|other| usize::from(*other))
     }
 
-    /// How far a direction of a set is from the nearest that is not, as the cosine of that angle; -1 if all
-    /// are.
+    /// Returns the cosine of the angle between a direction of a set and the nearest direction outside the set;
+    /// -1 if the set has all directions.
     pub(crate) fn margin(&self, set: &[u64], direction: usize) -> f64 {
         let way = Vector3::from(self.list[direction]);
         let out = self.beside(direction).find(|other| !has(set, *other));
         out.map_or(-1.0, |other| way.dot(&Vector3::from(self.list[other])))
     }
 
-    /// The solid angle of a set, in steradians, each direction having as large a part of the sphere.
+    /// Returns the solid angle of a set, in steradians. Each direction stands for an equal area of the sphere.
     pub fn solid_angle(&self, set: &[u64]) -> f64 {
         let count: u32 = set.iter().map(|word| word.count_ones()).sum();
         4.0 * PI * f64::from(count) / self.list.len().max(1) as f64
     }
 
-    /// The cone of a set: the direction of it that is farthest from any that is not, and half the cone's
-    /// angle, in radians: how far that is. `None` of the empty set.
+    /// Returns the cone of a set: its direction with the largest angle to the nearest direction outside the
+    /// set, and that angle in radians, which is half the cone's angle. Returns `None` for the empty set.
     pub fn cone(&self, set: &[u64]) -> Option<([f64; 3], f64)> {
         let members = (0..self.list.len()).filter(|direction| has(set, *direction));
         let margins = members.map(|direction| (self.margin(set, direction), direction));
@@ -71,7 +71,7 @@ impl Directions {
 }
 
 impl From<Vec<[f64; 3]>> for Directions {
-    /// Of unit vectors, no more than twice [`Directions::MOST`].
+    /// Takes unit vectors, at most twice [`Directions::MOST`].
     fn from(list: Vec<[f64; 3]>) -> Directions {
         let ways: Vec<Vector3<f64>> = list.iter().map(|way| Vector3::from(*way)).collect();
         let beside = ways.iter().map(|way| {
@@ -85,7 +85,7 @@ impl From<Vec<[f64; 3]>> for Directions {
     }
 }
 
-/// Whether a set of directions has one.
+/// Returns whether a set of directions contains a direction.
 pub(crate) fn has(set: &[u64], direction: usize) -> bool {
     set[direction / 64] >> (direction % 64) & 1 == 1
 }

@@ -1,43 +1,46 @@
-//! How far a tool has to stick out of its holder.
+//! Stick-out that a tool needs so that its holder clears the part.
 
 use crate::bvh::WIDTH;
-use crate::certify::Facets;
-use crate::tool::{Card, Piece};
+use crate::certify::TriangleBvh;
+use crate::tool::{ProfileSegment, ToolInfo};
 use nalgebra::{Point3, Vector3};
 
-/// A holder seen from below: what it covers, from its nose upward. Lengths are in the part's unit.
+/// The underside of a holder as a step function of the radius, upward from its nose. Lengths are in the part's
+/// unit.
 ///
-/// The holder is what a tool's file mounts above the first: surfaces called `nut.…` where the outline begins
-/// with one called `cutter.…`.
+/// The holder consists of the components that the file of a tool mounts above the first: surfaces called
+/// `nut.…` where the outline begins with one called `cutter.…`.
 #[derive(Clone, Debug)]
 pub(crate) struct Holder {
-    /// Within this radius nothing of it is lower, above its nose, than this; both grow.
+    /// Pairs of radius and height, both ascending: within the radius no point of the holder is lower than the
+    /// height above its nose.
     steps: Vec<[f64; 2]>,
-    /// The least stick-out: the highest of what cuts.
+    /// The least stick-out: the height of the highest cutting point.
     cutting: f64,
-    /// How far the tool sticks out as it is: the height of the nose.
+    /// Stick-out of the tool as it is: the height of the nose.
     pub(crate) own: f64,
-    /// To what triangles are cut up before all of one is taken to be as high as its highest place.
+    /// Size down to which triangles are subdivided. A smaller one counts as high as its highest point.
     fine: f64,
 }
 
-/// A slope is as many steps.
+/// Steps per straight segment of the profile.
 const STEPS: usize = 16;
 
-/// Triangles are cut up to this part of the holder's radius.
+/// Size down to which triangles are subdivided, as a fraction of the holder's radius.
 const FINE: f64 = 1.0 / 64.0;
 
 impl Holder {
-    /// That of a tool, its unit of length in the part's; `None` if it has none.
-    pub(crate) fn new(card: &Card, length: f64) -> Option<Holder> {
-        let mount = |piece: &Piece| {
-            card.surfaces[piece.surface].name.split_once('.').map(|(mount, _)| mount)
+    /// Creates the holder of a tool, or returns `None` if it has none. `length` is the factor from the tool's
+    /// unit of length to the part's.
+    pub(crate) fn new(info: &ToolInfo, length: f64) -> Option<Holder> {
+        let mount = |piece: &ProfileSegment| {
+            info.surfaces[piece.surface].name.split_once('.').map(|(mount, _)| mount)
         };
-        let first = mount(card.outline.first()?)?;
-        let pieces = card.outline.iter().filter(|piece| mount(piece) != Some(first));
+        let first = mount(info.outline.first()?)?;
+        let pieces = info.outline.iter().filter(|piece| mount(piece) != Some(first));
         let mut corners: Vec<[f64; 2]> = Vec::new();
         for piece in pieces {
-            // An arc is one step, as far out as it comes, and as low.
+            // An arc is a single step with its largest radius and its lowest height.
             let [from, to] = [piece.from, piece.to];
             let count = if piece.circle.is_some() { 1 } else { STEPS };
             for k in 0..count {
@@ -47,7 +50,7 @@ impl Holder {
                 let (low, high) = (at(k, 1).min(at(k + 1, 1)), at(k, 0).max(at(k + 1, 0)));
                 let bulge = piece.circle.filter(|arc| arc.convex);
                 let radius = bulge.map_or(high, |arc| high.max(arc.centre[0] + arc.radius));
-                // The material on its left, it goes outward below its centre.
+                // With the material on its left, an arc runs outward below its centre.
                 let below = bulge.filter(|arc| from[0] <= arc.centre[0] && arc.centre[0] <= to[0]);
                 let low = below.map_or(low, |arc| low.min(arc.centre[1] - arc.radius));
                 corners.push([radius * length, low * length]);
@@ -55,7 +58,7 @@ impl Holder {
         }
         let nose = corners.iter().map(|corner| corner[1]).reduce(f64::min)?;
         corners.sort_by(|a, b| b[0].total_cmp(&a[0]).then(a[1].total_cmp(&b[1])));
-        // From the widest inward, what is lower than all that is wider.
+        // From the widest inward, keep each corner that is lower than all wider ones.
         let mut steps: Vec<[f64; 2]> = Vec::new();
         for [radius, z] in corners {
             let height = z - nose;
@@ -64,38 +67,40 @@ impl Holder {
             }
         }
         steps.reverse();
-        let cuts = card.outline.iter().filter(|piece| card.surfaces[piece.surface].cutting);
+        let cuts = info.outline.iter().filter(|piece| info.surfaces[piece.surface].cutting);
         let cutting = cuts.flat_map(|piece| [piece.from[1], piece.to[1]]).fold(0.0, f64::max);
         let widest = steps.last().map_or(0.0, |[radius, _]| *radius);
         Some(Holder { steps, cutting: cutting * length, own: nose, fine: FINE * widest })
     }
 
-    /// How far above the nose it is at least, so far from the axis; `None` where it does not reach.
+    /// Returns the least height of the holder above its nose at a distance `d` from the axis; `None` beyond its
+    /// radius.
     fn height(&self, d: f64) -> Option<f64> {
         self.steps.iter().find(|[radius, _]| d <= *radius).map(|[_, height]| *height)
     }
 
-    /// How far a tool has to stick out for the holder to touch nothing, where it stands; `None` if that is
-    /// not less than what is enough. The holder is taken to go on upward as wide as it ever was, so that it
-    /// is no less than what is needed, by a step's height and the size of a cut triangle at most.
+    /// Returns the stick-out at which the holder touches nothing for a tip and an axis; `None` if that is not
+    /// less than `enough`. The holder is taken to continue upward at the largest radius so far. The result is
+    /// therefore no less than what is needed, and exceeds it by at most the height of a step and the size of a
+    /// subdivided triangle.
     pub(crate) fn least(
         &self,
-        facets: &Facets,
+        bvh: &TriangleBvh,
         (tip, axis): (&Point3<f64>, &Vector3<f64>),
         enough: Option<f64>,
     ) -> Option<f64> {
         let stop = enough.unwrap_or(f64::INFINITY);
         let mut least = self.cutting;
-        let frame = &facets.frame;
+        let frame = &bvh.frame;
         let middle = Point3::from(frame.origin) - tip;
         let mut stack = vec![(0, 0)];
         while least < stop
             && let Some((level, index)) = stack.pop()
         {
-            for lane in 0..facets.children(level, index) {
+            for lane in 0..bvh.children(level, index) {
                 let child = index * WIDTH + lane;
-                let Some(boxes) = facets.levels.get(level).map(|boxes| &boxes[index]) else {
-                    let corners = facets.corners[child].map(|p| Point3::from(p) - tip);
+                let Some(boxes) = bvh.levels.get(level).map(|boxes| &boxes[index]) else {
+                    let corners = bvh.corners[child].map(|p| Point3::from(p) - tip);
                     least = least.max(self.triangle(corners, axis, least));
                     continue;
                 };
@@ -115,7 +120,8 @@ impl Holder {
         (least < stop).then_some(least)
     }
 
-    /// What a triangle, its corners from the tip, asks for at least, if that is more.
+    /// Returns the stick-out that a triangle needs, or `least` if that is more. Its corners are relative to the
+    /// tip.
     fn triangle(&self, corners: [Vector3<f64>; 3], axis: &Vector3<f64>, least: f64) -> f64 {
         let mut most = least;
         let mut pieces = vec![corners];
@@ -134,7 +140,7 @@ impl Holder {
                 most = needed;
                 continue;
             }
-            // The longest side is halved.
+            // Halve the longest side.
             let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
             let [a, b, c] = match () {
                 () if sides[0] >= sides[1] && sides[0] >= sides[2] => [a, b, c],
@@ -148,7 +154,7 @@ impl Holder {
     }
 }
 
-/// Boxes are known in `f32`.
+/// Factor that covers the rounding of boxes, which are stored in `f32`.
 const WIDER: f64 = 1.0 + 1e-6;
 
 #[cfg(test)]

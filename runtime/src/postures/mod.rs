@@ -1,22 +1,25 @@
-//! Postures: where tools stand well at a part, triangle by triangle (Ho 1999, chapter 6).
+//! Postures per triangle of a part: tool poses with a good contact and proved depth (Ho 1999, chapter 6).
 
+mod colormap;
 mod contact;
 mod directions;
 mod holder;
-mod judge;
 mod map;
 pub mod path;
-mod ramp;
+mod placement;
+mod record;
 #[cfg(feature = "haptic")]
 mod recorder;
-mod row;
 pub mod sweep;
-mod touching;
+mod validator;
 
+pub use colormap::colormap;
 pub use directions::Directions;
-pub use judge::{Judge, JudgeError, Rules, RulesError};
-pub use map::{Coverage, Difference, Identity, MapError, PartStamp, PostureMap, Rows, ToolStamp};
-pub use ramp::colour;
+pub use map::{
+    Coverage, Difference, MapError, MapIdentity, MapRows, PartFingerprint, PostureMap,
+    ToolFingerprint,
+};
+pub use record::{Accessibility, MapRow, PostureRecord};
 #[cfg(feature = "haptic")]
-pub use recorder::{Recorded, Recorder, RecorderError};
-pub use row::{Access, Record, Row};
+pub use recorder::{Recorder, RecorderError, RecorderStats};
+pub use validator::{Rules, RulesError, Validator, ValidatorError};

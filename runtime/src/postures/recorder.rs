@@ -1,9 +1,9 @@
-//! What a hand finds in the haptic loop, taken in while it is looking.
+//! Recording of postures found by hand in the haptic loop, while it runs.
 
-use super::{Judge, JudgeError, MapError, PostureMap, Record, ToolStamp};
-use crate::certify::Facets;
+use super::{MapError, PostureMap, PostureRecord, ToolFingerprint, Validator, ValidatorError};
+use crate::certify::TriangleBvh;
 use crate::escape::Escaped;
-use crate::haptic::{Samples, State};
+use crate::haptic::{SessionState, StateStream};
 use crate::part::Part;
 use crate::pose::Pose;
 use crate::probe::Probe;
@@ -11,95 +11,98 @@ use crate::tool::Tool;
 use crate::unit::Unit;
 use std::time::{Duration, Instant};
 
-/// Takes the poses of a running loop, and records those that are nice and proved acceptable.
+/// Takes the states of a running loop, and records those poses that are nice and proved acceptable.
 ///
-/// Between it and the loop is the ring that [`watched`](crate::haptic::watched) makes, and nothing else: the
-/// loop never waits for it. What comes faster than it judges falls out of the ring and is counted. Run it in
-/// a thread of its own, until the loop's [`Watch`](crate::haptic::Watch) is dropped.
+/// Its only link to the loop is the ring that [`state_channel`](crate::haptic::state_channel) makes; the loop
+/// never waits for it. States that come faster than they are validated fall out of the ring and are counted.
+/// Run it in a thread of its own, until the loop's [`StatePublisher`](crate::haptic::StatePublisher) is
+/// dropped.
 pub struct Recorder<'a> {
     map: &'a PostureMap,
     tool: u16,
     probe: Probe<'a>,
-    judge: Judge<'a>,
-    /// How nice a posture has to be so that it may better a triangle's.
+    judge: Validator<'a>,
+    /// Niceness per triangle that a posture needs to be offered to the map.
     wanted: Vec<f64>,
-    batch: Vec<(u32, Record)>,
-    /// When the first of the batch came.
+    batch: Vec<(u32, PostureRecord)>,
+    /// Arrival time of the first posture of the batch.
     since: Instant,
-    /// The pose before, and the next cycle.
+    /// The pose of the last state.
     before: Option<Pose>,
+    /// The cycle that is expected next.
     next: Option<u64>,
-    seen: Recorded,
+    seen: RecorderStats,
 }
 
-/// What a recorder saw.
+/// Counters of a recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Recorded {
-    /// States that it took.
+pub struct RecorderStats {
+    /// States that were taken.
     pub states: u64,
-    /// Cycles between them that it did not see: the ring was full, or they had no state.
+    /// Cycles between those states that were missed: the ring was full, or they had no state.
     pub skipped: u64,
-    /// Poses that could have bettered a triangle, and were judged.
+    /// Poses that could have improved a triangle's row, and were validated.
     pub judged: u64,
-    /// Those of them that were acceptable.
+    /// Validated poses that were acceptable.
     pub accepted: u64,
     /// Transactions.
     pub batches: u64,
 }
 
-/// Why there is no recorder.
+/// A reason for which a recorder cannot be created.
 #[derive(Debug, thiserror::Error)]
 pub enum RecorderError {
-    /// The tool is none of the map's.
+    /// The tool is not one of the map's.
     #[error(
         "{tool} is no tool of the map, which has {known}: open the map with this version of the tool among its own"
     )]
     Tool {
-        /// Its name.
+        /// The tool's name.
         tool: String,
-        /// Those that the map has.
+        /// The names of the map's tools.
         known: String,
     },
-    /// The part that is felt, or the triangles, are in another unit than the map.
+    /// The point cloud or the triangles of the part are in another unit than the map.
     #[error("the map is in {map}, and the part beside it in {part}: make both from the same mesh")]
     Unit {
-        /// The map's.
+        /// The map's unit.
         map: Unit,
-        /// The part's.
+        /// The part's unit.
         part: Unit,
     },
-    /// The tool cannot be judged.
+    /// The tool's postures cannot be validated.
     #[error(transparent)]
-    Judge(#[from] JudgeError),
+    Validator(#[from] ValidatorError),
     /// The map cannot be read.
     #[error(transparent)]
     Map(#[from] MapError),
 }
 
-/// A batch goes to the disk when it has so many, or is so old.
+/// Number of records at which a batch is written to disk.
 const MANY: usize = 4096;
+/// Age at which a batch is written to disk.
 const OLD: Duration = Duration::from_millis(500);
-/// How long to wait for more.
+/// Time between two looks at the ring.
 const PAUSE: Duration = Duration::from_millis(2);
 
 impl<'a> Recorder<'a> {
-    /// A recorder into a map, of a tool at the map's part, both as points and as triangles.
+    /// Creates a recorder into a map, for a tool at the map's part, given both as points and as triangles.
     ///
     /// # Errors
-    /// If the tool is none of the map's or cannot be judged; if the part is in another unit; if the map cannot
-    /// be read.
+    /// If the tool is not one of the map's or cannot be validated; if the part is in another unit; if the map
+    /// cannot be read.
     pub fn new(
         map: &'a PostureMap,
-        (part, facets): (&'a Part, &'a Facets),
+        (part, bvh): (&'a Part, &'a TriangleBvh),
         tool: &'a dyn Tool,
     ) -> Result<Recorder<'a>, RecorderError> {
-        let (card, identity) = (tool.card(), map.identity());
-        let place = identity.tool(card).ok_or_else(|| {
-            let name = |tool: &ToolStamp| format!("`{}`", Escaped(&tool.name));
+        let (info, identity) = (tool.info(), map.identity());
+        let place = identity.tool(info).ok_or_else(|| {
+            let name = |tool: &ToolFingerprint| format!("`{}`", Escaped(&tool.name));
             let known: Vec<String> = identity.tools.iter().map(name).collect();
-            RecorderError::Tool { tool: card.name.to_string(), known: known.join(", ") }
+            RecorderError::Tool { tool: info.name.to_string(), known: known.join(", ") }
         })?;
-        for unit in [part.unit(), facets.unit()] {
+        for unit in [part.unit(), bvh.unit()] {
             if unit != identity.part.unit {
                 return Err(RecorderError::Unit { map: identity.part.unit, part: unit });
             }
@@ -108,13 +111,13 @@ impl<'a> Recorder<'a> {
             map,
             tool: place,
             probe: Probe::new(part, tool),
-            judge: Judge::new(facets, tool, &identity.rules)?,
+            judge: Validator::new(bvh, tool, &identity.rules)?,
             wanted: vec![f64::NEG_INFINITY; identity.part.triangles as usize],
             batch: Vec::new(),
             since: Instant::now(),
             before: None,
             next: None,
-            seen: Recorded::default(),
+            seen: RecorderStats::default(),
         };
         for entry in map.rows()? {
             let (triangle, row) = entry?;
@@ -123,17 +126,17 @@ impl<'a> Recorder<'a> {
         Ok(recorder)
     }
 
-    /// Takes all states until the loop is over, and says what it saw so far. All that it took in is on the
-    /// disk then.
+    /// Takes all states until the loop is over, and returns the counters. By then all accepted postures are on
+    /// disk.
     ///
     /// # Errors
-    /// If the map cannot be written or read. The loop goes on; what was recorded before is safe.
-    pub fn follow(&mut self, samples: &mut Samples) -> Result<Recorded, MapError> {
+    /// If the map cannot be written or read. The loop goes on, and earlier records are safe.
+    pub fn follow(&mut self, samples: &mut StateStream) -> Result<RecorderStats, MapError> {
         loop {
-            // Asked first: what comes before the end is taken.
-            let over = samples.are_all();
+            // Query before reading, so that states published before the end are still taken.
+            let over = samples.is_closed();
             for state in samples.by_ref() {
-                self.take(&state)?;
+                self.process(&state)?;
             }
             if over {
                 self.write()?;
@@ -150,7 +153,7 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// If the map cannot be written or read.
-    pub fn take(&mut self, state: &State) -> Result<(), MapError> {
+    pub fn process(&mut self, state: &SessionState) -> Result<(), MapError> {
         self.seen.states += 1;
         self.seen.skipped += self.next.map_or(0, |next| state.cycle.saturating_sub(next));
         self.next = Some(state.cycle + 1);
@@ -158,7 +161,7 @@ impl<'a> Recorder<'a> {
         if same || state.wrench.colliding == 0 {
             return Ok(());
         }
-        // As it will be told: by tip and axis.
+        // Use the pose as it would be recorded: by tip and axis, without spin.
         let Ok(pose) = Pose::from_axis(state.tool.tip(), state.tool.axis()) else { return Ok(()) };
         let contacts = self.probe.contacts(&pose);
         let niceness =
@@ -186,12 +189,12 @@ impl<'a> Recorder<'a> {
         if self.batch.len() >= MANY || self.since.elapsed() > OLD { self.write() } else { Ok(()) }
     }
 
-    /// What it saw so far.
-    pub fn seen(&self) -> Recorded {
+    /// Returns the counters so far.
+    pub fn stats(&self) -> RecorderStats {
         self.seen
     }
 
-    /// Brings the batch to the disk.
+    /// Writes the batch to disk.
     ///
     /// # Errors
     /// If the map cannot be written or read.
@@ -199,7 +202,7 @@ impl<'a> Recorder<'a> {
         if self.batch.is_empty() {
             return Ok(());
         }
-        self.map.offer(&self.batch)?;
+        self.map.merge(&self.batch)?;
         self.seen.batches += 1;
         let mut triangles: Vec<u32> = self.batch.drain(..).map(|(triangle, _)| triangle).collect();
         triangles.sort_unstable();
@@ -212,8 +215,9 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
-    /// What a triangle has, once it has as many as are kept, is to be bettered.
-    fn note(&mut self, triangle: u32, best: &[Record]) {
+    /// Updates the niceness that a triangle requires: that of its last posture, once it has as many as are
+    /// kept.
+    fn note(&mut self, triangle: u32, best: &[PostureRecord]) {
         let last = best.get(usize::from(self.map.identity().keep.get()) - 1);
         self.wanted[triangle as usize] = last.map_or(f64::NEG_INFINITY, |record| record.niceness);
     }

@@ -1,23 +1,23 @@
-//! Contacts one by one, and what can be said of them together (Ho 1999, section 4.4).
+//! Lists of contacts, and summary statistics over them (Ho 1999, section 4.4).
 
 use super::Weights;
 use super::state::QueryState;
 use crate::pose::Pose;
-use crate::tool::Card;
+use crate::tool::ToolInfo;
 use nalgebra::{Point3, Vector3};
 
 /// A point of the part inside the tool. Vectors are in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Where it is, in the part's unit.
+    /// The position, in the part's unit.
     pub point: Point3<f64>,
-    /// The part's outward normal there.
+    /// The part's outward normal at the point.
     pub normal: Vector3<f64>,
-    /// The part's triangle that it lies on.
+    /// Id of the part's triangle on which the point lies.
     pub triangle: u32,
-    /// The tool's region, by its place in the card's list.
+    /// Index of the tool's region in the tool's list.
     pub region: usize,
-    /// The tool's surface that the region belongs to, by its place in the card's list.
+    /// Index of the region's surface in the tool's list.
     pub surface: usize,
     /// Penetration depth, at least 0, in the part's unit.
     pub depth: f64,
@@ -29,29 +29,34 @@ pub struct Contact {
     pub gradient: Vector3<f64>,
     /// Niceness, at least 0.
     pub niceness: f64,
-    /// For how much the point counts.
+    /// The point's weight.
     pub weight: f64,
 }
 
-/// Lists what the probe has just felt.
-pub(super) fn list(state: &QueryState<'_>, card: &Card, pose: &Pose, contacts: &mut Vec<Contact>) {
-    let (felt, tree) = (&state.felt, state.tree);
+/// Lists the points inside, from the last evaluation.
+pub(super) fn list(
+    state: &QueryState<'_>,
+    info: &ToolInfo,
+    pose: &Pose,
+    contacts: &mut Vec<Contact>,
+) {
+    let (evaluations, tree) = (&state.evaluations, state.tree);
     let rotation = pose.rotation();
-    for at in felt.places() {
+    for at in evaluations.inside_indices() {
         let index = state.candidates.indices()[at] as usize;
         let vector = |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
-        let region = felt.region[at] as usize;
+        let region = evaluations.region[at] as usize;
         contacts.push(Contact {
             point: pose.tip() + tree.relative_to_tip(&state.view, index),
             normal: tree.normal(index).into(),
             triangle: tree.triangle(index),
             region,
-            surface: card.regions[region].surface,
-            depth: felt.depth[at] * state.length,
-            magnitude: felt.magnitude[at],
-            direction: rotation * vector(&felt.direction),
-            gradient: rotation * vector(&felt.gradient),
-            niceness: felt.niceness[at],
+            surface: info.regions[region].surface,
+            depth: evaluations.depth[at] * state.length,
+            magnitude: evaluations.magnitude[at],
+            direction: rotation * vector(&evaluations.direction),
+            gradient: rotation * vector(&evaluations.gradient),
+            niceness: evaluations.niceness[at],
             weight: match state.weights {
                 Weights::Area => tree.weight(index),
                 Weights::Unit => 1.0,
@@ -60,20 +65,20 @@ pub(super) fn list(state: &QueryState<'_>, card: &Card, pose: &Pose, contacts: &
     }
 }
 
-/// Sum, mean, least and greatest of a quantity.
+/// Sum, mean, minimum and maximum of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// The sum, unweighted.
     pub sum: f64,
     /// The mean.
     pub mean: f64,
-    /// The least.
+    /// The minimum.
     pub min: f64,
-    /// The greatest.
+    /// The maximum.
     pub max: f64,
 }
 
-/// What some contacts have of a quantity together; `None` without contacts.
+/// Returns summary statistics of a quantity over some contacts; `None` without contacts.
 ///
 /// ```
 /// # use touchoff::{Contact, summary};

@@ -1,9 +1,9 @@
-//! How contacts push.
+//! The force laws of contacts.
 
-use crate::words::words;
+use crate::keywords::words;
 
-/// How a contact's magnitude becomes a force on the tool. `m` is the magnitude, `w` the weight,
-/// `n` the part's outward normal, `u` the direction to the tool's nearest surface.
+/// The force on the tool as a function of a contact's magnitude. `m` is the magnitude, `w` the weight, `n` the part's
+/// outward normal, `u` the direction to the tool's nearest surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Law {
     /// `w m (n − u)` (Ho 1999, eq. 5.1, without the factor ½). Not conservative.
@@ -11,17 +11,17 @@ pub enum Law {
     Thesis,
     /// `w m ∇m`, the gradient of the energy `½ Σ w m²`: conservative.
     Gradient,
-    /// As the thesis, without points whose normal faces away (`u · n > 0`), for thin sheets.
+    /// The law `Thesis` without points whose normal faces away (`u · n > 0`), for thin sheets.
     Facing,
 }
 
-/// For how much a point counts.
+/// The weight of a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Weights {
-    /// For its share of the surface: forces converge as the cloud gets denser.
+    /// The point's share of the surface: forces converge as the cloud gets denser.
     #[default]
     Area,
-    /// For 1, as in the thesis: forces grow with the density.
+    /// 1 for every point, as in the thesis: forces grow with the density.
     Unit,
 }
 

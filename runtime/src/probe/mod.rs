@@ -1,4 +1,4 @@
-//! The questions to a cloud's points, pose by pose.
+//! Queries on the points of a cloud, pose by pose.
 //!
 //! ```text
 //! pose ──set_pose, traverse──▶ leaves near the tool ──filter──▶ candidates, in the tool's frame
@@ -7,48 +7,47 @@
 //! ```
 
 mod contacts;
-mod graded;
 mod law;
+mod lod;
 mod posture;
 mod state;
 mod stiffness;
 mod wrench;
 
 pub use contacts::{Contact, Summary, summary};
-pub use graded::{BudgetError, Graded, GradedWrench};
 pub use law::{Law, Weights};
-pub use posture::{Deepest, Posture};
+pub use lod::{BudgetError, LodProbe, LodWrench};
+pub use posture::{DeepestPoint, Posture};
 pub use stiffness::Stiffness;
-pub use wrench::{Rounding, Wrench};
+pub use wrench::{Wrench, WrenchRounding};
 
 use crate::bvh::WIDTH;
+use crate::point_bvh::PointBvh;
 use crate::pose::Pose;
-use crate::tool::{Ask, Senses, Tool, Wanted, reserve};
-use crate::tree::Tree;
+use crate::tool::{BatchEvaluator, OutputSelection, Outputs, Tool, reserve};
 use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
 use state::QueryState;
 
-/// A tool beside a part, ready to be asked at one pose after another. A solid without an axis wants
-/// [full](Pose::is_full) poses: one from an axis leaves open how it is turned.
+/// A tool paired with a part, ready for queries at one pose after another. A solid without an axis needs poses
+/// [with a spin](Pose::has_spin): a pose made from an axis leaves its rotation about the axis open.
 ///
-/// Points are ruled out in `f32`, with a margin for what that rounds; those that are left are evaluated in `f64`,
-/// and sums are taken in `f64`.
+/// Points are ruled out in `f32`, with a margin for its rounding. The remaining points are evaluated in `f64`, and sums
+/// are taken in `f64`.
 ///
-/// Memory is kept between questions: one allocates only where more points are near the tool than in
-/// any before, and never after [`Probe::reserved`]. The answers have the same bits on every machine
-/// and at every [`Level`].
+/// Memory is kept between queries. A query allocates only where more points are near the tool than in any query before,
+/// and never after [`Probe::with_reserved_memory`]. The results have the same bits on every machine and at every
+/// [`Level`].
 ///
-/// What a question does not need is not computed. Of a tool whose type is known, as in
-/// `Probe::new(&part, &Ball)`, a program has code only for the questions that it asks; of a
-/// `&dyn Tool` for all of them.
+/// Only the outputs that a query needs are computed. For a tool whose type is known, as in `Probe::new(&part, &Ball)`,
+/// a program has code only for the queries that it uses; for a `&dyn Tool` it has code for all of them.
 pub struct Probe<'a, T: ?Sized = dyn Tool + 'a> {
     tool: &'a T,
     state: QueryState<'a>,
 }
 
-/// What is asked for, question by question.
+/// Output selections, one per kind of query.
 struct Inside;
 struct Depths;
 struct Postures;
@@ -56,136 +55,145 @@ struct AlongDirections;
 struct AlongGradients;
 struct Everything;
 
-impl Wanted for Inside {
-    const ASK: Ask = Ask::INSIDE;
+impl OutputSelection for Inside {
+    const OUTPUTS: Outputs = Outputs::INSIDE;
 }
-impl Wanted for Depths {
-    const ASK: Ask = Ask { depth: true, ..Ask::INSIDE };
+impl OutputSelection for Depths {
+    const OUTPUTS: Outputs = Outputs { depth: true, ..Outputs::INSIDE };
 }
-impl Wanted for Postures {
-    const ASK: Ask = Ask { depth: true, niceness: true, region: true, ..Ask::INSIDE };
+impl OutputSelection for Postures {
+    const OUTPUTS: Outputs =
+        Outputs { depth: true, niceness: true, region: true, ..Outputs::INSIDE };
 }
-impl Wanted for AlongDirections {
-    const ASK: Ask = Ask::DIRECTION;
+impl OutputSelection for AlongDirections {
+    const OUTPUTS: Outputs = Outputs::DIRECTION;
 }
-impl Wanted for AlongGradients {
-    const ASK: Ask = Ask::GRADIENT;
+impl OutputSelection for AlongGradients {
+    const OUTPUTS: Outputs = Outputs::GRADIENT;
 }
-impl Wanted for Everything {
-    const ASK: Ask = Ask::EVERYTHING;
+impl OutputSelection for Everything {
+    const OUTPUTS: Outputs = Outputs::EVERYTHING;
 }
 
-impl<'a, T: Senses + ?Sized> Probe<'a, T> {
-    /// Of a part's points in their tree, whose lengths are in that unit.
-    pub(crate) fn of(tree: &'a Tree, unit: Unit, tool: &'a T) -> Probe<'a, T> {
-        Probe { tool, state: QueryState::new(tree, unit, tool.card()) }
+impl<'a, T: BatchEvaluator + ?Sized> Probe<'a, T> {
+    /// Makes a probe of a part's points in their tree, whose lengths are in `unit`.
+    pub(crate) fn of(tree: &'a PointBvh, unit: Unit, tool: &'a T) -> Probe<'a, T> {
+        Probe { tool, state: QueryState::new(tree, unit, tool.info()) }
     }
 
-    /// With another force law.
+    /// Sets the force law.
     #[must_use]
-    pub fn law(mut self, law: Law) -> Probe<'a, T> {
+    pub fn with_law(mut self, law: Law) -> Probe<'a, T> {
         self.state.law = law;
         self
     }
 
-    /// With other weights.
+    /// Sets the weights of points.
     #[must_use]
-    pub fn weights(mut self, weights: Weights) -> Probe<'a, T> {
+    pub fn with_weights(mut self, weights: Weights) -> Probe<'a, T> {
         self.state.weights = weights;
         self
     }
 
-    /// With a compliance centre: a point of the tool's frame, in the part's unit, about which
-    /// torque is taken.
+    /// Sets the compliance centre, about which torque is taken: a point of the tool's frame, in the part's unit.
     #[must_use]
-    pub fn centre(mut self, centre: Point3<f64>) -> Probe<'a, T> {
+    pub fn with_centre(mut self, centre: Point3<f64>) -> Probe<'a, T> {
         self.state.centre = centre;
         self
     }
 
-    /// With another SIMD level than the best of this machine. The answers do not change.
+    /// Sets the SIMD level, instead of the best one of this machine. The results do not change.
     #[must_use]
-    pub fn level(mut self, level: Level) -> Probe<'a, T> {
+    pub fn with_level(mut self, level: Level) -> Probe<'a, T> {
         self.state.level = level;
         self
     }
 
-    /// With memory for a contact of all points of the part, so that no question to this probe allocates,
-    /// however much larger its contact is than those before: 280 bytes per point, 28 MB for 100,000.
-    /// Memory that no contact needs is never touched. Probes that are made from this one reserve nothing.
+    /// Reserves memory for a contact of all points of the part, so that no query of this probe allocates, however much
+    /// larger its contact is than earlier ones: 280 bytes per point, 28 MB for 100,000 points. Memory that no contact
+    /// needs is never touched. Probes that are made from this one reserve nothing.
     #[must_use]
-    pub fn reserved(mut self) -> Probe<'a, T> {
+    pub fn with_reserved_memory(mut self) -> Probe<'a, T> {
         self.reserve();
-        let points = self.state.tree.places();
+        let points = self.state.tree.slots();
         reserve(&mut self.state.contacts, points);
         self
     }
 
-    /// Reserves memory for all questions but [`Probe::contacts`]: 127 bytes per point.
+    /// Reserves memory for all queries but [`Probe::contacts`]: 127 bytes per point.
     pub(crate) fn reserve(&mut self) {
         self.state.reserve();
-        let QueryState { tree, felt, room, .. } = &mut self.state;
-        felt.reserve_for(tree.leaves.len() * WIDTH, Everything::ASK);
-        self.tool.reserve(felt);
+        let QueryState { tree, evaluations, room, .. } = &mut self.state;
+        evaluations.reserve_for(tree.leaves.len() * WIDTH, Everything::OUTPUTS);
+        self.tool.reserve(evaluations);
         self.tool.reserve(room);
     }
 
-    /// Another probe like this one, for another thread.
+    /// Returns another probe with the same settings, for another thread.
     #[must_use]
     pub fn another(&self) -> Probe<'a, T> {
         let QueryState { tree, unit, law, weights, centre, level, .. } = self.state;
-        Probe::of(tree, unit, self.tool).law(law).weights(weights).centre(centre).level(level)
+        Probe::of(tree, unit, self.tool)
+            .with_law(law)
+            .with_weights(weights)
+            .with_centre(centre)
+            .with_level(level)
     }
 
-    /// The compliance centre in the tool's frame, and the part's unit in mm.
+    /// Returns the compliance centre in the tool's frame, and the length of the part's unit in mm.
     #[cfg(feature = "haptic")]
-    pub(crate) fn place(&self) -> (Point3<f64>, f64) {
-        (self.state.centre, self.state.unit.to(Unit::Millimetre))
+    pub(crate) fn centre_and_unit(&self) -> (Point3<f64>, f64) {
+        (self.state.centre, self.state.unit.factor_to(Unit::Millimetre))
     }
 
-    /// How far a depth that is felt can be from that of the point that was given, in the part's unit:
-    /// by storing points in `f32` beside their leaf's centre, by carrying them to the tool's frame, and
-    /// by what rounding does to the depth itself. `None` where no bound of how steep depth is was proved
-    /// of the tool ([`crate::tool::Depth::lipschitz`]). What lies between points is not in it.
-    pub fn error(&self) -> Option<f64> {
+    /// Returns an upper bound on the error of a computed depth against the depth of the given point, in the part's
+    /// unit.
+    ///
+    /// It covers storing points in `f32` relative to their leaf's centre, transforming them to the tool's frame, and
+    /// rounding in the depth itself. It does not cover the surface between points. `None` if no Lipschitz constant of
+    /// the depth is proved for the tool ([`crate::tool::DepthBounds::lipschitz`]).
+    pub fn rounding_error_bound(&self) -> Option<f64> {
         const HALF: f64 = f64::EPSILON / 2.0;
-        let (card, tree, length) = (self.tool.card(), self.state.tree, self.state.length);
-        let tool = length * card.size();
+        let (info, tree, length) = (self.tool.info(), self.state.tree, self.state.length);
+        let tool = length * info.size();
         let frame = &tree.frame;
         let [leaf, part] = [tree.leaf_size, frame.size].map(|half| frame.scale * f64::from(half));
-        // Of each coordinate: an offset in `f32`, of a centre that the origin is taken from.
+        // Storage error per coordinate: an offset in `f32` from a centre that the origin is subtracted from.
         let stored = leaf / 2f64.powi(24) + 4.0 * HALF * part;
-        // A point inside is no farther from the tip than the tool is large, so neither is the origin but for the
-        // part's size: two sums, then three products and a change of unit.
+        // A point inside is at most √2 tool sizes from the tip, and the origin at most that plus the part's size. Two
+        // sums, a sum of three products and a change of unit err by 2√2, 3√2 and √2 of a size: 8.5 of the 10 counted.
         let carried = HALF * (2.0 * (tool + 4.0 * part) + 8.0 * tool);
-        let own = length * card.depth.rounding + HALF * tool;
-        card.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
+        let own = length * info.depth.rounding + HALF * tool;
+        info.depth.lipschitz.map(|steepest| steepest * 3f64.sqrt() * (stored + carried) + own)
     }
 
-    /// How much deeper than its deepest point the part's surface can be: the points' covering radius
-    /// times how steep depth is at most, and what rounding does ([`Probe::error`]). `None` where either
-    /// is not known. As sure as the [cover](crate::Tree::cover), which may be an estimate.
-    pub fn unseen(&self) -> Option<f64> {
-        let (card, cover) = (self.tool.card(), self.state.tree.cover()?);
-        Some(card.depth.lipschitz? * cover.radius + self.error()?)
+    /// Returns an upper bound on how much deeper the part's surface can be than its deepest point, in the part's unit.
+    ///
+    /// It is the covering radius of the points times the Lipschitz constant of the depth, plus
+    /// [`Probe::rounding_error_bound`]. `None` if one of these is not known. It is as reliable as the
+    /// [covering radius](crate::PointBvh::covering_radius), which may be an estimate.
+    pub fn sampling_error_bound(&self) -> Option<f64> {
+        let (info, cover) = (self.tool.info(), self.state.tree.covering_radius()?);
+        Some(info.depth.lipschitz? * cover.radius + self.rounding_error_bound()?)
     }
 
-    /// What no place of the part's surface is deeper than: the deepest point's depth, 0 without contact,
-    /// and what may lie [between](Probe::unseen) the points. `None` where that is not known.
+    /// Returns an upper bound on the depth of the whole surface of the part: the depth of the deepest point, or 0
+    /// without contact, plus the [sampling error bound](Probe::sampling_error_bound). `None` if that bound is not
+    /// known.
     pub fn depth_bound(&mut self, pose: &Pose) -> Option<f64> {
-        let unseen = self.unseen()?;
+        let unseen = self.sampling_error_bound()?;
         Some(self.deepest(pose).map_or(0.0, |deepest| deepest.depth) + unseen)
     }
 
-    /// Whether any point of the part is inside the tool or on its surface. Stops at the first, and looks
-    /// first where one was found last: tools move little from pose to pose.
+    /// Returns whether any point of the part is inside the tool or on its surface. Stops at the first such point, and
+    /// begins at the leaf where one was found last, since tools move little from pose to pose.
     pub fn detect(&mut self, pose: &Pose) -> bool {
         if !self.state.set_pose(pose) {
             return false;
         }
         self.state.traverse_to_last_hit();
         let any = self.filter_and_evaluate::<Inside>() || {
-            // Sixteen leaves at a time.
+            // Each node has sixteen leaves.
             let nodes = self.state.traverse_to_nodes();
             (0..nodes).any(|node| {
                 self.state.traverse_under(node);
@@ -198,21 +206,21 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         any
     }
 
-    /// The deepest point; `None` without contact.
-    pub fn deepest(&mut self, pose: &Pose) -> Option<Deepest> {
-        if self.ask::<Depths>(pose) { posture::deepest(&self.state, pose) } else { None }
+    /// Returns the deepest point; `None` without contact.
+    pub fn deepest(&mut self, pose: &Pose) -> Option<DeepestPoint> {
+        if self.query::<Depths>(pose) { posture::deepest(&self.state, pose) } else { None }
     }
 
-    /// What a posture is judged by: niceness, and how deep which surfaces are.
+    /// Returns the quantities that a posture is judged by: niceness, and the depth at cutting and other surfaces.
     pub fn posture(&mut self, pose: &Pose) -> Posture {
-        if self.ask::<Postures>(pose) {
-            posture::posture(&self.state, self.tool.card(), pose)
+        if self.query::<Postures>(pose) {
+            posture::posture(&self.state, self.tool.info(), pose)
         } else {
             Posture::default()
         }
     }
 
-    /// Force, torque, depth and niceness of the whole contact.
+    /// Returns force, torque, depth and niceness of the whole contact.
     pub fn wrench(&mut self, pose: &Pose) -> Wrench {
         if self.traverse_within(pose, usize::MAX) == Some(0) {
             return self.nothing();
@@ -220,18 +228,18 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         self.reduce(pose)
     }
 
-    /// Sets the pose and finds the leaves that the tool may reach, looking at no more nodes than that. Returns how many it looked at: 0 if the
-    /// whole part is out of reach.
+    /// Sets the pose and finds the leaves that the tool may reach, visiting at most `budget` nodes. Returns the number
+    /// of nodes visited, which is 0 if the whole part is out of reach; `None` if the budget does not suffice.
     fn traverse_within(&mut self, pose: &Pose, budget: usize) -> Option<usize> {
         if self.state.set_pose(pose) { self.state.traverse(budget) } else { Some(0) }
     }
 
-    /// Returns what is felt without contact.
+    /// Returns the wrench without contact.
     fn nothing(&self) -> Wrench {
         Wrench::nothing(self.state.law, self.state.weights)
     }
 
-    /// Returns the wrench of the leaves that were found last.
+    /// Returns the wrench of the points in the leaves found last.
     fn reduce(&mut self, pose: &Pose) -> Wrench {
         self.state.filter(true);
         let any = match self.state.law {
@@ -241,44 +249,45 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         if any { self.state.reduce(pose) } else { self.nothing() }
     }
 
-    /// Every point of the part inside the tool, with all that is felt there.
+    /// Returns every point of the part inside the tool, with all outputs there.
     pub fn contacts(&mut self, pose: &Pose) -> &[Contact] {
         let mut contacts = std::mem::take(&mut self.state.contacts);
         contacts.clear();
-        if self.ask::<Everything>(pose) {
-            contacts::list(&self.state, self.tool.card(), pose, &mut contacts);
+        if self.query::<Everything>(pose) {
+            contacts::list(&self.state, self.tool.info(), pose, &mut contacts);
         }
         self.state.contacts = contacts;
         &self.state.contacts
     }
 
-    /// The places in the tree of the points inside that are deeper than that.
+    /// Returns the tree indices of the points inside that are deeper than `depth`, which is in the part's unit.
     pub(crate) fn deeper(&mut self, pose: &Pose, depth: f64) -> Vec<usize> {
-        if !self.ask::<Depths>(pose) {
+        if !self.query::<Depths>(pose) {
             return vec![];
         }
-        let QueryState { felt, candidates, length, .. } = &self.state;
-        let deep = felt.places().filter(|at| felt.depth[*at] * length > depth);
+        let QueryState { evaluations, candidates, length, .. } = &self.state;
+        let deep =
+            evaluations.inside_indices().filter(|at| evaluations.depth[*at] * length > depth);
         deep.map(|at| candidates.indices()[at] as usize).collect()
     }
 
-    /// Asks the same at many poses, on all cores: what each is asked, it is asked by itself, so the
-    /// answers are those of one thread, in the order of the poses.
+    /// Runs the same query at many poses, on all cores. Each result is computed independently of the others, so the
+    /// results equal those of one thread, in the order of the poses.
     ///
     /// ```
     /// # use touchoff::{Part, Pose, Probe, Tool};
     /// # fn deepest(part: &Part, tool: &dyn Tool, poses: &[Pose]) -> f64 {
-    /// let depths = Probe::new(part, tool).map(poses, |probe, pose| probe.wrench(pose).depth());
+    /// let depths = Probe::new(part, tool).par_map(poses, |probe, pose| probe.wrench(pose).depth());
     /// # depths.into_iter().fold(0.0, f64::max) }
     /// ```
     #[cfg(feature = "parallel")]
-    pub fn map<R: Send>(
+    pub fn par_map<R: Send>(
         &self,
         poses: &[Pose],
         ask: impl Fn(&mut Probe<'a, T>, &Pose) -> R + Sync,
     ) -> Vec<R> {
         use rayon::prelude::*;
-        // So many that starting another probe is nothing beside them.
+        // Enough poses that making another probe costs nothing in comparison.
         const TOGETHER: usize = 256;
         poses
             .par_chunks(TOGETHER)
@@ -290,8 +299,8 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
             .collect()
     }
 
-    /// Evaluates the tool at all points of the part that may be inside. Returns whether any is.
-    fn ask<W: Wanted>(&mut self, pose: &Pose) -> bool {
+    /// Evaluates the tool at all points of the part that may be inside. Returns whether any point is inside.
+    fn query<W: OutputSelection>(&mut self, pose: &Pose) -> bool {
         if !self.state.set_pose(pose) {
             return false;
         }
@@ -299,8 +308,8 @@ impl<'a, T: Senses + ?Sized> Probe<'a, T> {
         self.filter_and_evaluate::<W>()
     }
 
-    /// Evaluates the tool at the points of the leaves that were found last. Returns whether any is inside.
-    fn filter_and_evaluate<W: Wanted>(&mut self) -> bool {
+    /// Evaluates the tool at the points of the leaves found last. Returns whether any point is inside.
+    fn filter_and_evaluate<W: OutputSelection>(&mut self) -> bool {
         self.state.filter(false);
         self.state.evaluate::<W, T>(self.tool)
     }

@@ -1,40 +1,40 @@
-//! How deep a contact is, and what a posture is judged by (Ho 1999, chapter 6).
+//! The deepest point of a contact, and the quantities that a posture is judged by (Ho 1999, chapter 6).
 
 use super::state::QueryState;
 use crate::pose::Pose;
-use crate::tool::Card;
+use crate::tool::ToolInfo;
 use nalgebra::Point3;
 
 /// The deepest point of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deepest {
-    /// Its penetration depth, in the part's unit.
+pub struct DeepestPoint {
+    /// The penetration depth, in the part's unit.
     pub depth: f64,
-    /// Where it is, in the world.
+    /// The position, in the world's frame.
     pub point: Point3<f64>,
-    /// The triangle it lies on.
+    /// Id of the triangle on which the point lies.
     pub triangle: u32,
 }
 
-/// What a posture is judged by.
+/// The quantities that a posture is judged by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Posture {
-    /// How many points of the part are inside the tool.
+    /// Number of points of the part inside the tool.
     pub colliding: usize,
-    /// The deepest of them.
-    pub deepest: Option<Deepest>,
-    /// The least niceness of all points; `None` without contact.
+    /// The deepest point.
+    pub deepest: Option<DeepestPoint>,
+    /// The least niceness of all points inside; `None` without contact.
     pub niceness: Option<f64>,
-    /// The penetration depth of the deepest point at a surface that does not cut, in the part's unit;
-    /// `None` if no such surface touches.
-    pub body: Option<f64>,
+    /// The largest penetration depth at a surface that does not cut, in the part's unit; `None` if no such surface is
+    /// in contact.
+    pub non_cutting_depth: Option<f64>,
 }
 
-/// The deepest of what was felt, the first of several.
-pub(super) fn deepest(state: &QueryState<'_>, pose: &Pose) -> Option<Deepest> {
+/// Returns the deepest point of the last evaluation, the first one if several are equally deep.
+pub(super) fn deepest(state: &QueryState<'_>, pose: &Pose) -> Option<DeepestPoint> {
     let mut most = None;
-    for candidate in state.felt.places() {
-        let depth = state.felt.depth[candidate];
+    for candidate in state.evaluations.inside_indices() {
+        let depth = state.evaluations.depth[candidate];
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
         }
@@ -42,27 +42,32 @@ pub(super) fn deepest(state: &QueryState<'_>, pose: &Pose) -> Option<Deepest> {
     most.map(|(depth, candidate)| at(state, pose, candidate, depth))
 }
 
-/// A candidate as the deepest; its depth is in the tool's unit.
-pub(super) fn at(state: &QueryState<'_>, pose: &Pose, candidate: usize, depth: f64) -> Deepest {
+/// Returns a candidate as a [`DeepestPoint`]; `depth` is in the tool's unit.
+pub(super) fn at(
+    state: &QueryState<'_>,
+    pose: &Pose,
+    candidate: usize,
+    depth: f64,
+) -> DeepestPoint {
     let place = state.candidates.indices()[candidate] as usize;
     let tree = state.tree;
     let point = pose.tip() + tree.relative_to_tip(&state.view, place);
-    Deepest { depth: depth * state.length, point, triangle: tree.triangle(place) }
+    DeepestPoint { depth: depth * state.length, point, triangle: tree.triangle(place) }
 }
 
-/// What was felt as a posture.
-pub(super) fn posture(state: &QueryState<'_>, card: &Card, pose: &Pose) -> Posture {
-    let felt = &state.felt;
+/// Returns the posture of the last evaluation.
+pub(super) fn posture(state: &QueryState<'_>, info: &ToolInfo, pose: &Pose) -> Posture {
+    let evaluations = &state.evaluations;
     let (mut colliding, mut most, mut niceness) = (0, None, f64::INFINITY);
     let mut body: Option<f64> = None;
-    for candidate in felt.places() {
+    for candidate in evaluations.inside_indices() {
         colliding += 1;
-        let depth = felt.depth[candidate];
+        let depth = evaluations.depth[candidate];
         if most.is_none_or(|(most, _)| depth > most) {
             most = Some((depth, candidate));
         }
-        niceness = niceness.min(felt.niceness[candidate]);
-        if !card.surface_of(felt.region[candidate] as usize).cutting {
+        niceness = niceness.min(evaluations.niceness[candidate]);
+        if !info.surface_of(evaluations.region[candidate] as usize).cutting {
             body = Some(body.map_or(depth, |most| most.max(depth)));
         }
     }
@@ -70,6 +75,6 @@ pub(super) fn posture(state: &QueryState<'_>, card: &Card, pose: &Pose) -> Postu
         colliding,
         deepest: most.map(|(depth, candidate)| at(state, pose, candidate, depth)),
         niceness: (colliding > 0).then_some(niceness),
-        body: body.map(|depth| depth * state.length),
+        non_cutting_depth: body.map(|depth| depth * state.length),
     }
 }

@@ -1,31 +1,31 @@
-//! The state of a query: a part, how it is asked, and memory that is kept between queries.
+//! The state of a query: a part, the settings of the query, and memory that is kept between queries.
 //!
 //! ```text
 //! set_pose ──▶ traverse ──▶ filter ──▶ evaluate ──▶ reduce
 //!   in reach?    leaves       points     the tool     force, torque, …
 //! ```
 //!
-//! Nothing here depends on the tool's type but [`QueryState::evaluate`], so it is compiled once, in this crate.
+//! Only [`QueryState::evaluate`] depends on the tool's type, so everything else is compiled once, in this crate.
 
 use crate::bvh::{PoseTransform, QuerySetup, WIDTH};
+use crate::point_bvh::{Candidates, PointBvh, Traversal, filter};
 use crate::pose::Pose;
 use crate::probe::contacts::Contact;
 use crate::probe::law::{Law, Weights};
 use crate::probe::wrench::{self, Wrench};
-use crate::tool::{Card, Felt, Senses, Wanted};
-use crate::tree::{Candidates, Traversal, Tree, filter};
+use crate::tool::{BatchEvaluator, Evaluations, OutputSelection, ToolInfo};
 use crate::unit::Unit;
 use fearless_simd::Level;
 use nalgebra::Point3;
 
-/// A part, how it is asked, and memory for the answer.
+/// A part, the settings of a query, and memory for the results.
 pub(super) struct QueryState<'a> {
-    pub(super) tree: &'a Tree,
-    /// The part's.
+    pub(super) tree: &'a PointBvh,
+    /// The part's unit of length.
     pub(super) unit: Unit,
-    /// The tool's unit of length in the part's.
+    /// The length of the tool's unit in the part's unit.
     pub(super) length: f64,
-    /// How far the tool reaches from its tip, in its unit.
+    /// The tool's size: its largest reach from the tip along the axis, or its radius, in the tool's unit.
     pub(super) reach: f64,
     pub(super) law: Law,
     pub(super) weights: Weights,
@@ -35,34 +35,34 @@ pub(super) struct QueryState<'a> {
     pub(super) view: PoseTransform,
     traversal: Traversal,
     pub(super) candidates: Candidates,
-    /// A leaf that had a point inside when it was asked last whether any has.
+    /// A leaf that had a point inside when [`Probe::detect`](super::Probe::detect) found one last.
     hit: u32,
-    pub(super) felt: Felt,
-    /// Memory that tools keep between questions about single points.
-    pub(super) room: Felt,
+    pub(super) evaluations: Evaluations,
+    /// Memory that tools keep between evaluations of single points.
+    pub(super) room: Evaluations,
     pub(super) contacts: Vec<Contact>,
 }
 
 impl<'a> QueryState<'a> {
-    /// Makes the state of queries to a part's points in their tree, whose lengths are in that unit.
-    pub(super) fn new(tree: &'a Tree, unit: Unit, card: &Card) -> QueryState<'a> {
-        let length = card.unit.to(unit);
+    /// Makes the state of queries on a part's points in their tree, whose lengths are in `unit`.
+    pub(super) fn new(tree: &'a PointBvh, unit: Unit, info: &ToolInfo) -> QueryState<'a> {
+        let length = info.unit.factor_to(unit);
         QueryState {
             tree,
             unit,
             length,
-            reach: card.size(),
+            reach: info.size(),
             law: Law::Thesis,
             weights: Weights::Area,
             centre: Point3::origin(),
             level: Level::new(),
-            setup: QuerySetup::new(&tree.frame, card, length),
+            setup: QuerySetup::new(&tree.frame, info, length),
             view: PoseTransform::default(),
             traversal: Traversal::default(),
             candidates: Candidates::default(),
             hit: 0,
-            felt: Felt::default(),
-            room: Felt::default(),
+            evaluations: Evaluations::default(),
+            room: Evaluations::default(),
             contacts: Vec::new(),
         }
     }
@@ -79,13 +79,14 @@ impl<'a> QueryState<'a> {
         self.setup.set_pose(&self.tree.frame, pose, &mut self.view)
     }
 
-    /// Finds the leaves that the tool may reach, looking at no more nodes and leaves than that. Returns how many it looked at.
+    /// Finds the leaves that the tool may reach, visiting at most `most` nodes and leaves. Returns the number visited;
+    /// `None` if that limit does not suffice.
     pub(super) fn traverse(&mut self, most: usize) -> Option<usize> {
         let seen = (self.tree, &self.setup, &self.view);
         self.traversal.leaves(self.level, seen, most)
     }
 
-    /// Finds the nodes above the leaves that the tool may reach. Returns how many there are.
+    /// Finds the nodes above the leaves that the tool may reach. Returns the number of these nodes.
     pub(super) fn traverse_to_nodes(&mut self) -> usize {
         self.traversal.nodes(self.level, (self.tree, &self.setup, &self.view))
     }
@@ -95,24 +96,33 @@ impl<'a> QueryState<'a> {
         self.traversal.under(self.level, (self.tree, &self.setup, &self.view), node);
     }
 
-    /// Takes the leaf that was hit last, and no other.
+    /// Selects the leaf that was hit last, and no other.
     pub(super) fn traverse_to_last_hit(&mut self) {
         self.traversal.only(self.hit, (self.tree, &self.setup, &self.view));
     }
 
-    /// Finds the points of the leaves that were found last that may be inside; with `attributes`, their normals and weights too.
+    /// Finds the points that may be inside among those of the leaves found last; with `attributes`, their normals and
+    /// weights too.
     pub(super) fn filter(&mut self, attributes: bool) {
         let seen = (self.tree, &self.setup, &self.view);
         filter(self.level, seen, self.traversal.found(), attributes, &mut self.candidates);
     }
 
-    /// Evaluates the tool at these points. Returns whether any is inside.
-    pub(super) fn evaluate<W: Wanted, T: Senses + ?Sized>(&mut self, tool: &T) -> bool {
+    /// Evaluates the tool at these points. Returns whether any point is inside.
+    pub(super) fn evaluate<W: OutputSelection, T: BatchEvaluator + ?Sized>(
+        &mut self,
+        tool: &T,
+    ) -> bool {
         if self.candidates.points.is_empty() {
             return false;
         }
-        tool.feel::<W>(self.level, &self.candidates.points, self.length, &mut self.felt);
-        self.felt.inside.iter().any(|block| *block != 0)
+        tool.evaluate_outputs::<W>(
+            self.level,
+            &self.candidates.points,
+            self.length,
+            &mut self.evaluations,
+        );
+        self.evaluations.inside.iter().any(|block| *block != 0)
     }
 
     /// Sums the evaluations of the points inside.
@@ -120,9 +130,9 @@ impl<'a> QueryState<'a> {
         wrench::sum(self, pose)
     }
 
-    /// Notes the leaf of a point inside.
+    /// Records the leaf of the first point inside.
     pub(super) fn remember_hit(&mut self) {
-        if let Some(place) = self.felt.places().next() {
+        if let Some(place) = self.evaluations.inside_indices().next() {
             self.hit = self.candidates.indices()[place] / WIDTH as u32;
         }
     }

@@ -1,29 +1,31 @@
-//! How what a tool feels changes as it moves.
+//! The derivative of the wrench with respect to the tool's pose.
 
 use super::state::QueryState;
 use super::{Everything, Law, Probe, Weights, Wrench};
 use crate::pose::Pose;
-use crate::tool::{Senses, Tool};
+use crate::tool::{BatchEvaluator, Tool};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-/// A wrench, and how it changes as the tool moves.
+/// A wrench, and its derivative with respect to the tool's pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stiffness {
-    /// What is felt.
+    /// The wrench at the pose.
     pub wrench: Wrench,
-    /// `K`: as the tool moves by `u` and turns by `θ` about its compliance centre, both small and in the
-    /// world's frame, its force grows by the first three of `-K (u, θ)`, its torque by the last three. In
-    /// force by the part's unit of length, force by radian, torque by either.
+    /// The matrix `K`. As the tool moves by a small `u` and rotates by a small `θ` about its compliance centre, both in
+    /// the world's frame, its force grows by the first three components of `-K (u, θ)` and its torque by the last
+    /// three. The four blocks are in force per unit of length (the part's), force per radian, torque per unit of length
+    /// and torque per radian.
     ///
-    /// A point that enters brings nothing yet, since its magnitude is 0 at the surface. Torque is about a
-    /// centre that moves along: of a contact that pushes only the first three rows and columns are
-    /// symmetric, and that by [`Law::Gradient`] alone.
+    /// A point that enters the tool contributes nothing at first, since its magnitude is 0 at the surface. Torque is
+    /// about a centre that moves with the tool. In a contact that exerts force, only the first three rows and columns
+    /// are therefore symmetric, and these only for [`Law::Gradient`].
     pub matrix: Matrix6<f64>,
 }
 
-impl<T: Senses + ?Sized> Probe<'_, T> {
-    /// The wrench, and its derivative by the pose: of each point inside by the chain rule through the
-    /// tool's own evaluators ([`Tool::slopes`]), so exact but for rounding wherever regions do not part.
+impl<T: BatchEvaluator + ?Sized> Probe<'_, T> {
+    /// Returns the wrench and its derivative with respect to the pose. The derivative of each point inside is taken by
+    /// the chain rule through the tool's own evaluators ([`Tool::derivatives`]), so it is exact up to rounding, except
+    /// on borders between regions.
     pub fn stiffness(&mut self, pose: &Pose) -> Stiffness {
         if !self.state.set_pose(pose) {
             return self.loose();
@@ -44,15 +46,18 @@ impl<T: Senses + ?Sized> Probe<'_, T> {
 }
 
 impl QueryState<'_> {
-    /// The sum over what was felt, in the tool's frame and turned at the end. With `p` in the tool's frame
-    /// and `r` from the centre to it, a force `f = R φ(p)` changes by `θ × f - A (u + θ × r)`, where
-    /// `A = R Dφ Rᵀ`; of one along `n - R u`, of which the part's normal `n` does not turn, by `θ × f'`
-    /// instead, where `f'` is the tool's share. The arm changes by `-u`.
+    /// Sums the derivatives over all points inside, in the tool's frame, and rotates the sum to the world's frame at
+    /// the end.
+    ///
+    /// Let `p` be the point in the tool's frame and `r` the arm from the centre to it. A force `f = R φ(p)` changes by
+    /// `θ × f - A (u + θ × r)`, where `A = R Dφ Rᵀ`. For a force along `n - R u`, in which the part's normal `n` does
+    /// not rotate with the tool, the first term is `θ × f'` instead, where `f'` is the tool's share of the force. The
+    /// arm changes by `-u`.
     fn matrix<T: Tool + ?Sized>(&mut self, tool: &T, pose: &Pose) -> Matrix6<f64> {
         let turn = pose.rotation();
         let mut room = std::mem::take(&mut self.room);
         let mut sum = Sum::default();
-        for at in self.felt.places() {
+        for at in self.evaluations.inside_indices() {
             let index = self.candidates.indices()[at] as usize;
             let weight = match self.weights {
                 Weights::Area => self.tree.weight(index),
@@ -62,9 +67,9 @@ impl QueryState<'_> {
                 |lists: &[Vec<f64>; 3]| Vector3::from(lists.each_ref().map(|list| list[at]));
             let own = vector(self.candidates.points.lists());
             let arm = own * self.length - self.centre.coords;
-            let magnitude = self.felt.magnitude[at];
-            let gradient = vector(&self.felt.gradient);
-            let slopes = tool.slopes(own.into(), self.length, &mut room);
+            let magnitude = self.evaluations.magnitude[at];
+            let gradient = vector(&self.evaluations.gradient);
+            let slopes = tool.derivatives(own.into(), self.length, &mut room);
             let rows = |rows: [[f64; 3]; 3]| Matrix3::from_fn(|row, column| rows[row][column]);
             let steep = gradient.transpose();
             if self.law == Law::Gradient {
@@ -73,7 +78,7 @@ impl QueryState<'_> {
                 sum.add(own, arm, force, force);
                 continue;
             }
-            let direction = vector(&self.felt.direction);
+            let direction = vector(&self.evaluations.direction);
             let normal = turn.tr_mul(&Vector3::from(self.tree.normal(index)));
             if self.law == Law::Facing && normal.dot(&direction) > 0.0 {
                 continue;
@@ -88,7 +93,7 @@ impl QueryState<'_> {
     }
 }
 
-/// The blocks of the matrix in the tool's frame.
+/// The four blocks of the matrix, in the tool's frame.
 #[derive(Default)]
 struct Sum {
     force: [Matrix3<f64>; 2],
@@ -96,7 +101,8 @@ struct Sum {
 }
 
 impl Sum {
-    /// A force at an arm, its derivative by the position, and what of it turns with the tool.
+    /// Adds a force at an arm, given its derivative `own` with respect to the position and the share `turns` of it that
+    /// rotates with the tool.
     fn add(
         &mut self,
         own: Matrix3<f64>,

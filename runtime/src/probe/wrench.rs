@@ -1,50 +1,50 @@
 //! The whole contact as one force and torque (Ho 1999, eq. 5.1 to 5.5).
 
 use super::state::QueryState;
-use super::{Deepest, Law, Weights, posture};
+use super::{DeepestPoint, Law, Weights, posture};
 use crate::pose::Pose;
 use crate::tool::LANES;
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, dispatch, f64x8, mask64x8};
 use nalgebra::Vector3;
 
-/// What a tool feels at a pose. Forces and torques are on the tool, in the world's frame.
+/// The wrench on a tool at a pose. Force and torque act on the tool and are given in the world's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wrench {
-    /// The law that made the force.
+    /// The force law.
     pub law: Law,
-    /// The weights that were used.
+    /// The weights of points.
     pub weights: Weights,
-    /// How many points of the part are inside the tool.
+    /// Number of points of the part inside the tool.
     pub colliding: usize,
-    /// The deepest of them.
-    pub deepest: Option<Deepest>,
+    /// The deepest point.
+    pub deepest: Option<DeepestPoint>,
     /// Force, in magnitude times weight.
     pub force: Vector3<f64>,
     /// Torque about the compliance centre, in force times the part's unit of length.
     pub torque: Vector3<f64>,
-    /// The least niceness of all points; `None` without contact.
+    /// The least niceness of all points inside; `None` without contact.
     pub niceness: Option<f64>,
-    /// `Σ w m`
+    /// The sum `Σ w m` of weight times magnitude.
     pub integral: f64,
-    /// `½ Σ w m²`
+    /// The energy `½ Σ w m²`.
     pub energy: f64,
-    /// What of them is rounding.
-    pub rounding: Rounding,
+    /// Bounds on the rounding errors of force and torque.
+    pub rounding: WrenchRounding,
 }
 
-/// How far rounding can take the force and the torque of a [`Wrench`] from the true sums of what was felt
-/// point by point: a bound, not an estimate. `integral` and `energy`, whose terms are all positive, lose no
-/// more than `colliding + 6` units of roundoff (2^-53) of themselves.
+/// Bounds on the distance of the force and the torque of a [`Wrench`] from the exact sums of the computed evaluations.
+/// They are bounds, not estimates. `integral` and `energy`, whose terms are all positive, have a relative error of at
+/// most `colliding + 6` units of roundoff (2^-53).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rounding {
-    /// The length of the force's error.
+pub struct WrenchRounding {
+    /// Upper bound on the length of the force's error.
     pub force: f64,
-    /// The length of the torque's.
+    /// Upper bound on the length of the torque's error.
     pub torque: f64,
 }
 
 impl Wrench {
-    /// What is felt without contact.
+    /// Returns the wrench without contact.
     pub(crate) fn nothing(law: Law, weights: Weights) -> Wrench {
         Wrench {
             law,
@@ -56,11 +56,11 @@ impl Wrench {
             niceness: None,
             integral: 0.0,
             energy: 0.0,
-            rounding: Rounding::default(),
+            rounding: WrenchRounding::default(),
         }
     }
 
-    /// Adds what is felt of another part, in the same frame and about the same point.
+    /// Adds the wrench of another part, in the same frame and about the same point.
     pub(crate) fn add(&mut self, other: &Wrench) {
         if other.colliding == 0 {
             return;
@@ -83,13 +83,13 @@ impl Wrench {
         self.integral += other.integral;
         self.energy += other.energy;
         let one = |mine: f64, theirs: f64, sum: Vector3<f64>| mine + theirs + UNIT * sum.norm();
-        self.rounding = Rounding {
+        self.rounding = WrenchRounding {
             force: one(self.rounding.force, other.rounding.force, self.force),
             torque: one(self.rounding.torque, other.rounding.torque, self.torque),
         };
     }
 
-    /// The same in the frame in which its own is at `place`.
+    /// Transforms the wrench from its own frame to the frame in which its own is at `place`.
     pub(crate) fn turned(mut self, place: &Pose) -> Wrench {
         if self.colliding > 0 && *place != Pose::default() {
             let turned = |v: Vector3<f64>| (place.rotation() * v, TURNED * UNIT * v.norm());
@@ -104,52 +104,52 @@ impl Wrench {
         self
     }
 
-    /// Penetration depth of the deepest point; 0 without contact.
+    /// Returns the penetration depth of the deepest point; 0 without contact.
     pub fn depth(&self) -> f64 {
         self.deepest.map_or(0.0, |deepest| deepest.depth)
     }
 }
 
-/// The unit roundoff, widened for products of errors.
+/// The unit roundoff, slightly enlarged to cover products of errors.
 const UNIT: f64 = f64::EPSILON / 2.0 * (1.0 + 1e-6);
-/// Of a vector that is turned: three products and two sums in each part, whose sizes are those of the row's
-/// parts times the vector's.
+/// The error of a rotated vector, in units of roundoff of its length: each component is the sum of three products,
+/// whose sizes are the row's entries times the vector's components.
 const TURNED: f64 = 3.0 * 1.733;
 
-/// Sums over eight lanes: each lane adds its points in order, the lanes are added at the end.
+/// Sums in eight lanes: each lane adds its points in order; the lanes are added at the end.
 struct Sums<S: Simd> {
     /// `Σ w m` and `Σ w m²`.
     pushes: [f64x8<S>; 2],
-    /// In the tool's frame: force and torque about the tip.
+    /// Force and torque about the tip, in the tool's frame.
     tool: [f64x8<S>; 6],
-    /// What the parts of all forces are together, without their signs.
+    /// The sum of the absolute values of all force components.
     size: f64x8<S>,
     niceness: f64x8<S>,
     depth: f64x8<S>,
     deepest: f64x8<S>,
 }
 
-/// The same sums, lanes added.
+/// The same sums, with the lanes added.
 struct Totals {
     pushes: [f64; 2],
     tool: [f64; 6],
     size: f64,
-    /// How many blocks had a point inside.
+    /// Number of blocks with a point inside.
     blocks: usize,
     niceness: f64,
-    /// The deepest, and which candidate it is: the first of several.
+    /// The largest depth, and the index of its candidate, the first one if several are equally deep.
     depth: f64,
     deepest: f64,
 }
 
 /// Sums the evaluations of the points inside.
 pub(super) fn sum(state: &QueryState<'_>, pose: &Pose) -> Wrench {
-    let colliding = state.felt.count();
+    let colliding = state.evaluations.count();
     let totals = dispatch!(state.level, simd => totals(simd, state, pose));
     let rotation = pose.rotation();
     let half =
         |sums: &[f64; 6], from: usize| Vector3::new(sums[from], sums[from + 1], sums[from + 2]);
-    // In the tool's frame lengths are the tool's.
+    // In the tool's frame, lengths are in the tool's unit.
     let force = rotation * half(&totals.tool, 0);
     let about_tip = rotation * (half(&totals.tool, 3) * state.length);
     let arm = rotation * state.centre.coords;
@@ -169,11 +169,13 @@ pub(super) fn sum(state: &QueryState<'_>, pose: &Pose) -> Wrench {
     }
 }
 
-/// Each lane adds a term a block, seven sums at most join the lanes (Higham, *Accuracy and Stability of Numerical
-/// Algorithms*, 2002, eq. 4.4). A force is a product of a push, which is two products, and of the
-/// difference of a direction and a turned normal, each part of which errs by five units at most where
-/// these cancel. A moment is two products and a difference of lengths up to the tool's and such forces.
-fn rounding(state: &QueryState<'_>, totals: &Totals, torque: Vector3<f64>) -> Rounding {
+/// Returns bounds on the rounding errors of force and torque.
+///
+/// Each lane adds one term per block, and at most seven additions join the lanes (Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, 2002, eq. 4.4). The factor `push` of a force is made of two products. Its vector is the
+/// difference of a direction and a rotated normal, each component of which errs by at most five units of roundoff where
+/// the two cancel. A moment is the difference of two products of lengths, up to the tool's size, and such forces.
+fn rounding(state: &QueryState<'_>, totals: &Totals, torque: Vector3<f64>) -> WrenchRounding {
     let additions = totals.blocks as f64 + 7.0;
     let terms = 3.0 * totals.size + 9.0 * totals.pushes[0];
     let force = UNIT * ((additions + TURNED) * totals.size + terms);
@@ -182,11 +184,11 @@ fn rounding(state: &QueryState<'_>, totals: &Totals, torque: Vector3<f64>) -> Ro
     let torque = 2.0 * state.reach * state.length * moments
         + arm * (force + UNIT * 12.0 * totals.size)
         + UNIT * torque.norm();
-    Rounding { force, torque }
+    WrenchRounding { force, torque }
 }
 
-// What runs on vectors is in functions that are always inlined: a closure would be compiled without
-// the vector instructions of its surroundings.
+// Vector code is kept in functions that are always inlined: a closure would be compiled without the vector instructions
+// of its surroundings.
 
 type Triple<S> = [f64x8<S>; 3];
 
@@ -202,7 +204,7 @@ fn totals<S: Simd>(simd: S, state: &QueryState<'_>, pose: &Pose) -> Totals {
         deepest: zero,
     };
     let mut blocks = 0;
-    for (block, inside) in state.felt.inside.iter().enumerate() {
+    for (block, inside) in state.evaluations.inside.iter().enumerate() {
         if *inside != 0 {
             blocks += 1;
             add(simd, state, pose, block, *inside, &mut sums);
@@ -231,13 +233,13 @@ fn six<S: Simd>(sums: &[f64x8<S>; 6]) -> [f64; 6] {
     totals
 }
 
-/// A block of a list.
+/// Loads one block of a list.
 #[inline(always)]
 fn load<S: Simd>(simd: S, list: &[f64], block: usize) -> f64x8<S> {
     f64x8::from_slice(simd, &list[block * LANES..(block + 1) * LANES])
 }
 
-/// A block of a list in `f32`.
+/// Loads one block of a list in `f32`.
 #[inline(always)]
 fn widen<S: Simd>(simd: S, list: &[f32], block: usize) -> f64x8<S> {
     let mut wide = [0.0; LANES];
@@ -247,7 +249,7 @@ fn widen<S: Simd>(simd: S, list: &[f32], block: usize) -> f64x8<S> {
     f64x8::from_slice(simd, &wide)
 }
 
-/// Three lists; 0 where the mask is not set.
+/// Loads one block of three lists; 0 where the mask is not set.
 #[inline(always)]
 fn load_vector<S: Simd>(
     simd: S,
@@ -274,19 +276,19 @@ fn add<S: Simd>(
     sums: &mut Sums<S>,
 ) {
     const COUNT: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let (felt, candidates) = (&state.felt, &state.candidates);
+    let (evaluations, candidates) = (&state.evaluations, &state.candidates);
     let zero = f64x8::splat(simd, 0.0);
     let in_solid = mask64x8::from_bitmask(simd, u64::from(inside));
-    let magnitude = in_solid.select(load(simd, &felt.magnitude, block), zero);
+    let magnitude = in_solid.select(load(simd, &evaluations.magnitude, block), zero);
     let push = match state.weights {
         Weights::Area => widen(simd, &candidates.weights, block) * state.tree.weight * magnitude,
         Weights::Unit => magnitude,
     };
     sums.pushes[0] += push;
     sums.pushes[1] += push * magnitude;
-    let niceness = sums.niceness.min(load(simd, &felt.niceness, block));
+    let niceness = sums.niceness.min(load(simd, &evaluations.niceness, block));
     sums.niceness = in_solid.select(niceness, sums.niceness);
-    let depth = load(simd, &felt.depth, block);
+    let depth = load(simd, &evaluations.depth, block);
     let deeper = in_solid & depth.simd_gt(sums.depth);
     let indices = f64x8::from_slice(simd, &COUNT) + (block * LANES) as f64;
     sums.depth = deeper.select(depth, sums.depth);
@@ -294,17 +296,17 @@ fn add<S: Simd>(
 
     let p = load_vector(simd, candidates.points.lists(), block, in_solid);
     if state.law == Law::Gradient {
-        let slope = load_vector(simd, &felt.gradient, block, in_solid);
+        let slope = load_vector(simd, &evaluations.gradient, block, in_solid);
         accumulate(sums, push, p, slope);
         return;
     }
-    let direction = load_vector(simd, &felt.direction, block, in_solid);
+    let direction = load_vector(simd, &evaluations.direction, block, in_solid);
     let normal = [
         widen(simd, &candidates.normals[0], block),
         widen(simd, &candidates.normals[1], block),
         widen(simd, &candidates.normals[2], block),
     ];
-    // The normal in the tool's frame, where the direction is.
+    // The normal is transformed to the tool's frame, in which the direction is given.
     let mut way = direction;
     let mut along = zero;
     for (axis, part) in way.iter_mut().enumerate() {
@@ -320,7 +322,7 @@ fn add<S: Simd>(
     accumulate(sums, force, p, way);
 }
 
-/// Adds `push · way` and its moment about the origin.
+/// Adds the force `push · way` and its moment about the origin.
 #[inline(always)]
 fn accumulate<S: Simd>(sums: &mut Sums<S>, push: f64x8<S>, p: Triple<S>, way: Triple<S>) {
     let f = [push * way[0], push * way[1], push * way[2]];

@@ -1,22 +1,22 @@
 //! APT-CL: the cutter location files that CAM systems write before a machine is chosen.
 //!
-//! Read are `GOTO/x,y,z[,i,j,k]` and `FROM/` (the tip, and the unit vector from the tip to the
-//! spindle; without one, the last given stays, `0,0,1` at first), `RAPID` (for the next `GOTO`),
-//! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, one `LOADTL`, `CUTTER`, and `FINI` or NX's
-//! `END-OF-PATH`, which must end the program, so that a file cut short is never taken for a whole one.
-//! `$$` opens a comment, a trailing `$` continues the statement, `;` separates two, and case does not
+//! These statements are read: `GOTO/x,y,z[,i,j,k]` and `FROM/` (the tip, and the unit vector from the tip to
+//! the spindle; without one, the last given stays, `0,0,1` at first), `RAPID` (for the next `GOTO`),
+//! `MULTAX/OFF` (the axis is `0,0,1` again), `UNITS`, one `LOADTL`, `CUTTER`, and `FINI` or NX's `END-OF-PATH`.
+//! One of the last two has to end the program, so that a truncated file is never taken for a whole one. `$$`
+//! opens a comment, a trailing `$` continues the statement, `;` separates two statements, and case does not
 //! matter.
 //!
-//! Words that can neither move the tool nor change what positions mean are listed in
-//! [`Program::ignored`](super::Program::ignored); every other word is refused (`words` has the list).
+//! Words that can neither move the tool nor change the meaning of positions are listed in
+//! [`Program::ignored`](super::Program::ignored). Every other word is refused (`words` has the lists).
 
 use super::words::{is_prose, pass_over, refuse_motions};
-use super::{Fault, Located, Stop, Tape, axis_pose, lines, number, shown};
+use super::{CutterLocation, Located, ProgramFault, Tape, axis_pose, lines, number, shown};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
 use std::mem;
 
-/// The positions of an APT-CL program.
+/// Reads an APT-CL program.
 pub(super) fn read(text: &str) -> Result<Tape, Located> {
     let (statements, cut) = statements(text);
     let mut reader = Reader::default();
@@ -30,12 +30,12 @@ pub(super) fn read(text: &str) -> Result<Tape, Located> {
     if whole || reader.tape.stops.is_empty() && cut.is_none() {
         Ok(reader.tape)
     } else {
-        Err((cut.unwrap_or(end), Fault::Unfinished))
+        Err((cut.unwrap_or(end), ProgramFault::Unfinished))
     }
 }
 
-/// The statements, each with the line it begins on; and that of a last one whose continuation
-/// the file does not hold.
+/// Returns the statements, each with the line on which it begins, and the line of a last statement whose
+/// continuation is missing.
 fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     let mut statements = Vec::new();
     let mut open: Option<(usize, String)> = None;
@@ -62,33 +62,34 @@ fn statements(text: &str) -> (Vec<(usize, String)>, Option<usize>) {
     (statements, open.map(|(start, _)| start))
 }
 
-/// What the statements so far have set.
+/// State of the reader after some statements.
 #[derive(Default)]
 struct Reader {
     tape: Tape,
     axis: Option<[f64; 3]>,
     rapid: bool,
-    /// Whether there was a `GOTO`.
+    /// Set once there was a `GOTO`.
     went: bool,
-    /// What was said of the tool, by its word: the line, and the arguments.
+    /// Statements about the tool, by word: the line and the arguments.
     tools: BTreeMap<String, (usize, Vec<String>)>,
     path_ended: bool,
     finished: bool,
 }
 
 impl Reader {
-    /// Takes one statement; a position that `is_last` in the file and cannot be read was cut.
-    fn statement(&mut self, line: usize, text: &str, is_last: bool) -> Result<(), Fault> {
+    /// Reads one statement. A position that is the last of the file (`is_last`) and cannot be read was
+    /// truncated.
+    fn statement(&mut self, line: usize, text: &str, is_last: bool) -> Result<(), ProgramFault> {
         let (head, rest) = text.split_once('/').unwrap_or((text, ""));
         let word = head.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
         let rest = rest.trim();
         let ended = self.finished || self.path_ended && word != "FINI";
         if ended && !is_prose(text) {
-            return Err(Fault::AfterEnd {
+            return Err(ProgramFault::AfterEnd {
                 end: if self.finished { "FINI" } else { "END-OF-PATH" },
             });
         }
-        let cut = |fault| if is_last { Fault::Unfinished } else { fault };
+        let cut = |fault| if is_last { ProgramFault::Unfinished } else { fault };
         match word.as_str() {
             "GOTO" => {
                 let rapid = mem::take(&mut self.rapid);
@@ -103,8 +104,10 @@ impl Reader {
                 refuse_motions(&word, rest)?;
                 self.tool(line, &word, rest)?;
             }
-            // So NX ends the path of an operation; `FINI` may follow.
-            "FINI" | "END-OF-PATH" if !rest.is_empty() => return Err(Fault::Swallowed { word }),
+            // NX ends the path of an operation with `END-OF-PATH`; `FINI` may follow.
+            "FINI" | "END-OF-PATH" if !rest.is_empty() => {
+                return Err(ProgramFault::Swallowed { word });
+            }
             "FINI" => self.finished = true,
             "END-OF-PATH" => self.path_ended = true,
             other => self.other(line, text, other, rest)?,
@@ -118,45 +121,45 @@ impl Reader {
         word: &'static str,
         rest: &str,
         rapid: bool,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), ProgramFault> {
         if rest.is_empty() {
-            return Err(Fault::Count { word, found: 0 });
+            return Err(ProgramFault::Count { word, found: 0 });
         }
-        let values = rest.split(',').map(number).collect::<Result<Vec<f64>, Fault>>()?;
+        let values = rest.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>()?;
         let (tip, axis) = match values[..] {
             [x, y, z] => ([x, y, z], self.axis.unwrap_or([0.0, 0.0, 1.0])),
             [x, y, z, i, j, k] => ([x, y, z], [i, j, k]),
             _ => {
-                return Err(Fault::Count { word, found: values.len() });
+                return Err(ProgramFault::Count { word, found: values.len() });
             }
         };
         let pose = axis_pose(tip, axis)?;
         self.axis = Some(axis);
-        self.tape.stops.push(Stop { line, pose, rapid });
+        self.tape.stops.push(CutterLocation { line, pose, rapid });
         Ok(())
     }
 
-    fn multax(&mut self, argument: &str) -> Result<(), Fault> {
+    fn multax(&mut self, argument: &str) -> Result<(), ProgramFault> {
         match argument.to_ascii_uppercase().as_str() {
             "" | "ON" => {}
             "OFF" => self.axis = None,
             _ => {
-                return Err(Fault::Multax { argument: bare(argument) });
+                return Err(ProgramFault::Multax { argument: bare(argument) });
             }
         }
         Ok(())
     }
 
-    fn units(&mut self, line: usize, word: &str) -> Result<(), Fault> {
+    fn units(&mut self, line: usize, word: &str) -> Result<(), ProgramFault> {
         let to = match word.to_ascii_uppercase().as_str() {
             "MM" | "MMS" => Unit::Millimetre,
             "IN" | "INCH" | "INCHES" => Unit::Inch,
-            _ => return Err(Fault::UnknownUnit { unit: bare(word) }),
+            _ => return Err(ProgramFault::UnknownUnit { unit: bare(word) }),
         };
         match self.tape.unit {
-            Some((from, _)) if from != to => Err(Fault::UnitChanges { from, to }),
+            Some((from, _)) if from != to => Err(ProgramFault::UnitChanges { from, to }),
             Some(_) => Ok(()),
-            None if !self.tape.stops.is_empty() => Err(Fault::UnitLate),
+            None if !self.tape.stops.is_empty() => Err(ProgramFault::UnitLate),
             None => {
                 self.tape.unit = Some((to, line));
                 Ok(())
@@ -164,25 +167,25 @@ impl Reader {
         }
     }
 
-    /// A statement of which tool is at the positions: one of a program, before them.
-    fn tool(&mut self, line: usize, word: &str, rest: &str) -> Result<(), Fault> {
+    /// Reads a statement about the tool. A program has one tool, stated before the positions.
+    fn tool(&mut self, line: usize, word: &str, rest: &str) -> Result<(), ProgramFault> {
         let upper = rest.to_ascii_uppercase();
         let mut arguments: Vec<String> = upper.split(',').map(|part| part.trim().into()).collect();
         if word == "TOOL PATH" {
-            // Its name is none of the tool's.
+            // The arguments before `TOOL` name the path and not the tool.
             let tool = arguments.iter().position(|part| part == "TOOL");
             arguments.drain(..tool.unwrap_or(0));
         }
         match self.tools.get(word) {
             Some((first, known)) if *known != arguments || word == "LOADTL" => {
-                return Err(Fault::SecondTool { first: *first });
+                return Err(ProgramFault::SecondTool { first: *first });
             }
-            None if self.went => return Err(Fault::LateTool { word: word.to_owned() }),
+            None if self.went => return Err(ProgramFault::LateTool { word: word.to_owned() }),
             _ => {}
         }
         match (word, &arguments[..]) {
             ("CUTTER", all) => self.cutter(line, all)?,
-            // Diameter, corner, height, and the angles of side and end, as NX writes a mill.
+            // NX writes a mill as diameter, corner, height, and the angles of side and end.
             ("TLDATA", [kind, diameter, corner, more @ ..]) if kind == "MILL" => {
                 let values = [diameter, corner].map(String::as_str).map(number);
                 let [diameter, corner] = [values[0].clone()?, values[1].clone()?];
@@ -201,32 +204,40 @@ impl Reader {
         Ok(())
     }
 
-    /// The cutter that positions are of.
-    fn cutter(&mut self, line: usize, arguments: &[String]) -> Result<(), Fault> {
-        let values =
-            arguments.iter().map(|part| number(part)).collect::<Result<Vec<f64>, Fault>>()?;
+    /// Reads the cutter that the positions refer to.
+    fn cutter(&mut self, line: usize, arguments: &[String]) -> Result<(), ProgramFault> {
+        let values = arguments
+            .iter()
+            .map(|part| number(part))
+            .collect::<Result<Vec<f64>, ProgramFault>>()?;
         self.tape.cutters.push((line, values));
         Ok(())
     }
 
-    /// A word that is none of those read: passed over, or refused.
-    fn other(&mut self, line: usize, text: &str, word: &str, rest: &str) -> Result<(), Fault> {
+    /// Passes over or refuses a word that is not read.
+    fn other(
+        &mut self,
+        line: usize,
+        text: &str,
+        word: &str,
+        rest: &str,
+    ) -> Result<(), ProgramFault> {
         match pass_over(word, rest) {
             Ok(word) => {
                 self.tape.ignored.push((line, word));
                 Ok(())
             }
-            Err(Fault::UnknownWord { .. })
+            Err(ProgramFault::UnknownWord { .. })
                 if word.split([' ', ')']).any(|part| ["GOTO", "FROM", "UNITS"].contains(&part)) =>
             {
-                Err(Fault::Malformed { statement: shown(text) })
+                Err(ProgramFault::Malformed { statement: shown(text) })
             }
             Err(fault) => Err(fault),
         }
     }
 }
 
-/// What [`shown`] gives, without its quotes; nothing for nothing.
+/// Returns the text as [`shown`] quotes it, without the quotes; empty for empty text.
 fn bare(text: &str) -> String {
     if text.is_empty() { String::new() } else { shown(text).trim_matches('`').to_owned() }
 }

@@ -1,28 +1,29 @@
-//! Tables of poses: `x,y,z,i,j,k`, or `x,y,z,qx,qy,qz,qw`, one pose a row.
+//! Tables of poses: `x,y,z,i,j,k`, or `x,y,z,qx,qy,qz,qw`, one pose per row.
 //!
-//! `x,y,z` is the tip and `i,j,k` the unit vector from the tip to the spindle; the quaternion
-//! turns the tool's frame into the part's. The number of columns of the first row decides, and
-//! every other row must have as many. Columns are separated by commas; `#` opens a comment, blank
-//! lines are skipped, and a first row of the names above is taken as such.
+//! `x,y,z` is the tip and `i,j,k` the unit vector from the tip to the spindle. The quaternion turns the tool's
+//! frame into the part's. The first row decides the number of columns, which every other row must have too.
+//! Columns are separated by commas; `#` opens a comment, blank lines are skipped, and a first row may have the
+//! names above.
 //!
-//! A table that [`Program::write_csv`](super::Program::write_csv) wrote says in its first line, a comment, that it
-//! ends with an end mark, another comment. Without that mark such a table was cut short and is refused; tables of
-//! other programs need none.
+//! A table that [`Program::write_csv`](super::Program::write_csv) wrote announces in its first line, a comment,
+//! that it ends with an end mark, another comment. Without that mark the table was truncated and is refused.
+//! Tables of other programs need none.
 
-use super::{Fault, Located, PLAIN_NUMBER, Stop, axis_pose, lines, number, shown};
+use super::{CutterLocation, Located, PLAIN_NUMBER, ProgramFault, axis_pose, lines, number, shown};
 use crate::pose::Pose;
 use nalgebra::Point3;
 
 const AXIS: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
 const QUATERNION: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
 
-/// The first line of a table that was written here, and its last.
+/// The first line of a table that this library wrote.
 pub(super) const HEAD: &str =
     "# touchoff program: complete only with its last line `# end of program`";
+/// The last line of a table that this library wrote.
 pub(super) const END: &str = "# end of program";
 
-/// The positions of a table.
-pub(super) fn read(text: &str) -> Result<Vec<Stop>, Located> {
+/// Reads the positions of a table.
+pub(super) fn read(text: &str) -> Result<Vec<CutterLocation>, Located> {
     check_end(text)?;
     let mut stops = Vec::new();
     let mut columns = None;
@@ -35,16 +36,16 @@ pub(super) fn read(text: &str) -> Result<Vec<Stop>, Located> {
         let names = columns.is_none() && is_names(row, &cells).map_err(|fault| (line, fault))?;
         if !names {
             let pose = pose(row, &cells, columns).map_err(|fault| (line, fault))?;
-            stops.push(Stop { line, pose, rapid: false });
+            stops.push(CutterLocation { line, pose, rapid: false });
         }
         columns = Some(cells.len());
     }
     Ok(stops)
 }
 
-/// Refuses a table that says it has an end mark and does not end with it.
+/// Refuses a table that announces an end mark and does not end with it.
 fn check_end(text: &str) -> Result<(), Located> {
-    // Spreadsheets fill the line up with separators and may put it in quotes.
+    // Spreadsheets pad the line with separators and may put it in quotes.
     let is = |line: &str, mark: &str| {
         line.trim_end_matches([',', ';', '\t', ' ']).trim_matches('"') == mark
     };
@@ -55,12 +56,12 @@ fn check_end(text: &str) -> Result<(), Located> {
     }
     match filled.last() {
         Some((_, line)) if is(line, END) => Ok(()),
-        last => Err((last.map_or(first, |(line, _)| line), Fault::NoEndMark)),
+        last => Err((last.map_or(first, |(line, _)| line), ProgramFault::NoEndMark)),
     }
 }
 
-/// Whether a first row is the columns' names; one of other names is refused.
-fn is_names(row: &str, cells: &[&str]) -> Result<bool, Fault> {
+/// Returns whether a first row has the columns' names; a row of other names is refused.
+fn is_names(row: &str, cells: &[&str]) -> Result<bool, ProgramFault> {
     let numeric = |cell: &&str| cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
     if cells.iter().any(numeric) || cells.iter().any(|cell| cell.parse::<f64>().is_ok()) {
         return Ok(false);
@@ -72,26 +73,26 @@ fn is_names(row: &str, cells: &[&str]) -> Result<bool, Fault> {
     if named(&AXIS) || named(&QUATERNION) {
         Ok(true)
     } else {
-        Err(Fault::Names { names: shown(row) })
+        Err(ProgramFault::Names { names: shown(row) })
     }
 }
 
-/// The pose of a row, which must have `columns` cells if a row before it has set them.
-fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, Fault> {
+/// Returns the pose of a row, which must have `columns` cells if an earlier row has set that number.
+fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, ProgramFault> {
     let found = cells.len();
     let expected = match columns {
         Some(6) => "6 (x,y,z,i,j,k)",
         Some(_) => "7 (x,y,z,qx,qy,qz,qw)",
         None => "6 (x,y,z,i,j,k) or 7 (x,y,z,qx,qy,qz,qw)",
     };
-    let wrong = || Fault::Columns { found, expected, remedy: columns_remedy(row, found) };
+    let wrong = || ProgramFault::Columns { found, expected, remedy: columns_remedy(row, found) };
     if columns.is_some_and(|columns| columns != found) {
         return Err(wrong());
     }
     if !matches!(found, 6 | 7) {
         return Err(wrong());
     }
-    let values = cells.iter().map(|cell| number(cell)).collect::<Result<Vec<f64>, Fault>>();
+    let values = cells.iter().map(|cell| number(cell)).collect::<Result<Vec<f64>, ProgramFault>>();
     match values.map_err(|fault| with_separators(fault, row))?[..] {
         [x, y, z, i, j, k] => axis_pose([x, y, z], [i, j, k]),
         [x, y, z, qx, qy, qz, qw] => quaternion_pose([x, y, z], [qx, qy, qz, qw]),
@@ -99,10 +100,10 @@ fn pose(row: &str, cells: &[&str], columns: Option<usize>) -> Result<Pose, Fault
     }
 }
 
-fn quaternion_pose(tip: [f64; 3], quaternion: [f64; 4]) -> Result<Pose, Fault> {
+fn quaternion_pose(tip: [f64; 3], quaternion: [f64; 4]) -> Result<Pose, ProgramFault> {
     if quaternion == [0.0; 4] {
         let remedy = "give the unit quaternion from the tool's frame to the part's";
-        return Err(Fault::NoDirection { what: "the quaternion qx,qy,qz,qw", remedy });
+        return Err(ProgramFault::NoDirection { what: "the quaternion qx,qy,qz,qw", remedy });
     }
     Ok(Pose::from_quaternion(Point3::from(tip), quaternion)?)
 }
@@ -110,7 +111,7 @@ fn quaternion_pose(tip: [f64; 3], quaternion: [f64; 4]) -> Result<Pose, Fault> {
 const SEMICOLONS: &str =
     "separate the columns by commas, not semicolons, and write decimals with a point";
 
-/// What to do about a wrong number of columns, guessed from how spreadsheets write them.
+/// Returns the remedy for a wrong number of columns, guessed from the formats of spreadsheets.
 fn columns_remedy(row: &str, found: usize) -> &'static str {
     if row.contains(';') {
         SEMICOLONS
@@ -123,12 +124,13 @@ fn columns_remedy(row: &str, found: usize) -> &'static str {
     }
 }
 
-/// Semicolons between decimal commas may give the right number of cells, none a number.
-fn with_separators(fault: Fault, row: &str) -> Fault {
+/// Adapts the remedy of a fault: semicolons between decimal commas may give the right number of cells, but no
+/// numbers.
+fn with_separators(fault: ProgramFault, row: &str) -> ProgramFault {
     match fault {
-        Fault::NotNumber { cell, .. } => {
+        ProgramFault::NotNumber { cell, .. } => {
             let remedy = if row.contains(';') { SEMICOLONS } else { PLAIN_NUMBER };
-            Fault::NotNumber { cell, remedy }
+            ProgramFault::NotNumber { cell, remedy }
         }
         other => other,
     }
@@ -139,15 +141,15 @@ mod tests {
     use super::super::tests::{fan, refusal, shared};
     use super::END;
     use crate::pose::Pose;
-    use crate::program::{Program, Stop};
+    use crate::program::{CutterLocation, Program};
     use nalgebra::{Point3, Vector3};
     use std::path::Path;
 
-    fn stops(text: &str) -> Vec<Stop> {
-        Program::parse(text, "part.csv").expect("it is a table").stops
+    fn stops(text: &str) -> Vec<CutterLocation> {
+        Program::parse(text, "part.csv").expect("it is a table").locations
     }
 
-    /// No beginning of a table that was written here is taken for all of it.
+    /// No truncated table that was written here is taken for a whole one.
     #[test]
     fn no_beginning_is_a_table() {
         let pose = |x| Pose::from_axis(Point3::new(x, 0.5, -12.25), Vector3::z()).expect("a pose");
@@ -182,12 +184,12 @@ mod tests {
         let path = folder.path().join("fan.csv");
         std::fs::write(&path, text).expect("a file");
         let program = Program::read(path).expect("it is a table");
-        assert_eq!((program.stops.len(), program.unit), (25, None));
+        assert_eq!((program.locations.len(), program.unit), (25, None));
         assert!(program.ignored.is_empty());
-        for ((stop, [x, y, z, i, j, k]), line) in program.stops.iter().zip(rows).zip(2..) {
+        for ((stop, [x, y, z, i, j, k]), line) in program.locations.iter().zip(rows).zip(2..) {
             assert_eq!((stop.line, stop.rapid), (line, false));
             assert_eq!(stop.pose.tip(), Point3::new(x, y, z));
-            // Rounded to four digits, and normalised again.
+            // The file's axis is rounded to four digits; it is normalised when read.
             assert!((stop.pose.axis() - Vector3::new(i, j, k)).norm() < 1e-4);
             assert!((stop.pose.axis().norm() - 1.0).abs() < 1e-15);
         }
@@ -198,14 +200,14 @@ mod tests {
 
     fn the_published_fan(path: &Path) {
         let program = Program::read(path).expect("it is a table");
-        assert_eq!(program.stops.len(), 25);
+        assert_eq!(program.locations.len(), 25);
         assert_eq!(program.unit, None);
         assert!(program.ignored.is_empty());
-        let last = program.stops[24];
+        let last = program.locations[24];
         assert_eq!(last.line, 26);
         assert_eq!(last.pose.tip(), Point3::new(-49.4389, -108.7844, 2.0895));
         assert!((last.pose.axis() - Vector3::new(0.6189, -0.2239, 0.7529)).norm() < 1e-4);
-        for stop in &program.stops {
+        for stop in &program.locations {
             assert!((stop.pose.axis().norm() - 1.0).abs() < 1e-15);
             assert!(!stop.rapid);
         }

@@ -1,27 +1,27 @@
-//! The cutter that a program says it is for, beside the tool that is at hand.
+//! Comparison of the cutter that a program states with the tool at hand.
 
 use super::{Cutter, Program, ProgramError};
-use crate::tool::Card;
+use crate::tool::ToolInfo;
 use crate::unit::Unit;
 
-/// Lengths of cutters are written with few digits: they may differ by this part of the diameter.
+/// Tolerance of lengths as a fraction of the diameter: cutters are written with few digits.
 const ROUNDED: f64 = 1e-3;
 
 impl Program {
-    /// Compares the arguments of APT's `CUTTER`, and of NX's `TLDATA/MILL`, with a tool; `part` is the unit of a program that states
-    /// none. Returns the line of a `CUTTER` that cannot be compared: two numbers do not describe the tool
-    /// (see [`Cutter::of`]).
+    /// Compares the arguments of APT's `CUTTER`, and of NX's `TLDATA/MILL`, with a tool. `part` is the unit of
+    /// a program that states none. Returns the line of a `CUTTER` that cannot be compared because two numbers
+    /// do not describe the tool (see [`Cutter::of`]).
     ///
-    /// `CUTTER/d,r,e,f,a,b,h` is the diameter, the radius of the corner, the place of its centre from the
-    /// axis and from the tip, the angles of end and side in degrees, and the height. What is given of the
-    /// first six is compared.
+    /// `CUTTER/d,r,e,f,a,b,h` is the diameter, the radius of the corner, the distances of its centre from the
+    /// axis and from the tip, the angles of end and side in degrees, and the height. Those of the first six
+    /// that are given are compared.
     ///
     /// # Errors
-    /// If one is not the tool's.
-    pub fn check_cutter(&self, card: &Card, part: Unit) -> Result<Option<usize>, ProgramError> {
+    /// If a stated cutter is not the tool's.
+    pub fn check_cutter(&self, info: &ToolInfo, part: Unit) -> Result<Option<usize>, ProgramError> {
         let unit = self.unit.unwrap_or(part);
         let Some((first, _)) = self.cutters.first() else { return Ok(None) };
-        let Some(Cutter { diameter, corner }) = Cutter::of(card, unit) else {
+        let Some(Cutter { diameter, corner }) = Cutter::of(info, unit) else {
             return Ok(Some(*first));
         };
         let expected = [diameter, corner, 0.5 * diameter - corner, corner, 0.0, 0.0];
@@ -35,7 +35,7 @@ impl Program {
             file: self.file.clone(),
             line: *line,
             stated: list.join(","),
-            tool: card.name.to_string(),
+            tool: info.name.to_string(),
             expected: format!("{diameter},{corner}"),
             unit,
         })

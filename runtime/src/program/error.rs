@@ -1,12 +1,11 @@
-//! Why a program is refused.
+//! Errors in programs.
 
 use std::io;
 
 use crate::pose::PoseError;
 use crate::unit::Unit;
 
-/// Why a program could not be taken. The message names the file, the line, the reason and the
-/// remedy.
+/// A reason for which a program is refused. The message names the file, the line, the reason and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgramError {
     /// The file could not be read at all.
@@ -14,10 +13,10 @@ pub enum ProgramError {
     Read {
         /// The file.
         file: String,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// The file names no position.
+    /// The file has no position.
     #[error(
         "{file}: holds no position: give rows of x,y,z,i,j,k or an APT-CL program of GOTO points \
          (G-code is not read)"
@@ -26,12 +25,12 @@ pub enum ProgramError {
         /// The file.
         file: String,
     },
-    /// The file holds one position, and so no motion.
+    /// The file has one position, and so no motion.
     #[error("{file}:{line}: holds one position, and so no motion: give the whole program")]
     OnePosition {
         /// The file.
         file: String,
-        /// Its line, 1-based.
+        /// The line of the position, 1-based.
         line: usize,
     },
     /// The program is for another cutter.
@@ -44,24 +43,24 @@ pub enum ProgramError {
         file: String,
         /// The line of `CUTTER`, 1-based.
         line: usize,
-        /// Its arguments.
+        /// The arguments in the program.
         stated: String,
         /// The tool's name.
         tool: String,
-        /// The arguments that the tool has, in the program's unit.
+        /// The arguments that describe the tool, in the program's unit.
         expected: String,
-        /// That unit.
+        /// The program's unit.
         unit: Unit,
     },
-    /// A line cannot be taken.
+    /// A line is refused.
     #[error("{file}:{line}: {fault}")]
     Line {
         /// The file.
         file: String,
         /// The line, 1-based.
         line: usize,
-        /// What is wrong with it.
-        fault: Fault,
+        /// The fault in it.
+        fault: ProgramFault,
     },
     /// The program states another unit than the part's.
     #[error(
@@ -71,14 +70,14 @@ pub enum ProgramError {
     Unit {
         /// The file.
         file: String,
-        /// The line of `UNITS`, 1-based, of a program that was read.
+        /// The line of `UNITS`, 1-based, in a program that was read.
         line: Option<usize>,
         /// The program's unit.
         said: Unit,
         /// The part's unit.
         part: Unit,
     },
-    /// A solid without an axis, and an axis for its pose.
+    /// The tool is a solid without an axis, and a pose has no spin.
     #[error(
         "{file}:{line}: an axis does not place `{solid}`, a solid without one: give a quaternion, \
          x,y,z,qx,qy,qz,qw"
@@ -93,10 +92,10 @@ pub enum ProgramError {
     },
 }
 
-/// What can be wrong with a line of a program.
+/// A fault in a line of a program.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Fault {
+pub enum ProgramFault {
     /// A byte that is no part of a UTF-8 text, or is NUL.
     #[error("byte {byte} of the file is not UTF-8 text: save it as UTF-8 (not UTF-16 or Latin-1)")]
     NotText {
@@ -108,17 +107,17 @@ pub enum Fault {
         "{start} begins neither a row of x,y,z,i,j,k nor an APT statement: give one or the other"
     )]
     Unrecognised {
-        /// How the line starts.
+        /// The beginning of the line.
         start: String,
     },
-    /// A row with another number of columns.
+    /// A row with a wrong number of columns.
     #[error("found {found} columns, expected {expected}: {remedy}")]
     Columns {
-        /// How many the row has.
+        /// Number of columns of the row.
         found: usize,
-        /// How many it should have, and which.
+        /// The expected number of columns, and their names.
         expected: &'static str,
-        /// What to do about it.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A first row of names that are not the columns'.
@@ -132,7 +131,7 @@ pub enum Fault {
     NotNumber {
         /// The word.
         cell: String,
-        /// What to do about it.
+        /// The remedy.
         remedy: &'static str,
     },
     /// NaN, an infinity, or a number too large to hold.
@@ -144,20 +143,20 @@ pub enum Fault {
     /// A zero axis or quaternion.
     #[error("{what} is zero and points nowhere: {remedy}")]
     NoDirection {
-        /// Which columns.
+        /// The columns in question.
         what: &'static str,
-        /// What to do about it.
+        /// The remedy.
         remedy: &'static str,
     },
-    /// A pose that cannot be one, above all an axis that is no unit vector.
+    /// An invalid pose, usually an axis that is not a unit vector.
     #[error(transparent)]
     Pose(#[from] PoseError),
-    /// `GOTO` or `FROM` with another number of numbers.
+    /// `GOTO` or `FROM` with a wrong number of arguments.
     #[error("{word} has {found} numbers: write {word}/x,y,z or {word}/x,y,z,i,j,k")]
     Count {
         /// The word.
         word: &'static str,
-        /// How many numbers follow it.
+        /// Number of numbers after the word.
         found: usize,
     },
     /// A word that moves the tool in a way that is not interpreted.
@@ -166,7 +165,7 @@ pub enum Fault {
         /// The word.
         word: String,
     },
-    /// A word that changes what positions mean.
+    /// A word that changes the meaning of positions.
     #[error(
         "{word} changes what positions mean: post the program as GOTO points in the part's coordinates"
     )]
@@ -197,13 +196,13 @@ pub enum Fault {
         /// The word.
         word: String,
     },
-    /// A word that is passed over, with a motion in its arguments.
+    /// A word that is passed over, with another statement in its arguments.
     #[error("{word} has another statement in its arguments: give each a line of its own")]
     Swallowed {
         /// The word.
         word: String,
     },
-    /// A tool that is named after positions.
+    /// A tool that is stated after positions.
     #[error("{word} comes after positions, which are of another tool: give one program per tool")]
     LateTool {
         /// The word.
@@ -212,7 +211,7 @@ pub enum Fault {
     /// A control character, or one that some programs take for the end of a line.
     #[error("the character {shown} is neither a blank nor the end of a line: remove it")]
     Control {
-        /// How it is written.
+        /// The escaped character.
         shown: String,
     },
     /// A second tool, or a second cutter.
@@ -224,10 +223,10 @@ pub enum Fault {
     /// A position that is not written as one.
     #[error("{statement} is not understood: write GOTO/x,y,z,i,j,k, with nothing before it")]
     Malformed {
-        /// How the statement starts.
+        /// The beginning of the statement.
         statement: String,
     },
-    /// `MULTAX` with another argument.
+    /// `MULTAX` with an unknown argument.
     #[error("MULTAX/{argument} is not understood: write MULTAX/ON or MULTAX/OFF")]
     Multax {
         /// The argument.
@@ -236,10 +235,10 @@ pub enum Fault {
     /// A unit that is not supported.
     #[error("UNITS/{unit} is not supported: post the program in MM or INCHES")]
     UnknownUnit {
-        /// What was written.
+        /// The unit as written.
         unit: String,
     },
-    /// A second, other unit.
+    /// A second unit that differs from the first.
     #[error("UNITS changes from {from} to {to}: post the whole program in one unit")]
     UnitChanges {
         /// The unit stated before.
@@ -253,7 +252,7 @@ pub enum Fault {
     /// The end of the file before the end of the program.
     #[error("the program stops here without FINI: post it again, or add FINI if this is the end")]
     Unfinished,
-    /// The end of the file before the end mark that its first line speaks of.
+    /// The end of the file before the end mark that its first line announces.
     #[error(
         "the table stops here without its end mark `{}`: write it again, or add the mark if this is the end",
         super::csv::END
@@ -262,7 +261,7 @@ pub enum Fault {
     /// A statement after the end.
     #[error("a statement follows {end}: give one program per file")]
     AfterEnd {
-        /// What ended the program.
+        /// The word that ended the program.
         end: &'static str,
     },
 }

@@ -1,15 +1,15 @@
-//! Both formats, good and bad.
+//! Both formats, with valid and invalid input.
 
 use super::*;
 use std::path::PathBuf;
 
-/// The message of a content that is refused.
+/// Returns the message for content that is refused.
 pub(super) fn refusal(content: impl AsRef<[u8]>) -> String {
     Program::parse(content, "part.cl").expect_err("it is refused").to_string()
 }
 
-/// A table as published programs are: a fan of tilted tool vectors over an arc, rounded to four digits, under
-/// a comment with the columns' names.
+/// Returns a table like published ones, and its rows: a fan of tilted tool axes over an arc, rounded to four
+/// digits, under a comment with the columns' names.
 pub(super) fn fan() -> (String, Vec<[f64; 6]>) {
     let rows: Vec<[f64; 6]> = (0..25)
         .map(|k| {
@@ -34,8 +34,8 @@ pub(super) fn fan() -> (String, Vec<[f64; 6]>) {
     (text, rows)
 }
 
-/// A program as CAM systems post it: a flank pass about a cone, with a link in rapid traverse after each
-/// tenth position, and words that move nothing. The second part is whether each position is in rapid traverse.
+/// Returns a program as CAM systems post it, and its positions, each with a flag that is set in rapid traverse:
+/// a flank pass about a cone, with a rapid link after every tenth position, and words that move nothing.
 pub(super) fn flank() -> (String, Vec<([f64; 6], bool)>) {
     let mut text = String::from(
         "PARTNO/CONE FLANK PASS\nUNITS/MM\nMULTAX/ON\nCUTTER/2.,1.,0.,1.,0.,0.,5.\nLOADTL/1\n\
@@ -56,8 +56,8 @@ pub(super) fn flank() -> (String, Vec<([f64; 6], bool)>) {
     (text + "FINI\n", stops)
 }
 
-/// A file of the shared data, or nothing, said plainly, where it is absent: a checkout alone has none. What is
-/// asked of it is asked of a stand-in made here too.
+/// Returns the path of a file in the shared data. If it is absent, as in a checkout alone, this prints so and
+/// returns `None`; its tests also run on a stand-in made here.
 pub(super) fn shared(name: &str) -> Option<PathBuf> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/paths");
     let path = root.join(name);
@@ -108,7 +108,7 @@ fn quotes_briefly_and_in_one_line() {
     assert_eq!(shown(&"é".repeat(99)), format!("`{}…`", "é".repeat(40)));
 }
 
-/// Any bytes are a program or an error, never a panic.
+/// Any bytes give a program or an error, never a panic.
 #[test]
 fn survives_mutations() {
     let mut seeds = vec![
@@ -141,7 +141,7 @@ fn survives_mutations() {
                 }
             }
             match Program::parse(&bytes, "mutant") {
-                Ok(program) => assert!(!program.stops.is_empty()),
+                Ok(program) => assert!(!program.locations.is_empty()),
                 Err(error) => assert!(error.to_string().starts_with("mutant:")),
             }
         }

@@ -1,20 +1,19 @@
-//! The words of APT-CL that a reader may pass over, and why it may not pass over others.
+//! Words of APT-CL: those that a reader may pass over, and those that it has to refuse.
 //!
-//! A word is passed over only if it can neither move the tool nor change what positions mean, whatever
-//! its arguments, or with the arguments that are given. All other words are refused: what is not
-//! understood could be a motion.
+//! A word is passed over only if it can neither move the tool nor change the meaning of positions, with any
+//! arguments or with the ones given. All other words are refused: an unknown word could be a motion.
 
-use super::{Fault, number};
+use super::{ProgramFault, number};
 
-/// Words whose line is prose to its end: neither `$` nor `;` means anything in it.
+/// Words whose line is prose to its end: neither `$` nor `;` has a meaning in it.
 const PROSE: [&str; 3] = ["PARTNO", "PPRINT", "REMARK"];
 
-/// Words that write text to the control as it stands, to the end of the line: it may hold any motion.
+/// Words that write text to the control verbatim, to the end of the line. The text may contain any motion.
 const VERBATIM: [&str; 2] = ["INSERT", "LETTER"];
 
-/// Words that can neither move the tool nor change what positions mean: names and messages, tolerances
-/// that the positions have already been computed with, speeds and feeds, coolant, stops and waits, the
-/// block numbers and the file of the post-processor, planes that only other words use, displays.
+/// Words that can neither move the tool nor change the meaning of positions: names and messages, tolerances
+/// that were used in computing the positions, speeds and feeds, coolant, stops and waits, the block numbers and
+/// the file of the post-processor, planes that only other words use, displays.
 #[rustfmt::skip]
 const INERT: [&str; 35] = [
     "PARTNO", "PPRINT", "REMARK", "TITLES", "MACHIN", "ISN", "SEQNO", "LEADER", "TMARK", "CLPRNT",
@@ -34,8 +33,8 @@ const MOVES: [&str; 49] = [
     "TERMAC", "LOOPST", "LOOPND", "JUMPTO", "RUN", "COPY", "DNTCUT", "OPSKIP", "DELETE",
 ];
 
-/// Words that change what positions mean: their frame, their point of the tool, whether they are
-/// increments, or which tool and spindle is at them.
+/// Words that change the meaning of positions: their frame, the point of the tool that they refer to, absolute
+/// or incremental mode, or the tool and the spindle in use.
 #[rustfmt::skip]
 const FRAMES: [&str; 21] = [
     "MSYS", "CSYS", "TRACUT", "TRANS", "ORIGIN", "ROTABL", "ROTHED", "ROTATE", "TLAXIS", "TILT",
@@ -43,7 +42,7 @@ const FRAMES: [&str; 21] = [
     "TURRET",
 ];
 
-/// Words of motions that are read: no argument is one of them, nor begins with `GO`.
+/// Words of motions that are read. No argument may be one of them, or a motion that begins with `GO`.
 const MOTIONS: [&str; 3] = ["GOTO", "FROM", "RAPID"];
 
 /// Returns whether a line is prose to its end.
@@ -54,57 +53,59 @@ pub(super) fn is_prose(line: &str) -> bool {
         .any(|prose| line.get(..prose.len()).is_some_and(|word| word.eq_ignore_ascii_case(prose)))
 }
 
-/// Decides whether a statement may be passed over: its word in capitals, with one space between parts.
+/// Decides whether a statement may be passed over, and returns its word. `word` is in capitals, with one space
+/// between its parts.
 ///
 /// # Errors
-/// If it moves the tool, changes what positions mean, or is not known to do neither.
-pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, Fault> {
+/// If the word moves the tool, changes the meaning of positions, or is not known to do neither; if its
+/// arguments contain another statement.
+pub(super) fn pass_over(word: &str, arguments: &str) -> Result<String, ProgramFault> {
     // Prose need not have a `/`.
     if let Some(prose) = PROSE.iter().find(|prose| word.starts_with(**prose)) {
         return Ok((*prose).to_owned());
     }
     if let Some(verbatim) = VERBATIM.iter().find(|verbatim| word.starts_with(**verbatim)) {
-        return Err(Fault::Verbatim { word: (*verbatim).to_owned() });
+        return Err(ProgramFault::Verbatim { word: (*verbatim).to_owned() });
     }
     if INERT.contains(&word) || is_inert_with(word, arguments) {
         refuse_motions(word, arguments)?;
         let moves = |part: &str| MOVES.contains(&part) || FRAMES.contains(&part);
         return match parts(&arguments.to_ascii_uppercase()).any(moves) {
-            true => Err(Fault::Swallowed { word: word.to_owned() }),
+            true => Err(ProgramFault::Swallowed { word: word.to_owned() }),
             false => Ok(word.to_owned()),
         };
     }
     if is_g_code(word) {
-        return Err(Fault::GCode { block: super::shown(word) });
+        return Err(ProgramFault::GCode { block: super::shown(word) });
     }
     // `TLLFT,GOFWD/...` and `L1) GOTO/...` are motions as well.
     let known = |list: &[&str]| {
         word.split([' ', ')', ',', '=']).find(|part| list.contains(part)).map(str::to_owned)
     };
     if let Some(word) = known(&FRAMES) {
-        return Err(Fault::Frame { word });
+        return Err(ProgramFault::Frame { word });
     }
     match known(&MOVES) {
-        Some(word) => Err(Fault::Moves { word }),
-        None => Err(Fault::UnknownWord { word: super::shown(word) }),
+        Some(word) => Err(ProgramFault::Moves { word }),
+        None => Err(ProgramFault::UnknownWord { word: super::shown(word) }),
     }
 }
 
-/// The words and numbers among arguments.
+/// Returns the words and numbers among arguments.
 fn parts(arguments: &str) -> impl Iterator<Item = &str> {
     arguments.split([' ', ',', '\t', '(', ')', '=']).filter(|part| !part.is_empty())
 }
 
-/// Looks for a motion among the arguments of a word, where it stands if a line's end is lost.
+/// Refuses a motion among the arguments of a word. It stands there if the end of a line was lost.
 ///
 /// # Errors
-/// If there is one.
-pub(super) fn refuse_motions(word: &str, arguments: &str) -> Result<(), Fault> {
+/// If there is a motion.
+pub(super) fn refuse_motions(word: &str, arguments: &str) -> Result<(), ProgramFault> {
     let upper = arguments.to_ascii_uppercase();
     let moves =
         |part: &str| MOTIONS.contains(&part) || part.starts_with("GO") && MOVES.contains(&part);
     match upper.contains('/') || parts(&upper).any(moves) {
-        true => Err(Fault::Swallowed { word: word.to_owned() }),
+        true => Err(ProgramFault::Swallowed { word: word.to_owned() }),
         false => Ok(()),
     }
 }
@@ -118,10 +119,10 @@ fn is_g_code(statement: &str) -> bool {
     statement.split(' ').all(is_address)
 }
 
-/// Returns whether a word that could change something changes nothing with these arguments.
+/// Returns whether a word that could have an effect has none with these arguments.
 fn is_inert_with(word: &str, arguments: &str) -> bool {
     let is = |word: &str| arguments.eq_ignore_ascii_case(word);
-    let numbers = || arguments.split(',').map(number).collect::<Result<Vec<f64>, Fault>>();
+    let numbers = || arguments.split(',').map(number).collect::<Result<Vec<f64>, ProgramFault>>();
     match word {
         "CYCLE" | "CUTCOM" | "OPSKIP" => is("OFF"),
         "TRACUT" | "COPY" => is("NOMORE"),

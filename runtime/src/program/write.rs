@@ -1,18 +1,18 @@
-//! Programs out: as APT-CL and as tables, so that what is read back is what was written.
+//! Writing of programs, as APT-CL and as tables, so that reading gives back what was written.
 //!
-//! Numbers are the shortest decimals that give the same bits back, without exponents, which not every
-//! post-processor reads. A tip comes back as it was; an axis is normalised once more when it is read, which
-//! may move its parts by a unit of roundoff.
+//! Numbers are the shortest decimals that give back the same bits, without exponents, since not every
+//! post-processor reads those. A tip is read back exactly. An axis is normalised once more when it is read,
+//! which may change its components by a unit of roundoff.
 
 use super::Program;
 use super::csv::{END, HEAD};
 use crate::pose::Pose;
-use crate::tool::{Card, Piece};
+use crate::tool::{ProfileSegment, ToolInfo};
 use crate::unit::Unit;
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
 
-/// What a program cannot be written for.
+/// A reason for which a program cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// APT-CL has no word for the unit.
@@ -21,7 +21,7 @@ pub enum WriteError {
         /// The program's unit.
         unit: Unit,
     },
-    /// The part's name would end the line that it stands in.
+    /// The part's name contains a control character, such as a line break.
     #[error("the part's name {name:?} has a line break or a control character: leave that out")]
     Part {
         /// The name.
@@ -32,32 +32,33 @@ pub enum WriteError {
     Output(#[from] io::Error),
 }
 
-/// What stands before the positions of an APT-CL program.
+/// The statements before the positions of an APT-CL program.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Heading<'a> {
-    /// What `PARTNO` says; nothing is written for an empty one.
+pub struct AptHeader<'a> {
+    /// The text of `PARTNO`. Nothing is written for an empty one.
     pub part: &'a str,
-    /// What `CUTTER` says, in the program's unit.
+    /// The arguments of `CUTTER`, in the program's unit.
     pub cutter: Option<Cutter>,
 }
 
-/// A cutter as APT's `CUTTER/diameter,radius` describes it, in the program's unit: a flat end with rounded
-/// corners below a cylinder. A ball's corners have half its diameter, an end mill's 0.
+/// A cutter as described by APT's `CUTTER/diameter,radius`, in the program's unit: a flat end with rounded
+/// corners below a cylinder. The corner radius is half the diameter for a ball, and 0 for an end mill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cutter {
-    /// Its diameter.
+    /// The diameter.
     pub diameter: f64,
-    /// The radius of its corners.
+    /// The radius of the corners.
     pub corner: f64,
 }
 
 impl Cutter {
-    /// A tool's cutting end in a unit of length; `None` where two numbers do not describe it: no profile, or
-    /// one that does not begin with a flat end, a rounded corner, a straight flute, or those of them that
-    /// there are. What comes above the first surface that does not cut says nothing.
-    pub fn of(card: &Card, unit: Unit) -> Option<Cutter> {
-        let cutting = |piece: &&Piece| card.surfaces[piece.surface].cutting;
-        let mut pieces = card.outline.iter().take_while(cutting).peekable();
+    /// Returns the cutting end of a tool in a unit of length; `None` if two numbers do not describe it. The
+    /// profile has to begin with a flat end, a rounded corner and a straight flute, or with some of them in
+    /// this order. Above the first surface that does not cut it may have any shape. A tool without a profile
+    /// has no cutter.
+    pub fn of(info: &ToolInfo, unit: Unit) -> Option<Cutter> {
+        let cutting = |piece: &&ProfileSegment| info.surfaces[piece.surface].cutting;
+        let mut pieces = info.outline.iter().take_while(cutting).peekable();
         let (mut at, mut corner) = ([0.0; 2], 0.0);
         pieces.peek().filter(|piece| piece.from == at)?;
         if let Some(face) = pieces.next_if(|p| p.circle.is_none() && p.from[1] == p.to[1]) {
@@ -71,7 +72,7 @@ impl Cutter {
             (at, corner) = round.then_some((piece.to, circle.radius))?;
         }
         let straight = pieces.all(|piece| piece.circle.is_none() && near_by(piece.to[0], at[0]));
-        let length = card.unit.to(unit);
+        let length = info.unit.factor_to(unit);
         let is_one = straight && at[0] > 0.0;
         is_one.then_some(Cutter { diameter: 2.0 * at[0] * length, corner: corner * length })
     }
@@ -81,19 +82,19 @@ fn near(one: [f64; 2], other: [f64; 2]) -> bool {
     near_by(one[0], other[0]) && near_by(one[1], other[1])
 }
 
-/// Whether two lengths of a profile differ by no more than its constants were rounded.
+/// Returns whether two lengths of a profile differ by no more than the rounding of its constants.
 fn near_by(one: f64, other: f64) -> bool {
     (one - other).abs() <= 1e-12 * (one.abs() + other.abs())
 }
 
-/// A statement that is longer is continued on the next line: cards had so many columns for it.
+/// Columns of a line, as on a punched card. A longer statement is continued on the next line.
 const COLUMNS: usize = 72;
 
-/// The word that APT-CL has for a unit.
+/// Returns APT-CL's word for a unit.
 ///
 /// # Errors
-/// It has none for metres.
-pub fn apt_word(unit: Unit) -> Result<&'static str, WriteError> {
+/// If the unit is the metre, for which APT-CL has no word.
+pub fn apt_unit(unit: Unit) -> Result<&'static str, WriteError> {
     match unit {
         Unit::Millimetre => Ok("MM"),
         Unit::Inch => Ok("INCHES"),
@@ -102,14 +103,18 @@ pub fn apt_word(unit: Unit) -> Result<&'static str, WriteError> {
 }
 
 impl Program {
-    /// Writes the program as APT-CL: `PARTNO`, `UNITS` where the unit is known, `MULTAX/ON`, `CUTTER`, a `GOTO`
-    /// for each stop, `RAPID` before those that are reached in rapid traverse, `FINI`. Spins that were given
-    /// are not written, since APT has none.
+    /// Writes the program as APT-CL: `PARTNO`, `UNITS` if the unit is known, `MULTAX/ON`, `CUTTER`, one `GOTO`
+    /// per cutter location, `RAPID` before those that are reached in rapid traverse, `FINI`. Spins are not
+    /// written, since APT has none.
     ///
     /// # Errors
-    /// If the unit is the metre, the part's name is no line of text, or `out` fails.
-    pub fn write_apt(&self, out: &mut impl Write, heading: &Heading<'_>) -> Result<(), WriteError> {
-        let unit = self.unit.map(apt_word).transpose()?;
+    /// If the unit is the metre, if the part's name contains a control character, or if `out` fails.
+    pub fn write_apt(
+        &self,
+        out: &mut impl Write,
+        heading: &AptHeader<'_>,
+    ) -> Result<(), WriteError> {
+        let unit = self.unit.map(apt_unit).transpose()?;
         if heading.part.contains(char::is_control) {
             return Err(WriteError::Part { name: heading.part.to_owned() });
         }
@@ -123,7 +128,7 @@ impl Program {
         if let Some(Cutter { diameter, corner }) = heading.cutter {
             writeln!(out, "CUTTER/{diameter},{corner}")?;
         }
-        for stop in &self.stops {
+        for stop in &self.locations {
             if stop.rapid {
                 writeln!(out, "RAPID")?;
             }
@@ -133,20 +138,21 @@ impl Program {
         Ok(())
     }
 
-    /// Writes the program as a table with a row of names: `x,y,z,i,j,k`, or, where the spin of every pose was
-    /// given, `x,y,z,qx,qy,qz,qw`. A table says neither its unit nor which motions are rapid. Its first line, a
-    /// comment, says that it ends with an end mark, so that no reader here takes a part of it for the whole.
+    /// Writes the program as a table with a row of names: `x,y,z,i,j,k`, or `x,y,z,qx,qy,qz,qw` if every pose
+    /// has a given spin. A table states neither its unit nor which motions are rapid. Its first line, a
+    /// comment, announces an end mark, so that a reader of this library never takes a truncated table for the
+    /// whole.
     ///
     /// # Errors
     /// If `out` fails.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "{HEAD}")?;
-        let full = self.stops.iter().all(|stop| stop.pose.is_full());
+        let full = self.locations.iter().all(|stop| stop.pose.has_spin());
         writeln!(out, "{}", if full { "x,y,z,qx,qy,qz,qw" } else { "x,y,z,i,j,k" })?;
-        for stop in &self.stops {
-            let Place(tip, axis) = Place::of(&stop.pose);
+        for stop in &self.locations {
+            let TipAxis(tip, axis) = TipAxis::of(&stop.pose);
             if full {
-                let turn = stop.pose.isometry().rotation.coords;
+                let turn = stop.pose.to_isometry().rotation.coords;
                 writeln!(out, "{},{}", Listed(&tip), Listed(&[turn.x, turn.y, turn.z, turn.w]))?;
             } else {
                 writeln!(out, "{},{}", Listed(&tip), Listed(&axis))?;
@@ -156,9 +162,9 @@ impl Program {
     }
 }
 
-/// `GOTO/x,y,z,i,j,k`, continued where a line would have too many columns.
+/// Formats `GOTO/x,y,z,i,j,k`, continued where a line would have too many columns.
 fn statement(pose: &Pose) -> String {
-    let Place(tip, axis) = Place::of(pose);
+    let TipAxis(tip, axis) = TipAxis::of(pose);
     let mut statement = String::from("GOTO/");
     let mut columns = statement.len();
     for (k, number) in tip.iter().chain(&axis).enumerate() {
@@ -173,16 +179,16 @@ fn statement(pose: &Pose) -> String {
     statement
 }
 
-/// A pose's tip and axis.
-struct Place([f64; 3], [f64; 3]);
+/// The tip and the axis of a pose.
+struct TipAxis([f64; 3], [f64; 3]);
 
-impl Place {
-    fn of(pose: &Pose) -> Place {
-        Place(pose.tip().into(), pose.axis().into())
+impl TipAxis {
+    fn of(pose: &Pose) -> TipAxis {
+        TipAxis(pose.tip().into(), pose.axis().into())
     }
 }
 
-/// Numbers with commas between them.
+/// Displays numbers separated by commas.
 struct Listed<'a>(&'a [f64]);
 
 impl Display for Listed<'_> {

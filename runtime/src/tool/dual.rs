@@ -1,6 +1,6 @@
-//! Numbers that know how they change along x, y and z: what generated code computes of them is derived
-//! exactly, by the chain rule, operation by operation (Griewank and Walther, *Evaluating Derivatives*,
-//! 2008, section 3.1).
+//! Dual numbers: numbers with their derivatives along x, y and z. Generated code evaluated on them yields exact
+//! derivatives, operation by operation, by the chain rule (Griewank and Walther, *Evaluating Derivatives*, 2008,
+//! section 3.1).
 
 use super::Lane;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -8,19 +8,19 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// A number and its derivatives along three directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dual {
-    /// The number.
+    /// The value.
     pub value: f64,
-    /// What it grows by.
+    /// The derivatives along the three directions.
     pub slope: [f64; 3],
 }
 
 impl Dual {
-    /// What does not change.
+    /// Returns a constant, with derivatives 0.
     pub fn constant(value: f64) -> Dual {
         Dual { value, slope: [0.0; 3] }
     }
 
-    /// A point's coordinates, each of which grows along its own axis.
+    /// Returns a point's coordinates, each with derivative 1 along its own axis.
     pub fn point(point: [f64; 3]) -> [Dual; 3] {
         [0, 1, 2].map(|axis| {
             let mut slope = [0.0; 3];
@@ -29,13 +29,13 @@ impl Dual {
         })
     }
 
-    /// A function of one number, with its value and derivative there.
+    /// Returns a function of one number, given the function's value and derivative there.
     #[inline(always)]
     fn chain(self, value: f64, derivative: f64) -> Dual {
         Dual { value, slope: self.slope.map(|part| derivative * part) }
     }
 
-    /// A function of two.
+    /// Returns a function of two numbers, given its value and its partial derivatives `by`.
     #[inline(always)]
     fn both(self, other: Dual, value: f64, by: [f64; 2]) -> Dual {
         let slope = [0, 1, 2].map(|k| by[0] * self.slope[k] + by[1] * other.slope[k]);
@@ -108,8 +108,8 @@ impl Mul<f64> for Dual {
     }
 }
 
-/// A root at 0 and an absolute value at 0 have no derivative; 0 is taken. So is that of a quotient by 0,
-/// which is 0 itself.
+/// The derivatives of a square root and of an absolute value at 0 do not exist; they are set to 0. The quotient
+/// [`Lane::quotient`] by 0 is the constant 0, with derivative 0.
 impl Lane for Dual {
     type Mask = bool;
 

@@ -1,8 +1,9 @@
 //! Tools that are loaded at run time.
 
 use super::{
-    Ask, Card, Circle, Depth, Dual, Enclosed, Enclosure, Felt, LANES, Lane, Maybe, Piece, Points,
-    Region, Senses, Shape, Slab, Slopes, Surface, Tool, Wanted,
+    BatchEvaluator, Circle, DepthBounds, Derivatives, Dual, Enclosure, EnvelopeSlab,
+    EvaluationEnclosure, Evaluations, LANES, Lane, OutputSelection, Outputs, PointBatch,
+    ProfileSegment, Region, Surface, Symmetry, Ternary, Tool, ToolInfo,
 };
 use crate::unit::Unit;
 use fearless_simd::{Level, Simd, dispatch};
@@ -10,22 +11,21 @@ use std::borrow::Cow;
 use std::path::Path;
 use tool_dsl::bound::across;
 use tool_dsl::domain::Domain;
-use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, Scratch, Tape, Value, Walk};
+use tool_dsl::interpret::{BLOCK, Lanes, OUTPUTS, PlanWalk, Scratch, Tape, Value};
 use tool_dsl::prove::Bounds;
 use tool_dsl::source::Source;
 use tool_dsl::{Accepted, CheckedTool, compile_with, diagnostic, digest, model};
 
 /// A tool from a `.tool` file, evaluated by the interpreter.
 pub struct Interpreted {
-    card: Card,
-    felt: Vec<Tape>,
-    walk: Walk,
+    info: ToolInfo,
+    evaluations: Vec<Tape>,
+    walk: PlanWalk,
     outside: Tape,
     warnings: String,
 }
 
-/// A `.tool` file that could not be loaded; the message is for people, with the place and the
-/// remedy.
+/// A `.tool` file that could not be loaded. The message is meant for people, and has the position and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum ToolError {
     /// The file could not be read.
@@ -33,32 +33,48 @@ pub enum ToolError {
     Unreadable {
         /// The file.
         file: String,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// The file says something wrong.
+    /// The file has errors.
     #[error("{0}")]
     Wrong(String),
 }
 
 impl Interpreted {
     /// Loads a `.tool` file.
+    ///
+    /// # Errors
+    ///
+    /// [`ToolError::Unreadable`] if the file cannot be read, [`ToolError::Wrong`] if it does not compile.
     pub fn load(path: impl AsRef<Path>) -> Result<Interpreted, ToolError> {
         Interpreted::parse(&Interpreted::source(path)?)
     }
 
-    /// The text of a `.tool` file.
+    /// Reads the text of a `.tool` file.
+    ///
+    /// # Errors
+    ///
+    /// [`ToolError::Unreadable`] if the file cannot be read.
     pub fn source(path: impl AsRef<Path>) -> Result<Source, ToolError> {
         let file = diagnostic::escaped(&path.as_ref().display().to_string()).into_owned();
         Source::read(path).map_err(|source| ToolError::Unreadable { file, source })
     }
 
     /// Compiles a tool's text.
+    ///
+    /// # Errors
+    ///
+    /// [`ToolError::Wrong`] with all diagnostics if the text does not compile.
     pub fn parse(source: &Source) -> Result<Interpreted, ToolError> {
         Interpreted::parse_with(source, &[])
     }
 
-    /// Compiles a tool's text with what its params are given, as `D = 0.25inch, flute = 18`.
+    /// Compiles a tool's text with arguments for its parameters, such as `D = 0.25inch, flute = 18`.
+    ///
+    /// # Errors
+    ///
+    /// [`ToolError::Wrong`] with all diagnostics if the text or the arguments do not compile.
     pub fn parse_with(source: &Source, given: &[Source]) -> Result<Interpreted, ToolError> {
         let compiled = compile_with(source, given);
         let said: Vec<String> =
@@ -66,25 +82,27 @@ impl Interpreted {
         let said = said.join("\n\n");
         match compiled.outcome {
             Ok(Accepted { tool, .. }) => Ok(Interpreted {
-                card: card(&tool),
-                felt: (0..tool.model.regions.len()).map(|k| Tape::felt(&tool, k)).collect(),
-                walk: Walk::new(&tool),
-                outside: Tape::outside(&tool),
+                info: info(&tool),
+                evaluations: (0..tool.model.regions.len())
+                    .map(|k| Tape::evaluation(&tool, k))
+                    .collect(),
+                walk: PlanWalk::new(&tool),
+                outside: Tape::clearance(&tool),
                 warnings: said,
             }),
             Err(_) => Err(ToolError::Wrong(said)),
         }
     }
 
-    /// What the compiler warned of; empty if nothing.
+    /// Returns the compiler's warnings; empty if there are none.
     pub fn warnings(&self) -> &str {
         &self.warnings
     }
 }
 
-fn card(tool: &CheckedTool) -> Card {
+fn info(tool: &CheckedTool) -> ToolInfo {
     let model = &tool.model;
-    Card {
+    ToolInfo {
         name: Cow::Owned(model.name.clone()),
         title: Cow::Owned(model.title.clone().unwrap_or_default()),
         unit: match model.unit {
@@ -102,29 +120,33 @@ fn card(tool: &CheckedTool) -> Card {
             .iter()
             .map(|r| Region { name: Cow::Owned(r.name.clone()), surface: r.surface })
             .collect(),
-        envelope: tool.envelope().iter().map(|s| Slab::new(s.low, s.high, s.radius)).collect(),
-        shape: match model.domain {
-            Domain::HalfPlane => Shape::Revolved,
-            Domain::Space => Shape::Solid { across: across(&tool.extent) },
+        envelope: tool
+            .envelope()
+            .iter()
+            .map(|s| EnvelopeSlab::new(s.low, s.high, s.radius))
+            .collect(),
+        symmetry: match model.domain {
+            Domain::HalfPlane => Symmetry::Revolved,
+            Domain::Space => Symmetry::Solid { across: across(&tool.extent) },
         },
         outline: model.outline().map(piece).collect(),
         depth: {
             let Bounds { least, lipschitz, rounding } = tool.bounds();
-            Depth { least, lipschitz, rounding }
+            DepthBounds { least, lipschitz, rounding }
         },
         digest: digest(tool),
     }
 }
 
-fn piece(of: model::Piece) -> Piece {
-    let model::Piece { ends: [from, to], circle, surface } = of;
+fn piece(of: model::ProfileSegment) -> ProfileSegment {
+    let model::ProfileSegment { ends: [from, to], circle, surface } = of;
     let circle = circle.map(|(centre, radius, convex)| Circle { centre, radius, convex });
-    Piece { from, to, circle, surface }
+    ProfileSegment { from, to, circle, surface }
 }
 
 impl Tool for Interpreted {
-    fn card(&self) -> &Card {
-        &self.card
+    fn info(&self) -> &ToolInfo {
+        &self.info
     }
 
     fn clearance(&self, point: [f64; 3]) -> f64 {
@@ -139,39 +161,51 @@ impl Tool for Interpreted {
         results[0][0]
     }
 
-    fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
-        felt.reserve(points, ask);
+    fn evaluate(
+        &self,
+        level: Level,
+        ask: Outputs,
+        points: &PointBatch,
+        length: f64,
+        evaluations: &mut Evaluations,
+    ) {
+        evaluations.reserve(points, ask);
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || self.all(ask, points, length, felt),
+            || self.all(ask, points, length, evaluations),
         ));
     }
 
-    fn enclose(&self, sides: [[f64; 2]; 3], at: [f64; 3], room: &mut Felt) -> Option<Enclosed> {
-        if !self.card.outline.is_empty() {
+    fn enclose(
+        &self,
+        sides: [[f64; 2]; 3],
+        at: [f64; 3],
+        room: &mut Evaluations,
+    ) -> Option<EvaluationEnclosure> {
+        if !self.info.outline.is_empty() {
             return None;
         }
         let (point, one) = (Enclosure::of_box(sides, at), Enclosure::constant(1.0));
-        let mut found = Enclosed::nothing();
+        let mut found = EvaluationEnclosure::nothing();
         let visit = |owner, test| found.take(owner, test);
         self.walk.each_owner(point, one, &mut room.enclosures, visit);
         Some(found)
     }
 
-    fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes {
+    fn derivatives(&self, point: [f64; 3], length: f64, room: &mut Evaluations) -> Derivatives {
         let mut results = [Dual::default(); OUTPUTS];
         let duals = (Dual::point(point), Dual::constant(length));
         self.walk.run(duals.0, duals.1, &mut room.duals, &mut results);
         let three = |from: usize| std::array::from_fn(|k| results[from + k]);
-        Slopes::of(three(4), three(7), length)
+        Derivatives::of(three(4), three(7), length)
     }
 
-    fn reserve(&self, felt: &mut Felt) {
-        self.walk.reserve(&mut felt.scratch);
-        self.walk.reserve(&mut felt.duals);
-        self.walk.reserve_block(&mut felt.lanes);
-        for tape in &self.felt {
-            tape.reserve(&mut felt.registers);
+    fn reserve(&self, evaluations: &mut Evaluations) {
+        self.walk.reserve(&mut evaluations.scratch);
+        self.walk.reserve(&mut evaluations.duals);
+        self.walk.reserve_block(&mut evaluations.lanes);
+        for tape in &self.evaluations {
+            tape.reserve(&mut evaluations.registers);
         }
     }
 }
@@ -211,11 +245,11 @@ impl Value for Enclosure {
         Lane::abs(self)
     }
     fn le(a: Enclosure, b: Enclosure) -> [bool; 2] {
-        let Maybe { yes, no, .. } = Lane::le(a, b);
+        let Ternary { yes, no, .. } = Lane::le(a, b);
         [yes, no]
     }
     fn lt(a: Enclosure, b: Enclosure) -> [bool; 2] {
-        let Maybe { yes, no, .. } = Lane::lt(a, b);
+        let Ternary { yes, no, .. } = Lane::lt(a, b);
         [yes, no]
     }
     fn either(self, other: Enclosure) -> Enclosure {
@@ -229,39 +263,50 @@ impl Value for Enclosure {
     }
 }
 
-impl Senses for Interpreted {
-    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
-        self.evaluate(level, W::ASK, points, length, felt);
+impl BatchEvaluator for Interpreted {
+    fn evaluate_outputs<W: OutputSelection>(
+        &self,
+        level: Level,
+        points: &PointBatch,
+        length: f64,
+        evaluations: &mut Evaluations,
+    ) {
+        self.evaluate(level, W::OUTPUTS, points, length, evaluations);
     }
 }
 
 impl Interpreted {
     #[inline(always)]
-    fn all(&self, ask: Ask, points: &Points, length: f64, felt: &mut Felt) {
-        // Results are owner, depth, magnitude, niceness, direction, gradient.
+    fn all(&self, ask: Outputs, points: &PointBatch, length: f64, evaluations: &mut Evaluations) {
+        // Results are in this order: owner, depth, magnitude, niceness, direction, gradient.
         let wanted = match ask {
-            Ask { gradient: true, .. } => OUTPUTS,
-            Ask { direction: true, .. } => 7,
-            Ask { niceness: true, .. } => 4,
-            Ask { magnitude: true, .. } => 3,
-            Ask { depth: true, .. } => 2,
+            Outputs { gradient: true, .. } => OUTPUTS,
+            Outputs { direction: true, .. } => 7,
+            Outputs { niceness: true, .. } => 4,
+            Outputs { magnitude: true, .. } => 3,
+            Outputs { depth: true, .. } => 2,
             _ => 1,
         };
         let coordinates = points.coordinates();
         for start in (0..points.len()).step_by(BLOCK) {
             let count = BLOCK.min(points.len() - start);
             if count <= FEW {
-                self.one_by_one(start..start + count, coordinates, (ask, wanted, length), felt);
+                self.one_by_one(
+                    start..start + count,
+                    coordinates,
+                    (ask, wanted, length),
+                    evaluations,
+                );
             } else {
-                self.block(start, coordinates, (ask, wanted, length), points.len(), felt);
+                self.block(start, coordinates, (ask, wanted, length), points.len(), evaluations);
             }
         }
     }
 }
 
-/// Up to so many points of a block are walked one by one: the tape does all of a block's lanes.
+/// Blocks with at most this many points are walked point by point, because a tape computes all lanes of a block.
 const FEW: usize = 8;
-/// From so many points of a region on, its tape is faster than as many walks.
+/// From this many points of a region on, its tape is faster than a walk per point.
 const SEVERAL: usize = 8;
 
 impl Interpreted {
@@ -269,18 +314,18 @@ impl Interpreted {
         &self,
         places: std::ops::Range<usize>,
         [x, y, z]: [&[f64]; 3],
-        (ask, wanted, length): (Ask, usize, f64),
-        felt: &mut Felt,
+        (ask, wanted, length): (Outputs, usize, f64),
+        evaluations: &mut Evaluations,
     ) {
         let mut results = [0.0; OUTPUTS];
         for at in places {
             let point = [x[at], y[at], z[at]];
-            self.walk.run(point, length, &mut felt.scratch, &mut results[..wanted]);
+            self.walk.run(point, length, &mut evaluations.scratch, &mut results[..wanted]);
             if results[0] < 0.0 {
                 continue;
             }
-            felt.inside[at / LANES] |= 1 << (at % LANES);
-            put(felt, ask, |list, result| list[at] = results[result]);
+            evaluations.inside[at / LANES] |= 1 << (at % LANES);
+            put(evaluations, ask, |list, result| list[at] = results[result]);
         }
     }
 
@@ -289,9 +334,9 @@ impl Interpreted {
         &self,
         start: usize,
         coordinates: [&[f64]; 3],
-        (ask, wanted, length): (Ask, usize, f64),
+        (ask, wanted, length): (Outputs, usize, f64),
         total: usize,
-        felt: &mut Felt,
+        evaluations: &mut Evaluations,
     ) {
         let mut block: [Lanes; 3] = [[0.0; BLOCK]; 3];
         let mut owners = [-1.0; BLOCK];
@@ -300,14 +345,14 @@ impl Interpreted {
             part[..count].copy_from_slice(&list[start..start + count]);
         }
         let points = (block.each_ref(), count);
-        self.walk.owners(points, length, &mut felt.lanes, &mut owners);
+        self.walk.owners(points, length, &mut evaluations.lanes, &mut owners);
         for (at, _) in owners[..count].iter().enumerate().filter(|(_, owner)| **owner >= 0.0) {
-            felt.inside[(start + at) / LANES] |= 1 << (at % LANES);
+            evaluations.inside[(start + at) / LANES] |= 1 << (at % LANES);
         }
-        if ask == Ask::INSIDE {
+        if ask == Outputs::INSIDE {
             return;
         }
-        // Lists without memory of their own, since a haptic loop may not ask for any.
+        // Fixed-size lists, since a haptic loop may not allocate.
         let (mut left, mut own) = ([0; BLOCK], [0; BLOCK]);
         let mut many = 0;
         for at in (0..count).filter(|at| owners[*at] >= 0.0) {
@@ -340,17 +385,28 @@ impl Interpreted {
                 for lane in 0..own.len() {
                     let point = [0, 1, 2].map(|k| gathered[k][lane]);
                     let one = &mut one[..wanted - 1];
-                    self.walk.felt(region as usize, point, length, &mut felt.scratch, one);
+                    self.walk.evaluate(
+                        region as usize,
+                        point,
+                        length,
+                        &mut evaluations.scratch,
+                        one,
+                    );
                     for (result, value) in results[1..].iter_mut().zip(one) {
                         result[lane] = *value;
                     }
                 }
             } else {
-                let tape = &self.felt[region as usize];
+                let tape = &self.evaluations[region as usize];
                 let results = &mut results[1..wanted];
-                tape.run((gathered.each_ref(), own.len()), length, &mut felt.registers, results);
+                tape.run(
+                    (gathered.each_ref(), own.len()),
+                    length,
+                    &mut evaluations.registers,
+                    results,
+                );
             }
-            put(felt, ask, |list, result| {
+            put(evaluations, ask, |list, result| {
                 for (lane, at) in own.iter().enumerate() {
                     list[start + at] = results[result][lane];
                 }
@@ -360,26 +416,26 @@ impl Interpreted {
     }
 }
 
-/// Hands each list that is asked for on, with the number of its result.
-fn put(felt: &mut Felt, ask: Ask, mut copy: impl FnMut(&mut Vec<f64>, usize)) {
+/// Calls `copy` for each component of the requested outputs, with its list and the index of its result.
+fn put(evaluations: &mut Evaluations, ask: Outputs, mut copy: impl FnMut(&mut Vec<f64>, usize)) {
     if ask.depth {
-        copy(&mut felt.depth, 1);
+        copy(&mut evaluations.depth, 1);
     }
     if ask.magnitude {
-        copy(&mut felt.magnitude, 2);
+        copy(&mut evaluations.magnitude, 2);
     }
     if ask.niceness {
-        copy(&mut felt.niceness, 3);
+        copy(&mut evaluations.niceness, 3);
     }
     for part in 0..3 {
         if ask.direction {
-            copy(&mut felt.direction[part], 4 + part);
+            copy(&mut evaluations.direction[part], 4 + part);
         }
         if ask.gradient {
-            copy(&mut felt.gradient[part], 7 + part);
+            copy(&mut evaluations.gradient[part], 7 + part);
         }
     }
     if ask.region {
-        copy(&mut felt.region, 0);
+        copy(&mut evaluations.region, 0);
     }
 }

@@ -1,12 +1,12 @@
-//! The arithmetic that generated code is written in: one number, or a vector of them.
+//! The arithmetic that generated code is written in, on a single number or on a vector of numbers.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8, mask64x8};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A number, or several side by side.
+/// A number, or several numbers side by side.
 ///
-/// Every operation is IEEE 754 double precision, rounded once, in every lane, so that generated
-/// code has the same bits on every machine. There is no fused multiply-add on purpose.
+/// Every operation is IEEE 754 double precision, rounded once, in every lane, so generated code produces the same bits
+/// on every machine. For the same reason there is no fused multiply-add.
 pub trait Lane:
     Copy
     + Add<Output = Self>
@@ -18,51 +18,51 @@ pub trait Lane:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// Yes or no for every lane.
+    /// One truth value per lane.
     type Mask: Copy
         + BitAnd<Output = Self::Mask>
         + BitOr<Output = Self::Mask>
         + Not<Output = Self::Mask>;
 
-    /// A constant in all the lanes that `self` has.
+    /// Returns a constant in as many lanes as `self` has.
     fn of(self, value: f64) -> Self;
-    /// What stands where nothing is selected.
+    /// Returns the value of lanes in which nothing has been selected.
     #[inline(always)]
     fn none(self) -> Self {
         self.of(0.0)
     }
-    /// Square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
-    /// Absolute value.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// `a ≤ b`
+    /// Returns the mask of `a ≤ b`.
     fn le(a: Self, b: Self) -> Self::Mask;
-    /// `a < b`
+    /// Returns the mask of `a < b`.
     fn lt(a: Self, b: Self) -> Self::Mask;
-    /// Whether the mask is set anywhere.
+    /// Returns whether the mask is set in any lane.
     fn any(mask: Self::Mask) -> bool;
-    /// `yes` where the mask is set, `no` elsewhere.
+    /// Returns `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// The smaller; `b` where they are equal.
+    /// Returns the smaller number; `b` where they are equal.
     #[inline(always)]
     fn min(a: Self, b: Self) -> Self {
         Self::select(Self::lt(a, b), a, b)
     }
 
-    /// The larger; `b` where they are equal.
+    /// Returns the larger number; `b` where they are equal.
     #[inline(always)]
     fn max(a: Self, b: Self) -> Self {
         Self::select(Self::lt(b, a), a, b)
     }
 
-    /// [`Lane::select`] for the numbers of regions.
+    /// Does the same as [`Lane::select`], for region indices.
     #[inline(always)]
     fn pick(mask: Self::Mask, region: Self, before: Self) -> Self {
         Self::select(mask, region, before)
     }
 
-    /// `a / b`, and 0 where `b` is 0.
+    /// Returns `a / b`, and 0 where `b` is 0.
     #[inline(always)]
     fn quotient(a: Self, b: Self) -> Self {
         let zero = a.of(0.0);

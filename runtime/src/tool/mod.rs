@@ -1,32 +1,36 @@
-//! What a tool is to the runtime: a card that describes it, and evaluators of what is felt.
+//! The runtime's view of a tool: a description ([`ToolInfo`]) and evaluators of depth, magnitude, direction and
+//! niceness.
 //!
-//! Everything here is in the tool's frame (tip at the origin, +z from the tip to the spindle; for
-//! a `solid` its file's frame) and in the unit of the tool's file, unless it says otherwise.
+//! Everything here is in the tool's frame (tip at the origin, +z from the tip to the spindle; for a `solid` its file's
+//! frame) and in the unit of the tool's file, unless stated otherwise.
 
-mod card;
 mod compiled;
 mod dual;
 mod enclosure;
+mod info;
 #[cfg(feature = "interpreter")]
 mod interpreted;
 mod lane;
 
-pub use card::{Card, Circle, Depth, Piece, Region, Shape, Slab, Surface};
-pub use compiled::{Evaluators, FeltLanes};
+pub use compiled::{Evaluators, LaneEvaluation};
 pub use dual::Dual;
 pub(crate) use enclosure::bit;
-pub use enclosure::{Enclosed, Enclosure, Maybe};
+pub use enclosure::{Enclosure, EvaluationEnclosure, Ternary};
+pub use info::{
+    Circle, DepthBounds, EnvelopeSlab, ProfileSegment, Region, Surface, Symmetry, ToolInfo,
+};
 #[cfg(feature = "interpreter")]
 pub use interpreted::{Interpreted, ToolError};
 pub use lane::Lane;
 
 use fearless_simd::Level;
 
-/// How many points evaluators do at a time; buffers are padded to a multiple of it.
+/// The number of points that evaluators process at a time; buffers are padded to a multiple of it.
 pub const LANES: usize = 8;
 
-/// Returns what is computed on vectors, at levels that have those of four doubles at least, or are all
-/// there is: with two a side, there would be four times the code for nothing.
+/// Evaluates an expression with vector instructions and returns its value from the enclosing function, at the levels
+/// AVX-512, AVX2 and NEON. Does nothing at other levels. Vectors of two doubles are used only where there are no wider
+/// ones (NEON), since they make the code four times as large.
 macro_rules! on_vectors {
     ($level:expr, $simd:ident => $body:expr) => {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -56,80 +60,109 @@ macro_rules! on_vectors {
 
 pub(crate) use on_vectors;
 
-/// A tool that can be asked what it feels: one that was compiled, or one that is interpreted.
+/// A tool that can be evaluated: compiled, interpreted, or implemented by the user.
 pub trait Tool: Send + Sync {
-    /// Who it is and how far it reaches.
-    fn card(&self) -> &Card;
+    /// The tool's name, surfaces, regions and extent.
+    fn info(&self) -> &ToolInfo;
 
-    /// The distance from a point of the tool's frame to the tool, in the file's unit: 0 inside, a
-    /// lower bound unless [`Card::exact`]. Farther away than some 64 of the tool's sizes it is that to a
-    /// cylinder about the tool, and so too small by less than the size.
+    /// Returns the distance from a point of the tool's frame to the tool, in the file's unit.
+    ///
+    /// It is 0 inside, and a lower bound unless [`ToolInfo::is_exact`]. Farther away than 48 sizes of the tool it
+    /// is the distance to a cylinder around the tool, and therefore too small by less than one size.
     fn clearance(&self, point: [f64; 3]) -> f64;
 
-    /// Evaluates what is asked for at points of the tool's frame.
+    /// Evaluates the requested outputs at points of the tool's frame.
     ///
-    /// `length` is the length of the file's unit in the part's, by which a magnitude that is the
-    /// depth is scaled. The answer has the same bits whatever the level.
-    fn evaluate(&self, level: Level, ask: Ask, points: &Points, length: f64, felt: &mut Felt);
+    /// `length` is the length of the file's unit in the part's unit. A magnitude that is the depth is scaled by it. The
+    /// result has the same bits at every level.
+    fn evaluate(
+        &self,
+        level: Level,
+        ask: Outputs,
+        points: &PointBatch,
+        length: f64,
+        evaluations: &mut Evaluations,
+    );
 
-    /// How what is felt at a point inside changes with where it is: as the region says that it belongs to, on
-    /// borders too. `room` is kept between calls.
-    fn slopes(&self, point: [f64; 3], length: f64, room: &mut Felt) -> Slopes;
+    /// Returns the derivatives of the evaluation at a point inside, by the formulas of the region that owns the point,
+    /// also on borders between regions. `room` is scratch memory, kept between calls.
+    fn derivatives(&self, point: [f64; 3], length: f64, room: &mut Evaluations) -> Derivatives;
 
-    /// What is felt in a box of the tool's frame, its sides from one end to another: enclosed in real
-    /// arithmetic, of the expressions as they are evaluated, with slopes from a point of the box. The box of a
-    /// tool with an axis lies in the half plane `y = 0`, `x ≥ 0`. `None` of a tool that has a profile, of which
-    /// more is known, and of one that does not tell. `room` is kept between calls.
-    fn enclose(&self, _sides: [[f64; 2]; 3], _at: [f64; 3], _room: &mut Felt) -> Option<Enclosed> {
+    /// Returns an enclosure of the evaluation over a box of the tool's frame, or `None`.
+    ///
+    /// The enclosure holds in real arithmetic for the expressions as they are evaluated. Its slopes are taken from the
+    /// point `_at`, which lies in the box. `_sides` has both ends of the box along x, y and z; for a tool with an axis
+    /// the box lies in the half plane `y = 0`, `x ≥ 0`. `_room` is scratch memory, kept between calls.
+    ///
+    /// Returns `None` for a tool with a profile, about which more is known, and for a tool that does not support
+    /// enclosures.
+    fn enclose(
+        &self,
+        _sides: [[f64; 2]; 3],
+        _at: [f64; 3],
+        _room: &mut Evaluations,
+    ) -> Option<EvaluationEnclosure> {
         None
     }
 
-    /// Reserves in `felt` the memory that the tool itself keeps there between calls of
-    /// [`Tool::evaluate`] and [`Tool::slopes`], so that they allocate none. A tool that keeps nothing
-    /// has nothing to do.
-    fn reserve(&self, _felt: &mut Felt) {}
+    /// Reserves in `_felt` the memory that the tool itself keeps there between calls of [`Tool::evaluate`] and
+    /// [`Tool::derivatives`], so that they do not allocate. A tool that keeps nothing need not implement it.
+    fn reserve(&self, _felt: &mut Evaluations) {}
 }
 
-/// Derivatives by the position in the part's unit, in the tool's frame: row by row of what changes, along x,
-/// y and z. What is not differentiable at a point, such as a direction on the axis, counts as unchanged.
+/// Derivatives with respect to the position in the part's unit, in the tool's frame. Each matrix has one row per
+/// component of the differentiated vector and one column per axis x, y and z. A quantity that is not differentiable at
+/// a point, such as the direction on the axis, counts as constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Slopes {
-    /// Of the direction to the nearest surface.
+pub struct Derivatives {
+    /// Derivative of the direction to the nearest surface.
     pub direction: [[f64; 3]; 3],
-    /// Of the magnitude's gradient.
+    /// Derivative of the magnitude's gradient.
     pub gradient: [[f64; 3]; 3],
 }
 
-impl Slopes {
-    /// From what a tool computes at a [`Dual::point`] of its own unit.
-    pub(crate) fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Slopes {
+impl Derivatives {
+    /// Converts results computed at a [`Dual::point`] of the tool's own unit to derivatives in the part's unit.
+    pub(crate) fn of(direction: [Dual; 3], gradient: [Dual; 3], length: f64) -> Derivatives {
         let rows = |parts: [Dual; 3]| parts.map(|part| part.slope.map(|slope| slope / length));
-        Slopes { direction: rows(direction), gradient: rows(gradient) }
+        Derivatives { direction: rows(direction), gradient: rows(gradient) }
     }
 }
 
-/// What a caller wants, as a type.
-pub trait Wanted {
-    /// What is wanted.
-    const ASK: Ask;
+/// A selection of outputs, as a type.
+pub trait OutputSelection {
+    /// The selected outputs.
+    const OUTPUTS: Outputs;
 }
 
-/// A tool that knows what is wanted of it when it is compiled, so that no code is made for what nobody
-/// wants. Every compiled tool does; a `dyn Tool` learns it when it is asked.
-pub trait Senses: Tool {
-    /// [`Tool::evaluate`] for what a type says.
-    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt);
+/// A tool whose outputs are selected at compile time, so that no code is generated for outputs that nobody requests.
+/// Every compiled tool implements it; a `dyn Tool` receives the selection at run time.
+pub trait BatchEvaluator: Tool {
+    /// Does the same as [`Tool::evaluate`], for the outputs that `W` selects.
+    fn evaluate_outputs<W: OutputSelection>(
+        &self,
+        level: Level,
+        points: &PointBatch,
+        length: f64,
+        evaluations: &mut Evaluations,
+    );
 }
 
-impl Senses for dyn Tool + '_ {
-    fn feel<W: Wanted>(&self, level: Level, points: &Points, length: f64, felt: &mut Felt) {
-        self.evaluate(level, W::ASK, points, length, felt);
+impl BatchEvaluator for dyn Tool + '_ {
+    fn evaluate_outputs<W: OutputSelection>(
+        &self,
+        level: Level,
+        points: &PointBatch,
+        length: f64,
+        evaluations: &mut Evaluations,
+    ) {
+        self.evaluate(level, W::OUTPUTS, points, length, evaluations);
     }
 }
 
-/// What a caller wants of every point inside; what it does not want is not computed.
+/// The outputs to compute at every point inside; others are not computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ask {
+pub struct Outputs {
     /// Penetration depth.
     pub depth: bool,
     /// Magnitude.
@@ -144,9 +177,9 @@ pub struct Ask {
     pub region: bool,
 }
 
-impl Ask {
-    /// Only which points are inside.
-    pub const INSIDE: Ask = Ask {
+impl Outputs {
+    /// No outputs: only which points are inside.
+    pub const INSIDE: Outputs = Outputs {
         depth: false,
         magnitude: false,
         niceness: false,
@@ -154,30 +187,36 @@ impl Ask {
         gradient: false,
         region: false,
     };
-    /// What a wrench along directions is summed from.
-    pub const DIRECTION: Ask =
-        Ask { depth: true, magnitude: true, niceness: true, direction: true, ..Ask::INSIDE };
-    /// What a wrench along gradients is summed from.
-    pub const GRADIENT: Ask = Ask { direction: false, gradient: true, ..Ask::DIRECTION };
-    /// All there is.
-    pub const EVERYTHING: Ask = Ask { gradient: true, region: true, ..Ask::DIRECTION };
+    /// The outputs that a wrench along directions is summed from.
+    pub const DIRECTION: Outputs = Outputs {
+        depth: true,
+        magnitude: true,
+        niceness: true,
+        direction: true,
+        ..Outputs::INSIDE
+    };
+    /// The outputs that a wrench along gradients is summed from.
+    pub const GRADIENT: Outputs =
+        Outputs { direction: false, gradient: true, ..Outputs::DIRECTION };
+    /// All outputs.
+    pub const EVERYTHING: Outputs = Outputs { gradient: true, region: true, ..Outputs::DIRECTION };
 }
 
 /// Points of the tool's frame, in the unit of the tool's file.
 #[derive(Clone, Debug, Default)]
-pub struct Points {
-    /// As long as ever needed; always a multiple of [`LANES`], and finite.
+pub struct PointBatch {
+    /// Coordinates, axis by axis. The length is a multiple of [`LANES`], never shrinks, and all values are finite.
     lists: [Vec<f64>; 3],
     count: usize,
 }
 
-impl Points {
-    /// No points; the memory stays.
+impl PointBatch {
+    /// Removes all points; keeps the memory.
     pub fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// One more point.
+    /// Appends a point.
     pub fn push(&mut self, point: [f64; 3]) {
         self.room(1);
         for (list, part) in self.next(0, 1).into_iter().zip(point) {
@@ -186,13 +225,13 @@ impl Points {
         self.took(1);
     }
 
-    /// Reserves memory for so many points, without touching it.
+    /// Reserves memory for `count` points in all, without touching it.
     pub(crate) fn reserve(&mut self, count: usize) {
         let wanted = count.next_multiple_of(LANES);
         self.lists.iter_mut().for_each(|list| reserve(list, wanted));
     }
 
-    /// Makes room for some points more.
+    /// Makes room for `more` further points.
     pub(crate) fn room(&mut self, more: usize) {
         let wanted = (self.count + more).next_multiple_of(LANES);
         if self.lists[0].len() < wanted {
@@ -200,7 +239,8 @@ impl Points {
         }
     }
 
-    /// Where points go that come after so many more, for which there is room, coordinate by coordinate.
+    /// Returns the slots for `count` points, coordinate by coordinate, after the points so far and `after` more. There
+    /// has to be [room](PointBatch::room) for them.
     #[inline(always)]
     pub(crate) fn next(&mut self, after: usize, count: usize) -> [&mut [f64]; 3] {
         let place = self.count + after..self.count + after + count;
@@ -208,23 +248,23 @@ impl Points {
         [&mut x[place.clone()], &mut y[place.clone()], &mut z[place]]
     }
 
-    /// That so many of those were written.
+    /// Records that `count` of the slots from [`PointBatch::next`] were written.
     #[inline(always)]
     pub(crate) fn took(&mut self, count: usize) {
         self.count += count;
     }
 
-    /// How many points there are.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// x, y and z of all points, and of what fills the last block of [`LANES`].
+    /// Returns x, y and z of all points, with the padding of the last block of [`LANES`].
     pub fn coordinates(&self) -> [&[f64]; 3] {
         let end = self.count.next_multiple_of(LANES);
         [&self.lists[0][..end], &self.lists[1][..end], &self.lists[2][..end]]
@@ -235,49 +275,49 @@ impl Points {
     }
 }
 
-/// What is felt at [`Points`], list by list. Entries of points outside, and lists not asked for,
-/// mean nothing.
+/// The evaluation at the points of a [`PointBatch`], list by list. Entries of points outside, and lists that were not
+/// requested, are meaningless.
 #[derive(Clone, Debug, Default)]
-pub struct Felt {
-    /// A bit a point, set inside; a byte a block of [`LANES`]. Padding is not inside.
+pub struct Evaluations {
+    /// One bit per point, set if the point is inside; one byte per block of [`LANES`]. Bits of padding are 0.
     pub inside: Vec<u8>,
     /// Penetration depth, at least 0, in the file's unit.
     pub depth: Vec<f64>,
-    /// Magnitude: if it is the depth, in the part's unit; else the file's own number.
+    /// Magnitude: in the part's unit if it is the depth, otherwise the file's own number.
     pub magnitude: Vec<f64>,
     /// Niceness, at least 0.
     pub niceness: Vec<f64>,
-    /// Unit vector to the nearest surface.
+    /// Unit vector to the nearest surface, in the tool's frame.
     pub direction: [Vec<f64>; 3],
-    /// Gradient of the magnitude by the position in the part's unit.
+    /// Gradient of the magnitude with respect to the position in the part's unit, in the tool's frame.
     pub gradient: [Vec<f64>; 3],
-    /// The region's place in the card's list.
+    /// Index of the region in the tool's list.
     pub region: Vec<f64>,
-    /// Room for the interpreter.
+    /// Registers of the interpreter's tapes.
     #[cfg(feature = "interpreter")]
     pub(crate) registers: Vec<tool_dsl::interpret::Lanes>,
-    /// What it remembers of a point.
+    /// Scratch memory of the interpreter for a point.
     #[cfg(feature = "interpreter")]
     pub(crate) scratch: tool_dsl::interpret::Scratch,
-    /// What it remembers of a point and of how all changes there.
+    /// Scratch memory of the interpreter for a point with derivatives.
     #[cfg(feature = "interpreter")]
     pub(crate) duals: tool_dsl::interpret::Scratch<Dual>,
-    /// What it remembers of a box.
+    /// Scratch memory of the interpreter for a box.
     #[cfg(feature = "interpreter")]
     pub(crate) enclosures: tool_dsl::interpret::Scratch<Enclosure>,
-    /// What it remembers of a block of points.
+    /// Scratch memory of the interpreter for a block of points.
     #[cfg(feature = "interpreter")]
     pub(crate) lanes: tool_dsl::interpret::Registers,
 }
 
-impl Felt {
-    /// How many points are inside.
+impl Evaluations {
+    /// Returns the number of points inside.
     pub(crate) fn count(&self) -> usize {
         self.inside.iter().map(|block| block.count_ones() as usize).sum()
     }
 
-    /// Which points are inside, in order.
-    pub(crate) fn places(&self) -> impl Iterator<Item = usize> {
+    /// Returns the indices of the points inside, in ascending order.
+    pub(crate) fn inside_indices(&self) -> impl Iterator<Item = usize> {
         self.inside.iter().enumerate().flat_map(|(block, bits)| {
             let mut left = *bits;
             std::iter::from_fn(move || {
@@ -288,28 +328,28 @@ impl Felt {
         })
     }
 
-    /// Reserves memory for what is asked of so many points, without touching it.
-    pub(crate) fn reserve_for(&mut self, count: usize, ask: Ask) {
+    /// Reserves memory for the requested outputs of `count` points, without touching it.
+    pub(crate) fn reserve_for(&mut self, count: usize, ask: Outputs) {
         let blocks = count.div_ceil(LANES);
         reserve(&mut self.inside, blocks);
-        self.asked(ask, |list| reserve(list, blocks * LANES));
+        self.for_each_requested(ask, |list| reserve(list, blocks * LANES));
     }
 
-    /// Makes room for what is asked of so many points.
-    pub(crate) fn reserve(&mut self, points: &Points, ask: Ask) {
+    /// Resizes the requested lists for the points, and marks no point as inside.
+    pub(crate) fn reserve(&mut self, points: &PointBatch, ask: Outputs) {
         let blocks = points.count.div_ceil(LANES);
         self.inside.clear();
         self.inside.resize(blocks, 0);
-        self.asked(ask, |list| {
+        self.for_each_requested(ask, |list| {
             if list.len() < blocks * LANES {
                 list.resize(blocks * LANES, 0.0);
             }
         });
     }
 
-    /// Goes to all lists that are asked for.
+    /// Calls a function on every requested list.
     #[inline]
-    fn asked(&mut self, ask: Ask, mut each: impl FnMut(&mut Vec<f64>)) {
+    fn for_each_requested(&mut self, ask: Outputs, mut each: impl FnMut(&mut Vec<f64>)) {
         let mut list = |list: &mut Vec<f64>, wanted: bool| {
             if wanted {
                 each(list);
@@ -324,13 +364,13 @@ impl Felt {
     }
 }
 
-/// Reserves memory for a list of so many in all. Nothing is written, so that memory which is never used
-/// costs address space alone where the system hands out pages at the first touch.
+/// Reserves memory for a list of `count` entries in all. Nothing is written, so unused memory costs only address space
+/// on systems that hand out pages at the first touch.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, count: usize) {
     list.reserve_exact(count.saturating_sub(list.len()));
 }
 
-/// The bits of a block that are points and not padding.
+/// Returns the bits of a block that are points and not padding.
 pub(crate) fn present(count: usize, block: usize) -> u8 {
     match count - block * LANES {
         full if full >= LANES => u8::MAX,

@@ -1,124 +1,133 @@
-//! How near a program comes to the part: a program that was meant for another place, or another unit,
-//! gouges nothing.
+//! Closest approach of a program to the part. A program for another location or in another unit gouges nothing,
+//! but stays far from the part.
 
-use super::{Finding, Kind, Verifier, VerifyError};
+use super::{Finding, FindingKind, Verifier, VerifyError};
 use crate::certify::Certifier;
 use crate::mesh;
 use crate::motion::Motion;
 use crate::pose::Pose;
-use crate::program::Stop;
-use crate::tool::Piece;
+use crate::program::CutterLocation;
+use crate::tool::{ProfileSegment, ToolInfo};
 use nalgebra::Point3;
 
-/// Where a program goes beside where the part is. Lengths are in the part's unit, places in its frame.
+/// Location of a program relative to the part. Lengths are in the part's unit, points in its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    /// The lowest and the highest corner of the box about the part.
+    /// Lowest and highest corner of the part's bounding box.
     pub part: [Point3<f64>; 2],
-    /// The same about the tips of all positions.
+    /// Lowest and highest corner of the bounding box of all tips.
     pub program: [Point3<f64>; 2],
-    /// The tool comes at least this near to a triangle of the part; 0 if it touches.
+    /// Upper bound on the least distance between the tool and a triangle of the part; 0 if they touch.
     pub distance: f64,
-    /// The line of the position where it does, or of the position that the motion ends at.
+    /// Line of the cutter location with that distance, or of the one at which the motion with it ends.
     pub line: usize,
-    /// The diameter of what cuts, or of the tool if nothing does.
+    /// Diameter of the cutting surfaces, or of the tool if nothing cuts.
     pub diameter: f64,
-    /// If no motion comes as near as the diameter: what all of the tool is proved to keep from all triangles, on
-    /// every motion.
-    pub keeps: Option<f64>,
+    /// If no motion comes as near as the diameter: a proved lower bound on the distance between the whole tool
+    /// and all triangles, over all motions.
+    pub proved_clearance: Option<f64>,
 }
 
 impl Approach {
-    /// Returns whether the tool stays farther from the part than its diameter on all motions, so that the
-    /// program is hardly meant for this part at this place.
+    /// Returns whether the tool stays farther from the part than its diameter on all motions. The program is
+    /// then hardly meant for this part in this position.
     pub fn is_far(&self) -> bool {
-        self.keeps.is_some()
+        self.proved_clearance.is_some()
     }
 }
 
-/// Distances are told to this part of the tool's diameter, and what is kept to this part of the distance.
+/// Tolerance of distances as a fraction of the tool's diameter, and of the bound over all motions as a fraction
+/// of the distance.
 const FINE: f64 = 1.0 / 64.0;
 
-/// How often a motion is halved at most. What is left open then counts as near.
+/// Largest number of halvings of a motion. If they do not decide, the tool counts as near.
 const HALVINGS: u32 = 40;
 
 impl Verifier<'_> {
-    /// Computes how near the stops come to the part, given what was found of them.
+    /// Computes the closest approach of the cutter locations to the part, given their findings.
     pub(super) fn approach(
         &self,
-        stops: &[Stop],
+        stops: &[CutterLocation],
         findings: &[Finding],
     ) -> Result<Approach, VerifyError> {
-        let card = self.tool.card();
-        let length = card.unit.to(self.facets.unit());
-        let cutting = card.outline.iter().filter(|piece| card.surfaces[piece.surface].cutting);
-        let widest = |piece: &Piece| {
+        let info = self.tool.info();
+        let length = info.unit.factor_to(self.bvh.unit());
+        let cutting = info.outline.iter().filter(|piece| info.surfaces[piece.surface].cutting);
+        let widest = |piece: &ProfileSegment| {
             let bulge = piece.circle.filter(|circle| circle.convex);
             let bulge = bulge.map_or(0.0, |circle| circle.centre[0] + circle.radius);
             piece.from[0].max(piece.to[0]).max(bulge)
         };
         let radius = cutting.map(widest).fold(0.0, f64::max);
-        let radius = if radius > 0.0 { radius } else { card.radius() };
+        let radius = if radius > 0.0 { radius } else { info.radius() };
         let diameter = 2.0 * radius * length;
-        let mut search = Search {
+        let mut search = ApproachSearch {
             of: self,
-            certifier: Certifier::new(self.facets, self.tool)?.budget(self.budget),
-            reach: card.size() * length,
+            certifier: Certifier::new(self.bvh, self.tool)?.with_budget(self.budget),
+            reach: max_distance_from_tip(info) * length,
             fine: FINE * diameter,
             distance: f64::INFINITY,
             line: stops.first().map_or(0, |stop| stop.line),
         };
-        let touching = findings
-            .iter()
-            .find(|found| matches!(found.kind, Kind::Deep { .. } | Kind::Inside { .. }));
+        let touching = findings.iter().find(|found| {
+            matches!(found.kind, FindingKind::Deep { .. } | FindingKind::Inside { .. })
+        });
         let mut keeps = None;
         if let Some(found) = touching {
             (search.distance, search.line) = (0.0, found.line);
         } else {
-            let least = search.positions(stops);
+            let least = search.location_bounds(stops);
             if search.distance > diameter {
                 keeps = search.motions(stops, &least).filter(|kept| *kept > diameter);
             }
         }
-        let Search { distance, line, .. } = search;
+        let ApproachSearch { distance, line, .. } = search;
         let tips = stops.iter().map(|stop| stop.pose.tip());
         Ok(Approach {
-            part: self.facets.bounds(),
+            part: self.bvh.bounds(),
             program: mesh::bounds(tips),
             distance,
             line,
             diameter,
-            keeps,
+            proved_clearance: keeps,
         })
     }
 }
 
-/// The search for where the tool is nearest.
-struct Search<'a> {
+/// Returns an upper bound on the distance of the tool's points from its tip, in the tool's unit.
+fn max_distance_from_tip(info: &ToolInfo) -> f64 {
+    let [low, high] = info.reach();
+    low.abs().max(high.abs()).hypot(info.radius())
+}
+
+/// The search for the closest approach.
+struct ApproachSearch<'a> {
     of: &'a Verifier<'a>,
     certifier: Certifier<'a>,
-    /// How far the tool reaches from its tip.
+    /// Upper bound on the distance of the tool's points from its tip, in the part's unit: their travel per radian.
     reach: f64,
     fine: f64,
-    /// The nearest so far, and its line.
+    /// The least distance so far.
     distance: f64,
+    /// The line of that distance.
     line: usize,
 }
 
-impl Search<'_> {
-    /// Returns how far any point of the tool goes at most from one pose to another.
+impl ApproachSearch<'_> {
+    /// Returns an upper bound on the travel of any point of the tool from one pose to another.
     fn travel(&self, from: &Pose, to: &Pose) -> f64 {
         match self.of.motion(from, to) {
-            Ok(motion) => motion.way().norm() + motion.angle() * self.reach,
+            Ok(motion) => motion.displacement().norm() + motion.angle() * self.reach,
             Err(_) => f64::INFINITY,
         }
     }
 
-    /// Asks at a pose: no triangle is nearer than what is returned.
-    fn ask(&mut self, pose: &Pose, line: usize) -> f64 {
+    /// Queries the distance at a pose, and returns a lower bound on it.
+    fn query(&mut self, pose: &Pose, line: usize) -> f64 {
         let [mut low, mut high] = self.certifier.clearance(pose, self.fine).distance;
         if high == f64::INFINITY {
-            // A field has no upper bound of the distance: a lower one of 0 is looked at more closely.
+            // A tool without a profile (a field) gives no upper bound on the distance. A lower bound of 0 is
+            // refined.
             if low == 0.0 {
                 [low, _] = self.certifier.clearance(pose, FINE * FINE * self.fine).distance;
             }
@@ -130,9 +139,9 @@ impl Search<'_> {
         low
     }
 
-    /// Asks at the positions, but where the one before shows that none is nearer; of each, what it keeps at
-    /// least. Ends where one touches.
-    fn positions(&mut self, stops: &[Stop]) -> Vec<f64> {
+    /// Queries the cutter locations, except where the one before proves that none is nearer, and returns a
+    /// lower bound on each distance. Ends at the first contact.
+    fn location_bounds(&mut self, stops: &[CutterLocation]) -> Vec<f64> {
         let mut least = Vec::with_capacity(stops.len());
         let mut before: Option<(f64, &Pose)> = None;
         for stop in stops {
@@ -140,7 +149,7 @@ impl Search<'_> {
                 let travel = self.travel(pose, &stop.pose);
                 low - travel - 4.0 * f64::EPSILON * (low + travel)
             });
-            let kept = if kept > self.distance { kept } else { self.ask(&stop.pose, stop.line) };
+            let kept = if kept > self.distance { kept } else { self.query(&stop.pose, stop.line) };
             least.push(kept);
             if self.distance == 0.0 {
                 break;
@@ -150,13 +159,14 @@ impl Search<'_> {
         least
     }
 
-    /// Returns what all motions keep, to a part of the nearest distance; `None` if that is not shown.
-    fn motions(&mut self, stops: &[Stop], least: &[f64]) -> Option<f64> {
+    /// Returns a lower bound on the distance over all motions, within a fraction of the least distance; `None`
+    /// if that is not proved.
+    fn motions(&mut self, stops: &[CutterLocation], least: &[f64]) -> Option<f64> {
         let mut kept = f64::INFINITY;
         for (pair, ends) in stops.windows(2).zip(least.windows(2)) {
-            // Where a motion is not one, only its ends are checked, which is a finding.
+            // An ambiguous motion is a finding; only its ends are checked.
             if let Ok(motion) = self.of.motion(&pair[0].pose, &pair[1].pose) {
-                let travel = motion.way().norm() + motion.angle() * self.reach;
+                let travel = motion.displacement().norm() + motion.angle() * self.reach;
                 let span = Span { times: [0.0, 1.0], least: [ends[0], ends[1]], travel };
                 kept = kept.min(self.span(&motion, span, (pair[1].line, HALVINGS))?);
             }
@@ -165,10 +175,10 @@ impl Search<'_> {
         Some(kept.min(ends))
     }
 
-    /// Returns what a span of a motion keeps.
+    /// Returns a lower bound on the distance over a span of a motion; `None` if that is not proved.
     fn span(&mut self, motion: &Motion, span: Span, (line, halvings): (usize, u32)) -> Option<f64> {
         let Span { times: [from, to], least: [first, last], travel } = span;
-        // A point that is `s` of the way from one end is no nearer than either end's distance less the way.
+        // At any time the distance is at least that at either end, less the travel from there.
         let rounding = 4.0 * f64::EPSILON * (first.abs() + last.abs() + travel);
         let kept = 0.5 * (first + last - travel) - rounding;
         if kept >= (1.0 - FINE) * self.distance {
@@ -176,7 +186,7 @@ impl Search<'_> {
         }
         let halvings = halvings.checked_sub(1)?;
         let middle = f64::midpoint(from, to);
-        let least = self.ask(&motion.pose(middle), line);
+        let least = self.query(&motion.pose(middle), line);
         let [before, after] = [
             Span { times: [from, middle], least: [first, least], travel: 0.5 * travel },
             Span { times: [middle, to], least: [least, last], travel: 0.5 * travel },
@@ -186,8 +196,8 @@ impl Search<'_> {
     }
 }
 
-/// A span of a motion, what the tool keeps from the part at its ends at least, and how far any point of it
-/// goes.
+/// A span of a motion, with lower bounds on the distance at its ends and an upper bound on the travel of any
+/// point of the tool.
 #[derive(Clone, Copy)]
 struct Span {
     times: [f64; 2],

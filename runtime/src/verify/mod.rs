@@ -1,41 +1,44 @@
-//! A program held to a part: where on its way the tool is deeper in the finished part than it may be.
+//! Verification of a program against the finished part: it finds motions in which the tool is deeper in the
+//! part than allowed.
 //!
 //! ```text
-//! program ──two stops──▶ motion ──sweep_clear──▶ clear
+//! program ──two stops──▶ motion ──check_motion──▶ clear
 //!                                      └──────▶ each surface ──deepest_along──▶ finding
 //! ```
 //!
-//! Every two stops are a [`Motion`], checked all along and not only at its ends, so what gouges between two
-//! points is found. A motion that is not proved clear is asked of each surface of the tool by itself, so that
-//! a flute that gouges does not hide a shank that rubs: one finding for each motion and surface.
+//! Every two consecutive cutter locations form a [`Motion`], which is checked over its whole length, so that a
+//! gouge between two points is found. If a motion is not proved clear, each surface of the tool is queried
+//! separately, so that a flute that gouges does not hide a shank that rubs. There is one finding per motion and
+//! surface.
 //!
-//! **What is proved.** A motion without a finding is nowhere deeper than is allowed by more than the
-//! [resolution](Verifier::resolution). A finding is deeper than that at the pose it names, its interval contains
-//! the depth there, and its `most` bounds that of the whole motion. Depth is that of the tool's profile as it stands still:
-//! neither runout nor deflection counts. Motions are taken as [`Motion`] means them, rapid ones too.
+//! **Guarantees.** A motion without a finding is nowhere deeper than allowed by more than the
+//! [resolution](Verifier::with_resolution). A finding is deeper than that at the pose it names: its interval
+//! contains the depth there, and its `most` bounds the depth over the whole motion. The depth is that of the
+//! tool's profile at rest: neither runout nor deflection counts. Motions are taken as [`Motion`] defines them,
+//! rapid ones too.
 
 mod approach;
 mod finding;
 
 pub use approach::Approach;
-pub use finding::{Finding, Kind, Report, VerifyError};
+pub use finding::{Finding, FindingKind, VerifyError, VerifyReport};
 
-use crate::certify::{Along, Certifier, Facets, Sweep};
-use crate::cores;
+use crate::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
 use crate::motion::{Motion, MotionError};
+use crate::parallel;
 use crate::pose::Pose;
-use crate::program::{Program, Stop};
-use crate::tool::{Card, Shape, Tool};
+use crate::program::{CutterLocation, Program};
+use crate::tool::{Symmetry, Tool, ToolInfo};
 
-/// Checks programs of a tool beside a part.
+/// Checks programs of a tool against a part.
 ///
 /// Lengths are in the part's unit. All surfaces may be as deep as the tolerance, unless another depth is
-/// [allowed](Verifier::allow); in rapid traverse nothing may be deeper than the tolerance.
+/// [allowed](Verifier::with_allowance). In rapid traverse nothing may be deeper than the tolerance.
 ///
 /// ```
 /// use nalgebra::Point3;
-/// use touchoff::certify::Facets;
-/// use touchoff::verify::{Kind, Verifier};
+/// use touchoff::certify::TriangleBvh;
+/// use touchoff::verify::{FindingKind, Verifier};
 /// use touchoff::{Program, Unit, mesh::shapes};
 ///
 /// touchoff::tool! {
@@ -48,55 +51,54 @@ use crate::tool::{Card, Shape, Tool};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let (low, high) = (Point3::new(-5., -5., -9.), Point3::new(5., 5., 0.));
-/// let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+/// let block = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
 /// // Both points are clear of the block; the way between them is not.
 /// let program = Program::parse("-20,0,-0.5,0,0,1\n20,0,-0.5,0,0,1\n", "across.csv")?;
-/// let report = Verifier::new(&block, &Ball)?.tolerance(0.01)?.check(&program)?;
+/// let report = Verifier::new(&block, &Ball)?.with_tolerance(0.01)?.check(&program)?;
 /// let [finding] = &report.findings[..] else { panic!("{report:?}") };
 /// assert_eq!((finding.from, finding.line), (Some(1), 2));
-/// assert!(matches!(finding.kind, Kind::Deep { depth: [low, _], .. } if low > 0.499));
+/// assert!(matches!(finding.kind, FindingKind::Deep { depth: [low, _], .. } if low > 0.499));
 /// # Ok(()) }
 /// ```
 pub struct Verifier<'a> {
-    facets: &'a Facets,
+    bvh: &'a TriangleBvh,
     tool: &'a dyn Tool,
     tolerance: f64,
     resolution: f64,
-    /// What was allowed of surfaces by their place in the card's list.
+    /// Allowances by the surfaces' indices in the tool's list; `None` where the tolerance applies.
     allowed: Vec<Option<f64>>,
     budget: u32,
 }
 
-/// A micrometre, in mm: meshes are seldom as close to what they mean.
+/// The default resolution in mm, a micrometre: meshes seldom represent their geometry as closely.
 const RESOLUTION: f64 = 1e-3;
 
-/// So many motions one after the other are asked of the same certifiers, so that answers are the same however
-/// many cores there are.
+/// Number of consecutive motions that share certifiers. It makes results independent of the number of cores.
 const TOGETHER: usize = 32;
 
 impl<'a> Verifier<'a> {
-    /// A verifier of a tool beside a part, with a tolerance of 0.
+    /// Creates a verifier of a tool at a part, with a tolerance of 0.
     ///
     /// # Errors
-    /// If nothing can be proved of the tool.
-    pub fn new(facets: &'a Facets, tool: &'a dyn Tool) -> Result<Verifier<'a>, VerifyError> {
-        let card = tool.card();
-        Certifier::new(facets, tool)?;
+    /// If the tool cannot be certified.
+    pub fn new(bvh: &'a TriangleBvh, tool: &'a dyn Tool) -> Result<Verifier<'a>, VerifyError> {
+        let info = tool.info();
+        Certifier::new(bvh, tool)?;
         Ok(Verifier {
-            facets,
+            bvh,
             tool,
             tolerance: 0.0,
-            resolution: RESOLUTION / facets.unit().millimetres(),
-            allowed: vec![None; card.surfaces.len()],
+            resolution: RESOLUTION / bvh.unit().millimetres(),
+            allowed: vec![None; info.surfaces.len()],
             budget: 1 << 20,
         })
     }
 
-    /// With a tolerance: how deep any surface may be for which nothing else is allowed, 0 or more.
+    /// Sets the tolerance: the depth, 0 or more, of any surface without an allowance of its own.
     ///
     /// # Errors
-    /// If it is no such length.
-    pub fn tolerance(mut self, tolerance: f64) -> Result<Verifier<'a>, VerifyError> {
+    /// If the tolerance is negative, infinite or NaN.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Result<Verifier<'a>, VerifyError> {
         if !(0.0..f64::INFINITY).contains(&tolerance) {
             return Err(VerifyError::Tolerance { tolerance });
         }
@@ -104,15 +106,19 @@ impl<'a> Verifier<'a> {
         Ok(self)
     }
 
-    /// With a depth that a surface is allowed where it is the nearest: infinity for any, below 0 a margin that
-    /// it has to keep from all of the part.
+    /// Sets the depth that a surface is allowed where it is the nearest: infinity for any depth, below 0 a
+    /// margin that it has to keep from the whole part.
     ///
     /// # Errors
-    /// If there is no such surface, or that is no depth.
-    pub fn allow(mut self, surface: &str, allowed: f64) -> Result<Verifier<'a>, VerifyError> {
-        // What a certifier takes, and no more.
-        Certifier::new(self.facets, self.tool)?.allow(surface, allowed)?;
-        let surfaces = &self.tool.card().surfaces;
+    /// If there is no such surface, or it cannot have this allowance.
+    pub fn with_allowance(
+        mut self,
+        surface: &str,
+        allowed: f64,
+    ) -> Result<Verifier<'a>, VerifyError> {
+        // Accept exactly what a certifier accepts.
+        Certifier::new(self.bvh, self.tool)?.with_allowance(surface, allowed)?;
+        let surfaces = &self.tool.info().surfaces;
         let index = surfaces.iter().position(|known| known.name == surface);
         if let Some(known) = index.and_then(|index| self.allowed.get_mut(index)) {
             *known = Some(allowed);
@@ -120,11 +126,12 @@ impl<'a> Verifier<'a> {
         Ok(self)
     }
 
-    /// With a resolution: what is deeper than allowed by no more than this may or may not be found. One below what rounding adds is taken as that. The default is 0.001 mm.
+    /// Sets the resolution: an excess of depth up to this length may or may not be found. A resolution below
+    /// what rounding adds is taken as that. The default is 0.001 mm.
     ///
     /// # Errors
-    /// If it is not a length above 0 or 0.
-    pub fn resolution(mut self, resolution: f64) -> Result<Verifier<'a>, VerifyError> {
+    /// If the resolution is negative, infinite or NaN.
+    pub fn with_resolution(mut self, resolution: f64) -> Result<Verifier<'a>, VerifyError> {
         if !(0.0..f64::INFINITY).contains(&resolution) {
             return Err(VerifyError::Tolerance { tolerance: resolution });
         }
@@ -132,51 +139,51 @@ impl<'a> Verifier<'a> {
         Ok(self)
     }
 
-    /// With another [budget](Certifier::budget) of each question.
+    /// Sets the [budget](Certifier::with_budget) of each query.
     #[must_use]
-    pub fn budget(mut self, budget: u32) -> Verifier<'a> {
+    pub fn with_budget(mut self, budget: u32) -> Verifier<'a> {
         self.budget = budget;
         self
     }
 
-    /// The tool's card: a finding's surface is a place in its list.
-    pub fn card(&self) -> &Card {
-        self.tool.card()
+    /// Returns the tool's info: the surface of a finding is an index in its list.
+    pub fn info(&self) -> &ToolInfo {
+        self.tool.info()
     }
 
-    /// Checks a program: its first stop, and every motion from one stop to the next. With the feature
-    /// `parallel` on all cores; the findings are the same, in the program's order.
+    /// Checks a program: its first cutter location, and every motion from one cutter location to the next. With
+    /// the feature `parallel` this uses all cores; the findings are the same, in the program's order.
     ///
     /// # Errors
-    /// If the program states another unit than the part's, or another cutter than the tool, or if its poses have no
-    /// spin and the tool is a solid without an axis.
-    pub fn check(&self, program: &Program) -> Result<Report, VerifyError> {
-        program.check_unit(self.facets.unit())?;
-        program.check_poses(self.tool.card())?;
-        program.check_cutter(self.tool.card(), self.facets.unit())?;
-        let stops = &program.stops;
-        let certifier = Certifier::new(self.facets, self.tool)?;
+    /// If the program states another unit than the part's, or another cutter than the tool, or if its poses
+    /// have no spin and the tool is a solid without an axis.
+    pub fn check(&self, program: &Program) -> Result<VerifyReport, VerifyError> {
+        program.check_unit(self.bvh.unit())?;
+        program.check_poses(self.tool.info())?;
+        program.check_cutter(self.tool.info(), self.bvh.unit())?;
+        let stops = &program.locations;
+        let certifier = Certifier::new(self.bvh, self.tool)?;
         let surfaces = 0..self.allowed.len();
-        let greatest = |surface| certifier.greatest_depth(surface).unwrap_or(f64::INFINITY);
+        let greatest = |surface| certifier.max_possible_depth(surface).unwrap_or(f64::INFINITY);
         let greatest: Vec<f64> = surfaces.map(greatest).collect();
-        let found = cores::ranges(stops.len(), TOGETHER, |range| {
+        let found = parallel::ranges(stops.len(), TOGETHER, |range| {
             let mut checker = Checker::new(self, &greatest)?;
             Ok(range.flat_map(|stop| checker.stop(stops, stop)).collect::<Vec<_>>())
         });
         let found: Vec<_> = found.into_iter().collect::<Result<_, VerifyError>>()?;
         let findings: Vec<Finding> = found.into_iter().flatten().collect();
-        Ok(Report {
+        Ok(VerifyReport {
             motions: stops.len().saturating_sub(1),
             approach: self.approach(stops, &findings)?,
             findings,
-            inside_known: self.facets.has_inside(),
-            nothing_restricted: !self.restricts(stops, &greatest),
+            inside_known: self.bvh.has_inside(),
+            unrestricted: !self.restricts(stops, &greatest),
         })
     }
 
-    /// Returns whether a surface of the tool could be deeper than it may be, or nearer, given how deep each can be
-    /// at all.
-    fn restricts(&self, stops: &[Stop], greatest: &[f64]) -> bool {
+    /// Returns whether a surface of the tool could violate its limit or its margin. `greatest` has the greatest
+    /// possible depth of each surface.
+    fn restricts(&self, stops: &[CutterLocation], greatest: &[f64]) -> bool {
         let modes =
             [false, true].into_iter().filter(|mode| stops.iter().any(|stop| stop.rapid == *mode));
         modes
@@ -184,15 +191,15 @@ impl<'a> Verifier<'a> {
             .any(|(limit, greatest)| limit < 0.0 || limit + self.resolution < *greatest)
     }
 
-    /// Returns the motion from one pose to another: of a tool of revolution the spin is none of it.
+    /// Returns the motion from one pose to another, without the spin for a tool of revolution.
     fn motion(&self, from: &Pose, to: &Pose) -> Result<Motion, MotionError> {
-        match self.tool.card().shape {
-            Shape::Revolved => Motion::new(from, to),
-            Shape::Solid { .. } => Motion::with_spin(from, to),
+        match self.tool.info().symmetry {
+            Symmetry::Revolved => Motion::new(from, to),
+            Symmetry::Solid { .. } => Motion::with_spin(from, to),
         }
     }
 
-    /// How deep each surface may be.
+    /// Returns the depth that each surface is allowed.
     fn limits(&self, rapid: bool) -> Vec<f64> {
         let limit = |allowed: &Option<f64>| {
             let allowed = allowed.unwrap_or(self.tolerance);
@@ -202,56 +209,56 @@ impl<'a> Verifier<'a> {
     }
 }
 
-/// Checks one motion after the other.
+/// Checks motions one after another.
 struct Checker<'a> {
     of: &'a Verifier<'a>,
-    /// In feed, and in rapid traverse.
+    /// The certifiers for feed and for rapid traverse, in this order.
     modes: [Mode<'a>; 2],
 }
 
-/// A certifier that goes by what is allowed.
+/// A certifier with the allowances of feed or of rapid traverse.
 struct Mode<'a> {
     certifier: Certifier<'a>,
     limits: Vec<f64>,
-    /// The greatest depth that each surface can have.
+    /// The greatest possible depth of each surface.
     greatest: &'a [f64],
 }
 
-/// What is no less deep than this part of the greatest depth that there is goes right through.
+/// Fraction of a surface's greatest possible depth from which on it counts as passing right through the part.
 const THROUGH: f64 = 0.98;
 
 impl<'a> Checker<'a> {
     fn new(of: &'a Verifier<'a>, greatest: &'a [f64]) -> Result<Checker<'a>, VerifyError> {
         let mode = |rapid| {
             let limits = of.limits(rapid);
-            let mut certifier = Certifier::new(of.facets, of.tool)?.budget(of.budget);
-            for (surface, limit) in of.tool.card().surfaces.iter().zip(&limits) {
-                certifier = certifier.allow(&surface.name, *limit)?;
+            let mut certifier = Certifier::new(of.bvh, of.tool)?.with_budget(of.budget);
+            for (surface, limit) in of.tool.info().surfaces.iter().zip(&limits) {
+                certifier = certifier.with_allowance(&surface.name, *limit)?;
             }
             Ok::<_, VerifyError>(Mode { certifier, limits, greatest })
         };
         Ok(Checker { of, modes: [mode(false)?, mode(true)?] })
     }
 
-    /// What there is to say of the way to a stop.
-    fn stop(&mut self, stops: &[Stop], index: usize) -> Vec<Finding> {
+    /// Returns the findings of the motion to a cutter location.
+    fn stop(&mut self, stops: &[CutterLocation], index: usize) -> Vec<Finding> {
         let to = stops[index];
         let before = index.checked_sub(1).map(|before| stops[before]);
         let from = before.map_or(to.pose, |before| before.pose);
-        let finding = |part: f64, pose: Pose, kind: Kind| Finding {
-            stop: index,
+        let finding = |part: f64, pose: Pose, kind: FindingKind| Finding {
+            location: index,
             line: to.line,
             from: before.map(|before| before.line),
             rapid: to.rapid,
-            part,
+            time: part,
             pose,
             kind,
         };
         let mode = &mut self.modes[usize::from(to.rapid)];
         let mut findings = Vec::new();
-        // Where the way is not known, the stop itself is.
+        // Where the motion is ambiguous, check the cutter location itself.
         let motion = self.of.motion(&from, &to.pose).or_else(|error| {
-            findings.push(finding(1.0, to.pose, Kind::Ambiguous(error)));
+            findings.push(finding(1.0, to.pose, FindingKind::Ambiguous(error)));
             self.of.motion(&to.pose, &to.pose)
         });
         if let Ok(motion) = motion {
@@ -264,10 +271,10 @@ impl<'a> Checker<'a> {
 }
 
 impl Mode<'_> {
-    /// What a motion does that it may not, and at which part of the way.
-    fn motion(&mut self, motion: &Motion, resolution: f64) -> Vec<(f64, Kind)> {
-        let swept = self.certifier.sweep_clear(motion, resolution);
-        if matches!(swept, Sweep::Clear | Sweep::SurfaceOnly) {
+    /// Returns the findings of a motion, each with its time on the motion from 0 to 1.
+    fn motion(&mut self, motion: &Motion, resolution: f64) -> Vec<(f64, FindingKind)> {
+        let swept = self.certifier.check_motion(motion, resolution);
+        if matches!(swept, MotionVerdict::Clear | MotionVerdict::SurfaceOnly) {
             return Vec::new();
         }
         let mut found = Vec::new();
@@ -276,29 +283,34 @@ impl Mode<'_> {
             if allowed == f64::INFINITY {
                 continue;
             }
-            match self.certifier.deepest_along(surface, motion, allowed, resolution) {
-                Along::Within => (),
-                Along::Deeper { at, depth: [low, high], most, witness } if low < 0.0 => {
+            match self.certifier.motion_depth(surface, motion, allowed, resolution) {
+                MotionDepth::Within => (),
+                MotionDepth::Deeper { at, depth: [low, high], most, witness } if low < 0.0 => {
                     let [from, to, least] = [-high, -low, -most].map(|distance| distance.max(0.0));
                     let (margin, distance) = (-allowed, [from, to]);
-                    found.push((at, Kind::Near { surface, margin, distance, least, witness }));
+                    found.push((
+                        at,
+                        FindingKind::Near { surface, margin, distance, least, witness },
+                    ));
                 }
-                Along::Deeper { at, depth, most, witness } => {
+                MotionDepth::Deeper { at, depth, most, witness } => {
                     let through = depth[1] >= THROUGH * self.greatest[surface];
-                    found
-                        .push((at, Kind::Deep { surface, allowed, depth, most, through, witness }));
+                    found.push((
+                        at,
+                        FindingKind::Deep { surface, allowed, depth, most, through, witness },
+                    ));
                 }
-                Along::Inside => inside.push(surface),
-                Along::Undecided(at) => found.push((at, Kind::Undecided { surface })),
+                MotionDepth::Inside => inside.push(surface),
+                MotionDepth::Undecided(at) => found.push((at, FindingKind::Undecided { surface })),
             }
         }
-        if let (Sweep::Inside(surface), []) = (swept, &inside[..]) {
+        if let (MotionVerdict::Inside(surface), []) = (swept, &inside[..]) {
             inside.push(surface);
         }
         if !inside.is_empty() && self.certifier.is_buried(&motion.pose(0.0)) == Some(true) {
-            found.push((0.0, Kind::Inside { surface: None }));
+            found.push((0.0, FindingKind::Inside { surface: None }));
         } else {
-            let of = |surface| (0.0, Kind::Inside { surface: Some(surface) });
+            let of = |surface| (0.0, FindingKind::Inside { surface: Some(surface) });
             found.extend(inside.into_iter().map(of));
         }
         found

@@ -1,9 +1,9 @@
-//! How far surfaces of a tool are from a part: against a fine raster of its triangles.
+//! Distances between surfaces of a tool and a part, compared with a fine raster of its triangles.
 
 use crate::{Ball, HOLDER, Mill, NECK, Plain, any_pose, away, draws, from_cutting, inside};
 use crate::{parts, places, surface};
 use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, Facets};
+use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Pose, Unit};
 
@@ -13,8 +13,8 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
     let names: [&[&str]; 3] = [&["holder"], &["neck"], &["neck", "holder"]];
     let (mut clear, mut touching) = (0, 0);
     for mesh in parts() {
-        let facets = Facets::new(&mesh);
-        let mut certifier = Certifier::new(&facets, &Mill).expect("a profile");
+        let bvh = TriangleBvh::new(&mesh);
+        let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
         for _ in 0..60 {
             let pose = any_pose(&mut draw, 30.0);
             let (places, apart) = places(&mesh, &pose);
@@ -31,7 +31,7 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
                     places.iter().map(|place| distance(*place)).fold(f64::INFINITY, f64::min);
                 let text = format!("{names:?} at {pose:?}: {nearest} by places, {low} to {high}");
                 assert!(0.0 <= low && low <= high && high.is_finite(), "{text}");
-                // What is inside the tool and nearest to these surfaces is at 0.
+                // A point inside the tool that is nearest to these surfaces is at distance 0.
                 let other = |place: [f64; 2]| {
                     let lines = [("neck", &NECK[..]), ("holder", &HOLDER[..])];
                     let others = lines.iter().filter(|(name, _)| !names.contains(name));
@@ -47,7 +47,7 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
                 }
                 assert!(low <= nearest + 1e-9, "{text}");
                 if low > 0.0 {
-                    // A place of the raster is no farther from any of its triangle than its side.
+                    // No point of a triangle is farther from a raster point than a side of the raster.
                     assert!(nearest - apart <= high, "{text}");
                     assert!(high - low < 2e-6, "{text}");
                     clear += 1;
@@ -61,8 +61,8 @@ fn no_place_of_a_part_is_nearer_to_a_surface_than_is_said() {
 #[test]
 fn a_holder_above_a_plate_is_as_far_as_it_is_high() {
     let (low, high) = (Point3::new(-50.0, -50.0, -9.0), Point3::new(50.0, 50.0, 0.0));
-    let facets = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a plate"));
-    let mut certifier = Certifier::new(&facets, &Mill).expect("a profile");
+    let bvh = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a plate"));
+    let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
     let [neck, holder] = ["neck", "holder"].map(|name| surface(&Mill, name));
     for (tip, near, far) in
         [(1.0, 13.0, 21.0), (-0.5, 11.5, 19.5), (-12.0, 0.0, 8.0), (-25.0, 0.0, 0.0)]
@@ -83,11 +83,11 @@ fn a_holder_above_a_plate_is_as_far_as_it_is_high() {
 
 #[test]
 fn from_nothing_it_is_infinitely_far_and_without_a_profile_no_less_than_the_tool() {
-    let facets = Facets::new(&parts()[0]);
+    let bvh = TriangleBvh::new(&parts()[0]);
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, 5.0), Vector3::z()).expect("a pose");
-    let mut certifier = Certifier::new(&facets, &Ball).expect("a profile");
+    let mut certifier = Certifier::new(&bvh, &Ball).expect("a profile");
     assert_eq!(certifier.clearance_of(&[], &pose, 0.0).distance, [f64::INFINITY; 2]);
-    let mut certifier = Certifier::new(&facets, &Plain).expect("a depth that is known");
+    let mut certifier = Certifier::new(&bvh, &Plain).expect("a depth that is known");
     let [low, high] = certifier.clearance_of(&[0], &pose, 1e-6).distance;
     assert!(low > 4.9 && low <= 5.0 && high == f64::INFINITY, "{low} to {high}");
 }

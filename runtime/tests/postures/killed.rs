@@ -1,6 +1,6 @@
-//! A process that records is killed at random moments: what it was told to be on the disk is there.
+//! A recording process is killed at random moments: every batch that it acknowledged is on disk.
 //!
-//! Twenty times; as often as `TOUCHOFF_KILLS` says, if it is set.
+//! It is killed twenty times, or as often as `TOUCHOFF_KILLS` says.
 
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs, thread};
 use touchoff::mesh::shapes;
-use touchoff::postures::{Access, Identity, PostureMap, Record, Row, Rules};
+use touchoff::postures::{Accessibility, MapIdentity, MapRow, PostureMap, PostureRecord, Rules};
 use touchoff::{Mesh, Unit};
 
 touchoff::tool! {
@@ -22,26 +22,27 @@ touchoff::tool! {
     }
 }
 
-/// Where the process that is to be killed records, and its first batch.
+/// Environment variable for the path of the map that the killed process records into.
 const MAP: &str = "TOUCHOFF_KILLED_MAP";
+/// Environment variable for the number of its first batch.
 const FIRST: &str = "TOUCHOFF_KILLED_FIRST";
-/// Triangles of a batch.
+/// Number of triangles per batch.
 const BATCH: u32 = 40;
 
 fn sphere() -> Mesh {
     shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere")
 }
 
-fn identity() -> Identity {
+fn identity() -> MapIdentity {
     let rules = Rules { tolerance: 0.01, niceness: 0.0, allowed: Vec::new() };
-    let identity = Identity::new(&sphere(), &[&Ball], rules).expect("rules");
-    identity.directions(vec![[0.0, 0.0, 1.0]; 600])
+    let identity = MapIdentity::new(&sphere(), &[&Ball], rules).expect("rules");
+    identity.with_directions(vec![[0.0, 0.0, 1.0]; 600])
 }
 
-/// What batch `k` has of each of its triangles: a row that says which batch it is of.
-fn batch(k: u32, triangles: u32) -> Vec<(u32, Row)> {
+/// Returns the rows of batch `k`, each of which identifies the batch.
+fn batch(k: u32, triangles: u32) -> Vec<(u32, MapRow)> {
     let row = |triangle: u32| {
-        let record = Record {
+        let record = PostureRecord {
             tool: 0,
             tip: Point3::new(f64::from(k), f64::from(triangle), 0.5).into(),
             axis: [0.0, 0.0, 1.0],
@@ -50,14 +51,14 @@ fn batch(k: u32, triangles: u32) -> Vec<(u32, Row)> {
             clearance: 2.0,
         };
         let directions = (0..10).map(|word| (u64::from(k) * word) >> 8).collect();
-        let access = Access { tool: 0, directions, stickout: Some(f64::from(triangle)) };
-        Row { best: vec![record], access: vec![access] }
+        let access = Accessibility { tool: 0, directions, stickout: Some(f64::from(triangle)) };
+        MapRow { best: vec![record], access: vec![access] }
     };
     (0..BATCH).map(|at| (k * 7 + at * 3) % triangles).map(|at| (at, row(at))).collect()
 }
 
-/// Records batch after batch and says so after each, until it is killed. Of itself it does nothing: the test
-/// beside it calls it.
+/// Records one batch after another and acknowledges each, until it is killed. Run by itself it does nothing:
+/// the test below calls it.
 #[test]
 #[ignore = "the process that is killed"]
 fn records_until_it_is_killed() {
@@ -71,8 +72,8 @@ fn records_until_it_is_killed() {
     }
 }
 
-/// Lets a process record from a batch on until it said so often that one was recorded, and so long after that; the
-/// last batch that it said was.
+/// Starts a process that records from batch `first` on, waits for `said` acknowledgements and then for the time
+/// `after`, and kills it. Returns the last batch that was acknowledged.
 fn killed(path: &Path, first: u32, (said, after): (u32, Duration)) -> Option<u32> {
     let mut child = Command::new(env::current_exe().expect("a path"))
         .args(["--exact", "killed::records_until_it_is_killed", "--ignored", "--nocapture"])
@@ -107,10 +108,10 @@ fn what_was_acknowledged_outlives_the_process() {
     let path = folder.path().join("killed.postures");
     let triangles = identity().part.triangles;
     let mut random = Pcg64Mcg::seed_from_u64(1);
-    let mut known: Vec<Option<Row>> = vec![None; triangles as usize];
+    let mut known: Vec<Option<MapRow>> = vec![None; triangles as usize];
     let (mut next, mut told, mut more, mut none) = (0, 0, 0, 0);
     for kill in 0..kills {
-        // One of four while it begins a map, the others while it opens one or at any moment of a batch.
+        // One kill of four comes while the map is created, the others while it is opened or during a batch.
         let anew = kill % 4 == 0;
         if anew && path.exists() {
             fs::remove_file(&path).expect("removed");
@@ -133,12 +134,12 @@ fn what_was_acknowledged_outlives_the_process() {
             continue;
         }
         let map = PostureMap::open(&path, &identity()).expect("it opens");
-        let rows: Vec<(u32, Row)> =
+        let rows: Vec<(u32, MapRow)> =
             map.rows().expect("rows").map(|row| row.expect("whole")).collect();
-        let mut found: Vec<Option<Row>> = vec![None; triangles as usize];
+        let mut found: Vec<Option<MapRow>> = vec![None; triangles as usize];
         rows.into_iter().for_each(|(at, row)| found[at as usize] = Some(row));
         if found != known {
-            // One batch more was on the disk before that could be said: all of it.
+            // One more batch may be on disk, whole, that could not be acknowledged.
             let news = batch(next, triangles);
             news.into_iter().for_each(|(at, row)| known[at as usize] = Some(row));
             assert!(found == known, "kill {kill}, after batch {next}");

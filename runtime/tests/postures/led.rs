@@ -1,13 +1,13 @@
-//! Paths: no stop and no way between two is deeper than the tolerance, wherever one looks.
+//! Paths: no cutter location and no motion is deeper than the tolerance at any sample point.
 
 use crate::{HOLDER, Mill, NECK, away, from_cutting, inside};
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::postures::path::{Path, PathError, Pattern, path};
-use touchoff::postures::sweep::Sweep;
+use touchoff::postures::path::{PathError, Pattern, ToolPath, plan_path};
+use touchoff::postures::sweep::PostureSweep;
 use touchoff::postures::{Directions, Rules};
 use touchoff::{Mesh, Tool, Unit};
 
@@ -26,10 +26,10 @@ touchoff::tool! {
 
 const TOLERANCE: f64 = 0.01;
 
-/// A part with all that leads a tool over it; lengths in mm are taken to the part's unit.
+/// A part with all inputs of a path. Lengths in mm are converted to the part's unit.
 struct Case {
     mesh: Mesh,
-    facets: Facets,
+    bvh: TriangleBvh,
     rules: Rules,
     directions: Directions,
     access: Vec<Vec<u64>>,
@@ -38,13 +38,18 @@ struct Case {
 
 impl Case {
     fn new(mesh: Mesh, tool: &dyn Tool) -> Case {
-        let scale = Unit::Millimetre.to(mesh.unit());
+        let scale = Unit::Millimetre.factor_to(mesh.unit());
         let rules = Rules { tolerance: TOLERANCE * scale, niceness: 0.5, allowed: Vec::new() };
-        let (facets, directions) = (Facets::new(&mesh), Directions::spread(100));
+        let (bvh, directions) = (TriangleBvh::new(&mesh), Directions::spread(100));
         let mut access = vec![Vec::new(); mesh.triangles().len()];
-        let sweep =
-            Sweep::new((&mesh, &facets), vec![tool], &directions, rules.clone(), NonZeroU16::MIN)
-                .expect("a sweep");
+        let sweep = PostureSweep::new(
+            (&mesh, &bvh),
+            vec![tool],
+            &directions,
+            rules.clone(),
+            NonZeroU16::MIN,
+        )
+        .expect("a sweep");
         let all: Vec<usize> = (0..sweep.batches()).collect();
         let _: ControlFlow<()> = sweep.run(&all, |batch| {
             for (id, mut row) in batch.rows {
@@ -52,22 +57,22 @@ impl Case {
             }
             ControlFlow::Continue(())
         });
-        Case { mesh, facets, rules, directions, access, scale }
+        Case { mesh, bvh, rules, directions, access, scale }
     }
 
-    fn lead(&self, tool: &dyn Tool, pattern: &Pattern) -> Result<Path, PathError> {
-        let of = (&self.mesh, &self.facets);
-        path(of, (tool, &self.rules), (&self.directions, &self.access), pattern)
+    fn lead(&self, tool: &dyn Tool, pattern: &Pattern) -> Result<ToolPath, PathError> {
+        let of = (&self.mesh, &self.bvh);
+        plan_path(of, (tool, &self.rules), (&self.directions, &self.access), pattern)
     }
 
-    /// Planes across a way, so many mm apart.
-    fn over(&self, tool: &dyn Tool, normal: [f64; 3], [stepover, step]: [f64; 2]) -> Path {
+    /// Plans a path over planes with a normal. Distances are in mm.
+    fn over(&self, tool: &dyn Tool, normal: [f64; 3], [stepover, step]: [f64; 2]) -> ToolPath {
         let [stepover, step] = [stepover, step].map(|part| part * self.scale);
         self.lead(tool, &Pattern { normal, stepover, step }).expect("a path")
     }
 }
 
-/// Places of a mesh, no triangle's farther from the next than a little.
+/// Returns sample points of a mesh, at most `apart` from each other along the sides of each triangle.
 fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
     let mut all = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
@@ -83,13 +88,13 @@ fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
     all
 }
 
-/// The most that what cuts and what does not of a [`Mill`] is in a part on its way, in mm: on feed, and on
-/// rapid moves.
-fn deepest(case: &Case, path: &Path) -> [[f64; 2]; 2] {
+/// Returns the largest depth of a [`Mill`]'s cutting surfaces and of its other surfaces over a path, in mm: on
+/// feed moves, and on rapid moves.
+fn deepest(case: &Case, path: &ToolPath) -> [[f64; 2]; 2] {
     const TIMES: u32 = 6;
     let places = raster(&case.mesh, 0.5 * case.scale);
     let mut most = [[0f64; 2]; 2];
-    for pair in path.stops.windows(2) {
+    for pair in path.locations.windows(2) {
         let (from, to, rapid) = (pair[0].0, pair[1].0, usize::from(pair[1].1));
         let about = from.axis().cross(&to.axis());
         let turn = from.axis().angle(&to.axis());
@@ -122,7 +127,7 @@ fn deepest(case: &Case, path: &Path) -> [[f64; 2]; 2] {
     most
 }
 
-/// A block with a step along y, its corners as `[x, z]`.
+/// Returns a block with a step along y. Its corners are given as `[x, z]`.
 fn step() -> Mesh {
     let outline = [[-12.0, 0.0], [12.0, 0.0], [12.0, 8.0], [0.0, 8.0], [0.0, 14.0], [-12.0, 14.0]];
     let place = |y: f64| move |[x, z]: [f64; 2]| Point3::new(x, y, z);
@@ -132,13 +137,13 @@ fn step() -> Mesh {
         let next = (k + 1) % 6;
         triangles.extend([[k, next, next + 6], [k, next + 6, k + 6]]);
     }
-    // Seen from the inner corner all others are in sight.
+    // All corners are visible from the inner one, so a fan of triangles covers each end face.
     for (a, b) in [(4, 5), (5, 0), (0, 1), (1, 2)] {
         triangles.extend([[3, b, a], [9, a + 6, b + 6]]);
     }
     let mesh = Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh");
     let turned = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
-    match mesh.survey().solid() {
+    match mesh.diagnostics().is_solid() {
         true => mesh,
         false => Mesh::new(mesh.vertices().to_vec(), turned, Unit::Millimetre).expect("a mesh"),
     }
@@ -148,23 +153,23 @@ fn sphere() -> Mesh {
     shapes::sphere(10.0, 3, Unit::Millimetre).expect("a sphere")
 }
 
-fn proved(mesh: Mesh, normal: [f64; 3], apart: [f64; 2]) -> Path {
+fn proved(mesh: Mesh, normal: [f64; 3], apart: [f64; 2]) -> ToolPath {
     let case = Case::new(mesh, &Mill);
     let path = case.over(&Mill, normal, apart);
     let [feed, rapid] = deepest(&case, &path);
     println!(
         "{} stops, {} places, {} left out, {} lifts, turns {:?}, feed {feed:?}, rapid {rapid:?}",
-        path.stops.len(),
-        path.places,
+        path.locations.len(),
+        path.contact_points,
         path.left_out,
-        path.lifts,
+        path.retracts,
         path.turns
     );
     assert!(feed[0] <= TOLERANCE + 1e-9 && feed[1] <= TOLERANCE / 8.0 + 1e-9, "{feed:?}");
     assert!(rapid[0] <= TOLERANCE + 1e-9 && rapid[1] <= TOLERANCE / 8.0 + 1e-9, "{rapid:?}");
-    assert!(path.places > 100 && path.turns[1] <= path.turns[0], "{path:?}");
+    assert!(path.contact_points > 100 && path.turns[1] <= path.turns[0], "{path:?}");
     let [low, high] = case.mesh.bounds();
-    for (end, rapid) in [path.stops[0], path.stops[path.stops.len() - 1]] {
+    for (end, rapid) in [path.locations[0], path.locations[path.locations.len() - 1]] {
         assert!(rapid);
         assert!((end.tip() - nalgebra::center(&low, &high)).norm() > 0.9 * (high - low).norm());
     }
@@ -174,16 +179,26 @@ fn proved(mesh: Mesh, normal: [f64; 3], apart: [f64; 2]) -> Path {
 #[test]
 fn a_sphere_is_gone_over() {
     let path = proved(sphere(), [0.0, 0.3, 1.0], [1.5, 1.0]);
-    assert!(path.left_out * 20 < path.places, "{} of {}", path.left_out, path.places);
-    // It rolls over the edges between triangles that meet at up to 10 degrees.
-    assert!(path.lifts * 50 < path.places, "{} of {}", path.lifts, path.places);
+    assert!(
+        path.left_out * 20 < path.contact_points,
+        "{} of {}",
+        path.left_out,
+        path.contact_points
+    );
+    // The tool rolls over the edges between triangles that meet at up to 10 degrees.
+    assert!(
+        path.retracts * 50 < path.contact_points,
+        "{} of {}",
+        path.retracts,
+        path.contact_points
+    );
     assert!(path.turns[1] < 0.8 * path.turns[0], "{:?}", path.turns);
 }
 
 #[test]
 fn a_block_with_a_step_is_gone_over() {
     let mesh = step();
-    assert!(mesh.survey().solid(), "{:?}", mesh.survey().findings());
+    assert!(mesh.diagnostics().is_solid(), "{:?}", mesh.diagnostics().findings());
     proved(mesh, [0.0, 1.0, 0.0], [2.0, 1.0]);
 }
 
@@ -195,7 +210,7 @@ fn an_open_sheet_and_a_bore_are_gone_over() {
         [0.0, 1.0, 0.0],
         [2.0, 1.5],
     );
-    assert!(path.lifts > 0);
+    assert!(path.retracts > 0);
 }
 
 #[test]
@@ -213,17 +228,17 @@ fn the_same_path_comes_again_and_in_every_unit_and_place() {
         path
     };
     let first = around(1.0, Unit::Millimetre, 0.0);
-    assert_eq!(around(1.0, Unit::Millimetre, 0.0).stops, first.stops);
+    assert_eq!(around(1.0, Unit::Millimetre, 0.0).locations, first.locations);
     for (scale, unit, off) in
         [(1.0 / 25.4, Unit::Inch, 0.0), (1e-3, Unit::Metre, 0.0), (1.0, Unit::Millimetre, 1e6)]
     {
         let path = around(scale, unit, off);
-        let share = path.places as f64 / first.places as f64;
+        let share = path.contact_points as f64 / first.contact_points as f64;
         assert!(
             (0.9..1.1).contains(&share),
             "{unit} at {off}: {} of {}",
-            path.places,
-            first.places
+            path.contact_points,
+            first.contact_points
         );
     }
 }
@@ -250,26 +265,26 @@ fn a_pattern_that_is_none_is_refused() {
         let error = refused(Pattern { stepover, step, ..pattern });
         assert!(matches!(error, PathError::TooFine { .. }), "{error}");
     }
-    // One plane and one place of a line are enough.
+    // One plane, and one point on a line, are enough.
     for coarse in [1e3, 1e300] {
         let path = case.lead(&Mill, &Pattern { stepover: coarse, step: coarse, ..pattern });
-        assert!(path.expect("a path").places > 0);
+        assert!(path.expect("a path").contact_points > 0);
     }
-    // A normal of any length.
+    // The normal may have any length.
     for size in [1e-300, 1e300] {
         let path =
             case.lead(&Mill, &Pattern { normal: [0.0, 0.0, size], ..pattern }).expect("a path");
-        assert_eq!(path.stops, case.lead(&Mill, &pattern).expect("a path").stops, "{size}");
+        assert_eq!(path.locations, case.lead(&Mill, &pattern).expect("a path").locations, "{size}");
     }
     let none = vec![Vec::new(); case.access.len()];
-    let of = (&case.mesh, &case.facets);
+    let of = (&case.mesh, &case.bvh);
     for access in [&none[..], &[], &vec![vec![0; 4]; case.access.len()]] {
-        let found = path(of, (&Mill, &case.rules), (&case.directions, access), &pattern);
-        assert_eq!(found.expect_err("no path"), PathError::Nowhere);
+        let found = plan_path(of, (&Mill, &case.rules), (&case.directions, access), &pattern);
+        assert_eq!(found.expect_err("no path"), PathError::NoPosture);
     }
     let wrong = Rules { tolerance: 0.0, ..case.rules.clone() };
-    let found = path(of, (&Mill, &wrong), (&case.directions, &case.access), &pattern);
-    assert!(matches!(found, Err(PathError::Judge(_))));
+    let found = plan_path(of, (&Mill, &wrong), (&case.directions, &case.access), &pattern);
+    assert!(matches!(found, Err(PathError::Validator(_))));
 }
 
 #[test]
@@ -279,9 +294,9 @@ fn one_triangle_is_gone_over() {
     let case = Case::new(mesh, &Mill);
     let path = case.over(&Mill, [1.0, 0.0, 0.0], [1.0, 1.0]);
     assert_eq!(path.left_out, 0);
-    // Planes that lie in it cut it nowhere.
+    // Planes parallel to the triangle do not cut it.
     let flat = Pattern { normal: [0.0, 0.0, 1.0], stepover: 1.0, step: 1.0 };
-    assert_eq!(case.lead(&Mill, &flat).expect_err("no path"), PathError::Nowhere);
+    assert_eq!(case.lead(&Mill, &flat).expect_err("no path"), PathError::NoPosture);
 }
 
 #[test]
@@ -289,5 +304,10 @@ fn a_tool_that_is_larger_than_the_part_comes_to_it() {
     let case = Case::new(sphere(), &Wide);
     assert!(case.access.iter().flatten().any(|word| *word != 0));
     let path = case.over(&Wide, [0.0, 0.0, 1.0], [4.0, 2.0]);
-    assert!(path.places > 200 && path.left_out == 0, "{} of {}", path.left_out, path.places);
+    assert!(
+        path.contact_points > 200 && path.left_out == 0,
+        "{} of {}",
+        path.left_out,
+        path.contact_points
+    );
 }

@@ -1,4 +1,4 @@
-//! Postures judged and recorded: against places of triangles, and in a loop that runs.
+//! Validated and recorded postures: comparisons with sample points of triangles, and a running loop.
 
 mod apart;
 mod judged;
@@ -43,11 +43,11 @@ touchoff::tool! {
     }
 }
 
-/// Pieces of a profile that do not cut, as `[d, z]`: of [`Mill`] its neck and holder.
+/// Segments of a profile that do not cut, as `[d, z]`: the neck and the holder of a [`Mill`].
 const NECK: [[f64; 2]; 3] = [[3.0, 12.0], [2.5, 12.0], [2.5, 20.0]];
 const HOLDER: [[f64; 2]; 4] = [[2.5, 20.0], [9.0, 20.0], [9.0, 40.0], [0.0, 40.0]];
 
-/// How far a place is from pieces of a profile.
+/// Returns the distance of a point to a polyline of the profile.
 fn away(line: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
     let one = |ends: &[[f64; 2]]| {
         let [[fd, fz], [td, tz]] = [ends[0], ends[1]];
@@ -58,14 +58,14 @@ fn away(line: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
     line.windows(2).map(one).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether a place is in a [`Mill`], and how deep in what of it cuts, and in what does not.
+/// Returns whether a point is inside a [`Mill`].
 fn inside([d, z]: [f64; 2]) -> bool {
     let ball = z <= 3.0 && d.hypot(z - 3.0) <= 3.0;
     let stem = |radius: f64, low: f64, high: f64| d <= radius && low <= z && z <= high;
     ball || stem(3.0, 3.0, 12.0) || stem(2.5, 12.0, 20.0) || stem(9.0, 20.0, 40.0)
 }
 
-/// How far a place is from what of a [`Mill`] cuts.
+/// Returns the distance of a point to the cutting surfaces of a [`Mill`].
 fn from_cutting([d, z]: [f64; 2]) -> f64 {
     let ball = if z <= 3.0 { (d.hypot(z - 3.0) - 3.0).abs() } else { f64::INFINITY };
     ball.min(away(&[[3.0, 3.0], [3.0, 12.0]], [d, z]))
@@ -97,10 +97,11 @@ fn any_pose(draw: &mut impl FnMut(f64, f64) -> f64, size: f64) -> Pose {
     }
 }
 
-/// Into how many parts sides of triangles are cut.
+/// Number of divisions of a triangle's sides.
 const RASTER: u32 = 16;
 
-/// Places of a mesh in the half plane of a tool at a pose, and how far one is from the next at most.
+/// Returns sample points of a mesh in the half plane of a tool at a pose, and the largest distance between
+/// neighbours.
 fn places(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
     let back = pose.rotation().transpose();
     let (mut all, mut apart) = (Vec::new(), 0f64);
@@ -119,6 +120,6 @@ fn places(mesh: &Mesh, pose: &Pose) -> (Vec<[f64; 2]>, f64) {
 }
 
 fn surface(tool: &dyn Tool, name: &str) -> usize {
-    let surfaces = &tool.card().surfaces;
+    let surfaces = &tool.info().surfaces;
     surfaces.iter().position(|surface| surface.name == name).expect("a surface")
 }

@@ -1,16 +1,19 @@
-//! A loop that is recorded: what it finds is in the map, and it does not notice.
+//! A recorded loop: the map holds the loop's postures, and the loop is not affected.
 
 use crate::{Ball, Mill};
 use nalgebra::{Point3, Vector3};
 use std::num::NonZeroU16;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::haptic::{
-    DeviceError, Limits, Report, Scripted, Session, Settings, State, Unhurried, run, watched,
+    DeviceError, DeviceLimits, LoopReport, ScriptedDevice, Session, SessionSettings, SessionState,
+    SimulatedClock, run, state_channel,
 };
 use touchoff::mesh::shapes;
-use touchoff::postures::{Identity, PostureMap, Recorded, Recorder, RecorderError, Row, Rules};
+use touchoff::postures::{
+    MapIdentity, MapRow, PostureMap, Recorder, RecorderError, RecorderStats, Rules,
+};
 use touchoff::tool::Interpreted;
 use touchoff::{Law, Mesh, Part, Pose, Probe, Tool, Unit};
 
@@ -20,13 +23,13 @@ fn sphere() -> Mesh {
     shapes::sphere(12.0, 3, Unit::Millimetre).expect("a sphere")
 }
 
-fn identity() -> Identity {
+fn identity() -> MapIdentity {
     let rules = Rules { tolerance: 0.2, niceness: 0.5, allowed: Vec::new() };
     let keep = NonZeroU16::new(2).expect("not 0");
-    Identity::new(&sphere(), &[&Ball, &Mill], rules).expect("rules").keeping(keep)
+    MapIdentity::new(&sphere(), &[&Ball, &Mill], rules).expect("rules").with_keep(keep)
 }
 
-/// A hand that winds about the sphere and leans this way and that, at times too deep.
+/// A hand that winds about the sphere and leans back and forth, at times too deep.
 fn pose(cycle: u64) -> Result<Pose, DeviceError> {
     let time = cycle as f64 / 1000.0;
     let (high, round) = (0.9 * (0.7 * time).sin(), 1.3 * time);
@@ -39,31 +42,32 @@ fn pose(cycle: u64) -> Result<Pose, DeviceError> {
     Ok(Pose::from_axis(tip, axis)?)
 }
 
-/// Runs the loop over some cycles as fast as it can, with a recorder beside it, and gives all states.
+/// Runs the loop over some cycles as fast as possible, with a recorder if there is a map, and returns all
+/// states otherwise.
 fn looped(
-    (part, facets): (&Part, &Facets),
+    (part, bvh): (&Part, &TriangleBvh),
     cycles: std::ops::Range<u64>,
     (map, room): (Option<&PostureMap>, usize),
-) -> (Vec<State>, Report, Option<Recorded>) {
-    let limits = Limits::default();
-    let mut device = Scripted::new(limits, move |cycle| pose(cycles.start + cycle));
-    let probe = Probe::new(part, &Mill).law(Law::Gradient);
-    let mut session = Session::new(probe, &Settings::new(1000.0), limits).expect("settings");
-    let (mut watch, _, mut samples) = watched(room);
+) -> (Vec<SessionState>, LoopReport, Option<RecorderStats>) {
+    let limits = DeviceLimits::default();
+    let mut device = ScriptedDevice::new(limits, move |cycle| pose(cycles.start + cycle));
+    let probe = Probe::new(part, &Mill).with_law(Law::Gradient);
+    let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
+    let (mut watch, _, mut samples) = state_channel(room);
     let mut states = Vec::new();
     let count = cycles.end - cycles.start;
     std::thread::scope(|scope| {
         let running = scope.spawn(move || {
-            let (clock, stop) = (&mut Unhurried::default(), AtomicBool::new(false));
+            let (clock, stop) = (&mut SimulatedClock::default(), AtomicBool::new(false));
             run((&mut session, &mut device), (clock, count), &mut watch, &stop)
         });
         let recorded = match map {
             Some(map) => {
-                let mut recorder = Recorder::new(map, (part, facets), &Mill).expect("a recorder");
+                let mut recorder = Recorder::new(map, (part, bvh), &Mill).expect("a recorder");
                 Some(recorder.follow(&mut samples).expect("recorded"))
             }
             None => {
-                while !samples.are_all() {
+                while !samples.is_closed() {
                     states.extend(samples.by_ref());
                 }
                 states.extend(samples.by_ref());
@@ -74,7 +78,7 @@ fn looped(
     })
 }
 
-fn rows(map: &PostureMap) -> Vec<(u32, Row)> {
+fn rows(map: &PostureMap) -> Vec<(u32, MapRow)> {
     map.rows().expect("rows").collect::<Result<_, _>>().expect("whole")
 }
 
@@ -85,22 +89,22 @@ fn open(folder: &Path, name: &str) -> PostureMap {
 #[test]
 fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
     let mesh = sphere();
-    let (part, facets) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), Facets::new(&mesh));
+    let (part, bvh) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
-    let (beside, room) = ((&part, &facets), CYCLES as usize);
+    let (beside, room) = ((&part, &bvh), CYCLES as usize);
     let map = open(folder.path(), "whole");
     let (_, report, recorded) = looped(beside, 0..CYCLES, (Some(&map), room));
     let recorded = recorded.expect("what it saw");
-    assert_eq!((report.lost, recorded.skipped, recorded.states), (0, 0, report.cycles));
+    assert_eq!((report.dropped_states, recorded.skipped, recorded.states), (0, 0, report.cycles));
     assert!(recorded.accepted > 100 && recorded.judged > recorded.accepted, "{recorded:?}");
     let whole = rows(&map);
     assert!(whole.len() > 50, "{} of {}", whole.len(), mesh.triangles().len());
 
-    // What is on record is acceptable, and as nice as is said.
+    // Records are acceptable, and as nice as they state.
     let mut probe = Probe::new(&part, &Mill);
-    let mut certifier = Certifier::new(&facets, &Mill).expect("a profile");
+    let mut certifier = Certifier::new(&bvh, &Mill).expect("a profile");
     for surface in ["ball", "flute"] {
-        certifier = certifier.allow(surface, 0.2).expect("a surface");
+        certifier = certifier.with_allowance(surface, 0.2).expect("a surface");
     }
     for (triangle, row) in &whole {
         assert!((1..=2).contains(&row.best.len()) && row.access.is_empty());
@@ -109,19 +113,19 @@ fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
             assert_eq!(record.tool, 1);
             assert_eq!(probe.posture(&pose).niceness, Some(record.niceness));
             assert!(probe.contacts(&pose).iter().any(|contact| contact.triangle == *triangle));
-            assert_eq!(certifier.clear(&pose), Clear::Clear);
+            assert_eq!(certifier.check_pose(&pose), PoseVerdict::Clear);
         }
     }
 
-    // The same in pieces, each in a map that is opened again: nothing is lost, nothing is there twice.
+    // The same in sections, each with a map that is opened again: nothing is lost or duplicated.
     for cycles in [0..1500, 1500..1600, 1600..CYCLES] {
         let map = open(folder.path(), "pieces");
         looped(beside, cycles, (Some(&map), room));
     }
     let pieces = rows(&open(folder.path(), "pieces"));
-    let covered = |rows: &[(u32, Row)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
+    let covered = |rows: &[(u32, MapRow)]| rows.iter().map(|(id, _)| *id).collect::<Vec<_>>();
     let shared = covered(&pieces).iter().filter(|id| covered(&whole).contains(id)).count();
-    // Where a hand begins anew the loop's springs do too: some cycles are others.
+    // The loop's springs start anew with each section, so some cycles differ.
     assert!(shared * 10 > 9 * whole.len(), "{shared} of {}", whole.len());
     let before = rows(&map);
     looped(beside, 0..CYCLES, (Some(&map), room));
@@ -131,22 +135,22 @@ fn a_session_fills_a_map_and_goes_on_after_an_interruption() {
 #[test]
 fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
     let mesh = sphere();
-    let (part, facets) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), Facets::new(&mesh));
+    let (part, bvh) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
-    let (beside, room) = ((&part, &facets), CYCLES as usize);
+    let (beside, room) = ((&part, &bvh), CYCLES as usize);
     let (alone, ..) = looped(beside, 0..CYCLES, (None, room));
     assert_eq!(alone.len() as u64, CYCLES);
 
-    // With a recorder the states are seen by it; what it had them from is seen by cycles taken by hand.
+    // The recorder consumes the states of its loop. To compare them, run the cycles by hand.
     let map = open(folder.path(), "map");
-    let limits = Limits::default();
-    let mut device = Scripted::new(limits, pose);
-    let probe = Probe::new(&part, &Mill).law(Law::Gradient);
-    let mut session = Session::new(probe, &Settings::new(1000.0), limits).expect("settings");
+    let limits = DeviceLimits::default();
+    let mut device = ScriptedDevice::new(limits, pose);
+    let probe = Probe::new(&part, &Mill).with_law(Law::Gradient);
+    let mut session = Session::new(probe, &SessionSettings::new(1000.0), limits).expect("settings");
     let mut recorder = Recorder::new(&map, beside, &Mill).expect("a recorder");
     for (cycle, before) in alone.iter().enumerate() {
         let state = session.cycle(&mut device).expect("a state");
-        recorder.take(&state).expect("recorded");
+        recorder.process(&state).expect("recorded");
         assert!(bits(&state) == bits(before), "cycle {cycle}");
     }
     recorder.write().expect("recorded");
@@ -158,14 +162,14 @@ fn the_loop_makes_the_same_states_with_a_recorder_and_without() {
     assert_eq!(rows(&map), rows(&open(folder.path(), "other")));
 }
 
-/// All numbers of a state that a hand or a map has anything of.
-fn bits(state: &State) -> Vec<u64> {
+/// Returns the bits of all numbers of a state that matter to a hand or a map.
+fn bits(state: &SessionState) -> Vec<u64> {
     let vectors = [
         state.tool.tip().coords,
         state.tool.axis(),
         state.device.tip().coords,
-        state.push.force,
-        state.push.torque,
+        state.wrench_on_hand.force,
+        state.wrench_on_hand.torque,
         state.wrench.force,
         state.wrench.torque,
     ];
@@ -177,43 +181,47 @@ fn bits(state: &State) -> Vec<u64> {
 #[test]
 fn a_loop_that_is_too_fast_is_not_waited_for() {
     let mesh = sphere();
-    let (part, facets) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), Facets::new(&mesh));
+    let (part, bvh) = (Part::from_mesh(&mesh, 30_000, 1).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let map = open(folder.path(), "map");
-    // Room for four states: most are lost, and all that are not are seen.
-    let (_, report, recorded) = looped((&part, &facets), 0..CYCLES, (Some(&map), 4));
+    // Room for four states: most are lost, and all others are seen.
+    let (_, report, recorded) = looped((&part, &bvh), 0..CYCLES, (Some(&map), 4));
     let recorded = recorded.expect("what it saw");
     assert_eq!(report.cycles, CYCLES);
-    assert_eq!(recorded.states + report.lost, CYCLES);
-    // Those after the last that was seen are skipped by nobody.
-    assert!(recorded.skipped <= report.lost, "{recorded:?}, {} lost", report.lost);
+    assert_eq!(recorded.states + report.dropped_states, CYCLES);
+    // Cycles after the last state that was seen are lost, but not counted as skipped.
+    assert!(
+        recorded.skipped <= report.dropped_states,
+        "{recorded:?}, {} lost",
+        report.dropped_states
+    );
 }
 
 #[test]
 fn a_tool_of_another_version_or_a_part_in_another_unit_is_refused() {
     let mesh = sphere();
-    let (part, facets) = (Part::from_mesh(&mesh, 1000, 1).expect("a part"), Facets::new(&mesh));
+    let (part, bvh) = (Part::from_mesh(&mesh, 1000, 1).expect("a part"), TriangleBvh::new(&mesh));
     let folder = tempfile::tempdir().expect("a folder");
     let map = open(folder.path(), "map");
     let other = interpreted("1 - depth/2");
-    let refused = Recorder::new(&map, (&part, &facets), &other).err().expect("another version");
+    let refused = Recorder::new(&map, (&part, &bvh), &other).err().expect("another version");
     assert!(matches!(refused, RecorderError::Tool { .. }), "{refused:?}");
     assert!(refused.to_string().contains("Mill is no tool of the map, which has `Ball`, `Mill`"));
-    let inch = part.to(Unit::Inch);
-    let refused = Recorder::new(&map, (&inch, &facets), &Mill).err().expect("another unit");
+    let inch = part.converted_to(Unit::Inch);
+    let refused = Recorder::new(&map, (&inch, &bvh), &Mill).err().expect("another unit");
     assert!(matches!(refused, RecorderError::Unit { .. }), "{refused:?}");
 }
 
 #[test]
 fn a_tool_that_is_interpreted_is_the_one_that_is_compiled() {
     let same = interpreted("1 - depth/3");
-    assert_eq!(same.card().digest, Mill.card().digest);
-    assert_eq!(identity().tool(same.card()), Some(1));
-    assert_ne!(interpreted("1 - depth/4").card().digest, Mill.card().digest);
-    assert_ne!(Ball.card().digest, Mill.card().digest);
+    assert_eq!(same.info().digest, Mill.info().digest);
+    assert_eq!(identity().tool(same.info()), Some(1));
+    assert_ne!(interpreted("1 - depth/4").info().digest, Mill.info().digest);
+    assert_ne!(Ball.info().digest, Mill.info().digest);
 }
 
-/// The same as [`Mill`], but for its niceness, its layout and what it says of itself.
+/// Returns a tool like [`Mill`], except for its niceness, its layout and its title.
 fn interpreted(niceness: &str) -> Interpreted {
     let text = format!(
         "tool Mill \"another title\" {{ units mm; // in millimetres

@@ -1,13 +1,13 @@
-//! What a sweep finds, beside what is known of parts in advance, and that it does not matter how it is asked.
+//! Results of a sweep: comparisons with known ones, and their independence of the order of batches.
 
 use crate::{Ball, HOLDER, Mill, NECK, away, from_cutting, inside, parts, places};
 use nalgebra::{Point3, Vector3};
 use std::num::NonZeroU16;
 use std::ops::ControlFlow;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::postures::sweep::{Batch, Sweep, SweepError, Tally};
-use touchoff::postures::{Directions, Judge, JudgeError, Row, Rules};
+use touchoff::postures::sweep::{Batch, PostureSweep, SweepError, SweepStats};
+use touchoff::postures::{Directions, MapRow, Rules, Validator, ValidatorError};
 use touchoff::{Mesh, Tool, Unit};
 
 touchoff::tool! {
@@ -37,12 +37,16 @@ fn keep(count: u16) -> NonZeroU16 {
     NonZeroU16::new(count).expect("not 0")
 }
 
-/// Batches in an order, as rows by triangle, and what they took.
-fn run(sweep: &Sweep<'_>, triangles: usize, orders: &[&[usize]]) -> (Vec<Option<Row>>, Tally) {
-    let (mut rows, mut tally) = (vec![None; triangles], Tally::default());
+/// Runs batches in some orders, and returns the rows by triangle and the counters.
+fn run(
+    sweep: &PostureSweep<'_>,
+    triangles: usize,
+    orders: &[&[usize]],
+) -> (Vec<Option<MapRow>>, SweepStats) {
+    let (mut rows, mut tally) = (vec![None; triangles], SweepStats::default());
     for batches in orders {
         let _: ControlFlow<()> = sweep.run(batches, |batch: Batch| {
-            tally += batch.tally;
+            tally += batch.stats;
             for (id, row) in batch.rows {
                 assert!(rows[id as usize].replace(row).is_none(), "{id} comes twice");
             }
@@ -52,16 +56,16 @@ fn run(sweep: &Sweep<'_>, triangles: usize, orders: &[&[usize]]) -> (Vec<Option<
     (rows, tally)
 }
 
-/// All rows of a part.
+/// Returns all rows of a part.
 fn swept(
     mesh: &Mesh,
     tools: &[&dyn Tool],
     directions: &Directions,
     rules: Rules,
-) -> (Vec<Row>, Tally) {
-    let facets = Facets::new(mesh);
-    let sweep =
-        Sweep::new((mesh, &facets), tools.to_vec(), directions, rules, keep(3)).expect("a sweep");
+) -> (Vec<MapRow>, SweepStats) {
+    let bvh = TriangleBvh::new(mesh);
+    let sweep = PostureSweep::new((mesh, &bvh), tools.to_vec(), directions, rules, keep(3))
+        .expect("a sweep");
     let all: Vec<usize> = (0..sweep.batches()).collect();
     let (rows, tally) = run(&sweep, mesh.triangles().len(), &[&all]);
     (rows.into_iter().map(|row| row.expect("every triangle")).collect(), tally)
@@ -75,7 +79,7 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
 }
 
-/// Two meshes as one, the second's triangles turned over or not.
+/// Returns two meshes as one, with the second one's triangles reversed if `turned`.
 fn both(one: &Mesh, other: &Mesh, turned: bool) -> Mesh {
     let first = one.vertices().len() as u32;
     let vertices = one.vertices().iter().chain(other.vertices()).copied().collect();
@@ -90,11 +94,11 @@ fn both(one: &Mesh, other: &Mesh, turned: bool) -> Mesh {
 #[test]
 fn batches_are_the_same_whichever_way_they_are_asked_for() {
     let mesh = shapes::sphere(8.0, 3, Unit::Millimetre).expect("a sphere");
-    let facets = Facets::new(&mesh);
+    let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(25);
     let tools: Vec<&dyn Tool> = vec![&Mill, &Ball];
     let sweep =
-        Sweep::new((&mesh, &facets), tools, &directions, rules(), keep(2)).expect("a sweep");
+        PostureSweep::new((&mesh, &bvh), tools, &directions, rules(), keep(2)).expect("a sweep");
     assert_eq!(sweep.batches(), 5);
     let triangles = mesh.triangles().len();
     let (rows, tally) = run(&sweep, triangles, &[&[0, 1, 2, 3, 4]]);
@@ -106,7 +110,7 @@ fn batches_are_the_same_whichever_way_they_are_asked_for() {
     for order in orders {
         assert!(run(&sweep, triangles, order) == (rows.clone(), tally), "{order:?}");
     }
-    // It stops when told, and what is left goes on from there.
+    // The sweep stops when told, and the batches so far are the same.
     let mut first = Vec::new();
     let stopped = sweep.run(&[0, 1, 2, 3, 4], |batch| {
         first.extend(batch.rows);
@@ -120,13 +124,13 @@ fn batches_are_the_same_whichever_way_they_are_asked_for() {
 fn the_best_are_acceptable_bit_for_bit_and_of_more_the_same_are_first() {
     let directions = Directions::spread(40);
     for mesh in parts() {
-        let facets = Facets::new(&mesh);
-        let mut judge = Judge::new(&facets, &Mill, &rules()).expect("a judge");
+        let bvh = TriangleBvh::new(&mesh);
+        let mut judge = Validator::new(&bvh, &Mill, &rules()).expect("a judge");
         let sweep = |count| {
-            Sweep::new((&mesh, &facets), vec![&Mill], &directions, rules(), keep(count))
+            PostureSweep::new((&mesh, &bvh), vec![&Mill], &directions, rules(), keep(count))
                 .expect("a sweep")
         };
-        let rows = |sweep: &Sweep<'_>| {
+        let rows = |sweep: &PostureSweep<'_>| {
             let all: Vec<usize> = (0..sweep.batches()).collect();
             run(sweep, mesh.triangles().len(), &[&all]).0
         };
@@ -161,18 +165,18 @@ fn the_best_are_acceptable_bit_for_bit_and_of_more_the_same_are_first() {
 fn what_is_enclosed_is_not_reached() {
     let outer = block([-30.0; 3], [30.0; 3]);
     let directions = Directions::spread(60);
-    // A hollow that the tool is too long for.
+    // A cavity for which the tool is too long.
     let hollow = both(&outer, &block([-10.0; 3], [10.0; 3]), true);
     let (rows, tally) = swept(&hollow, &[&Mill], &directions, rules());
     assert!(rows[..12].iter().all(|row| count(&row.access[0].directions) > 0));
     assert!(
         rows[12..].iter().all(|row| count(&row.access[0].directions) == 0 && row.best.is_empty())
     );
-    assert!(tally.found + tally.known > 0);
-    // A ball that nothing holds fits into the hollow, and is in no material there.
+    assert!(tally.obstructed + tally.cached_obstruction > 0);
+    // A ball without a shank fits into the cavity, where there is no material.
     let (rows, _) = swept(&hollow, &[&Ball], &directions, rules());
     assert!(rows[12..].iter().all(|row| count(&row.access[0].directions) > 0));
-    // A body in the material of another: no triangle is near the ball, and yet it is inside.
+    // A body inside the material of another: no triangle is near the ball, and yet it is inside.
     let core = both(&outer, &block([-10.0; 3], [10.0; 3]), false);
     let (rows, _) = swept(&core, &[&Ball], &directions, rules());
     assert!(rows[..12].iter().all(|row| count(&row.access[0].directions) > 0));
@@ -181,15 +185,15 @@ fn what_is_enclosed_is_not_reached() {
 
 #[test]
 fn a_ball_alone_stands_at_a_plate_in_every_direction_that_its_arc_has() {
-    // The ball of 180 degrees of arc may face anywhere, and one on a stem of its own width half of that.
+    // A ball with 180 degrees of arc may have any axis, and one on a stem of its own width half of all axes.
     let plate = shapes::plane(0.01, 1, Unit::Millimetre).expect("a plate");
     let directions = Directions::spread(500);
     for (tool, wanted) in [(&Ball as &dyn Tool, 4.0), (&Mill, 2.0), (&Lollipop, 2.0 * 1.8)] {
         let (rows, _) = swept(&plate, &[tool], &directions, rules());
         for row in rows {
             let angle = directions.solid_angle(&row.access[0].directions) / std::f64::consts::PI;
-            // A lollipop's normals end where their sine is 0.8; a cap so high is as much of the sphere.
-            assert!((angle - wanted).abs() < 0.02, "{}: {angle}", tool.card().name);
+            // A lollipop's normals end where their sine is 0.8; a cap's area is proportional to its height.
+            assert!((angle - wanted).abs() < 0.02, "{}: {angle}", tool.info().name);
         }
     }
 }
@@ -217,7 +221,7 @@ fn an_undercut_is_reached_by_a_lollipop_and_by_no_ball_end() {
         for (tool, wanted) in [(&Lollipop as &dyn Tool, lollipop), (&Mill, false)] {
             let (rows, tally) = swept(&mesh, &[tool], &up, rules());
             let found = count(&rows[0].access[0].directions) == 1;
-            assert_eq!(found, wanted, "{} at {degrees}: {tally:?}", tool.card().name);
+            assert_eq!(found, wanted, "{} at {degrees}: {tally:?}", tool.info().name);
         }
     }
 }
@@ -249,15 +253,15 @@ fn niceness_has_to_be_more_than_is_asked() {
     for (niceness, some) in [(0.999, true), (1.0, false), (-1.0, true)] {
         let (rows, tally) = swept(&mesh, &[&Mill], &directions, Rules { niceness, ..rules() });
         assert_eq!(rows.iter().any(|row| !row.best.is_empty()), some, "{niceness}");
-        assert_eq!(tally.plain > 0, !some, "{niceness}");
-        assert_eq!(tally.searched() + tally.known > 0, some, "{niceness}");
+        assert_eq!(tally.below_niceness > 0, !some, "{niceness}");
+        assert_eq!(tally.searched() + tally.cached_obstruction > 0, some, "{niceness}");
     }
 }
 
 #[test]
 fn the_more_is_allowed_the_more_is_reached() {
     let directions = Directions::spread(60);
-    // A block on a plate: the holder comes near the plate.
+    // A block on a plate, so that the holder comes near the plate.
     let mesh = both(
         &block([-40.0, -40.0, -5.0], [40.0, 40.0, 0.0]),
         &block([-4.0, -4.0, 0.5], [4.0, 4.0, 12.0]),
@@ -278,7 +282,7 @@ fn the_more_is_allowed_the_more_is_reached() {
 fn the_same_part_in_another_unit_is_reached_the_same() {
     let directions = Directions::spread(40);
     let sets = [Unit::Millimetre, Unit::Inch, Unit::Metre].map(|unit| {
-        let scale = Unit::Millimetre.to(unit);
+        let scale = Unit::Millimetre.factor_to(unit);
         let scaled = |mesh: Mesh| {
             let vertices = mesh.vertices().iter().map(|place| place * scale).collect();
             Mesh::new(vertices, mesh.triangles().to_vec(), unit).expect("a mesh")
@@ -291,7 +295,7 @@ fn the_same_part_in_another_unit_is_reached_the_same() {
     assert!(count(&sets[0]) > 500);
     for set in &sets[1..] {
         let other: u32 = set.iter().zip(&sets[0]).map(|(a, b)| (a ^ b).count_ones()).sum();
-        // What is within rounding of the tolerance may change.
+        // Postures within rounding of the tolerance may change.
         assert!(1000 * other <= count(&sets[0]), "{other} of {}", count(&sets[0]));
     }
 }
@@ -308,15 +312,18 @@ touchoff::tool! {
 #[test]
 fn what_cannot_be_swept_says_why() {
     let mesh = block([0.0; 3], [9.0; 3]);
-    let facets = Facets::new(&mesh);
+    let bvh = TriangleBvh::new(&mesh);
     let directions = Directions::spread(3);
     let refused = |tools: Vec<&'static dyn Tool>, rules: Rules| {
-        Sweep::new((&mesh, &facets), tools, &directions, rules, keep(1)).err().expect("refused")
+        PostureSweep::new((&mesh, &bvh), tools, &directions, rules, keep(1)).err().expect("refused")
     };
-    assert_eq!(refused(vec![&Stick], rules()), SweepError::Blunt("Stick".into()));
+    assert_eq!(refused(vec![&Stick], rules()), SweepError::NoCuttingSurface("Stick".into()));
     let none = Rules { tolerance: 0.0, ..rules() };
     assert!(matches!(refused(vec![&Mill], none), SweepError::Rules(_)));
-    assert!(matches!(refused(vec![&Round], rules()), SweepError::Judge(JudgeError::Solid { .. })));
+    assert!(matches!(
+        refused(vec![&Round], rules()),
+        SweepError::Validator(ValidatorError::Solid { .. })
+    ));
 }
 
 #[test]
@@ -340,7 +347,7 @@ fn directions_are_spread_evenly_and_none_is_lost() {
         if (100..1000).contains(&count) {
             let sum: Vector3<f64> = ways.iter().sum();
             assert!(sum.norm() < 0.01 * count as f64);
-            // No cap of a sixteenth has a quarter more or fewer than its share.
+            // Every cap of a sixteenth of the sphere has its share of directions, within a quarter.
             for middle in &ways {
                 let inside = ways.iter().filter(|way| way.dot(middle) > 1.0 - 2.0 / 16.0).count();
                 let share = count as f64 / 16.0;

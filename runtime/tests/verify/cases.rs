@@ -1,10 +1,10 @@
-//! Programs of which geometry says what is found.
+//! Programs whose findings follow from their geometry.
 
 use crate::block;
 use crate::oracle::Mounted;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::mesh::shapes;
-use touchoff::verify::{Kind, Report, Verifier};
+use touchoff::verify::{FindingKind, Verifier, VerifyReport};
 use touchoff::{Mesh, Program, Unit};
 
 touchoff::tool! {
@@ -32,31 +32,31 @@ touchoff::tool! {
 }
 
 /// Checks a program with a tolerance and allowances.
-fn check(mesh: &Mesh, text: &str, tolerance: f64, allowed: &[(&str, f64)]) -> Report {
-    let facets = Facets::new(mesh);
+fn check(mesh: &Mesh, text: &str, tolerance: f64, allowed: &[(&str, f64)]) -> VerifyReport {
+    let bvh = TriangleBvh::new(mesh);
     let program = Program::parse(text, "part.cl").expect("a program");
-    let verifier = Verifier::new(&facets, &Mounted).expect("a profile");
-    let verifier = verifier.tolerance(tolerance).expect("a length");
+    let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
+    let verifier = verifier.with_tolerance(tolerance).expect("a length");
     let verifier = allowed.iter().fold(verifier, |verifier, (name, allowed)| {
-        verifier.allow(name, *allowed).expect("a surface")
+        verifier.with_allowance(name, *allowed).expect("a surface")
     });
     verifier.check(&program).expect("it can be checked")
 }
 
-/// Of each finding: line, kind, surface.
-fn briefly(report: &Report) -> Vec<(usize, &'static str, Option<usize>)> {
-    let word = |kind: &Kind| match kind {
-        Kind::Deep { .. } => "deep",
-        Kind::Near { .. } => "near",
-        Kind::Inside { .. } => "inside",
-        Kind::Undecided { .. } => "undecided",
-        Kind::Ambiguous(_) => "ambiguous",
+/// Returns the line, the kind and the surface of each finding.
+fn briefly(report: &VerifyReport) -> Vec<(usize, &'static str, Option<usize>)> {
+    let word = |kind: &FindingKind| match kind {
+        FindingKind::Deep { .. } => "deep",
+        FindingKind::Near { .. } => "near",
+        FindingKind::Inside { .. } => "inside",
+        FindingKind::Undecided { .. } => "undecided",
+        FindingKind::Ambiguous(_) => "ambiguous",
     };
     let brief = report.findings.iter().map(|f| (f.line, word(&f.kind), f.kind.surface()));
     brief.collect()
 }
 
-/// 10 by 10 by 50, its top at z = 0.
+/// Returns a block of 10 by 10 by 50 mm whose top is at z = 0.
 fn pillar() -> Mesh {
     block([-5.0, -5.0, -50.0], [5.0, 5.0, 0.0])
 }
@@ -66,10 +66,10 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
     let text = "MULTAX/ON\nGOTO/-30,0,-0.5,0,0,1\nGOTO/30,0,-0.5,0,0,1\nFINI\n";
     let report = check(&pillar(), text, 0.01, &[]);
     let [found] = &report.findings[..] else { panic!("{report:?}") };
-    assert_eq!((found.from, found.line, found.stop, found.rapid), (Some(2), 3, 1, false));
+    assert_eq!((found.from, found.line, found.location, found.rapid), (Some(2), 3, 1, false));
     // The ball is 0.5 deep wherever its lowest point is over the pillar.
-    assert!((25.0 / 60.0..=35.0 / 60.0).contains(&found.part), "{found:?}");
-    let Kind::Deep { surface: 0, allowed, depth: [low, high], most, through: false, .. } =
+    assert!((25.0 / 60.0..=35.0 / 60.0).contains(&found.time), "{found:?}");
+    let FindingKind::Deep { surface: 0, allowed, depth: [low, high], most, through: false, .. } =
         found.kind
     else {
         panic!("{found:?}")
@@ -85,22 +85,23 @@ fn a_gouge_between_two_points_is_found_where_it_is_deepest() {
 
 #[test]
 fn a_flute_that_gouges_does_not_hide_what_rubs() {
-    // Beside the pillar, 0.2 in it; the nut comes over its top.
+    // The tool is beside the pillar and 0.2 in it; the nut reaches over the top.
     let text = "GOTO/-20,0,-26,0,0,1\nGOTO/-7.8,0,-26,0,0,1\nFINI\n";
     let all =
         [(2, "deep", Some(0)), (2, "deep", Some(1)), (2, "deep", Some(2)), (2, "deep", Some(3))];
     assert_eq!(briefly(&check(&pillar(), text, 0.0, &[])), all);
     let cut = [("flute", f64::INFINITY), ("ball", f64::INFINITY)];
     assert_eq!(briefly(&check(&pillar(), text, 0.0, &cut)), all[2..]);
-    // Over the top, the corner of shank and nut is the nearest to what is under the axis.
+    // Over the top, the corner of shank and nut is nearest to the points under the axis.
     let rub = [cut[0], cut[1], ("shank", 2.0)];
     assert_eq!(briefly(&check(&pillar(), text, 0.0, &rub)), all[3..]);
-    // 26 up the nut is over the top: 0.5 above it is too near for a margin of 1, and 2 are not.
+    // Here the nut is above the top: a distance of 0.5 violates a margin of 1, and 2 does not.
     let higher = |z: f64| format!("GOTO/-20,0,{z},0,0,1\nGOTO/-7.8,0,{z},0,0,1\nFINI\n");
     let margin = [rub[0], rub[1], rub[2], ("nut", -1.0)];
     let near = check(&pillar(), &higher(-24.5), 0.0, &margin);
     assert_eq!(briefly(&near), [(2, "near", Some(3))]);
-    let Kind::Near { distance: [low, high], least, margin: kept, .. } = near.findings[0].kind
+    let FindingKind::Near { distance: [low, high], least, margin: kept, .. } =
+        near.findings[0].kind
     else {
         panic!("{near:?}")
     };
@@ -110,13 +111,15 @@ fn a_flute_that_gouges_does_not_hide_what_rubs() {
 
 #[test]
 fn what_goes_right_through_says_so() {
-    // The axis of the tool, upright, goes through the pillar from side to side, 6 below its top.
+    // The axis of the upright tool passes through the pillar from side to side, 6 below its top.
     let text = "GOTO/-30,0,-6,0,0,1\nGOTO/30,0,-6,0,0,1\nFINI\n";
     let report = check(&pillar(), text, 0.01, &[]);
     let through: Vec<(Option<usize>, bool)> = report
         .findings
         .iter()
-        .map(|found| (found.kind.surface(), matches!(found.kind, Kind::Deep { through: true, .. })))
+        .map(|found| {
+            (found.kind.surface(), matches!(found.kind, FindingKind::Deep { through: true, .. }))
+        })
         .collect();
     assert_eq!(through, [(Some(0), true), (Some(1), true)]);
 }
@@ -136,7 +139,7 @@ fn in_rapid_traverse_nothing_cuts() {
 fn the_first_stop_is_checked_by_itself() {
     let report = check(&pillar(), "0,0,-0.5,0,0,1\n", 0.0, &[]);
     let [found] = &report.findings[..] else { panic!("{report:?}") };
-    assert_eq!((report.motions, found.from, found.stop, found.line), (0, None, 0, 1));
+    assert_eq!((report.motions, found.from, found.location, found.line), (0, None, 0, 1));
     assert_eq!(check(&pillar(), "0,0,0.5,0,0,1\n", 0.0, &[]).findings, []);
 }
 
@@ -151,7 +154,7 @@ fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
         briefly(&check(&large, text, 0.1, &any)),
         [(1, "inside", None), (2, "inside", None)]
     );
-    // All of the tool but its shank is allowed to be anywhere, and its nut ends in the open.
+    // All surfaces but the shank may be at any depth, and the nut ends in the open.
     let deep = block([-200.0, -200.0, -200.0], [200.0, 200.0, 38.0]);
     let limits = [any[0], any[1], ("nut", f64::INFINITY)];
     let shank = briefly(&check(&deep, text, 0.1, &limits));
@@ -165,41 +168,44 @@ fn a_tool_inside_the_material_is_found_where_that_can_be_known() {
 fn an_axis_that_turns_to_its_opposite_is_found() {
     let text = "0,0,20,0,0,1\n0,0,60,0,0,-1\n0,0,2,0,0,1\n";
     let report = check(&pillar(), text, 0.0, &[]);
-    // The tool upside down reaches from 60 down to 20.
+    // The inverted tool reaches from 60 down to 20.
     assert_eq!(briefly(&report), [(2, "ambiguous", None), (3, "ambiguous", None)]);
     let into = check(&pillar(), "0,0,20,0,0,1\n0,0,30,0,0,-1\n", 0.0, &[]);
-    // Over the pillar the corner between shank and nut is nearest, so that both are as deep.
+    // Over the pillar the corner between shank and nut is nearest, so both are equally deep.
     let both = [(2, "ambiguous", None), (2, "deep", Some(2)), (2, "deep", Some(3))];
     assert_eq!(briefly(&into), both);
 }
 
 #[test]
 fn what_is_not_decided_is_said() {
-    let facets = Facets::new(&pillar());
+    let bvh = TriangleBvh::new(&pillar());
     let program =
         Program::parse("-30,0,1e-7,0,0,1\n30,0,1e-7,0.01,0,1\n", "a.csv").expect("two stops");
-    let verifier = Verifier::new(&facets, &Mounted).expect("a profile").budget(1);
+    let verifier = Verifier::new(&bvh, &Mounted).expect("a profile").with_budget(1);
     let report = verifier.check(&program).expect("it can be checked");
-    let undecided = report.findings.iter().filter(|f| matches!(f.kind, Kind::Undecided { .. }));
+    let undecided =
+        report.findings.iter().filter(|f| matches!(f.kind, FindingKind::Undecided { .. }));
     assert!(undecided.count() > 0, "{report:?}");
 }
 
 #[test]
 fn what_cannot_be_checked_is_refused() {
-    let facets = Facets::new(&pillar());
+    let bvh = TriangleBvh::new(&pillar());
     let spinless = Program::parse("-30,0,9,0,0,1\n30,0,9,0,0,1\n", "a.csv").expect("two stops");
-    let error = Verifier::new(&facets, &Brick).expect("proved").check(&spinless).err();
+    let error = Verifier::new(&bvh, &Brick).expect("proved").check(&spinless).err();
     assert!(error.is_some_and(|error| error.to_string().contains("an axis does not place")));
-    let margin = Verifier::new(&facets, &ByHand).expect("proved").allow("ball", -0.1).err();
+    let margin = Verifier::new(&bvh, &ByHand).expect("proved").with_allowance("ball", -0.1).err();
     assert!(margin.is_some_and(|error| error.to_string().contains("has no profile")));
-    let verifier = || Verifier::new(&facets, &Mounted).expect("a profile");
-    let said = verifier().allow("fluet", 0.1).err().expect("no such surface").to_string();
+    let verifier = || Verifier::new(&bvh, &Mounted).expect("a profile");
+    let said = verifier().with_allowance("fluet", 0.1).err().expect("no such surface").to_string();
     assert!(said.contains("no surface `fluet`; it has `ball`, `flute`"), "{said}");
     for wrong in [f64::NAN, f64::NEG_INFINITY] {
-        assert!(verifier().allow("flute", wrong).is_err());
+        assert!(verifier().with_allowance("flute", wrong).is_err());
     }
     for wrong in [f64::NAN, -1.0, f64::INFINITY] {
-        assert!(verifier().tolerance(wrong).is_err() && verifier().resolution(wrong).is_err());
+        assert!(
+            verifier().with_tolerance(wrong).is_err() && verifier().with_resolution(wrong).is_err()
+        );
     }
     let inch = Program::parse("UNITS/INCHES\nGOTO/1,2,3\nFINI\n", "inch.cl").expect("a program");
     let said = verifier().check(&inch).expect_err("another unit").to_string();
@@ -212,30 +218,30 @@ fn findings_come_in_the_programs_order_and_are_the_same_again() {
         .map(|k| format!("{},0,{},0,0,1\n", k % 7, 0.1 - 0.002 * f64::from(k % 97)))
         .collect();
     let report = check(&pillar(), &rows, 0.0, &[]);
-    assert!(report.findings.len() > 40 && report.findings.is_sorted_by_key(|found| found.stop));
+    assert!(report.findings.len() > 40 && report.findings.is_sorted_by_key(|found| found.location));
     assert_eq!(check(&pillar(), &rows, 0.0, &[]), report);
 }
 
-/// A tool by its regions is checked as one by its profile: the same is found, as deep.
+/// A tool defined by regions is checked like one defined by a profile: the findings and their depths agree.
 #[test]
 fn a_ball_by_hand_is_checked_as_one_by_its_profile() {
-    let facets = Facets::new(&pillar());
+    let bvh = TriangleBvh::new(&pillar());
     let text =
         "-30,0,-0.5,0,0,1\n30,0,-0.5,0,0,1\n30,0,8,0,0.6,0.8\n0,0,-0.25,0,0,1\n0,0,-20,0,0,1\n";
     let program = Program::parse(text, "a.csv").expect("a program");
     let check = |verifier: Verifier<'_>| {
-        let verifier = verifier.tolerance(0.01).expect("a length");
+        let verifier = verifier.with_tolerance(0.01).expect("a length");
         verifier.check(&program).expect("it can be checked")
     };
     let [hand, drawn] = [
-        check(Verifier::new(&facets, &ByHand).expect("proved")),
-        check(Verifier::new(&facets, &Drawn).expect("a profile")),
+        check(Verifier::new(&bvh, &ByHand).expect("proved")),
+        check(Verifier::new(&bvh, &Drawn).expect("a profile")),
     ];
     assert_eq!(briefly(&hand), briefly(&drawn));
     assert!(hand.findings.len() > 2, "{hand:?}");
     for (one, other) in hand.findings.iter().zip(&drawn.findings) {
-        let depth = |kind: &Kind| match kind {
-            Kind::Deep { depth, .. } => Some(*depth),
+        let depth = |kind: &FindingKind| match kind {
+            FindingKind::Deep { depth, .. } => Some(*depth),
             _ => None,
         };
         if let (Some([low, high]), Some([least, most])) = (depth(&one.kind), depth(&other.kind)) {

@@ -1,13 +1,14 @@
-//! Programs held to parts: against brute force on random ones, and where geometry says what is found.
+//! Verification of programs: a comparison with brute force on random ones, and cases whose findings follow from
+//! geometry.
 
 mod cases;
 mod oracle;
 
 use nalgebra::Point3;
 use oracle::{Draw, Mounted, SURFACES, Stand, Worst, along, places};
-use touchoff::certify::{Facets, Witness};
+use touchoff::certify::{TriangleBvh, Witness};
 use touchoff::mesh::shapes;
-use touchoff::verify::{Finding, Kind, Verifier};
+use touchoff::verify::{Finding, FindingKind, Verifier};
 use touchoff::{Mesh, Pose, Program, Unit};
 
 pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
@@ -15,12 +16,12 @@ pub(crate) fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
 }
 
 const RESOLUTION: f64 = 1e-3;
-/// Places of triangles are that near to each other, mm.
+/// Distance between sample points of triangles, in mm.
 const STEP: f64 = 0.6;
-/// Times of each motion.
+/// Number of time steps per motion.
 const TIMES: u32 = 24;
 
-/// A walk of stops about a block.
+/// Returns a random walk of poses about a block, each with a flag for rapid traverse.
 fn walk(draw: &mut Draw, stops: usize) -> Vec<(Stand, bool)> {
     let mut tip = Point3::from(draw.vector(12.0));
     let mut axis = draw.vector(1.0).normalize();
@@ -28,14 +29,14 @@ fn walk(draw: &mut Draw, stops: usize) -> Vec<(Stand, bool)> {
     for _ in 0..stops {
         walk.push(((tip, axis), draw.between(0.0, 1.0) < 0.2));
         let size = if draw.between(0.0, 1.0) < 0.3 { 9.0 } else { 1.5 };
-        // It stays about the block.
+        // The factor keeps the walk near the block.
         tip = Point3::from((tip.coords + draw.vector(size)) * 0.95);
         axis = (axis + draw.vector(0.25)).normalize();
     }
     walk
 }
 
-/// What a stop's surfaces may do.
+/// Returns the depth that each surface is allowed in the motion to a stop.
 fn limits(given: &[(&str, f64)], tolerance: f64, rapid: bool) -> [f64; 4] {
     SURFACES.map(|name| {
         let own = given.iter().find(|(known, _)| *known == name).map(|(_, allowed)| *allowed);
@@ -44,9 +45,9 @@ fn limits(given: &[(&str, f64)], tolerance: f64, rapid: bool) -> [f64; 4] {
     })
 }
 
-/// Holds a finding to the witness that it names.
+/// Checks a finding at the witness that it names.
 fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &Stand)) {
-    let (tip, axis) = along((from, to), found.part);
+    let (tip, axis) = along((from, to), found.time);
     assert!((found.pose.tip() - tip).norm() < 1e-9 && (found.pose.axis() - axis).norm() < 1e-9);
     let stand = (tip, axis);
     let on = |witness: &Witness| {
@@ -58,7 +59,7 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
         there
     };
     match &found.kind {
-        Kind::Deep { surface, allowed, depth: [low, high], most, witness, .. } => {
+        FindingKind::Deep { surface, allowed, depth: [low, high], most, witness, .. } => {
             let there = on(witness).depth[*surface];
             assert_eq!(*allowed, limits[*surface]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
@@ -67,7 +68,7 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
                 "{found:?}"
             );
         }
-        Kind::Near { surface, margin, distance: [low, high], least, witness } => {
+        FindingKind::Near { surface, margin, distance: [low, high], least, witness } => {
             let there = on(witness).distance[*surface];
             assert_eq!(-margin, limits[*surface]);
             assert!(*low <= there + 1e-9 && there <= high + 1e-9, "{there}: {found:?}");
@@ -77,7 +78,7 @@ fn judge(found: &Finding, mesh: &Mesh, limits: &[f64; 4], (from, to): (&Stand, &
     }
 }
 
-/// Holds what is found of a motion to what brute force finds on it.
+/// Compares the findings of a motion with the result of brute force.
 fn hold(of: &[Finding], limits: &[f64; 4], worst: &Worst) {
     for (surface, limit) in limits.iter().enumerate() {
         let found: Vec<_> = of.iter().filter(|f| f.kind.surface() == Some(surface)).collect();
@@ -86,8 +87,10 @@ fn hold(of: &[Finding], limits: &[f64; 4], worst: &Worst) {
         let deep = depth > limit.max(0.0) + RESOLUTION;
         let near = *limit < 0.0 && distance < -limit - RESOLUTION;
         match found.first().map(|found| found.kind) {
-            Some(Kind::Deep { most, .. }) => assert!(depth <= most + 1e-9, "{depth}: {found:?}"),
-            Some(Kind::Near { least, .. }) => {
+            Some(FindingKind::Deep { most, .. }) => {
+                assert!(depth <= most + 1e-9, "{depth}: {found:?}");
+            }
+            Some(FindingKind::Near { least, .. }) => {
                 assert!(!deep && distance >= least - 1e-9, "{distance}: {found:?}");
             }
             _ => assert!(!deep && !near, "{surface}: {limit}, {worst:?}, {of:?}"),
@@ -111,33 +114,37 @@ fn brute_force_finds_nothing_else() {
     ];
     let [mut deep, mut near, mut clear] = [0; 3];
     for (k, mesh) in meshes.iter().enumerate() {
-        let (facets, places) = (Facets::new(mesh), places(mesh, STEP));
+        let (bvh, places) = (TriangleBvh::new(mesh), places(mesh, STEP));
         for (seed, given) in (10 * k as u64..).zip(allowances) {
             let tolerance = if seed % 2 == 0 { 0.0 } else { 0.05 };
             let walk = walk(&mut Draw::new(seed + 1), 60);
             let pose = |(tip, axis): &Stand| Pose::from_axis(*tip, *axis).expect("an axis");
             let poses = walk.iter().map(|(stand, rapid)| (pose(stand), *rapid));
             let program = Program::new("walk", None, poses).expect("stops");
-            let verifier = Verifier::new(&facets, &Mounted).expect("a profile");
-            let verifier = verifier.tolerance(tolerance).expect("a length");
-            let verifier = verifier.resolution(RESOLUTION).expect("a length");
+            let verifier = Verifier::new(&bvh, &Mounted).expect("a profile");
+            let verifier = verifier.with_tolerance(tolerance).expect("a length");
+            let verifier = verifier.with_resolution(RESOLUTION).expect("a length");
             let verifier = given.iter().fold(verifier, |verifier, (name, to)| {
-                verifier.allow(name, *to).expect("a surface")
+                verifier.with_allowance(name, *to).expect("a surface")
             });
             let report = verifier.check(&program).expect("it can be checked");
             assert_eq!((report.motions, report.inside_known), (59, k == 0));
             for (stop, (to, rapid)) in walk.iter().enumerate() {
                 let from = &walk[stop.saturating_sub(1)].0;
                 let limits = limits(given, tolerance, *rapid);
-                let found: Vec<Finding> =
-                    report.findings.iter().filter(|found| found.stop == stop).copied().collect();
+                let found: Vec<Finding> = report
+                    .findings
+                    .iter()
+                    .filter(|found| found.location == stop)
+                    .copied()
+                    .collect();
                 for finding in
-                    found.iter().filter(|found| !matches!(found.kind, Kind::Inside { .. }))
+                    found.iter().filter(|found| !matches!(found.kind, FindingKind::Inside { .. }))
                 {
                     assert_eq!((finding.line, finding.rapid), (stop + 1, *rapid));
                     judge(finding, mesh, &limits, (from, to));
-                    deep += usize::from(matches!(finding.kind, Kind::Deep { .. }));
-                    near += usize::from(matches!(finding.kind, Kind::Near { .. }));
+                    deep += usize::from(matches!(finding.kind, FindingKind::Deep { .. }));
+                    near += usize::from(matches!(finding.kind, FindingKind::Near { .. }));
                 }
                 let mut worst = Worst::none();
                 for time in 0..=TIMES {
@@ -149,6 +156,6 @@ fn brute_force_finds_nothing_else() {
             }
         }
     }
-    // Otherwise nothing was tried.
+    // Without these counts the test would prove nothing.
     assert!(deep > 100 && near > 20 && clear > 100, "{deep} deep, {near} near, {clear} clear");
 }

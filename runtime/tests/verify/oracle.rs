@@ -1,5 +1,5 @@
-//! What a program does to a part, by brute force: places of triangles, times of motions, and the distance to
-//! each piece of one profile written out. It shares nothing with what it judges.
+//! A brute-force oracle: sample points of triangles, sample times of motions, and the distance to each segment
+//! of one profile in closed form. It shares nothing with the code under test.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::Mesh;
@@ -24,14 +24,14 @@ touchoff::tool! {
 /// A tip and an axis.
 pub(crate) type Stand = (Point3<f64>, Vector3<f64>);
 
-/// How far a place of the half plane is from each surface.
+/// Returns the distance of a point in the half plane to each surface.
 fn distances([d, z]: [f64; 2]) -> [f64; 4] {
     let segment = |[a, b]: [f64; 2], [c, e]: [f64; 2]| {
         let (x, y) = (c - a, e - b);
         let t = (((d - a) * x + (z - b) * y) / (x * x + y * y)).clamp(0.0, 1.0);
         (d - a - t * x).hypot(z - b - t * y)
     };
-    // The quarter below and beside (0, 3).
+    // The quarter of the circle below and beside (0, 3).
     let ball = if z <= 3.0 { (3.0 - d.hypot(z - 3.0)).abs() } else { (d - 3.0).hypot(z - 3.0) };
     let nut = [([3.0, 25.0], [8.0, 25.0]), ([8.0, 25.0], [8.0, 40.0]), ([8.0, 40.0], [0.0, 40.0])];
     [
@@ -57,7 +57,7 @@ fn seen(place: &Point3<f64>, (tip, axis): &Stand) -> [f64; 2] {
     [(way - axis * z).norm(), z]
 }
 
-/// What brute force finds of each surface: how deep it is where it is the nearest, and how near.
+/// Results of brute force per surface: the depth where it is the nearest, and the distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Worst {
     pub(crate) depth: [f64; 4],
@@ -69,10 +69,10 @@ impl Worst {
         Worst { depth: [0.0; 4], distance: [f64::INFINITY; 4] }
     }
 
-    /// With a place of the part and the tool's stand.
+    /// Adds a point of the part, for a tip and an axis of the tool.
     pub(crate) fn add(&mut self, place: &Point3<f64>, stand: &Stand) {
         let seen = seen(place, stand);
-        // No margin that is tried reaches farther.
+        // No margin under test reaches farther.
         if seen[0] > 15.0 || !(-7.0..47.0).contains(&seen[1]) {
             return;
         }
@@ -83,7 +83,7 @@ impl Worst {
         if inside(seen) {
             let nearest = far.iter().copied().fold(f64::INFINITY, f64::min);
             for (most, far) in self.depth.iter_mut().zip(far) {
-                // On a seam both are as near.
+                // On a seam both surfaces are equally near.
                 if far - nearest <= 1e-9 {
                     *most = most.max(nearest);
                 }
@@ -92,7 +92,7 @@ impl Worst {
     }
 }
 
-/// Where a motion has come at a part of its way: the tip goes straight, the axis turns evenly.
+/// Returns tip and axis at a time of a motion from 0 to 1: the tip moves straight, the axis turns evenly.
 pub(crate) fn along((from, to): (&Stand, &Stand), part: f64) -> Stand {
     let tip = from.0 + (to.0 - from.0) * part;
     let angle = from.1.cross(&to.1).norm().atan2(from.1.dot(&to.1));
@@ -103,7 +103,7 @@ pub(crate) fn along((from, to): (&Stand, &Stand), part: f64) -> Stand {
     (tip, axis.normalize())
 }
 
-/// Places of all triangles, no farther apart than a step along their edges.
+/// Returns sample points of all triangles, at most `step` apart along their edges.
 pub(crate) fn places(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
     let mut places = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
@@ -120,7 +120,7 @@ pub(crate) fn places(mesh: &Mesh, step: f64) -> Vec<Point3<f64>> {
     places
 }
 
-/// Numbers that are the same each time.
+/// A reproducible generator of random numbers.
 pub(crate) struct Draw(u64);
 
 impl Draw {
@@ -128,7 +128,7 @@ impl Draw {
         Draw(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    /// Evenly between two numbers.
+    /// Returns a number that is uniformly distributed between two bounds.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

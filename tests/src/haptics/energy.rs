@@ -1,11 +1,11 @@
-//! What becomes of a hand's energy as it taps a plane.
+//! The energy balance of a hand that taps a plane.
 
 use super::wall::LIMITS;
 use super::{block, tool, upright};
-use touchoff::haptic::{Energy, Rendering, Scripted, Session, Settings};
+use touchoff::haptic::{EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings};
 use touchoff::{Law, Part, Probe};
 
-/// The plane.
+/// Returns the block whose top is the plane.
 pub fn plane() -> Part {
     block(20_000)
 }
@@ -13,27 +13,28 @@ pub fn plane() -> Part {
 /// Stiffness of the contact, N/mm³.
 const STIFFNESS: f64 = 2.0;
 
-/// A ball that is moved up and down on a plane eight times a second, whatever it pushes, for five seconds: the
-/// account after each cycle.
-pub fn tapping(part: &Part, rendering: Option<Rendering>, passive: bool) -> Vec<Energy> {
+/// Moves a ball up and down on a plane eight times per second for five seconds, whatever force it renders. Returns
+/// the energy balance after each cycle.
+pub fn tapping(part: &Part, rendering: Option<Rendering>, passive: bool) -> Vec<EnergyBalance> {
     tapping_at(part, STIFFNESS, rendering, passive)
 }
 
-/// The same with a contact of another stiffness, N/mm³.
+/// The same for a contact of another stiffness, N/mm³.
 pub fn tapping_at(
     part: &Part,
     stiffness: f64,
     rendering: Option<Rendering>,
     passive: bool,
-) -> Vec<Energy> {
-    let settings = Settings { stiffness, rendering, passive, ..Settings::new(1000.0) };
-    let probe = Probe::new(part, tool("D2Ball")).law(Law::Gradient);
+) -> Vec<EnergyBalance> {
+    let settings =
+        SessionSettings { stiffness, rendering, passive, ..SessionSettings::new(1000.0) };
+    let probe = Probe::new(part, tool("D2Ball")).with_law(Law::Gradient);
     let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
-    let mut device = Scripted::new(LIMITS, |cycle| Ok(upright(height(cycle))));
+    let mut device = ScriptedDevice::new(LIMITS, |cycle| Ok(upright(height(cycle))));
     (0..5_000).filter_map(|_| Some(session.cycle(&mut device)?.energy)).collect()
 }
 
-/// The height of the tip over the plane in a cycle, mm.
+/// Returns the height of the tip above the plane in a cycle, mm.
 pub fn height(cycle: u64) -> f64 {
     -0.2 + 0.2 * (cycle as f64 * 0.05).cos()
 }

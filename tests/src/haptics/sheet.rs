@@ -3,30 +3,32 @@
 use super::wall::LIMITS;
 use super::{tool, upright};
 use nalgebra::Point3;
-use touchoff::haptic::{Hand, Rendering, Session, Settings};
+use touchoff::haptic::{Rendering, Session, SessionSettings, SimulatedHand};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Probe, Unit};
 
-/// A sheet of 0.5 mm, from z = -0.5 to 0.
+/// Returns a sheet 0.5 mm thick, from z = -0.5 to 0.
 pub fn sheet() -> Part {
     let (low, high) = (Point3::new(-15., -15., -0.5), Point3::new(15., 15., 0.));
     let mesh = shapes::cuboid(low, high, Unit::Millimetre).expect("a sheet");
     Part::from_mesh(&mesh, 40_000, 1).expect("points of a sheet")
 }
 
-/// A ball of 2 mm, of 100 N/mm³, whose hand wants it ever deeper, 10 mm a second for two seconds: by how deep the hand
-/// wants it, the tool's height and the force upward.
+/// Presses a ball of 2 mm, with a contact of 100 N/mm³, onto the sheet. The hand wants it ever deeper, by 10 mm per
+/// second for two seconds. Returns, per cycle, the depth that the hand wants in mm, the tip's height in mm, and the
+/// upward force in N.
 pub fn pressed(part: &Part, law: Law, rendering: Option<Rendering>) -> Vec<[f64; 3]> {
-    let settings = Settings { stiffness: 100.0, rendering, ..Settings::new(1000.0) };
-    let probe = Probe::new(part, tool("D2Ball")).law(law);
+    let settings = SessionSettings { stiffness: 100.0, rendering, ..SessionSettings::new(1000.0) };
+    let probe = Probe::new(part, tool("D2Ball")).with_law(law);
     let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
     let wanted = |time: f64| -10.0 * time;
-    let mut hand = Hand::new(LIMITS, 1000.0, |time| upright(0.2 + wanted(time))).expect("a hand");
+    let mut hand =
+        SimulatedHand::new(LIMITS, 1000.0, |time| upright(0.2 + wanted(time))).expect("a hand");
     (0..2_000)
         .filter_map(|cycle| {
             let state = session.cycle(&mut hand)?;
             let wanted = wanted(f64::from(cycle) / 1000.0);
-            Some([-wanted, state.tool.tip().z, state.push.force.z])
+            Some([-wanted, state.tool.tip().z, state.wrench_on_hand.force.z])
         })
         .collect()
 }

@@ -1,4 +1,4 @@
-//! Real numbers to 256 bits.
+//! Real numbers with 256 bits.
 
 use dashu_float::round::mode::HalfEven;
 use dashu_float::{DBig, FBig};
@@ -12,12 +12,12 @@ const PRECISION: usize = 256;
 pub struct Big(FBig<HalfEven, 2>);
 
 impl Big {
-    /// Zero.
+    /// Returns zero.
     pub fn zero() -> Big {
         Big::exactly(0.0)
     }
 
-    /// A finite double as it is, to the last bit.
+    /// Returns a finite double exactly, to the last bit.
     ///
     /// # Panics
     /// If it is not finite.
@@ -26,7 +26,7 @@ impl Big {
         Big(exact.with_precision(PRECISION).value())
     }
 
-    /// The decimal that a double was written as: 12.9 is 129/10.
+    /// Returns the decimal that a double was written as: 12.9 is 129/10.
     ///
     /// # Panics
     /// If it is not finite.
@@ -35,45 +35,45 @@ impl Big {
         Big(text.with_rounding::<HalfEven>().with_base_and_precision::<2>(PRECISION).value())
     }
 
-    /// The nearest double.
+    /// Returns the nearest double.
     pub fn to_f64(&self) -> f64 {
         self.0.to_f64().value()
     }
 
-    /// Decimal digits that have all of its bits.
+    /// Returns decimal digits that keep all of its bits.
     pub fn written(&self) -> String {
         let decimal = self.0.clone().with_base_and_precision::<10>(90).value();
         decimal.to_string()
     }
 
-    /// Whether it is below zero.
+    /// Returns whether the number is below zero.
     pub fn is_negative(&self) -> bool {
         *self < Big::zero()
     }
 
-    /// Its size.
+    /// Returns the absolute value.
     #[must_use]
     pub fn abs(&self) -> Big {
         if self.is_negative() { -self } else { self.clone() }
     }
 
-    /// The square root of a number that is not below zero.
+    /// Returns the square root of a number that is not below zero.
     #[must_use]
     pub fn sqrt(&self) -> Big {
         if *self == Big::zero() { Big::zero() } else { Big(self.0.sqrt()) }
     }
 
-    /// The sine of so many degrees.
+    /// Returns the sine of an angle in degrees.
     pub fn sin_deg(degrees: f64) -> Big {
         Big(Big::radians(degrees).0.sin())
     }
 
-    /// The cosine of so many degrees.
+    /// Returns the cosine of an angle in degrees.
     pub fn cos_deg(degrees: f64) -> Big {
         Big(Big::radians(degrees).0.cos())
     }
 
-    /// The tangent of so many degrees.
+    /// Returns the tangent of an angle in degrees.
     pub fn tan_deg(degrees: f64) -> Big {
         &Big::sin_deg(degrees) / &Big::cos_deg(degrees)
     }
@@ -84,7 +84,7 @@ impl Big {
     }
 }
 
-/// A coordinate as it is written: a decimal such as 12.9, which means 129/10.
+/// Converts a coordinate as it is written: a decimal such as 12.9, which means 129/10.
 impl From<f64> for Big {
     fn from(value: f64) -> Big {
         Big::decimal(value)

@@ -1,16 +1,17 @@
-//! Solids without an axis: a block, and an L-bracket with a hole. Their surfaces are patches, the depth of a point is its distance to the
-//! nearest of them, found by clamping to each; no splitting surface is used but to bound [`Oracle::border`].
+//! Solids without an axis: a block, and an L-bracket with a hole. Their surfaces are patches. The depth of a point
+//! is its distance to the nearest patch, found by clamping to each. Splitting surfaces are used only to bound
+//! [`Oracle::border`].
 
-use super::draw::Draw;
-use super::{Oracle, Sense};
+use super::draw::Rng;
+use super::{Oracle, OracleEvaluation};
 use std::sync::OnceLock;
 
 type P3 = [f64; 3];
 
-/// A piece of a surface.
+/// A patch of a surface.
 #[derive(Clone, Copy, Debug)]
 enum Patch {
-    /// The rectangle from `low` to `high`, which are equal along `axis`, but for a hole through it.
+    /// The rectangle from `low` to `high`, which are equal along `axis`, except for a hole through it.
     Plate { axis: usize, out: f64, low: P3, high: P3, hole: Option<Hole> },
     /// The wall of a hole, from z = 0 to a height; the material is around it.
     Bore { hole: Hole, height: f64 },
@@ -28,7 +29,7 @@ impl Hole {
         [p[0] - self.centre[0], p[1] - self.centre[1]]
     }
 
-    /// The point of the rim, or wall, that is nearest to `p`.
+    /// Returns the point of the rim, or wall, that is nearest to `p`.
     fn rim(&self, p: P3) -> P3 {
         let [x, y] = self.off(p);
         let part = self.radius / x.hypot(y);
@@ -42,7 +43,7 @@ impl Patch {
         Patch::Plate { axis, out, low, high, hole: None }
     }
 
-    /// The nearest of its points.
+    /// Returns the nearest point of the patch.
     fn foot(&self, p: P3) -> P3 {
         match *self {
             Patch::Plate { low, high, hole, .. } => {
@@ -61,7 +62,7 @@ impl Patch {
 
     fn distance(&self, p: P3) -> f64 {
         match *self {
-            // More exact than by the foot.
+            // More accurate than by the foot.
             Patch::Bore { hole, height } => {
                 let beyond = p[2] - p[2].clamp(0.0, height);
                 (length2(hole.off(p)) - hole.radius).abs().hypot(beyond)
@@ -74,7 +75,7 @@ impl Patch {
         }
     }
 
-    /// Unit vector from a point inside to the foot; out of the material where they are one.
+    /// Returns the unit vector from a point inside to the foot; out of the material where they coincide.
     fn direction(&self, p: P3) -> P3 {
         match *self {
             Patch::Plate { axis, out, .. } => {
@@ -101,11 +102,11 @@ fn length2([x, y]: [f64; 2]) -> f64 {
     x.hypot(y)
 }
 
-/// A region that wins a point: its place in the list, its patch and the distance to that.
+/// A region that wins a point: its index, its patch and the distance to the patch.
 type Winner = (usize, Patch, f64);
 
-/// Who wins a point among the regions that may have it, each with its patch: the nearest, of equals the first listed. The distance that
-/// the next lags behind comes too.
+/// Returns the winner of a point among candidate regions, each with its patch: the nearest, or among equals the
+/// first listed. Also returns how much farther the next is.
 fn nearest(candidates: impl Iterator<Item = (usize, Patch)>, p: P3) -> Option<(Winner, f64)> {
     let all: Vec<Winner> =
         candidates.map(|(region, patch)| (region, patch, patch.distance(p))).collect();
@@ -115,14 +116,14 @@ fn nearest(candidates: impl Iterator<Item = (usize, Patch)>, p: P3) -> Option<(W
     Some((won, lag))
 }
 
-/// What the two solids are asked for.
+/// The queries of the two solids.
 trait Body {
     const REGIONS: &'static [&'static str];
     fn inside(&self, p: P3) -> bool;
     fn patches(&self) -> Vec<Patch>;
-    /// Regions that may have a point of the inside, each with its patch.
+    /// Returns the regions that may own a point inside, each with its patch.
     fn candidates(&self, p: P3) -> Vec<(usize, Patch)>;
-    /// The distance to where other regions may.
+    /// Returns the distance to points that other regions may own.
     fn zone(&self, p: P3) -> f64;
 
     fn distance(&self, p: P3) -> f64 {
@@ -133,10 +134,11 @@ trait Body {
         if self.inside(p) { nearest(self.candidates(p).into_iter(), p) } else { None }
     }
 
-    /// Points on borders, found by halving the way between points of which one is inside and the other has another owner or none.
+    /// Returns points on borders, found by bisection between points of which one is inside and the other has
+    /// another owner or none.
     fn borders(&self, low: P3, high: P3) -> Vec<Vec<P3>> {
         let owner = |p: P3| self.won(p).map(|((region, ..), _)| region);
-        let mut draw = Draw::new(77);
+        let mut draw = Rng::new(77);
         let mut any = || [0, 1, 2].map(|k| draw.between(low[k] - 1.0, high[k] + 1.0));
         let mut points = Vec::new();
         while points.len() < 16 * 66 {
@@ -163,9 +165,9 @@ macro_rules! ask_the_body {
         fn regions(&self) -> Vec<&str> {
             Self::REGIONS.to_vec()
         }
-        fn sense(&self, p: P3) -> Option<Sense> {
+        fn sense(&self, p: P3) -> Option<OracleEvaluation> {
             let ((owner, patch, depth), _) = self.won(p)?;
-            Some(Sense {
+            Some(OracleEvaluation {
                 owner,
                 depth,
                 magnitude: depth,
@@ -199,7 +201,7 @@ macro_rules! ask_the_body {
     };
 }
 
-/// Every choice of one number an axis.
+/// Returns every combination of one number per axis.
 fn grid(x: &[f64], y: &[f64], z: &[f64]) -> Vec<P3> {
     let over = |x: f64, y: f64| z.iter().map(move |z| [x, y, *z]);
     x.iter().flat_map(|x| y.iter().flat_map(move |y| over(*x, *y))).collect()
@@ -255,7 +257,8 @@ impl Oracle for Block {
     }
 }
 
-/// The bracket: legs of 30 along x and 24 along z, 20 wide, 6 thick, with a hole of radius 3.3 through the lying leg.
+/// The bracket: legs of 30 along x and 24 along z, 20 wide, 6 thick, with a hole of radius 3.3 through the lying
+/// leg.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LBracket;
 
@@ -289,7 +292,8 @@ impl LBracket {
     fn bore() -> Patch {
         Patch::Bore { hole: HOLE, height: LEDGE }
     }
-    /// Each side is an L: two rectangles, of which one ends at some `x` and `z`.
+    /// Returns the rectangle of a leg on both sides. Each side is an L: two rectangles, one of which ends at `x`
+    /// and `z`.
     fn sides([x, z]: [f64; 2]) -> [Patch; 2] {
         [-10.0, 10.0].map(|y: f64| Patch::plate(1, y.signum(), [-10.0, y, 0.0], [x, y, z]))
     }
@@ -370,7 +374,7 @@ impl Oracle for LBracket {
         let mut all =
             grid(&[-10.0, -7.0, WALL, 5.0, 20.0], &[-10.0, 0.0, 10.0], &[0.0, 3.0, LEDGE]);
         all.extend(grid(&[-10.0, -7.0, WALL], &[-10.0, 0.0, 10.0], &[15.0, 24.0]));
-        // The rim of the hole, and half way up its wall.
+        // The rim of the hole, and points half way up its wall.
         for k in 0..16 {
             let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_8).sin_cos();
             all.extend([0.0, 3.0, LEDGE].map(|z| [10.0 + 3.3 * cos, 3.3 * sin, z]));
@@ -405,7 +409,7 @@ mod tests {
         let (region, depth) = at([14.0, 0.0, 3.0]).expect("beside the hole");
         assert_eq!(region, "bore");
         assert!((depth - 0.7).abs() < 1e-15);
-        // On the hole's axis the rim is as near as the wall.
+        // Inside the hole the wall is nearest, and below the hole its rim.
         assert!((LBracket.signed_distance([10.0, 1.0, 3.0]) - 2.3).abs() < 1e-15);
         assert!((LBracket.signed_distance([10.0, 1.0, -1.0]) - 2.3f64.hypot(1.0)).abs() < 1e-15);
     }

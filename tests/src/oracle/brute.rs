@@ -1,10 +1,11 @@
-//! Interference by asking the oracle about every point, one after the other.
+//! Interference by evaluating the oracle at every point, one after the other.
 //!
-//! No tree, no filter, no lanes: a loop in f64 with compensated sums. All results are in the world frame and in the part's unit.
+//! No tree, no filter, no lanes: a loop in f64 with compensated sums. All results are in the world frame and in the
+//! part's unit.
 
 use super::Oracle;
 
-/// Where the tool is.
+/// The pose of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The tip, in the world.
@@ -14,11 +15,11 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The tool's frame is the world's.
+    /// The pose at which the tool's frame is the world's.
     pub const IDENTITY: Self =
         Self { tip: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
 
-    /// The tip at `tip` and the spindle along `spindle` (any length but 0), spun arbitrarily.
+    /// Returns the pose with its tip at `tip` and the spindle along `spindle` (any length but 0), spun arbitrarily.
     pub fn along(tip: [f64; 3], spindle: [f64; 3]) -> Self {
         let z = unit(spindle);
         let across = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
@@ -26,20 +27,21 @@ impl Pose {
         Self { tip, axes: [x, cross(z, x), z] }
     }
 
-    /// A vector of the tool's frame, in the world.
+    /// Rotates a vector from the tool's frame to the world.
     pub fn turn(&self, v: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| v[0] * self.axes[0][k] + v[1] * self.axes[1][k] + v[2] * self.axes[2][k])
     }
 }
 
-/// How a point pushes the tool (`accuracy.md`, section 4).
+/// The force law of a point (`accuracy.md`, section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
     /// `w m (n - u)` (Ho 1999, eq. 5.1, without the factor ½).
     Thesis,
-    /// `w m ∇m`, the slope of `½ Σ w m²` with respect to the point in the world.
+    /// `w m ∇m`, the gradient of `½ Σ w m²` with respect to the point in the world.
     Gradient,
-    /// The thesis's, without points whose normal faces away (`u·n > 0`). They push nothing, but still count as contact.
+    /// The thesis's law without points whose normal faces away (`u·n > 0`). They exert no force, but still count as
+    /// contact.
     Facing,
 }
 
@@ -48,13 +50,13 @@ pub enum Law {
 pub struct Query<'a> {
     /// The tool.
     pub oracle: &'a dyn Oracle,
-    /// Where it is.
+    /// Its pose.
     pub pose: Pose,
-    /// Part's unit in the tool's: 1/25.4 for a part in millimetres and a tool in inches.
+    /// The part's unit in the tool's: 1/25.4 for a part in millimetres and a tool in inches.
     pub scale: f64,
-    /// Whether the magnitude is a length, to be given in the part's unit. [`Query::new`] asks the oracle.
+    /// True if the magnitude is a length, to be given in the part's unit. [`Query::new`] takes it from the oracle.
     pub magnitude_is_depth: bool,
-    /// How points push.
+    /// The force law.
     pub law: Law,
     /// Compliance centre, in the world. [`Query::new`] takes the tip.
     pub centre: [f64; 3],
@@ -66,14 +68,14 @@ pub struct Query<'a> {
     pub weights: &'a [f64],
 }
 
-/// What a query finds.
+/// The result of a query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// Points in the tool or on its surface, in order.
+    /// Indices of the points in the tool or on its surface, in order.
     pub contacts: Vec<usize>,
-    /// How many there are.
+    /// Their number.
     pub count: usize,
-    /// Largest depth and where; the first of several.
+    /// Largest depth and the index of its point; the first of several.
     pub deepest: Option<(f64, usize)>,
     /// `Σ F`, on the tool.
     pub force: [f64; 3],
@@ -85,12 +87,15 @@ pub struct Answer {
     pub energy: f64,
     /// Smallest niceness; `None` without contact.
     pub niceness: Option<f64>,
-    /// `Σ |F|` and `Σ |p - centre| |F|`: what errors of force and torque are relative to.
+    /// `Σ |F|` and `Σ |p - centre| |F|`, to which errors of force and torque are relative.
     pub size: [f64; 2],
 }
 
 impl<'a> Query<'a> {
-    /// The thesis's law, one unit, torque about the tip.
+    /// Creates a query with the thesis's law, one unit, and torque about the tip.
+    ///
+    /// # Panics
+    /// If the lists differ in length.
     pub fn new(
         oracle: &'a dyn Oracle,
         pose: Pose,
@@ -112,13 +117,13 @@ impl<'a> Query<'a> {
         }
     }
 
-    /// The point in the tool's frame and unit: `scale Rᵀ (p - tip)`, subtracting first.
+    /// Returns the point in the tool's frame and unit: `scale Rᵀ (p - tip)`, subtracting first.
     pub fn in_tool(&self, p: [f64; 3]) -> [f64; 3] {
         let from_tip = sub(p, self.pose.tip);
         self.pose.axes.map(|axis| self.scale * dot(axis, from_tip))
     }
 
-    /// Asks about every point.
+    /// Evaluates the oracle at every point and adds up the results.
     pub fn answer(&self) -> Answer {
         let mut contacts = Vec::new();
         let mut deepest: Option<(f64, usize)> = None;
@@ -138,7 +143,7 @@ impl<'a> Query<'a> {
             }
             niceness = Some(niceness.map_or(s.niceness, |n| n.min(s.niceness)));
 
-            // The slope of a magnitude in the tool's unit, taken over the part's, is `scale` times as steep.
+            // The gradient of a magnitude in the tool's unit, taken over the part's, is `scale` times as steep.
             let (m, steep) = if self.magnitude_is_depth {
                 (s.magnitude / self.scale, 1.0)
             } else {
@@ -197,7 +202,7 @@ impl Sum {
         self.sum = next;
     }
 
-    /// The sum so far.
+    /// Returns the sum so far.
     pub fn value(&self) -> f64 {
         self.sum + self.lost
     }

@@ -1,10 +1,10 @@
-//! The brute force and the closed forms against each other, on dense clouds.
+//! Brute force and closed forms against each other, on dense clouds.
 
 use super::brute::{Answer, Law, Pose, Query, Sum};
 use super::closed_forms::{
     Contact, ball_in_cavity, ball_in_plane, ball_on_ball, cylinder_in_bore, cylinder_in_plane,
 };
-use super::draw::Draw;
+use super::draw::Rng;
 use super::{Fig73, Oracle, UnitSphere, fig_7_3_exact};
 
 /// A weighted cloud.
@@ -16,7 +16,8 @@ struct Cloud {
 }
 
 impl Cloud {
-    /// Midpoints of `n × n` cells of the unit square, carried over by `at`, which gives point, normal and area per unit of the square.
+    /// Returns the midpoints of `n × n` cells of the unit square, mapped by `at`, which gives point, normal and
+    /// area per unit of the square.
     fn patch(n: u32, at: impl Fn(f64, f64) -> ([f64; 3], [f64; 3], f64)) -> Self {
         let mut cloud = Self::default();
         let mid = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
@@ -31,7 +32,7 @@ impl Cloud {
         cloud
     }
 
-    /// The square `|x|, |y| <= half` of the plane z = 0, the material below.
+    /// Returns the square `|x|, |y| <= half` of the plane z = 0, with the material below.
     fn plane(n: u32, half: f64) -> Self {
         Self::patch(n, |s, t| {
             let (x, y) = (half * (2.0 * s - 1.0), half * (2.0 * t - 1.0));
@@ -39,7 +40,8 @@ impl Cloud {
         })
     }
 
-    /// The cap of a sphere about the origin within `reach` of -z; `sigma` = -1 turns its normals inward. (Archimedes: area is z.)
+    /// Returns the cap of a sphere about the origin within the angle `reach` (rad) of -z; `sigma` = -1 turns its
+    /// normals inward. (Archimedes: the area is proportional to z.)
     fn cap(n: u32, radius: f64, reach: f64, sigma: f64) -> Self {
         let depth = radius * (1.0 - reach.cos());
         Self::patch(n, |s, t| {
@@ -56,7 +58,7 @@ impl Cloud {
     }
 }
 
-/// `answer` under both laws against `want`, its forces along `axis`.
+/// Compares the answers under both laws with `want`, with forces along `axis`.
 fn compare(query: Query<'_>, want: Contact, axis: [f64; 3], tolerance: f64) -> Answer {
     let along = |f: [f64; 3]| (0..3).map(|k| f[k] * axis[k]).sum::<f64>();
     let near = |got: f64, want: f64, what: &str| {
@@ -75,7 +77,7 @@ fn compare(query: Query<'_>, want: Contact, axis: [f64; 3], tolerance: f64) -> A
     thesis
 }
 
-/// CF1: a ball in a plane, whatever the tilt, and with fig. 7.3's own ball.
+/// CF1: a ball in a plane at several tilts, also with fig. 7.3's own ball.
 #[test]
 fn a_ball_in_a_plane() {
     let (cloud, up) = (Cloud::plane(1000, 1.0), [0.0, 0.0, 1.0]);
@@ -92,7 +94,7 @@ fn a_ball_in_a_plane() {
         let a = compare(query, ball_in_plane(1.0, h), up, 1e-5);
         let (depth, at) = a.deepest.expect("a contact");
         assert!((depth - h).abs() < 1e-5 && cloud.points[at][0].abs() < 0.01);
-        // About o: (ball's centre - o) × F.
+        // Torque about the compliance centre o: (ball's centre - o) × F.
         for (k, want) in [0.0, 0.3 * a.force[2], 0.0].into_iter().enumerate() {
             assert!((a.torque[k] - want).abs() < 1e-6, "{:?}", a.torque);
         }
@@ -118,7 +120,7 @@ fn a_shank_along_a_plane() {
     assert!(a.niceness.is_some_and(|n| (n - 2.0 * 0.7 * 0.7).abs() < 1e-5));
 }
 
-/// CF3 and CF4: the tool below, so that it touches the cap around -z.
+/// CF3 and CF4: the tool is below, so that it touches the cap around -z.
 #[test]
 fn a_ball_on_a_ball_and_in_a_cavity() {
     let (h, part) = (0.3, 4.0);
@@ -153,7 +155,7 @@ fn a_shank_in_a_bore() {
     compare(query, cylinder_in_bore(1.0, bore, offset), [1.0, 0.0, 0.0], 1e-5);
 }
 
-/// A part in millimetres and a tool in inches answer as if all were in one unit.
+/// A part in millimetres and a tool in inches give the same results as one unit for both.
 #[test]
 fn units_scale() {
     let cloud = Cloud::plane(200, 1.0);
@@ -175,10 +177,11 @@ fn units_scale() {
     }
 }
 
-/// The gradient law is the slope of the energy over the tip's place, for a magnitude that is no distance, in any unit.
+/// The gradient law is the slope of the energy over the tip's position, for a magnitude that is no distance, in any
+/// unit.
 #[test]
 fn the_gradient_law_is_conservative() {
-    let mut draw = Draw::new(8);
+    let mut draw = Rng::new(8);
     let mut cloud = Cloud::default();
     for _ in 0..3000 {
         cloud.points.push([

@@ -1,12 +1,13 @@
 //! Contacts whose integrals are known in closed form: continuous surfaces, infinitely many points.
 //!
-//! Conventions (those of `closed-forms.md`, but for the sign of the force): `m` is the depth of a point of the part's surface, `u` the
-//! unit direction to the tool's surface, `n` the part's outward normal, `h` the largest depth. Forces are **on the tool**, along an axis
-//! that each function names; thesis law `∫ m (n - u) dA`, gradient law `-∫ m u dA`.
+//! Conventions (those of `closed-forms.md`, except for the sign of the force): `m` is the depth of a point of the
+//! part's surface, `u` the unit direction to the tool's surface, `n` the part's outward normal, `h` the largest
+//! depth. Forces are **on the tool**, along an axis that each function names. The thesis law is `∫ m (n - u) dA`,
+//! the gradient law `-∫ m u dA`.
 
 use std::f64::consts::PI;
 
-/// What a contact adds up to.
+/// The integrals over a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// `∫ m dA`.
@@ -20,7 +21,7 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Nothing touches.
+    /// No contact.
     pub const NONE: Self = Self { integral: 0.0, force: 0.0, gradient_force: 0.0, energy: 0.0 };
 }
 
@@ -34,8 +35,8 @@ pub fn ball_in_plane(r: f64, h: f64) -> Contact {
     }
 }
 
-/// CF2: side of a cylinder of radius `r`, its axis parallel to a plane, pressed `h` deep (`0 <= h < r`); **per unit length**.
-/// Axis: the plane's outward normal.
+/// CF2: side of a cylinder of radius `r`, its axis parallel to a plane, pressed `h` deep (`0 <= h < r`); **per unit
+/// length**. Axis: the plane's outward normal.
 pub fn cylinder_in_plane(r: f64, h: f64) -> Contact {
     let c = r - h;
     let a = (h * (2.0 * r - h)).sqrt();
@@ -55,12 +56,14 @@ pub fn ball_on_ball(r: f64, part: f64, h: f64) -> Contact {
     spheres(r, part, h, r + part - h, 1.0)
 }
 
-/// CF4: ball of radius `r` in a spherical cavity of radius `part > r`, `h` deep. Axis: from the cavity's centre to the tool's.
+/// CF4: ball of radius `r` in a spherical cavity of radius `part > r`, `h` deep. Axis: from the cavity's centre to
+/// the tool's.
 pub fn ball_in_cavity(r: f64, part: f64, h: f64) -> Contact {
     spheres(r, part, h, part - r + h, -1.0)
 }
 
-/// CF3 and CF4: `dist` between the centres, `sigma` the sign of the part's normal against its radius.
+/// CF3 and CF4: `dist` is the distance between the centres, `sigma` the sign of the part's normal against its
+/// radius.
 fn spheres(r: f64, part: f64, h: f64, dist: f64, sigma: f64) -> Contact {
     // M_k = ∫ t (r - t)^k dt over 0..h, where t is the depth.
     let m0 = h.powi(2) / 2.0;
@@ -79,10 +82,11 @@ fn spheres(r: f64, part: f64, h: f64, dist: f64, sigma: f64) -> Contact {
     }
 }
 
-/// CF5: cylinder of radius `r` in a bore of radius `bore`, axes parallel and `offset` apart; **per unit length**. Needs the tool's axis
-/// inside the bore (`offset < bore`). Axis: from the bore's axis to the tool's.
+/// CF5: cylinder of radius `r` in a bore of radius `bore`, axes parallel and `offset` apart; **per unit length**.
+/// The tool's axis has to be inside the bore (`offset < bore`). Axis: from the bore's axis to the tool's.
 ///
-/// The integral is the closed form with the incomplete elliptic integral; forces and energy are quadratures over the bore.
+/// The integral is the closed form with the incomplete elliptic integral; forces and energy are quadratures over
+/// the bore.
 pub fn cylinder_in_bore(r: f64, bore: f64, offset: f64) -> Contact {
     if offset + r <= bore {
         return Contact::NONE;
@@ -91,7 +95,7 @@ pub fn cylinder_in_bore(r: f64, bore: f64, offset: f64) -> Contact {
     let gap = bore - offset;
     let kappa = 4.0 * bore * offset / (gap * gap);
     let integral = 2.0 * bore * (r * reach - 2.0 * gap * elliptic_e(reach / 2.0, -kappa));
-    // Over half the contact: the tool's axis sees the point at `phi` of the bore at distance s.
+    // Over half the contact: `s` is the distance from the tool's axis to the point at angle `phi` of the bore.
     let over = |f: &dyn Fn(f64, f64, f64) -> f64| {
         2.0 * bore
             * quadrature(0.0, reach, |phi| {
@@ -110,7 +114,7 @@ pub fn cylinder_in_bore(r: f64, bore: f64, offset: f64) -> Contact {
     }
 }
 
-/// Half the angle of the bore that lies inside the tool.
+/// Returns half the angle of the bore that lies inside the tool.
 fn bore_half_angle(r: f64, bore: f64, offset: f64) -> f64 {
     if bore + offset <= r {
         return PI;
@@ -119,7 +123,8 @@ fn bore_half_angle(r: f64, bore: f64, offset: f64) -> f64 {
     cos.clamp(-1.0, 1.0).acos()
 }
 
-/// Incomplete elliptic integral of the second kind, `E(φ | m) = ∫ √(1 - m sin²θ) dθ` over `0..φ` (parameter `m`, not the modulus).
+/// Computes the incomplete elliptic integral of the second kind, `E(φ | m) = ∫ √(1 - m sin²θ) dθ` over `0..φ`
+/// (parameter `m`, not the modulus).
 pub fn elliptic_e(phi: f64, m: f64) -> f64 {
     quadrature(0.0, phi, |theta| {
         let sin = theta.sin();
@@ -127,7 +132,8 @@ pub fn elliptic_e(phi: f64, m: f64) -> f64 {
     })
 }
 
-/// `∫ f` over `a..b` by Gauss-Legendre, eight points on each of 128 equal panels: for smooth `f`, to rounding.
+/// Computes `∫ f` over `a..b` by Gauss-Legendre, eight points on each of 128 equal panels: for smooth `f`, to
+/// rounding.
 pub fn quadrature(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     // Abramowitz and Stegun, table 25.4: abscissas and weights.
     const RULE: [(f64, f64); 4] = [
@@ -215,7 +221,7 @@ mod tests {
             close(c.integral, integral, 1e-14);
             close(-c.force, on_part, 1e-13);
         }
-        // A part of large radius is a plane.
+        // A part of large radius approximates a plane.
         let (large, plane) = (ball_on_ball(1.0, 1e6, 0.3), ball_in_plane(1.0, 0.3));
         close(large.force, plane.force, 1e-5);
         close(large.gradient_force, plane.gradient_force, 1e-5);
@@ -230,7 +236,7 @@ mod tests {
         assert_eq!(cylinder_in_bore(1.0, 3.0, 2.0), Contact::NONE);
     }
 
-    /// A bore of large radius is a plane, and the integral is also a plain quadrature.
+    /// A bore of large radius approximates a plane, and the integral is also a plain quadrature.
     #[test]
     fn cf5_against_itself() {
         let (wide, plane) = (cylinder_in_bore(1.0, 1e5, 1e5 - 0.7), cylinder_in_plane(1.0, 0.3));

@@ -2,15 +2,15 @@
 
 /// A stream of pseudo-random numbers (splitmix64: Steele, Lea, Flood 2014).
 #[derive(Clone, Debug)]
-pub struct Draw(u64);
+pub struct Rng(u64);
 
-impl Draw {
-    /// A stream; equal seeds give equal streams.
+impl Rng {
+    /// Creates a stream; equal seeds give equal streams.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -19,14 +19,14 @@ impl Draw {
         z ^ (z >> 31)
     }
 
-    /// Uniform in `low..high`.
+    /// Returns a number uniform in `low..high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         // The upper 53 bits are exact in f64.
         let unit = (self.bits() >> 11) as f64 * 2f64.powi(-53);
         low + (high - low) * unit
     }
 
-    /// A unit vector, in any direction.
+    /// Returns a unit vector, uniform over all directions.
     pub fn direction(&mut self) -> [f64; 3] {
         loop {
             let v = [0; 3].map(|_| self.between(-1.0, 1.0));

@@ -1,14 +1,15 @@
 //! The ball end mill of fig. 7.3 with the thesis's own functions (Ho 1999, eq. 7.1 to 7.3), written out by hand.
 //!
-//! The thesis measures z from the back of the housing, the tip at 20. IV, VI and VII are not distances. The splits are where its magnitudes
-//! meet without a jump.
+//! The thesis measures z from the back of the housing, with the tip at 20. The magnitudes of IV, VI and VII are not
+//! distances. The splits are where the thesis's magnitudes meet without a jump.
 
-use super::{Meridian, Nearest, Oracle, Sense, fig_7_3_exact, straight, unit_or_z};
+use super::{Meridian, Nearest, Oracle, OracleEvaluation, fig_7_3_exact, straight, unit_or_z};
 
-/// The thesis's names, in its order.
+/// The thesis's names of the regions, in its order.
 const REGIONS: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
 
-/// The tool of fig. 7.3. Its depth is its magnitude, which is never below the true distance and at most √5 times it.
+/// The tool of fig. 7.3. Its depth is its magnitude, which is never below the true distance and at most √5 times
+/// it.
 #[derive(Clone, Debug)]
 pub struct Fig73 {
     exact: Nearest,
@@ -20,10 +21,10 @@ impl Default for Fig73 {
     }
 }
 
-/// Magnitude, its slope and the direction in the thesis's `(d, z)`, and niceness.
+/// Magnitude, its gradient and the direction in the thesis's `(d, z)`, and niceness.
 type Felt = (f64, [f64; 2], [f64; 2], f64);
 
-/// Which region `(d, z)`, in the thesis's frame, belongs to: the first that holds it.
+/// Returns the region that `(d, z)`, in the thesis's frame, belongs to: the first that contains it.
 fn owner(d: f64, z: f64) -> Option<usize> {
     let ball = d.hypot(z - 19.0) - 1.0;
     let holds = [
@@ -40,7 +41,7 @@ fn owner(d: f64, z: f64) -> Option<usize> {
     holds.into_iter().position(|h| h)
 }
 
-fn felt(owner: usize, d: f64, z: f64) -> Felt {
+fn evaluation(owner: usize, d: f64, z: f64) -> Felt {
     match owner {
         0 => (z, [0.0, 1.0], [0.0, -1.0], 0.0),
         1 => (5.0 - d, [-1.0, 0.0], [1.0, 0.0], 0.0),
@@ -52,7 +53,7 @@ fn felt(owner: usize, d: f64, z: f64) -> Felt {
         7 => (1.0 - d, [-1.0, 0.0], [1.0, 0.0], 2.0 * d * d),
         _ => {
             let arm = [d, z - 19.0];
-            // Where the direction vanishes the tool's +z is the thesis's -z.
+            // Where the direction vanishes, the tool's +z is the thesis's -z.
             let away = if arm == [0.0, 0.0] { [0.0, -1.0] } else { unit_or_z(arm) };
             let nice = 2.0 * d * d + arm[1] * arm[1];
             (1.0 - d.hypot(arm[1]), away.map(|c| -c), away, nice)
@@ -60,7 +61,7 @@ fn felt(owner: usize, d: f64, z: f64) -> Felt {
     }
 }
 
-/// From the thesis's frame to the tool's: a half turn about x seen in the half plane, where it flips z.
+/// Transforms a vector from the thesis's frame to the tool's: a half turn about x, which flips z in the half plane.
 fn turned([e_d, e_z]: [f64; 2]) -> [f64; 2] {
     [e_d, -e_z]
 }
@@ -74,12 +75,12 @@ impl Oracle for Fig73 {
         REGIONS.to_vec()
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
+    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let m = Meridian::of(p);
         let (d, z) = (m.dz[0], 20.0 - m.dz[1]);
         let owner = owner(d, z)?;
-        let (magnitude, _, direction, niceness) = felt(owner, d, z);
-        Some(Sense {
+        let (magnitude, _, direction, niceness) = evaluation(owner, d, z);
+        Some(OracleEvaluation {
             owner,
             depth: magnitude,
             magnitude,
@@ -91,7 +92,7 @@ impl Oracle for Fig73 {
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
         let m = Meridian::of(p);
         let (d, z) = (m.dz[0], 20.0 - m.dz[1]);
-        let (_, slope, _, _) = felt(owner(d, z)?, d, z);
+        let (_, slope, _, _) = evaluation(owner(d, z)?, d, z);
         Some(m.lift(turned(slope)))
     }
 
@@ -106,7 +107,7 @@ impl Oracle for Fig73 {
         }
         let Meridian { dz: [d, z], .. } = Meridian::of(p);
         let z = 20.0 - z;
-        // Each split as a whole line, which is a little too careful.
+        // Each split counts as a whole line, so the bound is a little smaller than necessary.
         let level = [d - 3.0, d - 1.0, z - 9.0, z - 11.0, z - 13.0, z - 19.0];
         let sloped = [z + d - 5.0, z - d - 6.0, z + d - 14.0, z + d - 16.0];
         let level = level.into_iter().map(f64::abs);

@@ -1,22 +1,24 @@
 //! The oracles of fig. 7.3 against the table of their exact regions (`fig73-exact.md`), sections 1 to 4.
 
-use super::draw::Draw;
+use super::draw::Rng;
 use super::{Fig73, Meridian, Oracle, fig_7_3_exact};
 
 const S2: f64 = std::f64::consts::SQRT_2;
 
-/// `(d, z)` of the thesis's frame, as a point of the tool's.
+/// Returns the point `(d, z)` of the thesis's frame in the tool's frame.
 fn at(d: f64, z: f64) -> [f64; 3] {
     [d, 0.0, 20.0 - z]
 }
 
-/// The place in the thesis's list, which runs from the spindle's end, of a region that is listed from the tip.
+/// Returns the index in the thesis's list, which runs from the spindle's end, of a region that is listed from the
+/// tip.
 fn place(owner: usize) -> usize {
     8 - owner
 }
 
-/// Area, integral of the depth, and largest depth of each region, by the midpoint rule with about `n` steps a unit. (Not the same number
-/// both ways, or whole diagonals of midpoints would fall on the diagonal borders.)
+/// Computes area, integral of the depth, and largest depth of each region, by the midpoint rule with about `n`
+/// steps per unit. The number of steps differs between the two directions, since otherwise whole diagonals of
+/// midpoints would fall on the diagonal borders.
 fn integrate(o: &dyn Oracle, n: u32) -> [[f64; 3]; 9] {
     let (h_d, h_z) = (1.0 / f64::from(n), 1.0 / f64::from(n + 1));
     let mut sums = [[0.0; 3]; 9];
@@ -63,7 +65,7 @@ fn areas_and_integrals_of_the_table() {
     assert!((sum(1) - 117.863_898_104_678_9).abs() < 1e-12);
 }
 
-/// Section 2's tree of splits, and section 1's depths and directions.
+/// Evaluates section 2's tree of splits, with section 1's depths and directions.
 fn by_splits(d: f64, z: f64) -> (usize, f64, [f64; 2]) {
     let parabola = 4.0 * d - 16.0 + (z - 11.0) * (z - 11.0);
     let q = z - 16.0 + 3.0 * S2 - (S2 - 1.0) * d;
@@ -114,7 +116,7 @@ fn by_splits(d: f64, z: f64) -> (usize, f64, [f64; 2]) {
 #[test]
 fn the_splits_find_the_nearest_feature() {
     let tool = fig_7_3_exact();
-    let mut draw = Draw::new(73);
+    let mut draw = Rng::new(73);
     let (mut inside, mut skipped) = (0, 0);
     while inside < 100_000 {
         let (d, z) = (draw.between(0.0, 5.0), draw.between(0.0, 20.0));
@@ -145,11 +147,11 @@ fn the_axis_belongs_to() {
     }
 }
 
-/// Section 3: what eq. 7.1 gives is never below the distance, at most √5 times it, and the worst case is known.
+/// Section 3: eq. 7.1 is never below the distance and at most √5 times it, and the worst case is known.
 #[test]
 fn the_thesis_overestimates_by_at_most_root_five() {
     let (thesis, exact) = (Fig73::default(), fig_7_3_exact());
-    let mut draw = Draw::new(3);
+    let mut draw = Rng::new(3);
     let (mut most, mut ratio) = (0.0f64, 0.0f64);
     for _ in 0..400_000 {
         let p = at(draw.between(0.0, 5.0), draw.between(0.0, 20.0));
@@ -164,7 +166,7 @@ fn the_thesis_overestimates_by_at_most_root_five() {
         most = most.max(t.magnitude - e.depth);
         ratio = ratio.max(t.magnitude / e.depth);
     }
-    // On the axis at 14 the thesis says 3 and the corner (1, 15) is √2 away; no point is worse.
+    // On the axis at 14 the thesis has 3, and the corner (1, 15) is √2 away; no point is worse.
     let axis = |o: &dyn Oracle| o.sense(at(0.0, 14.0)).map_or(0.0, |s| s.magnitude);
     assert!((axis(&thesis) - 3.0).abs() < 1e-15 && (axis(&exact) - S2).abs() < 1e-15);
     assert!(most > 1.5 && most <= 3.0 - S2);
@@ -213,7 +215,7 @@ fn directions_of_equation_7_2() {
     assert!(near(u(0.0, 19.0), [1.0, 0.0, 0.0])); // VIII is listed before IX
 }
 
-/// Section 4's table of the nearest feature outside.
+/// Returns the distance to the nearest feature outside, by section 4's table.
 fn outside(d: f64, z: f64) -> f64 {
     let to = |qd: f64, qz: f64| (d - qd).hypot(z - qz);
     let a = d * d + (z - 19.0) * (z - 19.0);
@@ -245,7 +247,7 @@ fn outside(d: f64, z: f64) -> f64 {
 #[test]
 fn the_outside_of_the_table() {
     let tool = fig_7_3_exact();
-    let mut draw = Draw::new(4);
+    let mut draw = Rng::new(4);
     for _ in 0..100_000 {
         let (d, z) = (draw.between(0.0, 40.0), draw.between(-20.0, 60.0));
         let p = at(d, z);

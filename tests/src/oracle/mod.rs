@@ -1,14 +1,15 @@
-//! What the tools should say, worked out a second time and without the compiler.
+//! Reference evaluations of the tools, computed independently of the compiler.
 //!
-//! An [`Oracle`] answers for one tool at one point. Nothing here shares code with the project: solids that the compiler derives from a
-//! profile are answered by brute force over the profile's pieces ([`profile`]), the thesis's own tool by its equations written out by
-//! hand ([`fig73`]), contacts by textbook integrals ([`closed_forms`]) and by a plain loop over the points ([`brute`]).
+//! An [`Oracle`] evaluates one tool at one point. Nothing here shares code with the project. Solids that the
+//! compiler derives from a profile are evaluated by brute force over the profile's pieces ([`profile`]), the
+//! thesis's own tool by its equations written out by hand ([`fig73`]), contacts by textbook integrals
+//! ([`closed_forms`]) and by a plain loop over the points ([`brute`]).
 //!
-//! **Frame.** Everything is in the tool frame: tip at the origin, +z from the tip to the spindle, lengths in the tool file's unit.
-//! `[d, z]` is a point of the half plane `d >= 0`, `d` being the distance from the axis.
+//! **Frame.** Everything is in the tool frame: tip at the origin, +z from the tip to the spindle, lengths in the
+//! tool file's unit. `[d, z]` is a point of the half plane `d >= 0`, `d` being the distance from the axis.
 //!
-//! **Where a direction does not exist.** On the axis the radial part is that of +x. Where the vector in the half plane itself vanishes
-//! (centre of an arc, or a reflex corner that owns the point) the direction is +z.
+//! **Singular points.** On the axis the radial part of a direction is that of +x. Where the vector in the half
+//! plane itself vanishes (centre of an arc, or a reflex corner that owns the point), the direction is +z.
 
 pub mod big;
 pub mod bodies;
@@ -33,85 +34,88 @@ pub use fig73::Fig73;
 pub use nearest::{Nearest, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 pub use solids::{Cylinder, UnitSphere};
 
-/// What a point inside a tool feels.
+/// The evaluation of a tool at a point inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sense {
-    /// The owner's place in [`Oracle::regions`].
+pub struct OracleEvaluation {
+    /// Index of the owner in [`Oracle::regions`].
     pub owner: usize,
-    /// How deep the point lies, `>= 0`. The true distance to the surface, except for [`Fig73`], whose magnitude it is.
+    /// Depth of the point, `>= 0`: the true distance to the surface, except for [`Fig73`], where it is the
+    /// magnitude.
     pub depth: f64,
-    /// How hard the point is pushed.
+    /// Magnitude of the push.
     pub magnitude: f64,
     /// Unit vector toward the tool's surface.
     pub direction: [f64; 3],
-    /// How good a contact is here; 0 where the surface does not cut.
+    /// Niceness of a contact here; 0 where the surface does not cut.
     pub niceness: f64,
 }
 
-/// One tool's ground truth.
+/// The reference evaluation of one tool.
 pub trait Oracle {
-    /// The tool's name, as in its file.
+    /// Returns the tool's name, as in its file.
     fn name(&self) -> &'static str;
 
-    /// Regions in the order of listing: on a border the first one owns the point.
+    /// Returns the regions in the order of listing: on a border the first one owns the point.
     fn regions(&self) -> Vec<&str>;
 
-    /// What `p` feels; `None` outside. The surface belongs to the solid.
-    fn sense(&self, p: [f64; 3]) -> Option<Sense>;
+    /// Evaluates the tool at `p`; `None` outside. The surface belongs to the solid.
+    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation>;
 
-    /// The slope of the magnitude inside, in the tool's frame, per unit of the tool's file. For a magnitude that is the distance this is
-    /// minus the direction; on the axis it follows the same convention.
+    /// Returns the gradient of the magnitude inside, in the tool's frame, per unit of the tool's file. For a
+    /// magnitude that is the distance this is minus the direction; on the axis it follows the same convention.
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]>;
 
-    /// The true signed distance to the solid's surface: negative inside, positive outside.
+    /// Returns the true signed distance to the solid's surface: negative inside, positive outside.
     fn signed_distance(&self, p: [f64; 3]) -> f64;
 
-    /// A lower bound of the distance in the half plane from `p` to the surface and to every splitting curve: farther than rounding from
-    /// both, inside or outside and the owner are beyond doubt. (0 on the curves themselves.)
+    /// Returns a lower bound of the distance in the half plane from `p` to the surface and to every splitting
+    /// curve. Where it exceeds rounding, the side and the owner are beyond doubt. It is 0 on the curves themselves.
     fn border(&self, p: [f64; 3]) -> f64;
 
-    /// Distance from `p` to the nearest point at which its owner's direction does not exist: the axis where the direction has a radial
-    /// part, the centre of an arc, the owning corner. Infinite where there is none, and outside.
+    /// Returns the distance from `p` to the nearest point at which its owner's direction does not exist: the axis
+    /// where the direction has a radial part, the centre of an arc, the owning corner. Infinite where there is
+    /// none, and outside.
     fn singular(&self, p: [f64; 3]) -> f64;
 
-    /// Whether the magnitude is the depth itself, so that it is a length and comes out in the part's unit. A magnitude that the file
-    /// writes is a number in the file's unit.
+    /// Returns whether the magnitude is the depth itself, so that it is a length and comes out in the part's unit.
+    /// A magnitude that the file writes is a number in the file's unit.
     fn magnitude_is_depth(&self) -> bool {
         true
     }
 
-    /// Whether the solid looks the same however it is turned about z.
+    /// Returns whether the solid is symmetric under all rotations about z.
     fn revolved(&self) -> bool {
         true
     }
 
-    /// `[d, z]`: vertices of the profile, ends of splitting curves, centres of arcs. Only of a solid of revolution.
+    /// Returns points `[d, z]`: vertices of the profile, ends of splitting curves, centres of arcs. Only for a
+    /// solid of revolution.
     fn corners(&self) -> Vec<[f64; 2]> {
         Vec::new()
     }
 
-    /// Points `[d, z]` along every splitting curve and every piece of the surface, a list for each, ends included. Only of a solid of
-    /// revolution.
+    /// Returns points `[d, z]` along every splitting curve and every piece of the surface, a list for each, ends
+    /// included. Only for a solid of revolution.
     fn curves(&self) -> Vec<Vec<[f64; 2]>> {
         Vec::new()
     }
 
-    /// [`Oracle::corners`] in space; of a solid of revolution in the half plane y = 0.
+    /// Returns [`Oracle::corners`] in space; for a solid of revolution in the half plane y = 0.
     fn corner_points(&self) -> Vec<[f64; 3]> {
         self.corners().into_iter().map(|[d, z]| [d, 0.0, z]).collect()
     }
 
-    /// [`Oracle::curves`] in space; of a solid of revolution in the half plane y = 0.
+    /// Returns [`Oracle::curves`] in space; for a solid of revolution in the half plane y = 0.
     fn curve_points(&self) -> Vec<Vec<[f64; 3]>> {
         let lift = |curve: Vec<[f64; 2]>| curve.into_iter().map(|[d, z]| [d, 0.0, z]).collect();
         self.curves().into_iter().map(lift).collect()
     }
 
-    /// Largest distance from the axis, and largest z. The smallest z is 0.
+    /// Returns the largest distance from the axis, and the largest z. The smallest z is 0.
     fn extent(&self) -> [f64; 2];
 }
 
-/// Every oracle, for suites that run over all of them.
+/// Returns every oracle, for suites that run over all of them.
 pub fn all() -> Vec<Box<dyn Oracle>> {
     let mut all = thesis();
     for tool in restated::catalogue() {
@@ -120,7 +124,8 @@ pub fn all() -> Vec<Box<dyn Oracle>> {
     all
 }
 
-/// The oracles of the thesis's solids and the plain ball cutter, whose splitting curves are known as equations.
+/// Returns the oracles of the thesis's solids and the plain ball cutter, whose splitting curves are known as
+/// equations, and of two solids without an axis.
 pub fn thesis() -> Vec<Box<dyn Oracle>> {
     vec![
         Box::new(UnitSphere),
@@ -134,8 +139,8 @@ pub fn thesis() -> Vec<Box<dyn Oracle>> {
     ]
 }
 
-/// A point moved by `step`: anywhere in space, or if the solid is one of revolution within the half plane, and then turned about z by
-/// `angle`.
+/// Moves a point by `step`: in space, or for a solid of revolution within the half plane, after which the point is
+/// turned about z by `angle` (rad).
 pub fn moved(o: &dyn Oracle, [x, y, z]: [f64; 3], step: [f64; 3], angle: f64) -> [f64; 3] {
     if !o.revolved() {
         return [x + step[0], y + step[1], z + step[2]];
@@ -145,7 +150,7 @@ pub fn moved(o: &dyn Oracle, [x, y, z]: [f64; 3], step: [f64; 3], angle: f64) ->
     [d * cos, d * sin, z + step[2]]
 }
 
-/// A point seen in the half plane through it and the axis.
+/// A point in the half plane through it and the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Meridian {
     /// Distance from the axis, and z.
@@ -155,7 +160,7 @@ pub struct Meridian {
 }
 
 impl Meridian {
-    /// The half plane through `p`.
+    /// Returns the half plane through `p`.
     pub fn of(p: [f64; 3]) -> Self {
         let [x, y, z] = p;
         let d = x.hypot(y);
@@ -166,27 +171,27 @@ impl Meridian {
         Self { dz: [d, z], radial }
     }
 
-    /// The vector with these radial and axial parts, in space.
+    /// Returns the vector with these radial and axial parts, in space.
     pub fn lift(&self, [e_d, e_z]: [f64; 2]) -> [f64; 3] {
         [e_d * self.radial[0], e_d * self.radial[1], e_z]
     }
 }
 
-/// `v` as a unit vector; +z if it vanishes.
+/// Returns `v` as a unit vector; +z if it vanishes.
 pub fn unit_or_z(v: [f64; 2]) -> [f64; 2] {
     let n = v[0].hypot(v[1]);
     if n > 0.0 { [v[0] / n, v[1] / n] } else { [0.0, 1.0] }
 }
 
-/// Points evenly spaced from `a` to `b`, both included.
+/// Returns points evenly spaced from `a` to `b`, both included.
 pub fn straight(a: [f64; 2], b: [f64; 2]) -> Vec<[f64; 2]> {
     sampled(|t| {
-        // Exact at both ends and along level and upright lines.
+        // Exact at both ends, and in z along level lines.
         [a[0] * (1.0 - t) + b[0] * t, if a[1] == b[1] { a[1] } else { a[1] * (1.0 - t) + b[1] * t }]
     })
 }
 
-/// Points of a curve given on `0..=1`.
+/// Returns 65 points of a curve given on `0..=1`.
 pub fn sampled(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     const STEPS: u32 = 64;
     (0..=STEPS).map(|i| at(f64::from(i) / f64::from(STEPS))).collect()
@@ -194,16 +199,16 @@ pub fn sampled(at: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::draw::Draw;
+    use super::draw::Rng;
     use super::*;
 
-    /// A point of space over `[d, z]`, at a random angle.
-    fn over([d, z]: [f64; 2], draw: &mut Draw) -> [f64; 3] {
+    /// Returns a point of space over `[d, z]`, at a random angle.
+    fn over([d, z]: [f64; 2], draw: &mut Rng) -> [f64; 3] {
         let a = draw.between(0.0, std::f64::consts::TAU);
         [d * a.cos(), d * a.sin(), z]
     }
 
-    fn anywhere(o: &dyn Oracle, draw: &mut Draw) -> [f64; 3] {
+    fn anywhere(o: &dyn Oracle, draw: &mut Rng) -> [f64; 3] {
         let [d, z] = o.extent();
         over([draw.between(0.0, 1.2 * d), draw.between(-0.2 * d, z + 0.2 * d)], draw)
     }
@@ -211,7 +216,7 @@ mod tests {
     #[test]
     fn answers_are_consistent() {
         for o in all() {
-            let mut draw = Draw::new(1);
+            let mut draw = Rng::new(1);
             for _ in 0..20_000 {
                 let p = anywhere(&*o, &mut draw);
                 let sd = o.signed_distance(p);
@@ -231,11 +236,11 @@ mod tests {
         }
     }
 
-    /// Within its border no point changes owner or side.
+    /// No point changes owner or side within its border.
     #[test]
     fn borders_are_lower_bounds() {
         for o in all() {
-            let mut draw = Draw::new(2);
+            let mut draw = Rng::new(2);
             for _ in 0..20_000 {
                 let p = anywhere(&*o, &mut draw);
                 let reach = o.border(p) * 0.999_999;
@@ -257,10 +262,10 @@ mod tests {
         }
     }
 
-    /// On each curve the border is 0 to rounding, and each is a border: some owner or side changes close by.
+    /// On each curve the border is 0 to rounding, and some owner or side changes close by.
     #[test]
     fn curves_and_corners_lie_on_borders() {
-        let mut draw = Draw::new(5);
+        let mut draw = Rng::new(5);
         for o in all() {
             for curve in o.curve_points() {
                 let inner = curve.iter().skip(1).take(curve.len().saturating_sub(2));
@@ -282,12 +287,12 @@ mod tests {
 
     #[test]
     fn no_owner_is_lost_between_the_curves() {
-        // Every change of owner found on a fine walk has a listed curve within a step of it.
+        // Every change of owner that random short steps find has a listed curve nearby.
         for o in thesis().into_iter().filter(|o| o.revolved()) {
             let [width, height] = o.extent();
             let all: Vec<_> = o.curves().into_iter().flatten().collect();
             let step = 0.05;
-            let mut draw = Draw::new(3);
+            let mut draw = Rng::new(3);
             for _ in 0..2_000 {
                 let a = [draw.between(0.0, width), draw.between(0.0, height)];
                 let b = [a[0] + step, a[1] + draw.between(-step, step)];
@@ -308,7 +313,7 @@ mod tests {
     #[test]
     fn the_gradient_is_the_slope_of_the_magnitude() {
         for o in all() {
-            let mut draw = Draw::new(4);
+            let mut draw = Rng::new(4);
             for _ in 0..20_000 {
                 let p = anywhere(&*o, &mut draw);
                 let h = 1e-5;

@@ -1,14 +1,14 @@
 //! Tools whose owner is the nearest feature of the profile: nothing but [`Profile`] decides.
 
-use super::draw::Draw;
+use super::draw::Rng;
 use super::profile::{Feature, Profile};
 use super::restated::{self, Niceness, Restated};
-use super::{Meridian, Oracle, Sense, sampled, straight};
+use super::{Meridian, Oracle, OracleEvaluation, sampled, straight};
 
 /// Points along a curve.
 type Points = Vec<[f64; 2]>;
 
-/// A profile tool: `depth` is the distance, `magnitude` the same, the direction points to the nearest point.
+/// A profile tool: `depth` is the distance, `magnitude` the same, and the direction points to the nearest point.
 #[derive(Clone, Debug)]
 pub struct Nearest {
     name: &'static str,
@@ -17,7 +17,7 @@ pub struct Nearest {
     niceness: Niceness,
     /// Largest `d` and `z`.
     extent: [f64; 2],
-    /// The splitting curves, where they are known as equations.
+    /// The splitting curves, if they are known as equations.
     splits: Option<Vec<Points>>,
 }
 
@@ -29,7 +29,7 @@ struct Region {
 }
 
 impl Nearest {
-    /// The oracle of a restated tool.
+    /// Creates the oracle of a restated tool.
     pub fn new(tool: &Restated) -> Self {
         let point = |[d, z]: &restated::Point| [d.to_f64(), z.to_f64()];
         let drafts: Vec<_> =
@@ -47,7 +47,7 @@ impl Nearest {
         }
     }
 
-    /// The oracle of a restated tool, by its name.
+    /// Creates the oracle of a restated tool, by its name.
     ///
     /// # Panics
     /// If no restated tool has this name.
@@ -61,17 +61,17 @@ impl Nearest {
         self
     }
 
-    /// The profile that it asks.
+    /// Returns the profile.
     pub fn profile(&self) -> &Profile {
         &self.profile
     }
 
-    /// The surface that each region belongs to, and whether it cuts.
+    /// Returns the surface that each region belongs to, and whether it cuts.
     pub fn surfaces(&self) -> impl Iterator<Item = (&'static str, bool)> {
         self.regions.iter().map(|region| (region.surface, region.cutting))
     }
 
-    /// The distance to the pieces of a surface, from either side.
+    /// Returns the distance to the pieces of a surface, from either side.
     pub fn away(&self, surface: &str, p: [f64; 3]) -> f64 {
         let at = Meridian::of(p).dz;
         let owned = self.profile.owners().iter().zip(&self.regions);
@@ -82,12 +82,12 @@ impl Nearest {
         pieces.map(|piece| self.profile.away(piece, at)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Points at which the nearest feature changes, found by halving stretches; a list for each pair of owners.
+    /// Returns points at which the nearest feature changes, found by bisection; one list per pair of owners.
     fn found(&self) -> Vec<Points> {
         const STRETCHES: usize = 4_000;
         let owner = |q: [f64; 2]| self.sense([q[0], 0.0, q[1]]).map(|s| s.owner);
         let [radius, height] = self.extent;
-        let mut draw = Draw::new(27);
+        let mut draw = Rng::new(27);
         let mut all = std::collections::BTreeMap::<_, Points>::new();
         for _ in 0..STRETCHES {
             let a = [draw.between(0.0, radius), draw.between(0.0, height)];
@@ -114,8 +114,8 @@ impl Nearest {
     }
 }
 
-/// The names of regions, as the language gives them, and their surfaces: a corner's is that of the neighbour that does not cut, else
-/// the first.
+/// Returns the names of regions, as the language gives them, and their surfaces. A corner's surface is that of the
+/// neighbour that does not cut, or else of the first.
 fn regions(tool: &Restated, profile: &Profile) -> Vec<Region> {
     let cuts = |surface: &str| tool.cutting.contains(&surface);
     let mut fans: Vec<String> = Vec::new();
@@ -151,7 +151,7 @@ impl Oracle for Nearest {
         self.regions.iter().map(|region| region.name.as_str()).collect()
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
+    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let m = Meridian::of(p);
         let [d, z] = m.dz;
         if d > self.extent[0] || z < 0.0 || z > self.extent[1] {
@@ -160,7 +160,7 @@ impl Oracle for Nearest {
         let (near, toward) = self.profile.sense(m.dz)?;
         let region = &self.regions[near.owner];
         let nice = || (self.niceness)(region.surface, near.distance, m.dz).max(0.0);
-        Some(Sense {
+        Some(OracleEvaluation {
             owner: near.owner,
             depth: near.distance,
             magnitude: near.distance,
@@ -204,7 +204,7 @@ impl Oracle for Nearest {
     }
 }
 
-/// The half sphere of radius 2 joined to a cylinder of radius 1 (Ho 1999, fig. 2.2, 2.3), 8 long.
+/// Returns the half sphere of radius 2 joined to a cylinder of radius 1 (Ho 1999, fig. 2.2, 2.3), 8 long.
 pub fn half_sphere_cylinder() -> Nearest {
     Nearest::of("HalfSphereCylinder").with(vec![
         // ball | step: 2 - |p - c| = 2 - z, a parabola.
@@ -223,14 +223,14 @@ pub fn half_sphere_cylinder() -> Nearest {
     ])
 }
 
-/// The ball end mill of fig. 7.3 with true distances. Its regions, from the tip up, are the thesis's IX to I; IV and VII are the reflex
-/// corners.
+/// Returns the ball end mill of fig. 7.3 with true distances. Its regions, from the tip up, are the thesis's IX to
+/// I; IV and VII are the reflex corners.
 pub fn fig_7_3_exact() -> Nearest {
     let s2 = std::f64::consts::SQRT_2;
     Nearest::of("Fig73Exact").with(vec![
         straight([5.0, 20.0], [0.0, 15.0]), // I | II
         straight([5.0, 9.0], [3.0, 11.0]),  // II | III
-        // II | IV, the parabola around (3, 9) that d = 5 directs.
+        // II | IV, the parabola with focus (3, 9) and directrix d = 5.
         sampled(|t| {
             let up = 2.0 + 2.0 * t;
             [4.0 - up * up / 4.0, 9.0 + up]
@@ -244,7 +244,7 @@ pub fn fig_7_3_exact() -> Nearest {
     ])
 }
 
-/// A plain 2 mm ball end mill, 40 long, its flute 5: ball and flute cut, with niceness `1 - depth`.
+/// Returns a plain 2 mm ball end mill, 40 long, its flute up to 5: ball and flute cut, with niceness `1 - depth`.
 pub fn d2_ball() -> Nearest {
     Nearest::of("D2Ball").with(vec![
         straight([1.0, 1.0], [0.0, 1.0]),   // ball | flute

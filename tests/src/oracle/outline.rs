@@ -1,11 +1,12 @@
-//! A profile that z does not fall along, in doubles: a depth in some tens of nanoseconds, for searches that ask many.
+//! Profiles along which z does not fall, in doubles. A depth takes some tens of nanoseconds, for searches that need
+//! many.
 
 use super::restated::Restated;
 
 /// A point `[d, z]`.
 pub type Flat = [f64; 2];
 
-/// A piece of a profile: its ends, and its centre if it is an arc.
+/// A segment of a profile: its ends, and its centre if it is an arc.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     /// Its lower end.
@@ -19,7 +20,7 @@ pub struct Segment {
 /// A profile from the tip up.
 #[derive(Clone, Debug)]
 pub struct Outline {
-    /// Its pieces.
+    /// Its segments.
     pub segments: Vec<Segment>,
 }
 
@@ -28,7 +29,7 @@ fn length(v: Flat) -> f64 {
 }
 
 impl Outline {
-    /// A profile of these pieces.
+    /// Creates a profile of these segments.
     ///
     /// # Panics
     /// If z falls along one.
@@ -37,7 +38,7 @@ impl Outline {
         Outline { segments }
     }
 
-    /// The profile of a restated tool; `None` if it overhangs.
+    /// Returns the profile of a restated tool; `None` if it overhangs.
     pub fn of(tool: &Restated) -> Option<Outline> {
         let double = |[d, z]: &[super::big::Big; 2]| [d.to_f64(), z.to_f64()];
         let mut from = double(&tool.start);
@@ -50,7 +51,7 @@ impl Outline {
         segments.iter().all(Segment::rises).then_some(Outline { segments })
     }
 
-    /// The depth of a point; below 0 outside.
+    /// Returns the depth of a point; below 0 outside.
     pub fn depth(&self, p: Flat) -> f64 {
         let distance = self.segments.iter().map(|segment| segment.distance(p));
         let distance = distance.fold(f64::INFINITY, f64::min);
@@ -60,13 +61,13 @@ impl Outline {
 }
 
 impl Segment {
-    /// Returns whether it is an arc that bulges into the material.
+    /// Returns whether the segment is an arc that bulges into the material.
     pub fn is_hollow(&self) -> bool {
         let Segment { from, to, centre } = self;
         centre.is_some_and(|[d, z]| (from[0] - d) * (to[1] - z) < (from[1] - z) * (to[0] - d))
     }
 
-    /// Returns whether z does not fall along it: an arc stays on one side of its centre.
+    /// Returns whether z does not fall along the segment, and an arc stays on one side of its centre.
     fn rises(&self) -> bool {
         let Segment { from, to, centre } = self;
         let one_side = centre.is_none_or(|[d, _]| (from[0] - d) * (to[0] - d) >= 0.0);
@@ -94,7 +95,7 @@ impl Segment {
         }
     }
 
-    /// Returns whether it is level with a point, and the point between it and the axis.
+    /// Returns whether the segment is level with a point, and the point lies between it and the axis.
     fn covers(&self, [d, z]: Flat) -> bool {
         let Segment { from, to, centre } = self;
         if z < from[1] || z > to[1] || from[1] == to[1] {

@@ -18,12 +18,12 @@ pub(super) fn len(a: P2) -> f64 {
     a[0].hypot(a[1])
 }
 
-/// A line, or an arc of less than 180°, the material on its left.
+/// A line, or an arc of less than 180°, with the material on its left.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) a: P2,
     pub(super) b: P2,
-    /// Place of its name in the order of listing.
+    /// Index of its owner in the order of listing.
     pub(super) rank: usize,
     shape: Shape,
 }
@@ -61,7 +61,7 @@ impl Piece {
         }
     }
 
-    /// Unit tangent at a point of the piece, along the profile.
+    /// Returns the unit tangent at a point of the piece, along the profile.
     pub(super) fn tangent(&self, at: P2) -> P2 {
         match self.shape {
             Shape::Line { along, .. } => along,
@@ -72,7 +72,7 @@ impl Piece {
         }
     }
 
-    /// Unit vector from a point inside that it owns to its surface.
+    /// Returns the unit vector from a point inside that the piece owns to its surface.
     pub(super) fn outward(&self, p: P2) -> P2 {
         match self.shape {
             Shape::Line { along, .. } => [along[1], -along[0]],
@@ -81,7 +81,7 @@ impl Piece {
         }
     }
 
-    /// Whether the foot of `p` on the whole line or circle lies on this piece.
+    /// Returns whether the foot of `p` on the whole line or circle lies on this piece.
     pub(super) fn faces(&self, p: P2) -> bool {
         match self.shape {
             Shape::Line { along, length } => (0.0..=length).contains(&dot(sub(p, self.a), along)),
@@ -92,7 +92,7 @@ impl Piece {
         }
     }
 
-    /// Distance to the whole line or circle.
+    /// Returns the distance to the whole line or circle.
     pub(super) fn distance(&self, p: P2) -> f64 {
         match self.shape {
             Shape::Line { along, .. } => cross(along, sub(p, self.a)).abs(),
@@ -100,12 +100,12 @@ impl Piece {
         }
     }
 
-    /// Distance to the piece, its ends included.
+    /// Returns the distance to the piece, its ends included.
     pub(super) fn clamped(&self, p: P2) -> f64 {
         if self.faces(p) { self.distance(p) } else { len(sub(p, self.a)).min(len(sub(p, self.b))) }
     }
 
-    /// The nearest point of the whole line or circle.
+    /// Returns the nearest point of the whole line or circle.
     pub(super) fn foot(&self, p: P2) -> P2 {
         match self.shape {
             Shape::Line { along, .. } => {
@@ -119,7 +119,8 @@ impl Piece {
         }
     }
 
-    /// How often the ray from `p` toward larger `d` meets the piece. A vertex level with `p` counts for the upper piece only.
+    /// Counts the intersections of the piece with the ray from `p` toward larger `d`. A vertex level with `p`
+    /// counts for the upper piece only.
     pub(super) fn crossings(&self, p: P2) -> usize {
         let spans = |a: P2, b: P2| (a[1] <= p[1]) != (b[1] <= p[1]);
         let Shape::Arc { centre, radius, .. } = self.shape else {
@@ -127,7 +128,7 @@ impl Piece {
             let d = || a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
             return usize::from(spans(a, b) && d() >= p[0]);
         };
-        // Cut the arc where it turns in z; what is left lies to one side of its centre.
+        // Cut the arc where it turns in z; each part then lies on one side of its centre.
         let turns = [-radius, radius].map(|r| [centre[0], centre[1] + r]);
         let inner = turns.into_iter().filter(|t| *t != self.a && *t != self.b && self.faces(*t));
         let cuts: Vec<P2> = [self.a].into_iter().chain(inner).chain([self.b]).collect();
@@ -140,7 +141,7 @@ impl Piece {
         cuts.windows(2).filter(meets).count()
     }
 
-    /// Points along the piece, its ends included.
+    /// Returns points along the piece, its ends included.
     pub(super) fn samples(&self) -> Vec<P2> {
         let Shape::Arc { centre, .. } = self.shape else {
             return straight(self.a, self.b);
@@ -152,14 +153,14 @@ impl Piece {
         points
     }
 
-    /// The point of an arc at the part `t` of its sweep.
+    /// Returns the point of an arc at the fraction `t` of its sweep.
     fn turned(&self, centre: P2, t: f64) -> P2 {
         let (a, b) = (sub(self.a, centre), sub(self.b, centre));
         let (sin, cos) = (t * cross(a, b).atan2(dot(a, b))).sin_cos();
         [centre[0] + a[0] * cos - a[1] * sin, centre[1] + a[0] * sin + a[1] * cos]
     }
 
-    /// The piece as a polyline, exact but for the sagitta of `n` chords.
+    /// Returns the piece as a polyline, exact but for the sagitta of `n` chords.
     #[cfg(test)]
     pub(super) fn chords(&self, n: u32) -> Vec<(P2, P2)> {
         let Shape::Arc { centre, .. } = self.shape else {

@@ -1,14 +1,14 @@
-//! A profile of lines and arcs, and the nearest of its pieces by trying them all.
+//! A profile of lines and arcs, and its nearest piece by exhaustive search.
 //!
-//! For a surface of revolution the nearest surface point lies in the half plane through the query point, so two dimensions are enough;
-//! the axis is a mirror and not a feature. Each piece is asked only for points whose foot lies on it, and each vertex for all points;
-//! the smallest distance wins, and among equals the feature listed first. Inside is decided by crossings (even-odd), not by the
-//! nearest piece.
+//! For a surface of revolution the nearest surface point lies in the half plane through the query point, so two
+//! dimensions are enough; the axis is a mirror and not a feature. Each piece counts only for points whose foot lies
+//! on it, and each vertex for all points. The smallest distance wins, and among equals the feature listed first.
+//! Inside is decided by crossings (even-odd), not by the nearest piece.
 
 use super::piece::{P2, Piece, cross, dot, len, sub};
 use super::unit_or_z;
 
-/// How the profile turns at a vertex.
+/// The turn of the profile at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
     /// An end of the profile, on the axis.
@@ -17,7 +17,7 @@ pub enum Turn {
     Convex,
     /// No turn: the vertex owns nothing.
     Smooth,
-    /// The material fills more than a half turn: the vertex owns a fan inside, under this rank.
+    /// The material fills more than a half turn: the vertex owns a fan inside, with this rank.
     Reflex(usize),
 }
 
@@ -30,13 +30,14 @@ struct Vertex {
 /// The nearest feature of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
-    /// Place in the order of listing. For a convex vertex (outside only) that of the piece listed first of the two that meet there.
+    /// Index in the order of listing. For a convex vertex (outside only), that of the piece listed first of the two
+    /// that meet there.
     pub owner: usize,
     /// Distance to the foot.
     pub distance: f64,
     /// The nearest point of the profile.
     pub foot: P2,
-    /// Whether the foot is a reflex corner that owns the point.
+    /// True if the foot is a reflex corner that owns the point.
     pub corner: bool,
 }
 
@@ -48,21 +49,21 @@ pub struct Profile {
     owners: Vec<Feature>,
 }
 
-/// A piece to be: its end, and its centre if it is an arc.
+/// The specification of a piece: its end, and its centre if it is an arc.
 pub type Draft = ([f64; 2], Option<[f64; 2]>);
 
-/// What may own points inside.
+/// A feature that may own points inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feature {
-    /// A piece, by its place.
+    /// A piece, by its index.
     Piece(usize),
-    /// The reflex corner behind a piece.
+    /// The reflex corner behind a piece, by the piece's index.
     Corner(usize),
 }
 
 impl Profile {
-    /// The profile that starts at `start` and goes on through `drafts`. Owners are numbered along it, each reflex corner between its
-    /// pieces; the first wins a tie.
+    /// Creates the profile that starts at `start` and goes on through `drafts`. Owners are numbered along it, each
+    /// reflex corner between its pieces; the first wins a tie.
     pub fn new(start: P2, drafts: &[Draft]) -> Self {
         let mut at = start;
         let mut pieces: Vec<Piece> = Vec::new();
@@ -91,20 +92,21 @@ impl Profile {
         Self { pieces, vertices, owners }
     }
 
-    /// How it turns behind a piece.
+    /// Returns the turn behind a piece.
     pub fn turn(&self, piece: usize) -> Turn {
         self.vertices[piece + 1].turn
     }
 
-    /// Who may own points inside, in the order of listing.
+    /// Returns the features that may own points inside, in the order of listing.
     pub fn owners(&self) -> &[Feature] {
         &self.owners
     }
 
-    /// The nearest feature, from inside or outside.
+    /// Returns the nearest feature, from inside or outside.
     ///
-    /// Beside a fan or joint two features differ only in the square of the distance from their border, far below rounding. So each is
-    /// asked only for its own side, and ties are left for the borders themselves.
+    /// Beside a fan or joint, the distances of two features differ only by the square of the distance from their
+    /// border, far below rounding. Each feature therefore counts only on its own side, and ties are left for the
+    /// borders themselves.
     pub fn nearest(&self, p: P2) -> Near {
         let mut best = Near { owner: 0, distance: f64::INFINITY, foot: p, corner: false };
         for piece in self.pieces.iter().filter(|piece| piece.faces(p)) {
@@ -124,7 +126,8 @@ impl Profile {
                 Turn::Reflex(rank) => (rank, true),
                 _ => (first.unwrap_or(0), false),
             };
-            // A joint, and a corner outside its fan, only catch what rounding let fall between their neighbours.
+            // A joint, and a corner outside its fan, only catch points that rounding let fall between their
+            // neighbours.
             let distance = len(from);
             let wins = match v.turn {
                 Turn::Reflex(_) if in_fan => (distance, owner) < (best.distance, best.owner),
@@ -138,29 +141,30 @@ impl Profile {
         best
     }
 
-    /// The distance to a piece, its ends included, from either side.
+    /// Returns the distance to a piece, its ends included, from either side.
     pub fn away(&self, piece: usize, p: P2) -> f64 {
         self.pieces[piece].clamped(p)
     }
 
-    /// Whether `p` is in the solid or on its surface.
+    /// Returns whether `p` is in the solid or on its surface.
     pub fn contains(&self, p: P2) -> bool {
         self.encloses(p) || self.nearest(p).distance == 0.0
     }
 
-    /// For a point of the solid, its nearest feature and the unit vector `(radial, axial)` toward it.
+    /// Returns, for a point of the solid, its nearest feature and the unit vector `(radial, axial)` toward it;
+    /// `None` outside.
     pub fn sense(&self, p: P2) -> Option<(Near, P2)> {
         let near = self.nearest(p);
         (near.distance == 0.0 || self.encloses(p)).then(|| (near, self.direction(&near, p)))
     }
 
-    /// Even-odd rule, on the ray from `p` away from the axis. Undecided on the surface.
+    /// Applies the even-odd rule on the ray from `p` away from the axis. Undecided on the surface.
     fn encloses(&self, p: P2) -> bool {
         let crossed = self.pieces.iter().map(|piece| piece.crossings(p)).sum::<usize>();
         crossed % 2 == 1
     }
 
-    /// Negative inside.
+    /// Returns the signed distance to the surface, negative inside.
     pub fn signed_distance(&self, p: P2) -> f64 {
         let distance = self.nearest(p).distance;
         if self.contains(p) { -distance } else { distance }
@@ -173,10 +177,11 @@ impl Profile {
         self.owner_piece(near, p).outward(p)
     }
 
-    /// A lower bound of the distance to the surface and to the curves on which the nearest feature changes. Outside only to the surface.
+    /// Returns a lower bound of the distance to the surface and to the curves on which the nearest feature changes;
+    /// outside, of the distance to the surface only.
     ///
-    /// Two features meet either at a shared fan line or joint, whose distance is plain, or on the curve where their distances agree;
-    /// distances are 1-Lipschitz, so that curve is at least half their difference away.
+    /// Two features meet either at a shared fan line or joint, whose distance is plain, or on the curve where their
+    /// distances agree. Distances are 1-Lipschitz, so that curve is at least half their difference away.
     pub fn border(&self, p: P2) -> f64 {
         let near = self.nearest(p);
         if !self.contains(p) {
@@ -214,7 +219,7 @@ impl Profile {
         least.max(0.0)
     }
 
-    /// See [`super::Oracle::singular`].
+    /// Returns the distance defined at [`super::Oracle::singular`].
     pub fn singular(&self, p: P2) -> f64 {
         let Some((near, direction)) = self.sense(p) else {
             return f64::INFINITY;
@@ -229,18 +234,19 @@ impl Profile {
         axis.min(point)
     }
 
-    /// Vertices and centres.
+    /// Returns the vertices, and the centres of arcs.
     pub fn corners(&self) -> Vec<P2> {
         let vertices = self.vertices.iter().map(|v| v.at);
         vertices.chain(self.pieces.iter().filter_map(Piece::centre)).collect()
     }
 
-    /// Points along each piece.
+    /// Returns points along each piece.
     pub fn surface(&self) -> Vec<Vec<P2>> {
         self.pieces.iter().map(Piece::samples).collect()
     }
 
-    /// The piece that owns `p`; several may share a name.
+    /// Returns the piece with the owner's rank whose foot is the nearest point; failing that, the first with that
+    /// rank.
     fn owner_piece(&self, near: &Near, p: P2) -> &Piece {
         let mine = || self.pieces.iter().filter(|piece| piece.rank == near.owner);
         let facing = mine().find(|piece| piece.faces(p) && piece.foot(p) == near.foot);
@@ -250,7 +256,7 @@ impl Profile {
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Draw;
+    use super::super::draw::Rng;
     use super::*;
 
     /// A body with a neck: convex and concave arcs, a taper, both kinds of corner.
@@ -267,12 +273,12 @@ mod tests {
         )
     }
 
-    /// Against a polyline so fine that only its sagitta (below 1e-6) is left.
+    /// Compares with a polyline so fine that only its sagitta (below 1e-6) is left.
     #[test]
     fn distances_agree_with_a_fine_polyline() {
         let vase = vase();
         let fine: Vec<_> = vase.pieces.iter().flat_map(|piece| piece.chords(2000)).collect();
-        let mut draw = Draw::new(5);
+        let mut draw = Rng::new(5);
         for _ in 0..2_000 {
             let p = [draw.between(0.0, 5.0), draw.between(-2.0, 8.0)];
             let polyline = fine.iter().map(|&(a, b)| {
@@ -287,11 +293,11 @@ mod tests {
         }
     }
 
-    /// Even-odd against the side of the nearest feature, two unlike tests.
+    /// Compares two unlike tests: even-odd, and the side of the nearest feature.
     #[test]
     fn inside_agrees_with_the_side_of_the_nearest_feature() {
         let vase = vase();
-        let mut draw = Draw::new(6);
+        let mut draw = Rng::new(6);
         for _ in 0..100_000 {
             let p = [draw.between(0.0, 4.0), draw.between(-1.0, 7.0)];
             let near = vase.nearest(p);
@@ -311,7 +317,7 @@ mod tests {
     #[test]
     fn directions_step_onto_the_surface() {
         let vase = vase();
-        let mut draw = Draw::new(7);
+        let mut draw = Rng::new(7);
         for _ in 0..100_000 {
             let p = [draw.between(0.0, 4.0), draw.between(-1.0, 7.0)];
             let Some((near, u)) = vase.sense(p) else {

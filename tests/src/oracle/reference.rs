@@ -1,7 +1,7 @@
-//! The nearest feature of a restated profile in 256 bits.
+//! The nearest feature of a restated profile, with 256 bits.
 //!
-//! Which pieces can be the nearest is found in doubles, with a margin of 1e-9 of the tool's size, a million times what doubles
-//! lose; all that is answered is computed from these pieces to 256 bits.
+//! Candidates for the nearest piece are found in doubles, with a margin of 1e-9 of the tool's size, a million times
+//! the error of doubles. All results are computed from these pieces with 256 bits.
 
 use super::big::Big;
 use super::piece::Piece;
@@ -9,7 +9,8 @@ use super::profile::{Feature, Profile, Turn};
 use super::restated::{Point, Restated};
 use super::{Meridian, Nearest};
 
-/// The part of the tool's size by which a piece may be farther than the nearest, in doubles, and is still looked at.
+/// Margin, as a fraction of the tool's size, by which a piece may be farther than the nearest in doubles and is
+/// still considered.
 const MARGIN: f64 = 1e-9;
 
 /// A point, and the half plane through it and the axis.
@@ -21,12 +22,12 @@ pub struct At {
 }
 
 impl At {
-    /// The point of these coordinates, taken as they are.
+    /// Creates the point with these coordinates, taken exactly.
     pub fn new(p: [f64; 3]) -> Self {
         Self::of(p.map(Big::exactly))
     }
 
-    /// The same of coordinates that are no doubles.
+    /// Creates the point with coordinates of 256 bits.
     pub fn of([x, y, z]: [Big; 3]) -> Self {
         let rough = Meridian::of([&x, &y, &z].map(Big::to_f64)).dz;
         let d = (&(&x * &x) + &(&y * &y)).sqrt();
@@ -36,11 +37,11 @@ impl At {
     }
 }
 
-/// A tool's profile in 256 bits.
+/// A tool's profile with 256 bits.
 pub struct Reference {
     tool: Restated,
     parts: Vec<Part>,
-    /// How the profile turns behind each piece.
+    /// The turn of the profile behind each piece.
     turns: Vec<Turn>,
     owners: Vec<Feature>,
     size: f64,
@@ -66,10 +67,10 @@ enum Shape {
     },
 }
 
-/// How far a piece is.
+/// The distance to a piece.
 struct Far {
     distance: Big,
-    /// Whether the foot is no end of the piece, and the point on its inner side then.
+    /// `None` if the foot is an end of the piece; otherwise true if the point is on its inner side.
     side: Option<bool>,
 }
 
@@ -119,7 +120,7 @@ impl Part {
         Far { distance: inward.abs(), side: Some(!inward.is_negative()) }
     }
 
-    /// How far a point lies on the inner side of the whole line or circle.
+    /// Returns the distance of a point from the whole line or circle, positive on the inner side.
     fn inward(&self, p: &Point) -> Big {
         match &self.shape {
             Shape::Line { along, length } => &cross(along, &sub(p, &self.a)) / length,
@@ -130,7 +131,7 @@ impl Part {
         }
     }
 
-    /// Unit vector from a point inside to its nearest point here; `None` at a centre.
+    /// Returns the unit vector from a point inside to its nearest point here; `None` at a centre.
     fn outward(&self, p: &Point) -> Option<Point> {
         match &self.shape {
             Shape::Line { along, length } => Some([&along[1] / length, &(-&along[0]) / length]),
@@ -148,7 +149,7 @@ fn unit(v: &Point) -> Option<Point> {
 }
 
 impl Reference {
-    /// The reference of a restated tool.
+    /// Creates the reference of a restated tool.
     pub fn new(tool: &Restated) -> Self {
         let rough = Nearest::new(tool);
         let profile: &Profile = rough.profile();
@@ -178,12 +179,12 @@ impl Reference {
         Self { tool: tool.clone(), parts, turns, owners, size: most }
     }
 
-    /// The tool.
+    /// Returns the restated tool.
     pub fn tool(&self) -> &Restated {
         &self.tool
     }
 
-    /// How deep a point lies: the distance to the surface, negative outside.
+    /// Returns the depth of a point: the distance to the surface, negative outside.
     pub fn depth(&self, at: &At) -> Big {
         let rough: Vec<f64> = self.parts.iter().map(|part| part.rough.clamped(at.rough)).collect();
         let reach = rough.iter().copied().fold(f64::INFINITY, f64::min) + MARGIN * self.size;
@@ -206,8 +207,8 @@ impl Reference {
         }
     }
 
-    /// Whether a point whose nearest is an end of a piece is inside: in the fan of a reflex corner, or where rounding alone keeps it
-    /// from facing the piece.
+    /// Returns whether a point is inside whose nearest point is an end of a piece: in the fan of a reflex corner,
+    /// or where rounding alone keeps it from facing the piece.
     fn beside(&self, at: &At, place: usize) -> bool {
         let part = &self.parts[place];
         let [a, b] = [&part.a, &part.b].map(|end| norm(&sub(&at.dz, end)));
@@ -219,8 +220,8 @@ impl Reference {
         }
     }
 
-    /// Who owns a point of the solid: the nearest, of equals a corner before the pieces that end in it, else the first listed. `None`
-    /// outside.
+    /// Returns the owner of a point of the solid: the nearest feature. Among equals a corner comes before the
+    /// pieces that end in it, otherwise the first listed. `None` outside.
     pub fn owner(&self, at: &At) -> Option<usize> {
         let depth = self.depth(at);
         if depth.is_negative() {
@@ -246,7 +247,7 @@ impl Reference {
         best.map(|(.., owner)| owner)
     }
 
-    /// The distance to what an owner consists of: a piece with its ends, or a corner.
+    /// Returns the distance to an owner: a piece with its ends, or a corner.
     pub fn distance_to(&self, at: &At, owner: usize) -> Big {
         match self.owners[owner] {
             Feature::Piece(piece) => self.parts[piece].far(&at.dz).distance,
@@ -254,7 +255,8 @@ impl Reference {
         }
     }
 
-    /// The unit vector from a point that an owner owns to its nearest point of the surface; where there is none, +z.
+    /// Returns the unit vector from a point that an owner owns to its nearest point of the surface; where there is
+    /// none, +z.
     pub fn direction(&self, at: &At, owner: usize) -> [Big; 3] {
         let toward = match self.owners[owner] {
             Feature::Piece(piece) => self.parts[piece].outward(&at.dz),
@@ -264,7 +266,7 @@ impl Reference {
         [&d * &at.radial[0], &d * &at.radial[1], z]
     }
 
-    /// The distance from a point to the nearest at which its owner's direction does not exist.
+    /// Returns the distance from a point to the nearest one at which its owner's direction does not exist.
     pub fn singular(&self, at: &At, owner: usize) -> f64 {
         let (place, level) = match self.owners[owner] {
             Feature::Piece(piece) => match &self.parts[piece].shape {
@@ -276,7 +278,7 @@ impl Reference {
         if level { place } else { place.min(at.dz[0].to_f64()) }
     }
 
-    /// The next power of two above the tool's largest coordinate, by whose rounding errors are measured.
+    /// Returns the next power of two above the tool's largest coordinate, S; errors are measured in ulp(S).
     pub fn scale(&self) -> f64 {
         let mut scale = 2f64.powi(self.size.log2().floor() as i32);
         while scale <= self.size {
@@ -288,7 +290,7 @@ impl Reference {
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Draw;
+    use super::super::draw::Rng;
     use super::super::{Oracle, restated};
     use super::*;
 
@@ -298,7 +300,7 @@ mod tests {
             let (rough, reference) = (Nearest::new(&tool), Reference::new(&tool));
             let [radius, height] = rough.extent();
             let size = radius.max(height);
-            let mut draw = Draw::new(8);
+            let mut draw = Rng::new(8);
             for _ in 0..300 {
                 let [x, y] = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
                 let p = [x, y, draw.between(-0.1 * height, 1.1 * height)];

@@ -1,8 +1,9 @@
 //! The thesis's smallest solids, by their equations.
 
-use super::{Meridian, Oracle, Sense, sampled, straight, unit_or_z};
+use super::{Meridian, Oracle, OracleEvaluation, sampled, straight, unit_or_z};
 
-/// The unit sphere (Ho 1999, eq. 4.1, 4.2), its lowest point at the origin: depth `1 - |p - c|`, direction away from the centre (0, 0, 1).
+/// The unit sphere (Ho 1999, eq. 4.1, 4.2), its lowest point at the origin: depth `1 - |p - c|`, direction away
+/// from the centre (0, 0, 1).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UnitSphere;
 
@@ -23,9 +24,9 @@ impl Oracle for UnitSphere {
         vec!["ball"]
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
+    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let (m, arm, rho) = Self::from_centre(p);
-        (rho <= 1.0).then(|| Sense {
+        (rho <= 1.0).then(|| OracleEvaluation {
             owner: 0,
             depth: 1.0 - rho,
             magnitude: 1.0 - rho,
@@ -47,7 +48,7 @@ impl Oracle for UnitSphere {
     }
 
     fn singular(&self, p: [f64; 3]) -> f64 {
-        // Across the axis the direction goes on smoothly, but `x / d` is still computed there.
+        // Across the axis the direction continues smoothly, but `x / d` is still computed there.
         let (m, _, rho) = Self::from_centre(p);
         if rho <= 1.0 { rho.min(m.dz[0]) } else { f64::INFINITY }
     }
@@ -68,14 +69,15 @@ impl Oracle for UnitSphere {
     }
 }
 
-/// The finite cylinder of radius 2 and height 6 (Ho 1999, fig. 4.2), its bottom at z = 0. Listed side, bottom, top.
+/// The finite cylinder of radius 2 and height 6 (Ho 1999, fig. 4.2), its bottom at z = 0. Regions are listed as
+/// side, bottom, top.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cylinder;
 
 const REGIONS: [&str; 3] = ["side", "bottom", "top"];
 
 impl Cylinder {
-    /// How far inside the side, the bottom and the top.
+    /// Returns the distances inward from the side, the bottom and the top.
     fn inward(p: [f64; 3]) -> (Meridian, [f64; 3]) {
         let m = Meridian::of(p);
         (m, [2.0 - m.dz[0], m.dz[1], 6.0 - m.dz[1]])
@@ -91,7 +93,7 @@ impl Oracle for Cylinder {
         REGIONS.to_vec()
     }
 
-    fn sense(&self, p: [f64; 3]) -> Option<Sense> {
+    fn sense(&self, p: [f64; 3]) -> Option<OracleEvaluation> {
         let (m, [side, low, high]) = Self::inward(p);
         let (owner, depth, direction) = if side >= 0.0 && side <= low.min(high) {
             (0, side, [1.0, 0.0])
@@ -102,7 +104,13 @@ impl Oracle for Cylinder {
         } else {
             return None;
         };
-        Some(Sense { owner, depth, magnitude: depth, direction: m.lift(direction), niceness: 0.0 })
+        Some(OracleEvaluation {
+            owner,
+            depth,
+            magnitude: depth,
+            direction: m.lift(direction),
+            niceness: 0.0,
+        })
     }
 
     fn gradient(&self, p: [f64; 3]) -> Option<[f64; 3]> {
@@ -127,7 +135,7 @@ impl Oracle for Cylinder {
 
     fn singular(&self, p: [f64; 3]) -> f64 {
         match self.sense(p) {
-            Some(Sense { owner: 0, .. }) => Meridian::of(p).dz[0],
+            Some(OracleEvaluation { owner: 0, .. }) => Meridian::of(p).dz[0],
             _ => f64::INFINITY,
         }
     }

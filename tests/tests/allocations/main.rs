@@ -1,16 +1,17 @@
-//! A haptic loop must not wait for memory: its cycles ask for none, however their contacts grow. After the first
-//! round neither does a probe, nor a certifier.
+//! Allocations: a haptic loop must not wait for memory, so its cycles allocate none, however their contacts grow.
+//! After the first round neither does a probe, nor a certifier.
 
 mod growing;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 use std::sync::atomic::AtomicBool;
-use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::haptic::{
-    Axes, Hand, Limits, Rendering, Session, Settings, Unhurried, Watch, run, watched,
+    DeviceAxes, DeviceLimits, Rendering, Session, SessionSettings, SimulatedClock, SimulatedHand,
+    StatePublisher, run, state_channel,
 };
-use touchoff::scenes::{Path, tube};
+use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Law, Pose, Probe};
 use touchoff_tests::fixtures::{part, poses};
 
@@ -32,14 +33,14 @@ fn everything(probe: &mut Probe<'_>, poses: &[Pose]) -> usize {
         .sum()
 }
 
-// Not of a harness: the counts are those of the process.
+// Without a test harness: the counts are those of the process.
 fn main() {
     let part = part(20_000);
     for law in [Law::Thesis, Law::Gradient] {
-        for path in Path::ALL {
+        for path in ScenePath::ALL {
             let poses = poses(path, 500);
             let mut probe =
-                Probe::new(&part, tools_library::find("Fig73").expect("a tool")).law(law);
+                Probe::new(&part, tools_library::find("Fig73").expect("a tool")).with_law(law);
             let first = everything(&mut probe, &poses);
             assert!(first > 0);
             let region = Region::new(COUNTED);
@@ -54,17 +55,19 @@ fn main() {
     growing::no_question_allocates();
 }
 
-/// Whether a tool that touches nothing is inside is asked of a ray, which does ask for memory.
+/// Asserts that a certifier does not allocate after its first round. Poses without contact are excluded from
+/// `check_pose`: whether such a tool is inside is decided by a ray, which allocates.
 fn a_certifier() {
-    let facets = Facets::new(&tube());
+    let bvh = TriangleBvh::new(&tube());
     for name in ["Fig73Exact", "BallEr16"] {
         let tool = tools_library::find(name).expect("a tool");
-        let mut certifier = Certifier::new(&facets, tool).expect("a profile");
+        let mut certifier = Certifier::new(&bvh, tool).expect("a profile");
         let mut round = |poses: &[Pose]| -> f64 {
             let depths = poses.iter().map(|pose| certifier.deepest(pose, 1e-6).depth[0]);
             depths.sum()
         };
-        let poses: Vec<Pose> = Path::ALL.into_iter().flat_map(|path| poses(path, 200)).collect();
+        let poses: Vec<Pose> =
+            ScenePath::ALL.into_iter().flat_map(|path| poses(path, 200)).collect();
         let first = round(&poses);
         assert!(first > 0.0);
         let region = Region::new(COUNTED);
@@ -74,8 +77,11 @@ fn a_certifier() {
         assert!((first - second).abs() <= 1e-6 * poses.len() as f64);
         let touches = |pose: &&Pose| certifier.deepest(pose, 1e-6).depth[0] > 1e-3;
         let touching: Vec<Pose> = poses.iter().filter(touches).copied().collect();
-        let mut all_touch =
-            || touching.iter().all(|pose| matches!(certifier.clear(pose), Clear::Touching(_)));
+        let mut all_touch = || {
+            touching
+                .iter()
+                .all(|pose| matches!(certifier.check_pose(pose), PoseVerdict::Touching(_)))
+        };
         assert!(all_touch());
         let region = Region::new(COUNTED);
         let again = all_touch();
@@ -84,30 +90,31 @@ fn a_certifier() {
     }
 }
 
-/// Nor do cycles of the haptic loop, whatever the hand does, with somebody who looks on.
+/// Asserts that cycles of the haptic loop do not allocate, whatever the hand does, while a reader follows the
+/// states.
 fn a_haptic_loop() {
     let part = part(20_000);
     let (rate, cycles) = (1000.0, 3_000);
     for name in ["Fig73Exact", "Block"] {
         let tool = tools_library::find(name).expect("a tool");
-        let axes = if name == "Block" { Axes::Six } else { Axes::Five };
-        let limits = Limits { axes, ..Limits::default() };
+        let axes = if name == "Block" { DeviceAxes::Six } else { DeviceAxes::Five };
+        let limits = DeviceLimits { axes, ..DeviceLimits::default() };
         for rendering in [None, Some(Rendering::Direct { scaled: true, damping: 1e-3 })] {
-            let settings = Settings { rendering, ..Settings::new(rate) };
-            let probe = Probe::new(&part, tool).law(Law::Gradient);
+            let settings = SessionSettings { rendering, ..SessionSettings::new(rate) };
+            let probe = Probe::new(&part, tool).with_law(Law::Gradient);
             let mut session = Session::new(probe, &settings, limits).expect("settings");
             let wish = |time: f64| {
-                let pose = Path::Hold.pose((3e3 * (time % 1.0)) as usize, 10_000);
-                let [x, y, z, w] = [0, 1, 2, 3].map(|k| pose.isometry().rotation.coords[k]);
+                let pose = ScenePath::Hold.pose((3e3 * (time % 1.0)) as usize, 10_000);
+                let [x, y, z, w] = [0, 1, 2, 3].map(|k| pose.to_isometry().rotation.coords[k]);
                 Pose::from_quaternion(pose.tip(), [x, y, z, w]).expect("a pose")
             };
-            let mut hand = Hand::new(limits, rate, wish).expect("a hand");
-            let (mut watch, mut latest, samples) = watched(2 * cycles as usize);
+            let mut hand = SimulatedHand::new(limits, rate, wish).expect("a hand");
+            let (mut watch, mut latest, samples) = state_channel(2 * cycles as usize);
             let stop = AtomicBool::new(false);
-            let clock = &mut Unhurried::default();
-            let mut round = |watch: &mut Watch| {
+            let clock = &mut SimulatedClock::default();
+            let mut round = |watch: &mut StatePublisher| {
                 let ends = (&mut session, &mut hand);
-                run(ends, (&mut *clock, cycles), watch, &stop).peak[0]
+                run(ends, (&mut *clock, cycles), watch, &stop).peak_wrench[0]
             };
             let first = round(&mut watch);
             assert!(first > 0.0, "{name}");
@@ -122,5 +129,5 @@ fn a_haptic_loop() {
     }
 }
 
-/// What a report's two histograms take.
+/// Allocations of a report's two histograms.
 const HISTOGRAMS: usize = 2;

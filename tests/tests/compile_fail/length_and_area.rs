@@ -8,5 +8,5 @@ touchoff::tool! {
 
 fn main() {
     let tool: &dyn touchoff::Tool = &Ball;
-    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+    println!("{} is {} wide", tool.info().name, 2.0 * tool.info().radius());
 }

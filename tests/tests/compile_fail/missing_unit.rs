@@ -2,5 +2,5 @@ touchoff::include_tool!("mistakes/missing_unit.tool");
 
 fn main() {
     let tool: &dyn touchoff::Tool = &Ball;
-    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+    println!("{} is {} wide", tool.info().name, 2.0 * tool.info().radius());
 }

@@ -2,5 +2,5 @@ touchoff::include_tool!("mistakes/pin.tool", long = 12, Dia = 0.25inch);
 
 fn main() {
     let tool: &dyn touchoff::Tool = &Pin;
-    println!("{} is {} wide", tool.card().name, 2.0 * tool.card().radius());
+    println!("{} is {} wide", tool.info().name, 2.0 * tool.info().radius());
 }

@@ -1,5 +1,5 @@
-//! Texts that nobody meant: absurd sizes, deep nesting, thousands of everything, bytes that are no
-//! text. Each is refused with a clear word, at once: an input that took long would be seen here.
+//! Absurd input: enormous sizes, deep nesting, thousands of everything, bytes that are no text. Each is refused at
+//! once with a clear message; an input that took long would be noticed here.
 
 use std::path::PathBuf;
 use tool_dsl::diagnostic::{Diagnostic, Severity};
@@ -8,12 +8,12 @@ use tool_dsl::{Compiled, compile};
 
 const BALL: &str = "region ball where hypot(d, z - 3) <= 3 { depth: 3 - hypot(d, z - 3); }";
 
-/// A tool of which only some items matter.
+/// Returns a tool of which only some items matter.
 fn tool(items: &str) -> String {
     format!("tool T {{\n    units mm;\n    {items}\n    {BALL}\n}}\n")
 }
 
-/// A tool of one profile.
+/// Returns a tool of one profile.
 fn profile(rest: &str) -> String {
     format!("tool T {{ units mm; profile {{ start (0, 0); line to {rest} }} }}")
 }
@@ -27,7 +27,7 @@ fn errors(compiled: &Compiled) -> Vec<String> {
     errors.map(Diagnostic::message).collect()
 }
 
-/// A text's errors: few enough to read, each with a remedy and a place that can be shown.
+/// Returns a text's errors: few enough to read, each with a remedy and a place that can be shown.
 fn refused(text: &str) -> Vec<String> {
     let compiled = compile(&Source::new("t.tool", text));
     let start: String = text.chars().take(200).collect();
@@ -136,7 +136,7 @@ fn what_is_no_text_of_a_tool() {
     assert!(windows.tool().is_some(), "{:?}", windows.diagnostics());
 }
 
-/// A folder of this test's files.
+/// Returns the folder of this test's files.
 fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("bad_input");
     std::fs::create_dir_all(&folder).expect("cargo's target folder can be written to");
@@ -147,10 +147,10 @@ fn write(name: &str, bytes: impl AsRef<[u8]>) {
     std::fs::write(folder().join(name), bytes).expect("a writable folder");
 }
 
-/// The errors of a tool that mounts a file.
+/// Returns the errors of a tool that mounts a file.
 fn mounted(mounts: &str) -> String {
     let text = format!("tool T {{ units mm; {mounts} }}");
-    let compiled = compile(&Source::new("t.tool", text).held_by(folder().join("t.tool")));
+    let compiled = compile(&Source::new("t.tool", text).with_path(folder().join("t.tool")));
     assert!(compiled.tool().is_none());
     errors(&compiled).join("; ")
 }

@@ -1,5 +1,5 @@
-//! What is proved about tools: against what is known of the thesis's, against the values themselves,
-//! and of tools that are wrong.
+//! Certificates of tools: against the known results for the thesis's, against evaluations, and for tools that are
+//! wrong.
 
 use std::path::Path;
 use tool_dsl::interpret::Interpreter;
@@ -7,12 +7,12 @@ use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
 use touchoff::Level;
-use touchoff::tool::{Ask, Felt, Points};
+use touchoff::tool::{Evaluations, Outputs, PointBatch};
 use touchoff_tests::accuracy::{owners, tools};
 use touchoff_tests::library::library;
 use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::reference::{At, Reference};
 
 fn checked(source: &Source) -> Box<CheckedTool> {
@@ -34,12 +34,12 @@ fn text(text: &str) -> Box<CheckedTool> {
     checked(&Source::new("test.tool", text))
 }
 
-/// What depth is to the distance to the surface, at least and at most.
+/// Returns the least and the greatest ratio of depth to the distance to the surface.
 fn bounds(proved: &Certificate) -> (f64, f64) {
-    (proved.least().expect("a lower bound"), proved.lipschitz().expect("an upper bound"))
+    (proved.lower_slope().expect("a lower bound"), proved.lipschitz().expect("an upper bound"))
 }
 
-/// The turn between two regions in degrees, and the least depth at which they meet.
+/// Returns the turn between two regions in degrees, and the least depth at which they meet.
 fn border(tool: &CheckedTool, proved: &Certificate, names: [&str; 2]) -> ([f64; 2], f64) {
     let region = |name: &str| tool.model.regions.iter().position(|region| region.name == name);
     let pair = (region(names[0]).expect("a region"), region(names[1]));
@@ -57,7 +57,7 @@ fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
     let (least, most) = bounds(&proved);
     assert!((most - 5f64.sqrt()).abs() < 1e-12 && (least - 1.0).abs() < 1e-8, "{least} {most}");
     assert!(proved.boxes <= 2_500, "{}", proved.boxes);
-    // Equation 7.1: which are distances.
+    // Equation 7.1: regions whose magnitude is a distance.
     let distances: Vec<bool> = proved.regions.iter().map(|region| region.distance).collect();
     assert_eq!(distances, [true, true, true, false, true, false, false, true, true]);
     let steep: Vec<f64> =
@@ -80,12 +80,12 @@ fn the_thesis_magnitudes_are_up_to_root_5_of_the_distance() {
 #[test]
 fn cards_carry_the_bounds() {
     use touchoff::Tool;
-    let card = tools_library::Fig73.card();
-    assert!(card.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
-    assert!(card.depth.least.is_some_and(|least| (least - 1.0).abs() < 1e-8));
-    for tool in tools_library::TOOLS.iter().filter(|tool| tool.card().exact()) {
-        let depth = tool.card().depth;
-        assert_eq!([depth.least, depth.lipschitz], [Some(1.0); 2], "{}", tool.card().name);
+    let info = tools_library::Fig73.info();
+    assert!(info.depth.lipschitz.is_some_and(|most| (most - 5f64.sqrt()).abs() < 1e-12));
+    assert!(info.depth.least.is_some_and(|least| (least - 1.0).abs() < 1e-8));
+    for tool in tools_library::TOOLS.iter().filter(|tool| tool.info().is_exact()) {
+        let depth = tool.info().depth;
+        assert_eq!([depth.least, depth.lipschitz], [Some(1.0); 2], "{}", tool.info().name);
     }
 }
 
@@ -110,13 +110,14 @@ fn every_tool_of_the_library_is_proved() {
         // The thesis's magnitudes are no distances.
         assert_eq!(proved.is_exact(), name != "Fig73", "{name}");
         let slack = proved.slack / tool.extent.scale();
-        // Some 1e-10 of it is how far depths differ, and four times that how far the surface is from the profile.
+        // About 1e-10 of it is the difference between depths, and four times that the distance of the surface from
+        // the profile.
         assert!(slack < 5e-10, "{name}: {slack:e}");
     }
 }
 
-/// Ends of arcs written with the digits of a double are on no common circle and not tangent to what follows, but for
-/// rounding.
+/// Ends of arcs written with the digits of a double are, but for rounding, on a common circle and tangent to the
+/// next piece.
 #[test]
 fn profiles_that_are_smooth_but_for_rounding_are_proved() {
     let tool = text(
@@ -139,7 +140,7 @@ fn values_keep_what_is_proved() {
         let tool = checked(&source);
         let proved = Certificate::of(&tool);
         let cell = tool.extent.cell();
-        let mut draw = Draw::new(7);
+        let mut draw = Rng::new(7);
         let mut interpreter = Interpreter::new(&tool);
         let slack = 1e-12 * tool.extent.scale();
         let mut before: Option<([f64; 3], f64)> = None;
@@ -153,19 +154,24 @@ fn values_keep_what_is_proved() {
                 }
                 _ => p,
             };
-            let Some(felt) = interpreter.at(p, 1.0) else { continue };
-            let facts = &proved.regions[felt.region];
-            let name = format!("{}, {}", tool.model.name, tool.model.regions[felt.region].name);
+            let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
+            let facts = &proved.regions[evaluation.region];
+            let name =
+                format!("{}, {}", tool.model.name, tool.model.regions[evaluation.region].name);
             let [low, high] = [facts.depth.low - slack, facts.depth.high + slack];
-            assert!(low <= felt.depth && felt.depth <= high, "{name} is {} deep", felt.depth);
-            assert!(felt.niceness <= facts.niceness.high.max(0.0) + 1e-12, "{name}");
+            assert!(
+                low <= evaluation.depth && evaluation.depth <= high,
+                "{name} is {} deep",
+                evaluation.depth
+            );
+            assert!(evaluation.niceness <= facts.niceness.high.max(0.0) + 1e-12, "{name}");
             if let (Some(most), Some((last, depth))) = (proved.lipschitz(), before) {
                 let way = (0..3).map(|axis| (p[axis] - last[axis]).powi(2)).sum::<f64>().sqrt();
-                let changed = (felt.depth - depth).abs();
+                let changed = (evaluation.depth - depth).abs();
                 // Regions that no border joins may lie between two points of different parts.
                 assert!(changed <= most * way + slack, "{name}: {changed} over {way}");
             }
-            before = Some((p, felt.depth));
+            before = Some((p, evaluation.depth));
         }
     }
 }
@@ -186,7 +192,7 @@ fn a_steeper_depth_has_a_larger_bound() {
     assert!(!exact && (most - 2.5).abs() < 1e-12 && (least - 2.5).abs() < 1e-8);
 }
 
-/// A ball of radius 3 with a core of radius 1 where something else is felt.
+/// Returns a ball of radius 3 with a core of radius 1 that has a depth of its own.
 fn core(depth: &str) -> String {
     format!(
         "tool Core {{ units mm; curve r = hypot(d, z - 3);
@@ -200,7 +206,7 @@ fn cored(depth: &str) -> Certificate {
     Certificate::of(&text(&core(depth)))
 }
 
-/// Points of a region that show how much it rounds.
+/// Number of points of a region that are enough to show its rounding.
 const ENOUGH: usize = 300;
 
 #[test]
@@ -208,16 +214,16 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
     let all: Vec<Box<CheckedTool>> = library().iter().map(checked).collect();
     let mut loosest = (0.0, String::new());
     for (compiled, restated) in tools() {
-        let name = &compiled.card().name;
+        let name = &compiled.info().name;
         let tool = all.iter().find(|tool| tool.model.name == **name).expect("each has a file");
         let proved = Certificate::of(tool);
         let reference = Reference::new(&restated);
         let owners = owners(compiled, &Nearest::new(&restated));
         let mut worst = vec![0.0f64; proved.regions.len()];
         let mut counts = vec![0; proved.regions.len()];
-        let mut draw = Draw::new(11);
+        let mut draw = Rng::new(11);
         let [x, _, z] = tool.extent.cell().sides;
-        let mut list = Points::default();
+        let mut list = PointBatch::default();
         let points: Vec<[f64; 3]> = (0..40_000)
             .map(|_| {
                 let (d, turn) =
@@ -226,17 +232,18 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
             })
             .collect();
         points.iter().for_each(|p| list.push(*p));
-        let mut felt = Felt::default();
-        compiled.evaluate(Level::new(), Ask::EVERYTHING, &list, 1.0, &mut felt);
+        let mut evaluation = Evaluations::default();
+        compiled.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
         for (k, p) in points.iter().enumerate() {
-            if felt.inside[k / 8] >> (k % 8) & 1 == 0 {
+            if evaluation.inside[k / 8] >> (k % 8) & 1 == 0 {
                 continue;
             }
-            let region = felt.region[k] as usize;
+            let region = evaluation.region[k] as usize;
 
             let at = At::new(*p);
             let exact = owners[region].iter().map(|owner| reference.distance_to(&at, *owner));
-            let off = exact.map(|exact| (&Big::exactly(felt.depth[k]) - &exact).abs().to_f64());
+            let off =
+                exact.map(|exact| (&Big::exactly(evaluation.depth[k]) - &exact).abs().to_f64());
             let off = off.fold(f64::INFINITY, f64::min);
             worst[region] = worst[region].max(off);
             counts[region] += 1;
@@ -246,7 +253,7 @@ fn rounding_stays_below_its_bound_and_within_ten_times() {
             let place = format!("{name}, {}", tool.model.regions[region].name);
             // The reference has 256 bits.
             assert!(seen <= bound + 1e-60, "{place}: {seen:e} over {bound:e}");
-            // A proof that did not come to its end has boxes that are too large to be tight.
+            // A proof that did not finish has boxes that are too large to be tight.
             if proved.undecided.is_empty()
                 && counts[region] >= ENOUGH
                 && seen > 1e-60
@@ -267,19 +274,19 @@ fn jumps_are_found() {
         assert!(compiled.tool().is_none());
         compiled.diagnostics().iter().map(|report| report.message()).collect::<Vec<_>>()
     };
-    // 4 instead of 2 at the core.
+    // A depth of 4 instead of 2 at the core.
     let wrong = said("2*(3 - r)");
     assert!(wrong.len() == 1 && wrong[0].contains("depth jumps from 4 to 2"), "{wrong:?}");
     // The difference is (1 + r)/2, whose square's other root is 0 at the core.
     let wrong = said("3.5 - r/2");
     assert!(wrong.len() == 1 && wrong[0].contains("depth jumps from 3 to 2"), "{wrong:?}");
     assert!(cored("3 - r").is_exact());
-    // No jump, but a kink: how steep it is there is known as well as its boxes are small.
+    // No jump, but a kink: its steepness is known as precisely as its boxes are small.
     let (least, most) = bounds(&cored("2 + 2*(1 - r)"));
     assert!((0.85..=1.0).contains(&least) && (most - 2.0).abs() < 1e-12, "{least} {most}");
 }
 
-/// A depth that is least in the middle leads nowhere from there, however steep it is beside.
+/// A depth that is least in the middle leads nowhere from there, however steep it is around it.
 #[test]
 fn a_pit_in_the_middle_bounds_nothing() {
     let ring = |depth: &str| {
@@ -291,11 +298,15 @@ fn a_pit_in_the_middle_bounds_nothing() {
         ))
     };
     assert!(Certificate::of(&ring("3 - r")).is_exact());
-    // 1 deep in the middle, which is 3 from the surface.
+    // A depth of 1 in the middle, which is 3 from the surface.
     let proved = Certificate::of(&ring("1 + r"));
-    assert!(proved.lipschitz().is_some() && proved.least().is_none(), "{:?}", proved.least());
+    assert!(
+        proved.lipschitz().is_some() && proved.lower_slope().is_none(),
+        "{:?}",
+        proved.lower_slope()
+    );
     let proved = Certificate::of(&ring("1 + max(r, 0.5)"));
-    assert!(proved.least().is_none(), "{:?}", proved.least());
+    assert!(proved.lower_slope().is_none(), "{:?}", proved.lower_slope());
     // Four slopes that rise from a point.
     let proved = Certificate::of(&text(
         "tool Frame { units mm; tip z = 2; curve u = d - 5; curve v = z - 5;
@@ -310,10 +321,15 @@ fn a_pit_in_the_middle_bounds_nothing() {
          }",
     ));
     assert!(proved.is_continuous() && proved.lipschitz().is_some(), "{:?}", proved.undecided);
-    assert!(proved.least().is_none_or(|least| least <= 1.0 / 3.0), "{:?}", proved.least());
+    assert!(
+        proved.lower_slope().is_none_or(|least| least <= 1.0 / 3.0),
+        "{:?}",
+        proved.lower_slope()
+    );
 }
 
-/// A depth that is 0 at a point inside, which is a length there as depths beside corners are, leads to no surface.
+/// A depth that is 0 at a point inside leads to no surface. Around the point it is a length, as depths beside
+/// corners are.
 #[test]
 fn a_point_inside_at_which_depth_is_0_bounds_nothing() {
     let proved = Certificate::of(&text(
@@ -322,10 +338,10 @@ fn a_point_inside_at_which_depth_is_0_bounds_nothing() {
            region spot where spot <= ball { depth: spot; direction: toward (1, 3); } }",
     ));
     assert!(proved.lipschitz().is_some_and(|most| (most - 1.0).abs() < 1e-12));
-    assert!(proved.least().is_none() && !proved.is_exact(), "{:?}", proved.least());
+    assert!(proved.lower_slope().is_none() && !proved.is_exact(), "{:?}", proved.lower_slope());
 }
 
-/// Beside the corner of a convex and a concave arc eight chords to an edge gave a sliver to the wrong arc.
+/// Beside the corner of a convex and a concave arc, eight chords per edge gave a sliver to the wrong arc.
 #[test]
 fn slivers_beside_corners_have_their_own_depth() {
     let tool = text(
@@ -338,7 +354,7 @@ fn slivers_beside_corners_have_their_own_depth() {
     let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
     let norm = |v: [f64; 2]| v[0].hypot(v[1]);
     let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
-    // Of arcs of less than half a turn, and not of lines, none of which is near.
+    // The distance to the arcs, which are less than half a turn; no line is near.
     let distance = |p: [f64; 2]| {
         let arcs = pieces.iter().filter_map(|piece| Some((piece.ends, piece.circle?)));
         let away = arcs.map(|(ends, (centre, radius, _))| {
@@ -351,19 +367,23 @@ fn slivers_beside_corners_have_their_own_depth() {
         away.fold(f64::INFINITY, f64::min)
     };
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Draw::new(11);
+    let mut draw = Rng::new(11);
     let mut inside = 0;
     for _ in 0..20_000 {
         let p = [draw.between(4.3, 4.45), 0.0, draw.between(5.5, 5.7)];
-        let Some(felt) = interpreter.at(p, 1.0) else { continue };
+        let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
         let distance = distance([p[0], p[2]]);
-        assert!((felt.depth - distance).abs() < 1e-12, "{p:?}: {} of {distance}", felt.depth);
+        assert!(
+            (evaluation.depth - distance).abs() < 1e-12,
+            "{p:?}: {} of {distance}",
+            evaluation.depth
+        );
         inside += 1;
     }
     assert!(inside > 5_000, "{inside}");
 }
 
-/// A direction that vanishes wherever it could be compared is not said to be straight.
+/// A direction that vanishes wherever it could be compared is not reported as straight.
 #[test]
 fn a_direction_that_is_never_known_is_not_straight() {
     let proved = Certificate::of(&text(
@@ -371,11 +391,11 @@ fn a_direction_that_is_never_known_is_not_straight() {
            region large where large >= 0 { depth: large; direction: away from (0, 0, 0); }
            region small where small >= 0 { depth: small; direction: (-y, x - 30, 0); } }",
     ));
-    let small = proved.regions[1].aside;
+    let small = proved.regions[1].direction_error;
     assert!(small.is_none_or(|aside| aside.high > 1.5), "{small:?}");
 }
 
-/// Where a direction leads is told exactly, and where it vanishes.
+/// The certificate has the exact angle of a direction, and the points where it vanishes.
 #[test]
 fn directions_are_told() {
     let of = |direction: &str| {
@@ -387,14 +407,18 @@ fn directions_are_told() {
         .remove(0)
     };
     let straight = of("away from (0, 1)");
-    assert_eq!(straight.aside.map(|a| (a.low, a.high)), Some((0.0, 0.0)));
+    assert_eq!(straight.direction_error.map(|a| (a.low, a.high)), Some((0.0, 0.0)));
     assert!(straight.on_axis && straight.singular.len() == 1, "{:?}", straight.singular);
     let [d, _, z] = straight.singular[0].sides;
     assert!(d.low <= 0.0 && z.low <= 1.0 && 1.0 <= z.high && z.high - z.low < 0.01);
     let reversed = of("toward (0, 1)");
-    assert!(reversed.aside.is_some_and(|aside| aside.low > 3.1), "{:?}", reversed.aside);
+    assert!(
+        reversed.direction_error.is_some_and(|aside| aside.low > 3.1),
+        "{:?}",
+        reversed.direction_error
+    );
     let aside = of("(1, 0)");
-    let off = aside.aside.expect("it is known somewhere");
+    let off = aside.direction_error.expect("it is known somewhere");
     let [least, most] = [off.low, off.high].map(f64::to_degrees);
     assert!(least < 1.0 && (90.0..95.0).contains(&most), "{least} {most}");
     assert!(aside.singular.is_empty() && aside.on_axis);

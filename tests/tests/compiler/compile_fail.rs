@@ -1,16 +1,16 @@
-//! Mistakes in tools as the person sees them who builds a program with them: what rustc prints, as
-//! a file beside each case. One mistake gives one error, though the tool is used; each error says what
-//! to do, and the terminal says the same.
+//! Mistakes in tools as seen by a person who builds a program with them: the output of rustc, in a file beside each
+//! case. One mistake gives one error, though the tool is used; each error states a remedy, and the terminal shows
+//! the same.
 //!
-//! After a change of the wording: `TRYBUILD=overwrite cargo test -p touchoff-tests --test compiler
-//! compile_fail`, and read the difference.
+//! After a change of the wording, run `TRYBUILD=overwrite cargo test -p touchoff-tests --test compiler
+//! compile_fail` and read the difference.
 
 use std::path::{Path, PathBuf};
 use tool_dsl::compile;
 use tool_dsl::diagnostic::Severity;
 use tool_dsl::source::Source;
 
-/// Where trybuild builds its cases: what `include_tool!` is relative to.
+/// Returns the folder in which trybuild builds its cases, to which `include_tool!` is relative.
 fn package() -> PathBuf {
     let own = std::env::current_exe().expect("a test knows its own place");
     // target/debug/deps/compile_fail-…
@@ -31,7 +31,7 @@ fn place_tools(cases: &Path) {
     }
 }
 
-/// The cases: each its program, and what rustc says of it.
+/// Returns the cases: each its program, and the output of rustc for it.
 fn cases() -> Vec<(PathBuf, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compile_fail");
     let files = std::fs::read_dir(folder).expect("the folder of cases");
@@ -45,12 +45,12 @@ fn cases() -> Vec<(PathBuf, String)> {
         .collect()
 }
 
-/// The tool that a case writes or includes, as a text of its own.
+/// Returns the tool that a case writes or includes, as a text of its own.
 fn tool(program: &Path) -> Option<Source> {
     let code = std::fs::read_to_string(program).expect("a case can be read");
     if let Some((_, inline)) = code.split_once("touchoff::tool! {") {
         let text = inline.split("\n}").next()?;
-        return Some(Source::new("tool!", text).held_by(program));
+        return Some(Source::new("tool!", text).with_path(program));
     }
     // With params given, or another name, it is no text alone.
     let name = code.split_once("include_tool!(\"")?.1.split_once("\");")?.0;
@@ -65,7 +65,7 @@ fn mistakes_in_tools() {
     trybuild::TestCases::new().compile_fail("tests/compile_fail/*.rs");
 }
 
-/// A tool with warnings is a tool; only who denies warnings has errors, as `denied_warning*.rs` above.
+/// A tool with warnings is valid; only a build that denies warnings has errors, as `denied_warning*.rs` above.
 #[test]
 fn warnings_stop_no_build() {
     trybuild::TestCases::new().pass("tests/compile_pass/*.rs");
@@ -103,7 +103,7 @@ fn the_terminal_says_the_same() {
             }
             let rendered = report.render(&compiled.sources, false);
             let file = source.name != "tool!";
-            // The build says the severity and the code in its own way.
+            // The build prints the severity and the code in its own way.
             for line in rendered.lines().skip(1).map(str::trim).filter(|_| file) {
                 assert!(lines.contains(&line), "{place}: {line}");
             }

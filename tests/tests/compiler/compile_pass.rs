@@ -1,6 +1,6 @@
-//! Tools in a program: written in place and from a file, with all that the language has.
+//! Tools in a program: written in place and from a file, with all features of the language.
 
-use touchoff::tool::{Ask, Evaluators, Felt, Points, Tool};
+use touchoff::tool::{Evaluations, Evaluators, Outputs, PointBatch, Tool};
 use touchoff::{Level, Unit};
 
 touchoff::include_tool!("../tools-library/tools/d2_ball.tool");
@@ -41,17 +41,17 @@ touchoff::tool! {
     }
 }
 
-/// What a tool says at one point.
-fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Felt)> {
-    let (mut points, mut felt) = (Points::default(), Felt::default());
+/// Evaluates a tool at one point; `None` outside.
+fn at(tool: &dyn Tool, point: [f64; 3], length: f64) -> Option<(usize, Evaluations)> {
+    let (mut points, mut evaluation) = (PointBatch::default(), Evaluations::default());
     points.push(point);
-    tool.evaluate(Level::new(), Ask::EVERYTHING, &points, length, &mut felt);
-    (felt.inside[0] == 1).then(|| (felt.region[0] as usize, felt))
+    tool.evaluate(Level::new(), Outputs::EVERYTHING, &points, length, &mut evaluation);
+    (evaluation.inside[0] == 1).then(|| (evaluation.region[0] as usize, evaluation))
 }
 
 #[test]
 fn a_tool_from_a_file_is_that_of_the_library() {
-    assert_eq!(D2Ball.card(), tools_library::D2Ball.card());
+    assert_eq!(D2Ball.info(), tools_library::D2Ball.info());
     let p = [0.3, -0.4, 2.0];
     assert_eq!(D2Ball::owner(p), Some(1));
     assert_eq!(D2Ball::depth(p), tools_library::D2Ball::depth(p));
@@ -59,35 +59,35 @@ fn a_tool_from_a_file_is_that_of_the_library() {
 
 #[test]
 fn a_tool_in_place_is_what_it_says() {
-    let card = Bull.card();
-    assert_eq!((card.name.as_ref(), card.unit), ("Bull", Unit::Inch));
-    assert_eq!(card.title, "torus end mill, 12 mm, corner 2 mm");
-    let regions: Vec<&str> = card.regions.iter().map(|region| region.name.as_ref()).collect();
+    let info = Bull.info();
+    assert_eq!((info.name.as_ref(), info.unit), ("Bull", Unit::Inch));
+    assert_eq!(info.title, "torus end mill, 12 mm, corner 2 mm");
+    let regions: Vec<&str> = info.regions.iter().map(|region| region.name.as_ref()).collect();
     assert_eq!(regions, ["corner", "bottom", "side", "above"]);
     let surfaces: Vec<(&str, bool)> =
-        card.surfaces.iter().map(|surface| (surface.name.as_ref(), surface.cutting)).collect();
+        info.surfaces.iter().map(|surface| (surface.name.as_ref(), surface.cutting)).collect();
     assert_eq!(surfaces, [("edge", true), ("shank", false)]);
-    assert!((card.radius() - 6.0 / 25.4).abs() < 1e-4);
-    assert!((card.reach()[1] - 2.0).abs() < 1e-4);
+    assert!((info.radius() - 6.0 / 25.4).abs() < 1e-4);
+    assert!((info.reach()[1] - 2.0).abs() < 1e-4);
 }
 
 #[test]
 fn laws_and_units_are_kept_apart() {
-    // Above the middle of the floor, 0.02 inch deep, and the part in mm: a magnitude that the
-    // file writes stays the file's number, and its slope is by the part's millimetre.
-    let (region, felt) = at(&Bull, [0.01, 0.0, 0.02], 25.4).expect("inside");
+    // Above the middle of the floor, 0.02 inch deep, and the part in mm: a magnitude that the file writes stays the
+    // file's number, and its gradient is per millimetre of the part.
+    let (region, evaluation) = at(&Bull, [0.01, 0.0, 0.02], 25.4).expect("inside");
     assert_eq!(region, 1);
     let close = |a: f64, b: f64| (a - b).abs() < 1e-14;
-    assert!(close(felt.depth[0], 0.02));
-    assert!(close(felt.magnitude[0], 3.0 * 0.02f64.powf(1.5)));
-    assert!(close(felt.niceness[0], 0.98));
-    assert!(close(felt.direction[2][0], -1.0));
-    assert!(close(felt.gradient[2][0], 4.5 * 0.02f64.sqrt() / 25.4));
+    assert!(close(evaluation.depth[0], 0.02));
+    assert!(close(evaluation.magnitude[0], 3.0 * 0.02f64.powf(1.5)));
+    assert!(close(evaluation.niceness[0], 0.98));
+    assert!(close(evaluation.direction[2][0], -1.0));
+    assert!(close(evaluation.gradient[2][0], 4.5 * 0.02f64.sqrt() / 25.4));
     // The shank has the law for all, and does not cut.
-    let (region, felt) = at(&Bull, [0.0, 0.23, 1.0], 25.4).expect("inside");
+    let (region, evaluation) = at(&Bull, [0.0, 0.23, 1.0], 25.4).expect("inside");
     assert_eq!(region, 2);
     let depth = 6.0 / 25.4 - 0.23;
-    assert!(close(felt.magnitude[0], 2.0 * depth));
-    assert_eq!(felt.niceness[0], 0.0);
+    assert!(close(evaluation.magnitude[0], 2.0 * depth));
+    assert_eq!(evaluation.niceness[0], 0.0);
     assert!(at(&Bull, [0.24, 0.0, 1.0], 25.4).is_none());
 }

@@ -1,5 +1,5 @@
-//! Drawings: every region is named, every surface explained, what is measured is what the file
-//! says, and the bytes are the same every time. One is kept as a snapshot.
+//! Drawings: every region is named, every surface explained, the measures are the file's, and the bytes are the
+//! same every time. One is kept as a snapshot.
 
 use std::path::Path;
 use tool_dsl::draw::{Lettering, svg};
@@ -23,7 +23,7 @@ fn profile(segments: &str) -> Box<CheckedTool> {
     )
 }
 
-/// The texts of a drawing, in the order of drawing.
+/// Returns the drawing of a tool as SVG.
 fn drawn(tool: &CheckedTool, lettering: Lettering) -> String {
     svg(tool, lettering).expect("a tool with an axis")
 }
@@ -112,7 +112,7 @@ fn measures_are_the_files() {
     assert!(texts.iter().any(|text| text == "a <profile> & more"), "{texts:?}");
 }
 
-/// A shortened needle says so, and still measures its true length.
+/// A shortened needle is marked as such, and still shows its true length.
 #[test]
 fn what_is_long_is_shortened() {
     let needle = profile("start (0, 0); line to (0.5, 0), (0.5, 60), (0, 60) as shank;");
@@ -130,7 +130,7 @@ fn the_type_shows_it_in_its_documentation() {
 
 #[test]
 fn the_exact_fig_7_3() {
-    // A line for each element, so that a difference can be read.
+    // One line per element, so that a difference can be read.
     let drawing = drawn(&library("fig_7_3_exact.tool"), Lettering::Page).replace('>', ">\n");
     insta::with_settings!({ omit_expression => true }, {
         insta::assert_snapshot!("drawing_fig_7_3_exact", drawing);

@@ -1,5 +1,5 @@
-//! The expression graph against a plain tree of the same operations: values, derivatives,
-//! enclosures. The tree is evaluated by itself, so folding cannot hide a mistake.
+//! The expression graph against a plain tree of the same operations: values, derivatives, enclosures. The tree is
+//! evaluated by itself, so folding cannot hide a mistake.
 
 use proptest::prelude::*;
 use tool_dsl::expr::derive::derivative;
@@ -22,7 +22,7 @@ enum Tree {
     Add(Box<Tree>, Box<Tree>),
     Sub(Box<Tree>, Box<Tree>),
     Mul(Box<Tree>, Box<Tree>),
-    /// `a / (b² + 1)`: never by 0
+    /// `a / (b² + 1)`: never a division by 0
     Over(Box<Tree>, Box<Tree>),
     Min(Box<Tree>, Box<Tree>),
     Max(Box<Tree>, Box<Tree>),
@@ -33,7 +33,7 @@ enum Tree {
 struct Dual {
     value: f64,
     slope: [f64; 2],
-    /// How far the point is from a kink of the expression.
+    /// Distance of the point from a kink of the expression.
     smooth: f64,
 }
 
@@ -167,7 +167,7 @@ fn steady() -> ProptestConfig {
     ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() }
 }
 
-/// How far two values may differ by rounding in another order.
+/// Returns whether two values agree but for rounding in another order.
 fn near(a: f64, b: f64, scale: f64) -> bool {
     (a - b).abs() <= 1e-9 * (1.0 + a.abs().max(b.abs()) + scale)
 }

@@ -1,7 +1,7 @@
-//! What the compiler writes for the tools of the library: the text of it as snapshots, and that it
-//! is straight-line code which cannot panic, cannot loop and is the same every time.
+//! Code that the compiler writes for the tools of the library: its text as snapshots, and checks that it is
+//! straight-line code which cannot panic, cannot loop and is the same every time.
 //!
-//! After a change of the emitter: `INSTA_UPDATE=always cargo test -p touchoff-tests --test compiler generated`,
+//! After a change of the emitter, run `INSTA_UPDATE=always cargo test -p touchoff-tests --test compiler generated`
 //! and read the difference.
 
 use std::path::Path;
@@ -11,10 +11,10 @@ use tool_dsl::{compile, emit};
 use touchoff_tests::library::library;
 
 /// Methods that generated code may call: none panics, none is a libm function.
-const METHODS: [&str; 4] = ["sqrt", "abs", "of", "take"];
+const METHODS: [&str; 4] = ["sqrt", "abs", "of", "assign"];
 /// Functions that it may call.
 const FUNCTIONS: [&str; 17] = [
-    "Enclosed::of",
+    "EvaluationEnclosure::of",
     "Some",
     "Lane::of",
     "Lane::le",
@@ -24,16 +24,16 @@ const FUNCTIONS: [&str; 17] = [
     "Lane::max",
     "Lane::quotient",
     "L::any",
-    "FeltLanes::nothing",
-    "Card::new",
-    "Piece::line",
-    "Piece::arc",
+    "LaneEvaluation::none",
+    "ToolInfo::new",
+    "ProfileSegment::line",
+    "ProfileSegment::arc",
     "Region::new",
-    "Slab::new",
+    "EnvelopeSlab::new",
     "Surface::new",
 ];
 
-/// The code for a tool of the library.
+/// Returns the code for a tool of the library.
 fn generated(file: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
     let source = Source::read(path).expect("the library has the file");
@@ -41,7 +41,7 @@ fn generated(file: &str) -> String {
     emit::rust(&tool)
 }
 
-/// Collects what generated code must not have.
+/// Collects constructs that generated code must not have.
 #[derive(Default)]
 struct Refused(Vec<String>);
 
@@ -118,7 +118,7 @@ fn every_tool_of_the_library_has_a_feature() {
     assert_eq!(features, tools);
 }
 
-/// The code of each tool as one line: which tools a change of the compiler reaches.
+/// One line per tool with a digest of its code: shows which tools a change of the compiler affects.
 #[test]
 fn digests_of_generated_code() {
     let lines = library().into_iter().map(|source| {
@@ -133,10 +133,26 @@ fn digests_of_generated_code() {
     });
 }
 
-/// Fowler, Noll and Vo's hash, 1a: the same on every machine.
+/// Computes Fowler, Noll and Vo's hash, 1a: the same on every machine.
 fn fnv(bytes: &[u8]) -> u64 {
     let next = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, next)
+}
+
+/// A tool cannot have a name that its own code imports.
+#[test]
+fn imported_names_are_taken() {
+    let code = generated("ball.tool");
+    let (_, imports) = code.split_once("use ::touchoff::tool::{").expect("an import");
+    let (imports, _) = imports.split_once('}').expect("its end");
+    let mut names = 0;
+    for name in imports.split(',').map(str::trim).filter(|name| !name.is_empty()) {
+        let text = "units mm; profile { start (0, 0); arc to (0, 6) center (0, 3) as ball; }";
+        let source = Source::new("own.tool", format!("tool {name} {{ {text} }}"));
+        assert!(compile(&source).tool().is_none(), "{name} is imported by generated code");
+        names += 1;
+    }
+    assert!(names > 10, "{names}");
 }
 
 macro_rules! snapshots {
@@ -145,7 +161,7 @@ macro_rules! snapshots {
         fn $test() {
             let file = concat!(stringify!($test), ".tool");
             let code = generated(file);
-            // A hash map's order, which is another every time, must not show.
+            // A hash map's order, which differs every time, must not show.
             assert_eq!(code, generated(file));
             insta::with_settings!({ omit_expression => true }, {
                 insta::assert_snapshot!(stringify!($test), code);
@@ -168,7 +184,7 @@ snapshots!(
     unit_sphere
 );
 
-/// The check above sees what it looks for.
+/// The check above detects each kind of construct.
 #[test]
 fn what_is_refused() {
     let bad = "fn f(x: [f64; 2]) -> f64 {

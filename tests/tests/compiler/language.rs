@@ -1,9 +1,8 @@
-//! The examples of docs/language.md: each is a whole file and does what the page says of it.
+//! The examples of docs/language.md: each is a whole file and behaves as the page states.
 //!
-//! A block that is fenced as `tool` compiles without a word. One that is fenced as `tool,fails` has a
-//! comment `// error: …`, and an error on that line that says this. One that is fenced as `tool,soon`
-//! is not taken yet. A first line such as `// ball.tool` gives the file's name, by which other
-//! examples mount it.
+//! A block that is fenced as `tool` compiles without a diagnostic. One that is fenced as `tool,fails` has a comment
+//! `// error: …`, and an error on that line with this text. One that is fenced as `tool,soon` is not accepted yet.
+//! A first line such as `// ball.tool` gives the file's name, by which other examples mount it.
 
 use std::path::{Path, PathBuf};
 use tool_dsl::compile;
@@ -14,9 +13,9 @@ const PAGE: &str = include_str!("../../../docs/language.md");
 const WORD: &str = "// error: ";
 
 struct Example {
-    /// What its fence says behind `tool`.
+    /// The rest of its fence behind `tool`.
     fence: String,
-    /// The page's line that its first line is.
+    /// The line of the page at which it begins.
     line: usize,
     text: String,
 }
@@ -46,7 +45,7 @@ impl Example {
         folder.join(name.map_or_else(|| format!("line_{}.tool", self.line), str::to_owned))
     }
 
-    /// What is wrong with a good example.
+    /// Returns the diagnostics of a good example; `None` if there are none.
     fn compiles(source: &Source) -> Option<String> {
         let compiled = compile(source);
         let render = |report: &Diagnostic| report.render(&compiled.sources, false);
@@ -54,7 +53,7 @@ impl Example {
         (!said.is_empty()).then(|| said.join("\n"))
     }
 
-    /// What is wrong with a bad example.
+    /// Returns the complaint about a bad example; `None` if it fails as expected.
     fn fails(&self, source: &Source) -> Option<String> {
         let Some((before, after)) = self.text.split_once(WORD) else {
             return Some(format!("which error? write `{WORD}…` where it stands"));

@@ -18,7 +18,7 @@ const COMPILER: &[&str] = &[
     "resolve",
     "elimination",
     "bound",
-    "look",
+    "lint",
     "plan",
     "prove",
     "checked",
@@ -32,21 +32,21 @@ const COMPILER: &[&str] = &[
 
 const RUNTIME: &[&str] = &[
     "atomic_file",
-    "cores",
+    "parallel",
     "escape",
     "input",
     "unit",
-    "words",
+    "keywords",
     "mesh",
     "pose",
     "motion",
     "tool",
     "bvh",
     "cloud",
-    "tree",
+    "point_bvh",
     "probe",
     "part",
-    "saved",
+    "storage",
     "scenes",
     "scene",
     "program",
@@ -75,7 +75,7 @@ impl Layers {
             let path = entry.expect("an entry").path();
             let stem = path.file_stem().expect("a name").to_string_lossy().into_owned();
             let module = module.unwrap_or(&stem);
-            // Unit tests may use what stands above.
+            // Unit tests may use modules that come later.
             if path.is_dir() && stem != "tests" {
                 self.check(&path, Some(module));
             } else if path.is_file() && stem != "tests" {

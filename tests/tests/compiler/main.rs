@@ -1,5 +1,6 @@
-//! The compiler: texts of tools, what is said about them, what they become and what is proved about them.
+//! The compiler: texts of tools, their diagnostics, their code and their certificates.
 
+mod api;
 mod bad_input;
 mod certificates;
 mod compile_fail;

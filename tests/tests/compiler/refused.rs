@@ -1,4 +1,4 @@
-//! Texts that once were taken wrongly, took forever or took the process down.
+//! Texts that once were accepted wrongly, took forever or took the process down.
 
 use tool_dsl::diagnostic::any_error;
 use tool_dsl::source::Source;
@@ -9,7 +9,7 @@ fn compiled(items: &str) -> Compiled {
     compile(&Source::new("t.tool", format!("tool T {{ units mm; {items} }}")))
 }
 
-/// The messages of a text that must be refused.
+/// Returns the messages of a text that must be refused.
 fn refused(items: &str) -> String {
     let compiled = compiled(items);
     assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
@@ -87,7 +87,7 @@ fn what_outgrows_its_means_is_refused() {
     assert!(compiled(&doubled.replace("c0 = d;", "c0 = sqrt(d^2 + 1);")).tool().is_some());
 }
 
-/// One mistake is said once, however often the name it defines is used.
+/// One mistake is reported once, however often the name it defines is used.
 #[test]
 fn what_only_follows_is_not_said() {
     let message = refused(
@@ -102,7 +102,7 @@ fn a_pose_beyond_all_parts_is_refused() {
     assert_eq!(Pose::from_axis(tip, nalgebra::Vector3::z()), Err(PoseError::NotFinite));
 }
 
-/// Warnings stand beside a tool that is taken.
+/// Warnings accompany a tool that is accepted.
 #[test]
 fn what_is_only_worth_knowing() {
     let said = |items: &str| {

@@ -1,20 +1,21 @@
-//! Levels of detail within a budget, and parts that change while they are felt.
+//! Levels of detail within a budget, and parts that change between queries.
 
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeSet;
 use tools_library::{Ball, Fig73, Fig73Exact};
-use touchoff::scenes::{Path, tube};
-use touchoff::{Cloud, Graded, Law, Mesh, Part, Pose, Probe, Wrench};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff::scenes::{ScenePath, tube};
+use touchoff::{Cloud, Law, LodProbe, Mesh, Part, Pose, Probe, Wrench};
+use touchoff_tests::oracle::draw::Rng;
 
 const POSES: usize = 2_000;
 
 fn detailed(points: usize) -> Part {
-    Part::detailed(&tube(), points, 1).expect("the tube has a surface")
+    Part::with_lods(&tube(), points, 1).expect("the tube has a surface")
 }
 
-fn felt(part: &Part, budget: usize, path: Path) -> Vec<touchoff::GradedWrench> {
-    let mut graded = Graded::new(part, &Fig73, budget, Law::Gradient).expect("a budget that does");
+fn evaluation(part: &Part, budget: usize, path: ScenePath) -> Vec<touchoff::LodWrench> {
+    let mut graded =
+        LodProbe::new(part, &Fig73, budget, Law::Gradient).expect("a budget that does");
     (0..POSES).map(|k| graded.wrench(&path.pose(k, POSES))).collect()
 }
 
@@ -22,28 +23,35 @@ fn felt(part: &Part, budget: usize, path: Path) -> Vec<touchoff::GradedWrench> {
 fn no_query_looks_at_more_nodes_than_it_may() {
     let part = detailed(100_000);
     let mut levels = BTreeSet::new();
-    for path in [Path::Outside, Path::Inside, Path::Hold] {
+    for path in [ScenePath::Outside, ScenePath::Inside, ScenePath::Hold] {
         for budget in [60, 200, 1_000, 1_000_000] {
-            let all = felt(&part, budget, path);
-            assert!(all.iter().all(|felt| felt.nodes <= budget), "{budget}");
-            levels.extend(all.iter().map(|felt| felt.level));
+            let all = evaluation(&part, budget, path);
+            assert!(all.iter().all(|evaluation| evaluation.nodes <= budget), "{budget}");
+            levels.extend(all.iter().map(|evaluation| evaluation.level));
             // The same queries, the same answers.
-            assert_eq!(all, felt(&part, budget, path));
+            assert_eq!(all, evaluation(&part, budget, path));
         }
     }
     assert!(levels.len() >= 4, "{levels:?}");
-    // With enough of a budget the finest level answers, as a probe does.
-    let mut probe = Probe::new(&part, &Fig73).law(Law::Gradient);
-    for (k, felt) in felt(&part, 1_000_000, Path::Outside).into_iter().enumerate() {
-        assert_eq!((felt.level, felt.unseen), (0, probe.unseen()));
-        assert_eq!(felt.wrench, probe.wrench(&Path::Outside.pose(k, POSES)));
+    // With a sufficient budget the finest level answers, as a probe does.
+    let mut probe = Probe::new(&part, &Fig73).with_law(Law::Gradient);
+    for (k, evaluation) in evaluation(&part, 1_000_000, ScenePath::Outside).into_iter().enumerate()
+    {
+        assert_eq!(
+            (evaluation.level, evaluation.sampling_error_bound),
+            (0, probe.sampling_error_bound())
+        );
+        assert_eq!(evaluation.wrench, probe.wrench(&ScenePath::Outside.pose(k, POSES)));
     }
-    // Each level is felt as a part of its own would be: coarser, and it says by how much.
-    let coarse = felt(&part, 60, Path::Outside);
-    let fine = felt(&part, 1_000_000, Path::Outside);
+    // Each level evaluates as a part of its own would: coarser, with a bound that states by how much.
+    let coarse = evaluation(&part, 60, ScenePath::Outside);
+    let fine = evaluation(&part, 1_000_000, ScenePath::Outside);
     let mut looser = 0;
     for (coarse, fine) in coarse.iter().zip(&fine) {
-        let (bound, finer) = (coarse.unseen.expect("a bound"), fine.unseen.expect("a bound"));
+        let (bound, finer) = (
+            coarse.sampling_error_bound.expect("a bound"),
+            fine.sampling_error_bound.expect("a bound"),
+        );
         assert!(fine.wrench.depth() <= coarse.wrench.depth() + bound);
         looser += usize::from(bound > 2.0 * finer);
     }
@@ -53,9 +61,9 @@ fn no_query_looks_at_more_nodes_than_it_may() {
 #[test]
 fn a_budget_too_small_is_refused() {
     let part = detailed(2_000);
-    let refused = Graded::new(&part, &Fig73, 5, Law::Thesis).err().expect("5 nodes are too few");
+    let refused = LodProbe::new(&part, &Fig73, 5, Law::Thesis).err().expect("5 nodes are too few");
     assert!(refused.needed > 5 && refused.to_string().contains("a budget of 5 nodes is too small"));
-    assert!(Graded::new(&part, &Fig73, refused.needed, Law::Thesis).is_ok());
+    assert!(LodProbe::new(&part, &Fig73, refused.needed, Law::Thesis).is_ok());
 }
 
 #[test]
@@ -66,26 +74,26 @@ fn force_is_continuous_where_the_level_changes() {
         let z = 13.4 - 1.0 * k as f64 / 20_000.0;
         Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose")
     };
-    let mut graded = Graded::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
-    let mut before: Option<touchoff::GradedWrench> = None;
+    let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut before: Option<touchoff::LodWrench> = None;
     let (mut changes, mut jumps) = (0, 0);
     for k in 0..20_000 {
-        let felt = graded.wrench(&slowly(k));
+        let evaluation = graded.wrench(&slowly(k));
         if let Some(before) = before {
-            let step = (felt.wrench.force - before.wrench.force).norm();
-            // What the level's own force would have stepped by.
-            if felt.level != before.level {
+            let step = (evaluation.wrench.force - before.wrench.force).norm();
+            // The step that the level's own force would have made.
+            if evaluation.level != before.level {
                 changes += 1;
-                assert_eq!(felt.wrench.force, before.wrench.force);
-                let alone = Graded::new(&part, &Ball, 90, Law::Gradient)
+                assert_eq!(evaluation.wrench.force, before.wrench.force);
+                let alone = LodProbe::new(&part, &Ball, 90, Law::Gradient)
                     .expect("a budget that does")
                     .wrench(&slowly(k));
                 jumps += usize::from((alone.wrench.force - before.wrench.force).norm() > 1e-4);
             }
-            let scale = felt.wrench.force.norm().max(0.01);
+            let scale = evaluation.wrench.force.norm().max(0.01);
             assert!(step < 0.02 * scale + 1e-3, "{k}: {step} of {scale}");
         }
-        before = Some(felt);
+        before = Some(evaluation);
     }
     assert!(changes >= 2 && jumps >= 1, "{changes} {jumps}");
 }
@@ -93,48 +101,49 @@ fn force_is_continuous_where_the_level_changes() {
 #[test]
 fn a_tool_that_trembles_about_its_budget_is_felt_all_the_same() {
     let part = detailed(200_000);
-    // Deep in the wall the budget is not enough for what just touching is felt by.
+    // Deep in the wall the budget is too small for the level that a light touch is evaluated at.
     let pose = |z: f64| Pose::from_axis(Point3::new(4.0, 0.0, z), Vector3::z()).expect("a pose");
-    let mut graded = Graded::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
     let mut levels = |z: f64| graded.wrench(&pose(z)).level;
     let (shallow, deep) = (levels(13.1), levels(12.2));
     assert!(shallow < deep, "{shallow} {deep}");
-    let mut graded = Graded::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
-    let mut alone = Probe::new(&part, &Ball).law(Law::Gradient);
+    let mut graded = LodProbe::new(&part, &Ball, 90, Law::Gradient).expect("a budget that does");
+    let mut alone = Probe::new(&part, &Ball).with_law(Law::Gradient);
     let (mut last, mut changes, mut near) = (None, 0, 0);
     for k in 0..2_000 {
         let z = if k % 2 == 0 { 13.1 } else { 12.2 };
-        let felt = graded.wrench(&pose(z));
-        changes += usize::from(last.is_some_and(|level| level != felt.level));
-        last = Some(felt.level);
+        let evaluation = graded.wrench(&pose(z));
+        changes += usize::from(last.is_some_and(|level| level != evaluation.level));
+        last = Some(evaluation.level);
         let true_force = alone.wrench(&pose(z)).force;
-        near +=
-            usize::from((felt.wrench.force - true_force).norm() < 0.25 * true_force.norm() + 0.1);
+        near += usize::from(
+            (evaluation.wrench.force - true_force).norm() < 0.25 * true_force.norm() + 0.1,
+        );
     }
     assert!(changes <= 2 * 2_000 / 32 + 2, "{changes}");
     assert!(near > 1_000, "{near}");
-    // Out of the part there is no force left of it.
+    // Out of the part no force of it is left.
     let away = graded.wrench(&pose(20.0)).wrench;
     assert_eq!((away.force, away.torque), (Vector3::zeros(), Vector3::zeros()));
     let again = graded.wrench(&pose(12.2));
-    let fresh = Graded::new(&part, &Ball, 90, Law::Gradient)
+    let fresh = LodProbe::new(&part, &Ball, 90, Law::Gradient)
         .expect("a budget that does")
         .wrench(&pose(12.2));
     assert_eq!(again, fresh);
 }
 
-/// Places all over a mesh that are outside a tool, but not as far as that.
+/// Returns points all over a mesh that are outside the tool at all poses.
 fn left<'a>(
     mesh: &'a Mesh,
     poses: &'a [Pose],
-    draw: &'a mut Draw,
+    draw: &'a mut Rng,
 ) -> impl Iterator<Item = Point3<f64>> + 'a {
     let cloud =
-        Cloud::random(mesh, 60_000, (1e9 * draw.between(0.0, 1.0)) as u64).expect("a cloud");
+        Cloud::uniform(mesh, 60_000, (1e9 * draw.between(0.0, 1.0)) as u64).expect("a cloud");
     cloud.points().to_vec().into_iter().filter(move |place| {
         poses.iter().all(|pose| {
             let from = pose.rotation().transpose() * (place - pose.tip());
-            // The ball end mill's ball and flute, written anew.
+            // The ball end mill's ball and flute, restated.
             let (d, z) = (from.x.hypot(from.y), from.z);
             let inside = if z < 5.0 { d.hypot(z - 5.0) < 5.0 } else { d < 5.0 && z < 72.0 };
             !inside
@@ -150,8 +159,8 @@ fn sums(part: &Part, tool: &dyn touchoff::Tool, pose: &Pose) -> Wrench {
 fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
     let mesh = tube();
     let mut part = detailed(20_000);
-    let cover = part.tree().cover().expect("a cover");
-    let mut draw = Draw::new(5);
+    let cover = part.tree().covering_radius().expect("a cover");
+    let mut draw = Rng::new(5);
     let poses: Vec<Pose> = (0..12)
         .map(|_| {
             let angle = draw.between(0.0, std::f64::consts::TAU);
@@ -164,13 +173,13 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
     let mut taken = 0;
     for pose in &poses {
         taken += part.cut(&Ball, pose);
-        // No point is deeper than what the cloud does not see.
-        let unseen = Probe::new(&part, &Ball).unseen().expect("a bound");
+        // No point is deeper than the sampling error.
+        let unseen = Probe::new(&part, &Ball).sampling_error_bound().expect("a bound");
         assert!(sums(&part, &Ball, pose).depth() <= unseen);
         assert_eq!(part.cut(&Ball, pose), 0);
     }
     assert!(taken > 1_000 && part.tree().len() < all);
-    assert_eq!(part.tree().cover(), Some(cover));
+    assert_eq!(part.tree().covering_radius(), Some(cover));
     let points: Vec<Point3<f64>> =
         (0..all).map(|place| part.tree().point(place)).filter(|point| !point.x.is_nan()).collect();
     assert_eq!(points.len(), part.tree().len());
@@ -181,7 +190,7 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
         looked += 1;
     }
     assert!(looked > 3_000);
-    // The same is felt as of a part that never had those points.
+    // The results are those of a part that never had those points.
     let tree = part.tree();
     let places: Vec<usize> = (0..all).filter(|place| !tree.point(*place).x.is_nan()).collect();
     let fresh = Cloud::new(
@@ -193,7 +202,7 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
     );
     let fresh = Part::from_cloud(&fresh.expect("a cloud"));
     for k in 0..POSES {
-        let pose = Path::Hold.pose(k, POSES);
+        let pose = ScenePath::Hold.pose(k, POSES);
         let (changed, fresh) = (sums(&part, &Fig73, &pose), sums(&fresh, &Fig73, &pose));
         assert_eq!(changed.colliding, fresh.colliding);
         assert!((changed.force - fresh.force).norm() <= 1e-5 * (1.0 + fresh.force.norm()));
@@ -204,7 +213,7 @@ fn what_is_cut_away_is_felt_no_more_and_the_rest_is_covered() {
 fn nothing_is_left_of_a_part_inside_a_tool() {
     let high = Point3::new(0.1, 0.1, 0.1);
     let cube = touchoff::mesh::shapes::cuboid(Point3::origin(), high, touchoff::Unit::Millimetre);
-    let cloud = Cloud::random(&cube.expect("a cube"), 500, 1).expect("a cloud");
+    let cloud = Cloud::uniform(&cube.expect("a cube"), 500, 1).expect("a cloud");
     let mut part = Part::from_cloud(&cloud);
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, -3.0), Vector3::z()).expect("a pose");
     assert_eq!((part.cut(&Ball, &pose), part.tree().is_empty()), (500, true));
@@ -219,14 +228,14 @@ fn a_part_that_bends_is_felt_where_it_is() {
         move |p: Point3<f64>, n: Vector3<f64>| (Point3::new(p.x + k * p.z * p.z, p.y, p.z), n)
     };
     let mut part = detailed(20_000);
-    let before = part.tree().cover().expect("a cover");
+    let before = part.tree().covering_radius().expect("a cover");
     part.displace(bend(0.02)).expect("places");
     let farthest = 0.02 * 13.116f64.powi(2);
-    let cover = part.tree().cover().expect("a cover");
+    let cover = part.tree().covering_radius().expect("a cover");
     let after = cover.radius - before.radius;
     assert!(before.proved && !cover.proved);
     assert!((after - 2.0 * farthest).abs() < 1e-3 * farthest, "{after}");
-    let cloud = Cloud::blue(&tube(), 20_000, 1).expect("a cloud");
+    let cloud = Cloud::blue_noise(&tube(), 20_000, 1).expect("a cloud");
     let bent: Vec<Point3<f64>> =
         cloud.points().iter().map(|p| bend(0.02)(*p, Vector3::z()).0).collect();
     let (normals, triangles) = (cloud.normals().to_vec(), cloud.triangles().to_vec());
@@ -234,7 +243,7 @@ fn a_part_that_bends_is_felt_where_it_is() {
     let bent = Part::from_cloud(&bent.expect("a cloud"));
     let mut touched = 0;
     for k in 0..POSES {
-        let pose = Path::Hold.pose(k, POSES);
+        let pose = ScenePath::Hold.pose(k, POSES);
         let (changed, fresh) = (sums(&part, &Fig73Exact, &pose), sums(&bent, &Fig73Exact, &pose));
         touched += usize::from(fresh.colliding > 0);
         assert!(changed.colliding.abs_diff(fresh.colliding) <= 1, "{k}");
@@ -242,17 +251,17 @@ fn a_part_that_bends_is_felt_where_it_is() {
         assert!((changed.depth() - fresh.depth()).abs() < 1e-5, "{k}");
     }
     assert!(touched > POSES / 4);
-    // What does not move is not touched, not by a bit.
+    // A part that does not move does not change, not by a bit.
     let still = part.clone();
     part.displace(|p, n| (p, n)).expect("places");
-    assert_eq!(part.tree().cover(), still.tree().cover());
-    // What is no place is refused before anything moves.
+    assert_eq!(part.tree().covering_radius(), still.tree().covering_radius());
+    // Coordinates that are not finite are refused before anything moves.
     for wrong in [f64::NAN, f64::INFINITY] {
         assert!(part.displace(|p, n| (Point3::new(p.x + 1.0, p.y, wrong), n)).is_err());
         assert!(part.displace(|p, n| (p, wrong * n)).is_err());
     }
     for k in 0..POSES {
-        let pose = Path::Hold.pose(k, POSES);
+        let pose = ScenePath::Hold.pose(k, POSES);
         assert_eq!(sums(&part, &Fig73, &pose), sums(&still, &Fig73, &pose));
     }
 }

@@ -1,8 +1,8 @@
-//! Scenes of several parts and tools: each pair as a probe alone has it, wherever the part is put.
+//! Scenes of several parts and tools: each pair has the results of a probe alone, wherever the part is put.
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::mesh::shapes;
-use touchoff::scenes::Path;
+use touchoff::scenes::ScenePath;
 use touchoff::{Part, Pose, Probe, Scene, Tool, Unit, Wrench};
 use touchoff_tests::fixtures::{part, poses};
 
@@ -22,12 +22,12 @@ fn a_pair_is_a_probe() {
     let tube = scene.add_part(&part, Pose::default()).expect("millimetres");
     let tool = scene.add_tool(fig73());
     let mut probe = Probe::new(&part, fig73());
-    for pose in poses(Path::Hold, 200) {
+    for pose in poses(ScenePath::Hold, 200) {
         scene.move_tool(tool, pose);
         let expected = probe.wrench(&pose);
-        // The second time the answer is remembered.
+        // The second time the answer is cached.
         for _ in 0..2 {
-            assert_eq!(scene.between(tool, tube), expected);
+            assert_eq!(scene.pair_wrench(tool, tube), expected);
         }
         assert_eq!(scene.wrench(tool), expected);
         assert_eq!(scene.detect(tool), probe.detect(&pose).then_some(tube));
@@ -47,10 +47,10 @@ fn what_moves_together_feels_the_same() {
     let tool = scene.add_tool(fig73());
     let mut probe = Probe::new(&part, fig73());
     let mut contacts = 0;
-    for pose in poses(Path::Hold, 100) {
+    for pose in poses(ScenePath::Hold, 100) {
         let expected = probe.wrench(&pose);
-        scene.move_tool(tool, Pose::try_from(moved * pose.isometry()).expect("finite"));
-        let found = scene.between(tool, tube);
+        scene.move_tool(tool, Pose::try_from(moved * pose.to_isometry()).expect("finite"));
+        let found = scene.pair_wrench(tool, tube);
         // A point within rounding of the surface may change sides.
         assert!(found.colliding.abs_diff(expected.colliding) <= 1);
         near("force", found.force, moved * expected.force);
@@ -77,7 +77,7 @@ fn parts_add_up_and_move() {
         tool,
         Pose::from_axis(Point3::new(0.0, 10.0, 15.0), Vector3::z()).expect("unit"),
     );
-    let [a, b] = [left, right].map(|part| scene.between(tool, part));
+    let [a, b] = [left, right].map(|part| scene.pair_wrench(tool, part));
     assert!(a.colliding > 10 && b.colliding > 10 && a.force.x > 0.0 && b.force.x < 0.0);
     let both = scene.wrench(tool);
     let mut sum = Wrench { force: a.force + b.force, torque: a.torque + b.torque, ..a };
@@ -95,15 +95,15 @@ fn parts_add_up_and_move() {
 #[test]
 fn a_part_in_another_unit_is_converted() {
     let part = part(5_000);
-    let pose = Path::Inside.pose(3400, 10_000);
+    let pose = ScenePath::Inside.pose(3400, 10_000);
     let expected = Probe::new(&part, fig73()).wrench(&pose);
-    let inches = part.to(Unit::Inch);
+    let inches = part.converted_to(Unit::Inch);
     let error = Scene::new(Unit::Millimetre).add_part(&inches, Pose::default());
     let error = error.expect_err("inches");
     assert!(error.to_string().contains("inch") && error.to_string().contains("Part::to"));
-    let area = inches.survey().expect("of a mesh").area;
-    let millimetres = inches.to(Unit::Millimetre);
-    let again = millimetres.survey().expect("of a mesh").area;
+    let area = inches.diagnostics().expect("of a mesh").area;
+    let millimetres = inches.converted_to(Unit::Millimetre);
+    let again = millimetres.diagnostics().expect("of a mesh").area;
     assert!((again / area - 25.4f64.powi(2)).abs() < 1e-9);
     let mut scene = Scene::new(Unit::Millimetre);
     scene.add_part(&millimetres, Pose::default()).expect("millimetres");
@@ -117,9 +117,9 @@ fn a_part_in_another_unit_is_converted() {
 #[test]
 fn many_poses_at_once_are_one_after_the_other() {
     let part = part(5_000);
-    let poses = poses(Path::Outside, 3_000);
+    let poses = poses(ScenePath::Outside, 3_000);
     let mut probe = Probe::new(&part, &tools_library::Fig73);
-    let together = probe.map(&poses, |probe, pose| probe.wrench(pose));
+    let together = probe.par_map(&poses, |probe, pose| probe.wrench(pose));
     for (pose, found) in poses.iter().zip(together) {
         assert_eq!(probe.wrench(pose), found);
     }

@@ -1,4 +1,4 @@
-//! Solids without an axis: what the library's say at stated places, and what is refused of others.
+//! Solids without an axis: evaluations of the library's at stated points, and refusals of others.
 
 use std::path::Path;
 use tool_dsl::diagnostic::any_error;
@@ -7,13 +7,13 @@ use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile, compile_with};
 use tools_library::{Block, LBracket};
 use touchoff::Unit;
-use touchoff::tool::{Evaluators, Shape};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff::tool::{Evaluators, Symmetry};
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{self, Oracle};
 
-/// Region and depth.
+/// Returns the region and the depth at a point.
 fn at<T: Evaluators>(p: [f64; 3]) -> Option<(&'static str, f64)> {
-    T::owner(p).map(|region| (T::card().regions[region].name.as_ref(), T::depth(p)))
+    T::owner(p).map(|region| (T::info().regions[region].name.as_ref(), T::depth(p)))
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn a_block_at_faces_edges_and_corners() {
     }
     assert_eq!(Block::direction([3.0, 14.5, 9.0]), [0.0, 1.0, 0.0]);
     assert_eq!(Block::gradient([3.0, 14.5, 9.0], 1.0), [0.0, -1.0, 0.0]);
-    // A depth in the part's unit.
+    // A magnitude that is the depth, in the part's unit.
     assert_eq!(Block::magnitude([3.0, 2.0, 2.5], 2.0), 5.0);
 }
 
@@ -56,7 +56,7 @@ fn a_bracket_at_its_hole_and_edges() {
     close([-4.5, -2.0, 15.0], "standing_inner", 0.5);
     close([-7.0, 9.5, 20.0], "standing_side", 0.5);
     close([-7.0, 0.0, 23.0], "standing_top", 1.0);
-    // In the heel the inner edge is nearer than either of its faces' planes would say.
+    // In the heel the inner edge is nearer than either of its faces' planes would suggest.
     close([-5.0, 0.0, 5.0], "heel_edge", 2f64.sqrt());
     close([-7.0, 3.0, 2.0], "heel_bottom", 2.0);
     close([-5.0, 9.25, 5.0], "heel_side", 0.75);
@@ -82,13 +82,13 @@ fn a_bracket_at_its_hole_and_edges() {
     }
 }
 
-/// Outside, clearance is the distance to the solid's box: of a block the true one, else a bound.
+/// Outside, clearance is the distance to the solid's box: the true distance for a block, else a bound.
 #[test]
 fn clearance_is_that_of_the_box() {
     for oracle in [&oracle::Block as &dyn Oracle, &oracle::LBracket] {
         let tool = tools_library::find(oracle.name()).expect("in the library");
-        assert!(!tool.card().exact());
-        let mut draw = Draw::new(8);
+        assert!(!tool.info().is_exact());
+        let mut draw = Rng::new(8);
         for _ in 0..20_000 {
             let p = [0; 3].map(|_| draw.between(-40.0, 40.0));
             let (clearance, distance) = (tool.clearance(p), oracle.signed_distance(p));
@@ -112,13 +112,17 @@ fn a_block_of_other_sides() {
         assert!(compiled.diagnostics().is_empty(), "{:?}", compiled.diagnostics());
         let tool = compiled.into_tool().expect("a block");
         let mut reference = Interpreter::new(&tool);
-        let mut draw = Draw::new(7);
+        let mut draw = Rng::new(7);
         let half = [w, l, h].map(|side| f64::from(side) / 2.0);
         for _ in 0..2_000 {
             let p = half.map(|half| draw.between(-half, half));
             let depth = (0..3).map(|k| half[k] - p[k].abs()).fold(f64::INFINITY, f64::min);
-            let felt = reference.at([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
-            assert!((felt.depth - depth).abs() < 1e-13, "{p:?}: {}, not {depth}", felt.depth);
+            let evaluation = reference.at([p[0], p[1], p[2] + half[2]], 1.0).expect("inside");
+            assert!(
+                (evaluation.depth - depth).abs() < 1e-13,
+                "{p:?}: {}, not {depth}",
+                evaluation.depth
+            );
         }
     }
 }
@@ -126,22 +130,22 @@ fn a_block_of_other_sides() {
 /// Bounds are proved, and hardly wider than the solid.
 #[test]
 fn cards_say_how_far_solids_reach() {
-    let card = Block::card();
-    assert_eq!(card.unit, Unit::Millimetre);
-    let Shape::Solid { across: [x, y] } = card.shape else { panic!("a solid") };
-    let [z, radius] = [card.reach(), [0.0, card.radius()]];
+    let info = Block::info();
+    assert_eq!(info.unit, Unit::Millimetre);
+    let Symmetry::Solid { across: [x, y] } = info.symmetry else { panic!("a solid") };
+    let [z, radius] = [info.reach(), [0.0, info.radius()]];
     for ([low, high], [from, to]) in
         [x, y, z, radius].into_iter().zip([[-20.0, 20.0], [-15.0, 15.0], [0.0, 20.0], [0.0, 25.0]])
     {
         assert!(low <= from && low > from - 1e-3 && high >= to && high < to + 1e-3);
     }
-    let card = LBracket::card();
-    let Shape::Solid { across: [x, y] } = card.shape else { panic!("a solid") };
+    let info = LBracket::info();
+    let Symmetry::Solid { across: [x, y] } = info.symmetry else { panic!("a solid") };
     assert!(x[0] <= -10.0 && x[1] >= 20.0 && x[1] < 20.001 && y[1] >= 10.0 && y[1] < 10.001);
     // The standing leg is slimmer than the lying one.
-    let top = card.envelope.last().expect("slabs");
+    let top = info.envelope.last().expect("slabs");
     assert!(top.low < 6.01 && top.radius >= 200f64.sqrt() && top.radius < 14.2, "{top:?}");
-    assert_eq!(tools_library::Cylinder::card().shape, Shape::Revolved);
+    assert_eq!(tools_library::Cylinder::info().symmetry, Symmetry::Revolved);
 }
 
 fn solid(items: &str) -> tool_dsl::Compiled {
@@ -154,7 +158,7 @@ fn taken(items: &str) -> CheckedTool {
     *compiled.into_tool().expect("no error, so a solid")
 }
 
-/// The only message of a text that must be refused, and its help.
+/// Returns the messages of a text that must be refused, with their help.
 fn refused(items: &str) -> String {
     let compiled = solid(items);
     assert!(any_error(compiled.diagnostics()) && compiled.tool().is_none(), "{items} was taken");
@@ -222,7 +226,7 @@ fn points_have_three_numbers() {
     assert!(refused(&format!("{BALL} direction: (x, y, z^2); }}")).contains("a direction of"));
 }
 
-/// Everything that is looked for is shown with a point of space.
+/// Each mistake is shown with a point of space.
 #[test]
 fn mistakes_come_with_a_point() {
     let both = "region a where hypot(x, y, z) <= 3 { depth: 3 - hypot(x, y, z); }
@@ -236,7 +240,7 @@ fn mistakes_come_with_a_point() {
         message.starts_with("region a has no end toward large z that can be proved"),
         "{message}"
     );
-    // A face that nobody closes.
+    // A face that nothing closes.
     let open = "region a where -1 <= x <= 1, -1 <= y <= 1, 0 <= z <= 2 {
         depth: min(1 - abs(x), 1 - abs(y), z); }";
     assert!(refused(open).contains("on the surface"));

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
-use touchoff::scenes::{HEIGHT, Path};
+use touchoff::scenes::{HEIGHT, ScenePath};
 use touchoff::{Cloud, Law, Part, Pose, Probe, Tool, Unit, Weights, Wrench};
 use touchoff_tests::oracle::brute::{self, Query};
 use touchoff_tests::oracle::{Fig73, Oracle, d2_ball, fig_7_3_exact};
@@ -55,11 +55,11 @@ fn tool(name: &str) -> &'static dyn Tool {
     tools_library::find(name).expect("in the library")
 }
 
-/// The scenes' tube, given in mm and scaled to a unit.
+/// Returns the scenes' tube, given in mm and scaled to a unit.
 fn tube(unit: Unit, count: usize) -> Part {
-    let long = Unit::Millimetre.to(unit);
+    let long = Unit::Millimetre.factor_to(unit);
     let mesh = shapes::tube(3.0, 5.0, HEIGHT, 256, 4, Unit::Millimetre).expect("a tube");
-    let cloud = Cloud::random(&mesh, count, 3).expect("a cloud");
+    let cloud = Cloud::uniform(&mesh, count, 3).expect("a cloud");
     let points = cloud.points().iter().map(|p| p * long).collect();
     let weights = cloud.weights().iter().map(|w| w * long * long).collect();
     let ids = (0..count as u32).collect();
@@ -67,34 +67,36 @@ fn tube(unit: Unit, count: usize) -> Part {
     Part::from_cloud(&scaled.expect("a cloud"))
 }
 
-/// A pose given in mm.
+/// Scales a pose given in mm to a unit.
 fn scaled(pose: &Pose, unit: Unit) -> Pose {
-    let long = Unit::Millimetre.to(unit);
+    let long = Unit::Millimetre.factor_to(unit);
     Pose::from_axis(pose.tip() * long, pose.axis()).expect("a pose")
 }
 
-/// A compliance centre off the tip, mm.
+/// Returns a compliance centre off the tip, given in mm, in a unit.
 fn centre(unit: Unit) -> Point3<f64> {
-    Point3::new(1.5, -0.5, 2.0) * Unit::Millimetre.to(unit)
+    Point3::new(1.5, -0.5, 2.0) * Unit::Millimetre.factor_to(unit)
 }
 
-/// Poses of all scenes, in mm.
+/// Returns poses of all scenes, in mm.
 fn poses() -> Vec<Pose> {
-    Path::ALL.into_iter().flat_map(|path| (0..150).map(move |k| path.pose(k, 150))).collect()
+    ScenePath::ALL.into_iter().flat_map(|path| (0..150).map(move |k| path.pose(k, 150))).collect()
 }
 
-/// How each of a wrench's numbers grows with the unit's length, as powers: depth, integral, energy, force, torque.
+/// Powers by which each of a wrench's numbers grows with the unit's length: depth, integral, energy, force, torque.
 type Powers = [i32; 5];
 
-/// The wrench by one pose after another in a unit, felt by a tool.
-fn felt(part: &Part, tool: &dyn Tool, law: Law, weights: Weights) -> Vec<Wrench> {
+/// Returns the wrenches of a tool at one pose after another, in the part's unit.
+fn evaluation(part: &Part, tool: &dyn Tool, law: Law, weights: Weights) -> Vec<Wrench> {
     let unit = part.unit();
-    let mut probe = Probe::new(part, tool).law(law).weights(weights).centre(centre(unit));
+    let mut probe =
+        Probe::new(part, tool).with_law(law).with_weights(weights).with_centre(centre(unit));
     poses().iter().map(|pose| probe.wrench(&scaled(pose, unit))).collect()
 }
 
-/// `b` is `a` in units whose number for one of `a`'s is `long`. Points are stored to 2^-24 of their leaf, relative to a power of two that
-/// is another in another unit: that is `slack`, in mm, and sums differ by it for every unit of weight.
+/// Asserts that `b` is `a` in another unit, in which the length of `a`'s unit is `long`. Points are stored to 2^-24
+/// of their leaf, relative to a power of two that differs between units: that is `slack`, in mm, and sums differ by
+/// it for every unit of weight.
 fn scales(a: &Wrench, b: &Wrench, long: f64, powers: Powers, slack: f64, what: &str) {
     let [depth, integral, energy, force, torque] = powers.map(|power| long.powi(power));
     assert_eq!(a.colliding, b.colliding, "{what}");
@@ -127,18 +129,18 @@ fn one_scene_in_three_units() {
             (Law::Facing, Weights::Unit),
             (Law::Gradient, Weights::Unit),
         ] {
-            // Of a weight, of a magnitude, and of a push: a slope is the magnitude over a length.
+            // Powers of a weight, of a magnitude, and of a push: a gradient is the magnitude over a length.
             let w = if weights == Weights::Area { 2 } else { 0 };
             let m = i32::from(depth);
             let push = if law == Law::Gradient { m - 1 } else { 0 };
             let powers = [1, w + m, w + 2 * m, w + m + push, w + m + push + 1];
-            let first = felt(&parts[0], tool(name), law, weights);
+            let first = evaluation(&parts[0], tool(name), law, weights);
             let touching = first.iter().filter(|wrench| wrench.colliding > 0).count();
             assert!(touching > 50, "{name} {touching}");
             for part in &parts[1..] {
                 let unit = part.unit();
-                let long = Unit::Millimetre.to(unit);
-                for (a, b) in first.iter().zip(felt(part, tool(name), law, weights)) {
+                let long = Unit::Millimetre.factor_to(unit);
+                for (a, b) in first.iter().zip(evaluation(part, tool(name), law, weights)) {
                     scales(a, &b, long, powers, SLACK, &format!("{name} {law} {weights} {unit}"));
                 }
             }
@@ -151,10 +153,10 @@ fn one_scene_in_three_units() {
 fn one_tool_in_two_units() {
     for unit in UNITS {
         let part = tube(unit, 6_000);
-        let long = Unit::Millimetre.to(unit);
+        let long = Unit::Millimetre.factor_to(unit);
         for law in [Law::Thesis, Law::Gradient, Law::Facing] {
-            let mm = felt(&part, tool("D2Ball"), law, Weights::Area);
-            let inch = felt(&part, &InchBall, law, Weights::Area);
+            let mm = evaluation(&part, tool("D2Ball"), law, Weights::Area);
+            let inch = evaluation(&part, &InchBall, law, Weights::Area);
             for (a, b) in mm.iter().zip(&inch) {
                 // Points are the same; only lengths of the tool are rounded elsewhere.
                 let size = a.integral + long.powi(3) * 1e-9;
@@ -176,11 +178,12 @@ fn one_tool_in_two_units() {
     }
 }
 
-/// A written magnitude is the file's number in every part; its depth is a length, its slope per length of the part.
+/// A written magnitude is the file's number in every part; its depth is a length, and its gradient is per length of
+/// the part.
 #[test]
 fn a_written_magnitude_stays() {
     for unit in UNITS {
-        let inch = Unit::Inch.to(unit);
+        let inch = Unit::Inch.factor_to(unit);
         let at = Point3::new(7.0, 8.0, 9.0);
         let ids = vec![0];
         let cloud =
@@ -188,7 +191,7 @@ fn a_written_magnitude_stays() {
         let part = Part::from_cloud(&cloud);
         // A quarter of an inch deep.
         let pose = Pose::from_axis(at - 0.25 * inch * Vector3::z(), Vector3::z()).expect("a pose");
-        let wrench = Probe::new(&part, &Written).law(Law::Gradient).wrench(&pose);
+        let wrench = Probe::new(&part, &Written).with_law(Law::Gradient).wrench(&pose);
         let near = |got: f64, want: f64| {
             assert!((got - want).abs() < 1e-12 * want.abs(), "{unit}: {got}, not {want}");
         };
@@ -205,7 +208,7 @@ fn a_written_magnitude_stays() {
     }
 }
 
-/// Against brute force, which knows of units by itself.
+/// Compares with brute force, which handles units by itself.
 #[test]
 fn in_every_unit_as_the_oracle_says() {
     let tools: [(&dyn Tool, &dyn Oracle); 4] = [
@@ -222,18 +225,18 @@ fn in_every_unit_as_the_oracle_says() {
         let points: Vec<[f64; 3]> = places.clone().map(|i| tree.point(i).into()).collect();
         let normals: Vec<[f64; 3]> = places.clone().map(|i| tree.normal(i)).collect();
         let weights: Vec<f64> = places.map(|i| tree.weight(i)).collect();
-        let long = Unit::Millimetre.to(unit);
+        let long = Unit::Millimetre.factor_to(unit);
         for (tool, oracle) in tools {
             for (law, same) in
                 [(Law::Thesis, brute::Law::Thesis), (Law::Gradient, brute::Law::Gradient)]
             {
-                let mut probe = Probe::new(&part, tool).law(law).centre(centre(unit));
+                let mut probe = Probe::new(&part, tool).with_law(law).with_centre(centre(unit));
                 for pose in poses().iter().step_by(6).map(|pose| scaled(pose, unit)) {
                     let axes = [0, 1, 2].map(|k| pose.rotation().column(k).into_owned().into());
                     let there = brute::Pose { tip: pose.tip().into(), axes };
                     let mut query = Query::new(oracle, there, &points, &normals, &weights);
                     query.law = same;
-                    query.scale = unit.to(Unit::Millimetre);
+                    query.scale = unit.factor_to(Unit::Millimetre);
                     query.centre = (pose.tip() + pose.rotation() * centre(unit).coords).into();
                     let (want, got) = (query.answer(), probe.wrench(&pose));
                     let near = |error: f64, size: f64, what: &str| {
@@ -246,7 +249,7 @@ fn in_every_unit_as_the_oracle_says() {
                     assert_eq!(want.count, got.colliding, "{} {unit}", oracle.name());
                     let depth = want.deepest.map_or(0.0, |(depth, _)| depth);
                     near(got.depth() - depth, long, "depth");
-                    // Magnitudes near nothing err by the tool's rounding, not their own.
+                    // Magnitudes near 0 err by the tool's rounding, not their own.
                     let [force, torque] = want.size;
                     let sum: f64 = want.contacts.iter().map(|&i| weights[i]).sum();
                     let m = if query.magnitude_is_depth { long } else { 1.0 };

@@ -1,4 +1,5 @@
-//! The largest radius of the solid over stretches of the axis: what the runtime skips by.
+//! The envelope: the largest radius of the solid over intervals of the axis, which the runtime uses to skip
+//! points.
 
 use super::{Extent, Prover, inward};
 use crate::expr::interval::Interval;
@@ -6,45 +7,45 @@ use crate::expr::polynomial::Polynomial;
 use crate::geometry::outline;
 use crate::model::Model;
 
-/// The most slabs of an envelope.
+/// The largest number of slabs in an envelope.
 const SLABS: usize = 24;
-/// How many more there are before neighbours are merged.
+/// The number of additional slabs before neighbours are merged.
 const SPARE: usize = 8;
 
-/// A stretch of the axis with the largest radius that the solid has there.
+/// An interval of the axis with the largest radius of the solid in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slab {
-    /// The lower end, in the tool's frame.
+pub struct EnvelopeSlab {
+    /// The lower end, in the tool's frame and the file's unit.
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// No point of the solid with a z between the ends is farther from the axis.
+    /// An upper bound of the distance from the axis, for points of the solid between the ends.
     pub radius: f64,
 }
 
-impl Slab {
-    /// Its area in the section: what the merging and halving of slabs weigh.
+impl EnvelopeSlab {
+    /// Returns its area in the section, the cost that splitting and merging minimise.
     fn area(&self) -> f64 {
         self.radius * (self.high - self.low)
     }
 
-    /// One slab for two neighbours.
-    fn merged(&self, above: &Slab) -> Slab {
-        Slab { low: self.low, high: above.high, radius: self.radius.max(above.radius) }
+    /// Merges two neighbours into one slab.
+    fn merged(&self, above: &EnvelopeSlab) -> EnvelopeSlab {
+        EnvelopeSlab { low: self.low, high: above.high, radius: self.radius.max(above.radius) }
     }
 }
 
-/// The largest radius over stretches of the axis, from the tip up.
-pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
+/// Returns the largest radius over intervals of the axis, from the tip up.
+pub fn envelope(model: &Model, extent: &Extent) -> Vec<EnvelopeSlab> {
     let mut prover = Prover::of_regions(model);
     let mut slab = |low: f64, high: f64, widest: f64| {
         if let Some(section) = &model.section {
             let radius = outline::radius_between(&section.outline, low, high);
-            return Slab { low, high, radius };
+            return EnvelopeSlab { low, high, radius };
         }
         let within = extent.cell().with(2, Interval::new(low, high));
         let radius = inward(widest, 0.0, 12, |r| prover.none_beyond(r, widest, within));
-        Slab { low, high, radius }
+        EnvelopeSlab { low, high, radius }
     };
     let mut ends: Vec<f64> = (0..=8)
         .map(|k| extent.low + (extent.high - extent.low) * f64::from(k) / 8.0)
@@ -53,14 +54,14 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
         .collect();
     ends.sort_by(f64::total_cmp);
     ends.dedup_by(|a, b| *a - *b < 1e-6 * (extent.high - extent.low));
-    // Of two ends that are nearly one the later is dropped, but never the last.
+    // `dedup_by` drops the later of two ends that nearly coincide, but the last one must remain.
     if let Some(last) = ends.last_mut() {
         *last = extent.high;
     }
-    let mut slabs: Vec<Slab> =
+    let mut slabs: Vec<EnvelopeSlab> =
         ends.windows(2).map(|pair| slab(pair[0], pair[1], extent.radius)).collect();
-    // Halve where the halves are slimmer, as long as it saves most.
-    let mut halves: Vec<Option<[Slab; 2]>> = vec![None; slabs.len()];
+    // Halve the slab whose halving saves most area, while that is more than 1 %.
+    let mut halves: Vec<Option<[EnvelopeSlab; 2]>> = vec![None; slabs.len()];
     while slabs.len() < SLABS + SPARE {
         for (own, half) in slabs.iter().zip(&mut halves) {
             half.get_or_insert_with(|| {
@@ -77,7 +78,7 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
         slabs.insert(best + 1, b);
         halves.insert(best + 1, None);
     }
-    // Merge the neighbours whose common slab adds least.
+    // Merge the neighbours whose common slab adds least area.
     while slabs.len() > 1 {
         let added = |i: usize| {
             slabs[i].merged(&slabs[i + 1]).area() - slabs[i].area() - slabs[i + 1].area()
@@ -99,20 +100,20 @@ pub fn envelope(model: &Model, extent: &Extent) -> Vec<Slab> {
     slabs
 }
 
-/// The x and y that a solid without an axis reaches, as the card says them.
+/// Returns the ranges of x and y of a solid without an axis, rounded outward as in `ToolInfo`.
 pub fn across(extent: &Extent) -> [[f64; 2]; 2] {
     let steps = extent.steps();
     extent.across.map(|side| [-above(-side.low, steps), above(side.high, steps)])
 }
 
-/// A short decimal that is no smaller than a value, in units of which there are `steps` to 1.
+/// Returns a short decimal that is at least `value`: a multiple of `1 / steps`.
 fn above(value: f64, steps: f64) -> f64 {
     let count = (value * steps).ceil();
     let short = if steps >= 1.0 { count / steps } else { count * (1.0 / steps) };
     if short >= value { short } else { (count + 1.0) / steps }
 }
 
-/// Heights at which the radius may jump.
+/// Returns heights at which the radius may jump.
 fn levels(model: &Model) -> Vec<f64> {
     match &model.section {
         Some(section) => section.outline.iter().flat_map(|s| s.ends()).map(|end| end[1]).collect(),
@@ -120,7 +121,7 @@ fn levels(model: &Model) -> Vec<f64> {
     }
 }
 
-/// The z of a curve that is a plane across the axis.
+/// Returns the z of a curve that is a plane perpendicular to the axis.
 fn level(model: &Model, value: crate::expr::Id) -> Option<f64> {
     let polynomial = Polynomial::of(&model.graph, value)?;
     let (mut slope, mut constant) = (None, 0.0);

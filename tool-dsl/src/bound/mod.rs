@@ -1,29 +1,29 @@
-//! Where the solid can be, proved by interval branch and bound: how far it reaches, and its
-//! largest radius over stretches of the axis. The runtime skips whatever these rule out.
+//! Proved bounds of the solid by interval branch and bound: its extent, and its largest radius over intervals
+//! of the axis. The runtime skips everything that these rule out.
 
 mod envelope;
 
-pub use envelope::{Slab, across, envelope};
+pub use envelope::{EnvelopeSlab, across, envelope};
 
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::domain::Domain;
 use crate::elimination::Linear;
-use crate::expr::interval::{Cell, EVERYTHING, Encloser, Interval, halves};
+use crate::expr::interval::{Cell, ENTIRE, Encloser, Interval, halves};
 use crate::formula::{ANY, CurveIndex, Formula, Signs, possible};
 use crate::geometry::outline;
 use crate::model::{Model, Region};
 
-/// The power of two of the farthest reach of a solid.
+/// The exponent of the power of two that bounds the extent of a solid.
 const FARTHEST: i32 = 280;
 /// The largest coordinate, 2^300.
 const LIMIT: f64 = 2.037035976334486e90;
-/// Boxes that one question may take: enough for a few percent where the expression mentions a
-/// coordinate several times, for rounding where it does so once.
+/// The number of boxes per query. It gives a few percent where an expression mentions a coordinate several
+/// times, and rounding accuracy where it does so once.
 const BUDGET: usize = 100;
-/// Boxes for a cylinder about the axis of space, which no box fits: a few percent again.
+/// The number of boxes for a cylinder about the axis of space, which boxes fit badly: again a few percent.
 const ROUND_BUDGET: usize = 400;
 
-/// What a box is to the solid.
+/// The position of a box relative to the solid.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
     Inside,
@@ -31,25 +31,25 @@ enum Place {
     Unknown,
 }
 
-/// Asks of boxes whether the solid is there.
+/// Decides whether the solid reaches into boxes.
 pub struct Prover<'m> {
     model: &'m Model,
     encloser: Encloser<'m>,
-    /// A box that each region does not leave.
+    /// A box that contains each region.
     reaches: Vec<Cell>,
 }
 
 impl<'m> Prover<'m> {
-    /// A prover about a tool.
+    /// Makes a prover that uses the curves only.
     pub fn new(model: &'m Model) -> Prover<'m> {
         let values = model.curves.iter().map(|curve| curve.value);
         let encloser = Encloser::new(&model.graph, values);
-        let everywhere = Cell { sides: [EVERYTHING; 3] };
+        let everywhere = Cell { sides: [ENTIRE; 3] };
         Prover { model, encloser, reaches: vec![everywhere; model.regions.len()] }
     }
 
-    /// One that knows how far the regions reach by their linear curves, which boxes would find out
-    /// slowly.
+    /// Makes a prover that also knows the extent of regions according to their linear curves, which boxes
+    /// would find slowly.
     fn of_regions(model: &'m Model) -> Prover<'m> {
         let linear = Linear::new(model);
         let reach = |region: &Region| {
@@ -70,12 +70,12 @@ impl<'m> Prover<'m> {
         Prover { reaches: model.regions.iter().map(reach).collect(), ..Prover::new(model) }
     }
 
-    /// Moves to a box.
+    /// Selects a box.
     pub fn set(&mut self, cell: Cell) {
         self.encloser.set(cell);
     }
 
-    /// The signs that a curve can have in the box.
+    /// Returns the signs that a curve can have in the selected box.
     pub fn sign(&mut self, curve: CurveIndex) -> Signs {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
@@ -97,13 +97,13 @@ impl<'m> Prover<'m> {
         place
     }
 
-    /// Whether the solid provably does not reach into a box.
+    /// Returns whether the solid provably does not reach into a box.
     fn empty(&mut self, cell: Cell) -> bool {
         self.empty_within(cell, BUDGET, 0.0)
     }
 
-    /// Whether the solid provably has no point of a box that is this far from the axis or farther;
-    /// none of the box is farther than `widest`.
+    /// Returns whether the solid provably has no point in a box at this distance from the axis or farther. No
+    /// point of the box is farther than `widest`.
     fn none_beyond(&mut self, radius: f64, widest: f64, within: Cell) -> bool {
         match self.model.domain {
             Domain::HalfPlane => self.empty(within.with(0, Interval::new(radius, widest))),
@@ -111,7 +111,7 @@ impl<'m> Prover<'m> {
         }
     }
 
-    /// What lies nearer to the axis than `radius` is not asked about.
+    /// The same with a budget of boxes. Points nearer to the axis than `radius` are ignored.
     fn empty_within(&mut self, cell: Cell, budget: usize, radius: f64) -> bool {
         let mut open = vec![cell];
         let mut left = budget;
@@ -133,7 +133,7 @@ impl<'m> Prover<'m> {
     }
 }
 
-/// How far the solid reaches.
+/// The extent of the solid, in the tool's frame and the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// The lowest z.
@@ -142,24 +142,24 @@ pub struct Extent {
     pub high: f64,
     /// The largest distance from the axis.
     pub radius: f64,
-    /// Along x and y of the domain: for a tool from 0 to the radius, and nothing.
+    /// The ranges of x and y in the domain; for a tool, 0 to the radius, and 0.
     pub across: [Interval; 2],
 }
 
 impl Extent {
-    /// The reach of what fills a box of the domain and no more than a radius about the axis.
+    /// Returns the extent of a solid inside a box of the domain and a radius about the axis.
     pub(crate) fn of(cell: Cell, radius: f64) -> Extent {
         let [x, y, z] = cell.sides;
         Extent { low: z.low, high: z.high, radius, across: [x, y] }
     }
 
-    /// The box of the domain.
+    /// Returns the box of the domain.
     pub fn cell(&self) -> Cell {
         let [x, y] = self.across;
         Cell { sides: [x, y, Interval::new(self.low, self.high)] }
     }
 
-    /// The next power of two above the largest coordinate: the S of the accuracy contract.
+    /// Returns the smallest power of two above the largest coordinate: the S of the accuracy contract.
     pub fn scale(&self) -> f64 {
         let sides = self.cell().sides;
         let largest = sides.iter().fold(0.0, |m: f64, s| m.max(s.high.abs()).max(s.low.abs()));
@@ -170,14 +170,14 @@ impl Extent {
         scale
     }
 
-    /// How many steps there are to 1 in what is rounded for the card.
+    /// Returns the number of rounding steps per unit of length for the values of `ToolInfo`.
     fn steps(&self) -> f64 {
         10f64.powf(5.0 - self.scale().log10().floor())
     }
 }
 
-/// Points spread evenly over the extent's box and what lies `around` it, by the additive
-/// recurrences R2 in the half plane and R3 in space (Roberts 2018).
+/// Returns points spread evenly over the extent's box and a margin `around` it, by the additive recurrences
+/// R2 in the half plane and R3 in space (Roberts 2018). The margin is relative to each side.
 pub(crate) fn spread(
     domain: Domain,
     extent: &Extent,
@@ -190,7 +190,7 @@ pub(crate) fn spread(
     let cell = extent.cell();
     let step = |root: f64, power: i32| 1.0 / root.powi(power);
     let (low_end, steps) = match domain {
-        // There is nothing beyond the axis.
+        // The half plane has no points beyond the axis.
         Domain::HalfPlane => (0.0, [step(PLASTIC, 1), 0.0, step(PLASTIC, 2)]),
         Domain::Space => (around, [1, 2, 3].map(|power| step(IN_SPACE, power))),
     };
@@ -204,7 +204,10 @@ pub(crate) fn spread(
     })
 }
 
-/// The reach of the solid, proved; an error if no bound is found.
+/// Returns the proved extent of the solid.
+///
+/// # Errors
+/// If no bound is found, or the solid provably has no points.
 pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     if let Some(section) = &model.section {
         let [low, high] = outline::reach(&section.outline);
@@ -215,8 +218,8 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     let power = reach(domain, &mut prover).ok_or_else(|| endless(model))?;
     let whole = domain.whole(2f64.powi(power));
     let mut cell = whole;
-    // From outside inward, as long as the rest stays provably empty; then again, since between its
-    // ends the solid is easier to bound.
+    // Each end moves inward while the rest stays provably empty. The second pass tightens them, since the
+    // solid is easier to bound between its ends.
     for pass in 0..2 {
         for (axis, high) in domain.ways() {
             let side = cell.sides[*axis];
@@ -238,7 +241,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
         if domain.coordinates().iter().any(void) {
             return Err(Diagnostic::new(
                 model.name_span,
-                CheckKind::NoPoint { file: domain.word() },
+                CheckKind::NoPoint { file: domain.keyword() },
             ));
         }
     }
@@ -250,7 +253,7 @@ pub fn extent(model: &Model) -> Result<Extent, Diagnostic> {
     Ok(Extent::of(cell, radius))
 }
 
-/// A power of two beyond which the solid provably has no point.
+/// Returns the exponent of a power of two beyond which the solid provably has no point.
 fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
     let mut beyond = |size: f64| way_out(domain, prover, size).is_none();
     let mut power = FARTHEST;
@@ -265,7 +268,7 @@ fn reach(domain: Domain, prover: &mut Prover<'_>) -> Option<i32> {
     Some(power)
 }
 
-/// A way on which the solid may reach farther than a size.
+/// Returns a direction in which the solid may extend farther than `size`.
 fn way_out(domain: Domain, prover: &mut Prover<'_>, size: f64) -> Option<(usize, bool)> {
     domain.ways().iter().copied().find(|(axis, high)| {
         let far = if *high { Interval::new(size, LIMIT) } else { Interval::new(-LIMIT, -size) };
@@ -273,7 +276,7 @@ fn way_out(domain: Domain, prover: &mut Prover<'_>, size: f64) -> Option<(usize,
     })
 }
 
-/// The first region of which no end is found.
+/// Reports the first region for which no bound is found.
 fn endless(model: &Model) -> Diagnostic {
     let domain = model.domain;
     let mut alone = model.clone();
@@ -292,7 +295,7 @@ fn endless(model: &Model) -> Diagnostic {
     Diagnostic::new(model.name_span, CheckKind::Endless)
 }
 
-/// The innermost place from `outer` toward `inner` for which `empty` still holds, by halving.
+/// Returns the innermost position from `outer` toward `inner` for which `empty` still holds, by bisection.
 fn inward(outer: f64, inner: f64, halvings: usize, mut empty: impl FnMut(f64) -> bool) -> f64 {
     let (mut good, mut bad) = (outer, inner);
     for _ in 0..halvings {

@@ -1,13 +1,13 @@
 //! Checks of the finished tool: its extent, its regions, its plan, its proofs.
 
-use super::data::{Figure, Statement, Subject};
+use super::data::{FormattedNumber, Statement, Subject};
 use super::table::kinds;
 
 kinds! {
     /// Checks of the finished tool.
     CheckKind "T06" "Checks of the finished tool"
 
-    error T0601 OffTip { end: Figure, tip: Figure, spindle: Option<char> }
+    error T0601 OffTip { end: FormattedNumber, tip: FormattedNumber, spindle: Option<char> }
         "tool that does not end at its tip"
         message "the tool ends at z = {end} and its tip is said to be at {tip}"
         help (spindle) {
@@ -82,7 +82,7 @@ kinds! {
         message "a number beyond all bounds at {place}, in {subject}"
         help "powers of large numbers grow so: divide by a length of the tool first"
         explain "Generated code computes in double precision, whose largest number is some 1e308.";
-    error T0614 Negative { quantity: &'static str, region: String, value: Figure, place: String }
+    error T0614 Negative { quantity: &'static str, region: String, value: FormattedNumber, place: String }
         "negative quantity"
         message "`{quantity}` of {region} is {value} at {place}"
         help "it is never negative inside: turn a sign, or bound the region"
@@ -97,7 +97,7 @@ kinds! {
         message "the direction of {region} is too long to be made a unit vector at {place}"
         help "divide it by its size"
         explain "The square of its length overflows in double precision.";
-    error T0617 DeepOnSurface { region: String, depth: Figure, place: String }
+    error T0617 DeepOnSurface { region: String, depth: FormattedNumber, place: String }
         "depth on the surface"
         message "`depth` of {region} is {depth} at {place}, on the surface"
         help "is a region missing beside it? A depth is 0 on the surface"
@@ -107,17 +107,17 @@ kinds! {
         message "`depth` of {region} has no finite slope at {place}"
         help "certified queries are not available for this tool: they want a depth that grows in step with the distance to the surface"
         explain "A depth such as a root of the distance is steeper the nearer the surface is, so that no distance bounds it.";
-    warning T0619 GrowsUnbounded { quantity: &'static str, region: String, value: Figure, place: String }
+    warning T0619 GrowsUnbounded { quantity: &'static str, region: String, value: FormattedNumber, place: String }
         "quantity that grows without bound"
         message "`{quantity}` of {region} grows without bound toward the surface: it is {value} beside {place}"
         help "add a length to what it is divided by: contact begins on the surface"
         explain "Contact begins on the surface, where this quantity would be infinite.";
-    error T0620 DepthJumps { own: Figure, other: Figure, place: String, region: String, beside: String }
+    error T0620 DepthJumps { own: FormattedNumber, other: FormattedNumber, place: String, region: String, beside: String }
         "depth that jumps"
         message "depth jumps from {own} to {other} at {place}, between {region} and {beside}"
         help "two regions have the same depth where they meet; what is felt may jump: write it as `magnitude:` beside a `depth:` that does not"
         explain "Depth is a continuous function of the point. Bounds of depth along motions follow from that.";
-    warning T0621 ObliqueDirection { region: String, degrees: Figure, inward: bool, derived: bool, place: String }
+    warning T0621 ObliqueDirection { region: String, degrees: FormattedNumber, inward: bool, derived: bool, place: String }
         "direction other than the steepest way out"
         message (inward) {
             true => "the direction of {region} leads straight inward at {place}",
@@ -128,7 +128,7 @@ kinds! {
             false => "write the direction in which the depth falls fastest, or `direction: … allow oblique;` if it is meant",
         }
         explain "A contact pushes along the direction. One that is not the steepest way out adds or takes energy along closed motions.";
-    warning T0622 NicenessRises { region: String, place: String, rate: Figure, unit: &'static str }
+    warning T0622 NicenessRises { region: String, place: String, rate: FormattedNumber, unit: &'static str }
         "niceness that rises with depth"
         message "`niceness` of {region} rises with depth at {place}, by {rate} per {unit}"
         help "a deeper contact is seldom a better one: turn a sign, or write `allow rising` behind it if it is meant"
@@ -139,7 +139,7 @@ kinds! {
         help "a profile's depth is that distance: this is a mistake of the compiler, and worth a report of it"
         explain "The depth of a profile is the distance to its surface by construction, which `touchoff check` proves once more."
         without "it is a defect of the compiler";
-    warning T0624 Undecided { statement: Statement, place: String, more: usize, exact: bool, bound: Option<Figure> }
+    warning T0624 Undecided { statement: Statement, place: String, more: usize, exact: bool, bound: Option<FormattedNumber> }
         "proof left open"
         message (more) {
             0 => "not decided: {statement} near {place}",

@@ -4,16 +4,16 @@ use std::fmt;
 
 /// A number, shown with six significant digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figure(pub f64);
+pub struct FormattedNumber(pub f64);
 
-impl fmt::Display for Figure {
+impl fmt::Display for FormattedNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&figure(self.0))
+        f.write_str(&format_number(self.0))
     }
 }
 
 /// Returns a number for people: six significant digits.
-pub fn figure(value: f64) -> String {
+pub fn format_number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || !(1e-4..1e15).contains(&size) {
         return if size == 0.0 { "0".to_owned() } else { format!("{value:.5e}") };
@@ -51,7 +51,7 @@ impl fmt::Display for Names {
     }
 }
 
-/// Definitions that need each other, each with the one it needs.
+/// Definitions in a cycle, each with the one it needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Links(pub Vec<[String; 2]>);
 
@@ -75,7 +75,7 @@ impl fmt::Display for Chain {
     }
 }
 
-/// The tokens of the grammar that would have fitted.
+/// The tokens of the grammar that would have been accepted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// Any of these.
@@ -100,7 +100,7 @@ impl fmt::Display for Expected {
     }
 }
 
-/// The part of a file that a value is for.
+/// The position in a file for which a value is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The value of a `let`.
@@ -109,13 +109,13 @@ pub enum Role {
     Param,
     /// The exponent of a power.
     Exponent,
-    /// The place of the tip.
+    /// The z of the tip.
     Tip,
-    /// The place of a mount.
+    /// The position of a mount.
     At,
-    /// A part of a point.
+    /// A coordinate of a point.
     Point,
-    /// A part of a direction.
+    /// A component of a direction.
     Direction,
     /// The tangent length of `regions smooth`.
     Smooth,
@@ -144,50 +144,50 @@ impl fmt::Display for Role {
 pub enum NameStart {
     /// `_`.
     Underscore,
-    /// A digit, of a tool's name.
+    /// A digit at the start of a tool's name.
     DigitOfTool,
-    /// A digit, of another name.
+    /// A digit at the start of another name.
     Digit,
 }
 
-/// The remedy for a name that nothing defines.
+/// The remedy for an undefined name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NameRemedy {
-    /// Another name is near.
+    /// A similar name exists.
     Meant(String),
-    /// It is to be defined.
+    /// The name must be defined.
     Define,
-    /// It stands in a value from outside the file, where no name is known.
+    /// The name is in an argument from outside the file, where no names are defined.
     Constant,
-    /// It is glued to a `-`.
+    /// The name is joined to a `-`.
     Dash,
 }
 
-/// The remedy for a param that a tool does not have.
+/// The remedy for an unknown param.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ParamRemedy {
-    /// Another param is near.
+    /// A similar param exists.
     Meant(String),
     /// A `let` has the name.
     Let,
-    /// Its params are listed.
+    /// The message lists the params.
     List,
 }
 
-/// The remedy for a surface that a tool does not have.
+/// The remedy for an unknown surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SurfaceRemedy {
-    /// Another surface is near.
+    /// A similar surface exists.
     Meant(String),
     /// The surfaces of the tool.
     List(Names),
-    /// The surfaces of the mounted part that has the name.
+    /// The surfaces of the mounted part with this name.
     OfPart(Names),
-    /// One of the profile's is to be named.
+    /// A surface of the profile must be named.
     OfProfile,
 }
 
-/// An operation that its operands' dimensions do not allow.
+/// An operation that the dimensions of its operands do not allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// A sum.
@@ -207,7 +207,7 @@ pub enum Subject {
     Quantity(&'static str, String),
     /// A curve with a name.
     Curve(String),
-    /// A curve without one.
+    /// A curve without a name.
     Condition,
 }
 
@@ -221,18 +221,18 @@ impl fmt::Display for Subject {
     }
 }
 
-/// A statement that was to be proved of a box. Its owner is a region, or the outside.
+/// A statement that was to be proved for a box. An owner is a region, or `None` for the outside.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Statement {
-    /// One owner alone has its points.
+    /// All points of the box belong to this owner.
     Alone(Option<String>),
     /// The features that are nearest to its points belong to this owner.
     Nearest(Option<String>),
-    /// Depth goes on from one owner to another.
+    /// Depth is continuous from one owner to another.
     Continues(Option<String>, Option<String>),
     /// Depth is not negative in this owner.
     NotNegative(Option<String>),
-    /// The regions that meet, which are so many.
+    /// The regions that meet; this is their number.
     Crowd(usize),
     /// The solid ends on its profile.
     EndsOnProfile,
@@ -261,7 +261,7 @@ impl fmt::Display for Statement {
     }
 }
 
-/// Returns the word of `known` that is nearest to `word`, if it is near enough to be meant.
+/// Returns the word of `known` that is nearest to `word`, if it is similar enough.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()

@@ -1,4 +1,4 @@
-//! All kinds, and the table of their codes.
+//! All kinds of diagnostics, and the table of their codes.
 
 use super::Severity;
 use super::checks::CheckKind;
@@ -10,10 +10,10 @@ use super::syntax::SyntaxKind;
 use super::table::Entry;
 use super::values::ValueKind;
 
-/// The most edits between two codes that are like each other.
+/// The largest number of edits between two similar codes.
 const MOST_EDITS: usize = 2;
 
-/// A family of kinds, whose codes begin alike.
+/// A family of kinds, whose codes have a common prefix.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
     /// The first characters of its codes.
@@ -36,7 +36,7 @@ macro_rules! families {
         pub const FAMILIES: &[Family] = &[$($family::TABLE),*];
 
         impl Kind {
-            /// Returns the stable code, by which `touchoff explain` and `docs/errors.md` know the kind.
+            /// Returns the stable code, which `touchoff explain` and `docs/errors.md` use for the kind.
             pub fn code(&self) -> &'static str {
                 match self { $(Kind::$family(kind) => kind.code()),* }
             }
@@ -46,7 +46,7 @@ macro_rules! families {
                 match self { $(Kind::$family(kind) => kind.severity()),* }
             }
 
-            /// Returns the message, in the words of the domain.
+            /// Returns the message, in the terms of the domain.
             pub fn message(&self) -> String {
                 match self { $(Kind::$family(kind) => kind.message()),* }
             }
@@ -65,12 +65,13 @@ pub fn entries() -> impl Iterator<Item = &'static Entry> {
     FAMILIES.iter().flat_map(|family| family.entries)
 }
 
-/// Returns the row of a code.
+/// Returns the row of a code, if there is one.
 pub fn entry(code: &str) -> Option<&'static Entry> {
     entries().find(|entry| entry.code == code)
 }
 
-/// Returns the rows whose codes are most like a code that there is none of: at most three, and none if nothing is near.
+/// Returns the rows whose codes are most similar to an unknown code: at most three, and none if no code is
+/// similar.
 pub fn near(code: &str) -> impl Iterator<Item = &'static Entry> {
     let edits = |entry: &Entry| strsim::damerau_levenshtein(code, entry.code);
     let least = entries().map(edits).min().filter(|edits| *edits <= MOST_EDITS);

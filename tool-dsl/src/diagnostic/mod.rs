@@ -1,7 +1,8 @@
-//! What the compiler says of a tool: errors and warnings that name the place, the reason and the remedy.
+//! Diagnostics: errors and warnings that state the location, the reason and the remedy.
 //!
-//! A [`Diagnostic`] holds data only: a [`Kind`] with a stable code, and its places. The words of all kinds stand in one
-//! table, family by family, so that rewording one changes no decision. `docs/errors.md` is generated from it.
+//! A [`Diagnostic`] holds data only: a [`Kind`] with a stable code, and its locations. The texts of all kinds
+//! are in one table, family by family, so that rewording one changes no decision. `docs/errors.md` is
+//! generated from it.
 
 mod checks;
 mod data;
@@ -18,8 +19,8 @@ mod values;
 
 pub use checks::CheckKind;
 pub use data::{
-    Chain, Expected, Figure, Links, NameRemedy, NameStart, Names, Operation, ParamRemedy, Role,
-    Statement, Subject, SurfaceRemedy, figure, nearest,
+    Chain, Expected, FormattedNumber, Links, NameRemedy, NameStart, Names, Operation, ParamRemedy,
+    Role, Statement, Subject, SurfaceRemedy, format_number, nearest,
 };
 pub use escape::escaped;
 pub(crate) use escape::is_hidden;
@@ -40,12 +41,12 @@ use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snip
 use escape::{escaped_lines, harmless};
 use std::ops::Range;
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Worth knowing; code is emitted all the same.
+    /// A warning does not prevent code from being emitted.
     Warning,
-    /// Nothing is emitted.
+    /// An error prevents code from being emitted.
     Error,
 }
 
@@ -56,18 +57,18 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// The reason.
     pub kind: Kind,
-    /// The place.
+    /// The location.
     pub span: Span,
-    /// A second culprit with its own word.
+    /// A second location with a label of its own.
     pub second: Option<(Span, String)>,
-    /// Evidence for the error that this one only follows from. It is not shown then.
+    /// Evidence of the error that this one follows from. Such a diagnostic is not shown.
     pub(crate) caused_by: Option<Reported>,
-    /// The values of params that may have caused it, as they were given.
+    /// The arguments of params that may have caused it, as they were written.
     pub(crate) given: Box<[String]>,
 }
 
 impl Diagnostic {
-    /// Makes a diagnostic of a place, with the severity of its kind.
+    /// Makes a diagnostic at a location, with the severity of its kind.
     pub fn new(span: Span, kind: impl Into<Kind>) -> Diagnostic {
         let kind = kind.into();
         let severity = kind.severity();
@@ -79,12 +80,12 @@ impl Diagnostic {
         self.kind.code()
     }
 
-    /// Returns the reason, in the words of the domain.
+    /// Returns the reason, in the terms of the domain.
     pub fn message(&self) -> String {
         self.kind.message()
     }
 
-    /// Returns the remedy, and the values of params that may be the cause.
+    /// Returns the remedy, and the arguments of params that may be the cause.
     pub fn help(&self) -> String {
         let help = self.kind.help();
         if self.given.is_empty() {
@@ -93,27 +94,28 @@ impl Diagnostic {
         format!("{help}; given: {}", Names(self.given.to_vec()))
     }
 
-    /// Marks it as one that only follows from another error, which is in the list; this one is not shown.
+    /// Marks the diagnostic as a consequence of another error in the list. It is then not shown.
     #[must_use]
     pub(crate) fn caused_by(self, cause: Reported) -> Diagnostic {
         Diagnostic { caused_by: Some(cause), ..self }
     }
 
-    /// Adds a second place.
+    /// Adds a second location.
     #[must_use]
     pub fn and(mut self, span: Span, label: impl Into<String>) -> Diagnostic {
         self.second = Some((span, label.into()));
         self
     }
 
-    /// Moves it to a text that begins at `base`.
+    /// Moves the locations to a text that begins at `base`.
     pub(crate) fn behind(mut self, base: usize) -> Diagnostic {
         self.span = self.span.behind(base);
         self.second = self.second.map(|(span, label)| (span.behind(base), label));
         self
     }
 
-    /// Renders code and message, the source's line with a caret, and the remedy. `styled` adds terminal colours.
+    /// Renders code and message, the source's line with a caret, and the remedy. `styled` adds terminal
+    /// colours.
     pub fn render(&self, sources: &Sources, styled: bool) -> String {
         let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
         let level = match self.severity {
@@ -148,7 +150,7 @@ fn excerpt(source: &Source) -> Snippet<'_, Annotation<'_>> {
     Snippet::source(harmless(&source.text)).path(escaped(&source.name))
 }
 
-/// What can be shown of a place: whole characters of the text.
+/// Returns the part of a location that can be shown: whole characters of the text.
 fn visible(source: &Source, span: Span) -> Range<usize> {
     let start = source.text.floor_char_boundary(span.start.min(source.text.len()));
     start..source.text.ceil_char_boundary(span.end.min(source.text.len())).max(start)

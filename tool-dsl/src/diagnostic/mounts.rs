@@ -1,6 +1,6 @@
-//! Mounts: the files, and how they are joined.
+//! Mounts: files, and how they are joined.
 
-use super::data::{Chain, Figure};
+use super::data::{Chain, FormattedNumber};
 use super::table::kinds;
 
 kinds! {
@@ -96,12 +96,12 @@ kinds! {
         }
         help "only outlines can be joined: write it as a `profile`"
         explain "The outlines of mounted files are joined into one, from which regions are derived.";
-    error T0517 NotAbove { name: String, z: Figure, below: String, height: Figure }
+    error T0517 NotAbove { name: String, z: FormattedNumber, below: String, height: FormattedNumber }
         "mount not above the one before"
         message "`{name}` at z = {z} does not lie above `{below}` at z = {height}"
         help "mounts are listed from the tip up"
         explain "Each mount continues the outline of those before it, from a plane across the axis on.";
-    error T0518 TooShort { below: String, z: Figure, top: Figure, length: Figure, first: bool }
+    error T0518 TooShort { below: String, z: FormattedNumber, top: FormattedNumber, length: FormattedNumber, first: bool }
         "part too short"
         message (first) {
             true => "`{below}` is {length} long and cannot stick out {z}",
@@ -109,12 +109,12 @@ kinds! {
         }
         help "put it at z = {top} or below, or make `{below}` longer"
         explain "A part reaches at least the plane on which the next one begins.";
-    error T0519 PointAtPlane { below: String, z: Figure }
+    error T0519 PointAtPlane { below: String, z: FormattedNumber }
         "part that is a point at the plane"
         message "`{below}` comes to a point at z = {z}"
         help "put the plane where there is something to hold"
         explain "At the plane on which the next part begins, this one has no radius.";
-    error T0520 PlaneCutsTwice { below: String, z: Figure }
+    error T0520 PlaneCutsTwice { below: String, z: FormattedNumber }
         "plane that cuts a part more than once"
         message "the plane z = {z} cuts `{below}` more than once"
         help "put the plane where the profile crosses it once"

@@ -1,6 +1,6 @@
-//! Profiles: their segments, their arcs, their sense.
+//! Profiles: their segments, arcs and orientation.
 
-use super::data::Figure;
+use super::data::FormattedNumber;
 use super::table::kinds;
 
 kinds! {
@@ -38,7 +38,7 @@ kinds! {
         message "an arc's radius is more than 0"
         help "into the material it bulges by `concave`"
         explain "The sign of a radius has no meaning here: `concave` says on which side the centre lies.";
-    error T0307 FlatArc { radius: Figure }
+    error T0307 FlatArc { radius: FormattedNumber }
         "arc as flat as a line"
         message "this arc of radius {radius} is a line to all ends"
         help "write `line to`"
@@ -53,7 +53,7 @@ kinds! {
         message "this arc is concave: its centre {centre} lies outside the material"
         help "say `concave` if it should be"
         explain "`concave` marks arcs whose centre lies outside the material, so that a wrong sign is noticed.";
-    error T0310 RadiusTooSmall { radius: Figure, chord: Figure, least: Figure }
+    error T0310 RadiusTooSmall { radius: FormattedNumber, chord: FormattedNumber, least: FormattedNumber }
         "radius too small"
         message "no arc of radius {radius} spans a chord of {chord}"
         help "its radius is {least} or more; else bring its ends nearer"

@@ -1,67 +1,70 @@
-//! Lists of diagnostics: evidence of an error, refusals, and how many are shown.
+//! Lists of diagnostics: evidence of an error, refusals, and the limit on their number.
 
 use super::{CheckKind, Diagnostic, Severity};
 use crate::source::Span;
 
-/// Evidence that an error is in the list of diagnostics. Refusing a tool takes one, and so does leaving
-/// out an error that follows from another.
+/// Evidence that the list of diagnostics contains an error. It is required to refuse a tool, and to omit an
+/// error that follows from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reported(());
 
 impl Reported {
-    /// Adds an error to the diagnostics. One that [follows](Diagnostic::caused_by) from another error is evidence
-    /// too: it was made from the evidence for that.
+    /// Adds an error to the diagnostics. An error that [follows](Diagnostic::caused_by) from another is
+    /// evidence too, since it was made from the evidence for that one.
     pub(crate) fn push(diagnostics: &mut Vec<Diagnostic>, diagnostic: Diagnostic) -> Reported {
         diagnostics.push(Diagnostic { severity: Severity::Error, ..diagnostic });
         Reported(())
     }
 
-    /// Finds the evidence in a list of diagnostics, if one of them is an error.
+    /// Returns the evidence if the list contains an error.
     pub(crate) fn among(diagnostics: &[Diagnostic]) -> Option<Reported> {
         any_error(diagnostics).then_some(Reported(()))
     }
 }
 
-/// Fails if one of the diagnostics is an error.
+/// Checks that no diagnostic is an error.
+///
+/// # Errors
+/// The evidence, if one is.
 pub(crate) fn without_error(diagnostics: &[Diagnostic]) -> Result<(), Reported> {
     Reported::among(diagnostics).map_or(Ok(()), Err)
 }
 
-/// The reasons for which a tool is refused: at least one error, and the warnings beside it.
+/// The reasons for refusing a tool: at least one error, and its warnings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// In the order of the text; one of them is an error.
+    /// The diagnostics in the order of the text, including at least one error.
     diagnostics: Vec<Diagnostic>,
 }
 
 impl Refusal {
-    /// Refuses a tool for what was reported of it, at its name.
+    /// Makes a refusal from the diagnostics of a tool. `place` locates the fallback error.
     pub(crate) fn new(diagnostics: Vec<Diagnostic>, place: Span, _: Reported) -> Refusal {
         let mut diagnostics = readable(diagnostics);
         if !any_error(&diagnostics) {
-            // Evidence without an error is a defect; a user is told so rather than nothing.
+            // Evidence without an error is a defect of the compiler; the user gets a message even then.
             diagnostics.push(Diagnostic::new(place, CheckKind::Unexplained));
         }
         Refusal { diagnostics }
     }
 
-    /// The errors and the warnings, in the order of the text.
+    /// Returns the errors and the warnings, in the order of the text.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }
 
-    /// The errors alone, of which there is at least one.
+    /// Returns the errors alone, at least one.
     pub fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error)
     }
 }
 
-/// Returns the diagnostics in the order of the text, each once, and no more than can be read. Warnings
-/// make room for errors.
+/// Returns the diagnostics in the order of the text, without duplicates and at most as many as can be read.
+/// Warnings are dropped first.
 pub(crate) fn readable(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics.retain(|diagnostic| diagnostic.caused_by.is_none());
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
-    // A file that is mounted twice has its mistakes once.
+    // A file that is mounted twice reports each error once.
     let mut here: Vec<Diagnostic> = Vec::new();
     diagnostics.retain(|diagnostic| {
         here.retain(|other| other.span.start == diagnostic.span.start);
@@ -86,15 +89,15 @@ pub(crate) fn readable(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
 }
 
-/// The most mistakes that are shown at once.
+/// The largest number of diagnostics shown at once.
 pub const MOST: usize = 50;
 
-/// Returns whether so much is wrong that looking for more helps nobody.
+/// Returns whether there are so many diagnostics that more would not help.
 pub(crate) fn enough(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().filter(|diagnostic| diagnostic.caused_by.is_none()).count() >= MOST
 }
 
-/// Returns whether any of them is an error.
+/// Returns whether the list contains an error.
 pub fn any_error(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }

@@ -1,6 +1,6 @@
 //! Regions, laws, directions, curves.
 
-use super::data::{Figure, Role, SurfaceRemedy};
+use super::data::{FormattedNumber, Role, SurfaceRemedy};
 use super::table::kinds;
 use crate::dimension::Dimension;
 
@@ -150,7 +150,7 @@ kinds! {
             None => "write regions by hand",
         }
         explain "A corner is smoothed by an arc that is tangent to both segments, at the tangent length from it.";
-    error T0426 FansTooWide { corners: Option<[String; 2]>, edge: Figure, most: Option<String> }
+    error T0426 FansTooWide { corners: Option<[String; 2]>, edge: FormattedNumber, most: Option<String> }
         "tangent length too large"
         message (corners) {
             Some([first, second]) => "the fans of {first} and {second} do not fit on the edge of length {edge}",

@@ -1,4 +1,4 @@
-//! Mistakes of spelling: characters and habits from elsewhere.
+//! Spelling mistakes: characters and habits from other languages.
 
 use super::data::NameStart;
 use super::table::kinds;

@@ -1,4 +1,4 @@
-//! Texts that do not parse, or are larger than any that people write.
+//! Texts that cannot be parsed, or are larger than any that people write.
 
 use super::data::{Expected, Names};
 use super::table::kinds;

@@ -2,34 +2,34 @@
 
 use super::Severity;
 
-/// A row of the table: what is known of a kind without its data.
+/// A row of the table: the properties of a kind that do not depend on its data.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
     /// The stable code: `T`, two digits of the family, two of the kind.
     pub code: &'static str,
     /// Error or warning.
     pub severity: Severity,
-    /// A few words.
+    /// The title, in a few words.
     pub title: &'static str,
-    /// One to three sentences: what the rule is, and why there is one.
+    /// One to three sentences that state the rule and its reason.
     pub explanation: &'static str,
-    /// The remedies, with the names of their data between braces.
+    /// The remedies, with the names of their data in braces.
     pub(super) remedies: &'static [&'static str],
     /// A text that causes it.
     pub example: Example,
 }
 
-/// A text that causes a diagnostic, or the reason why none is kept.
+/// A text that causes a diagnostic, or the reason for having none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Example {
-    /// The text of `tests/errors/CODE.tool`; files that it mounts lie in `tests/errors/CODE/`.
+    /// The text of `tests/errors/CODE.tool`; files that it mounts are in `tests/errors/CODE/`.
     Text(&'static str),
-    /// The reason why there is no such file.
+    /// The reason for having no such file.
     Without(&'static str),
 }
 
 impl Entry {
-    /// Returns the remedies, one for each case, with the names of their data in capitals.
+    /// Returns the remedies, one per case, with the names of their data in capitals.
     pub fn remedies(&self) -> impl Iterator<Item = String> {
         self.remedies.iter().map(|template| capitals(template))
     }
@@ -41,7 +41,7 @@ fn capitals(template: &str) -> String {
     let mut rest = template;
     while let Some((before, after)) = rest.split_once('{') {
         shown.push_str(before);
-        // `{{` is a brace of the text.
+        // `{{` is a literal brace.
         if let Some(after) = after.strip_prefix('{') {
             shown.push('{');
             rest = after;
@@ -55,7 +55,7 @@ fn capitals(template: &str) -> String {
     shown.replace("}}", "}")
 }
 
-/// Declares a family of kinds. An entry reads
+/// Declares a family of kinds. An entry has the form
 ///
 /// ```text
 /// error T0201 UnknownName { word: String, remedy: NameRemedy }
@@ -65,8 +65,8 @@ fn capitals(template: &str) -> String {
 ///     explain "…";
 /// ```
 ///
-/// Message and help are a template over the fields, or a `match` without its first word. An entry that no file of
-/// examples causes ends with `without "reason"`.
+/// Message and help are either a template over the fields, or a `match` without the keyword. An entry that no
+/// example file causes ends with `without "reason"`.
 macro_rules! kinds {
     (
         $(#[doc = $doc:literal])*

@@ -1,6 +1,6 @@
 //! Names, units, dimensions, values.
 
-use super::data::{Figure, Links, NameRemedy, Names, Operation, ParamRemedy, Role};
+use super::data::{FormattedNumber, Links, NameRemedy, Names, Operation, ParamRemedy, Role};
 use super::table::kinds;
 use crate::dimension::Dimension;
 
@@ -248,7 +248,7 @@ kinds! {
         message "`{word}` is {wanted}, what is given is {found}"
         help "give {wanted}"
         explain "A param's default says its dimension.";
-    error T0238 GivenUnit { word: String, number: Figure, here: &'static str, there: &'static str }
+    error T0238 GivenUnit { word: String, number: FormattedNumber, here: &'static str, there: &'static str }
         "param given without a unit"
         message "is `{word}` {number}{here} or {number}{there}?"
         help "this file is in {here}, the mounted one in {there}: write the unit; a mere number is `{number}{here}/1{here}`"

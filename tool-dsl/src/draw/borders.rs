@@ -1,5 +1,5 @@
-//! Where one owner ends and the next begins: the pieces of the section welded to one map, and its
-//! lines with whoever is on their sides.
+//! Borders between owners: the polygons of the section are welded to a planar map, and its lines are traced with the
+//! owners on both sides.
 
 use super::curves::Curves;
 use super::map::{Edge, edges};
@@ -9,10 +9,10 @@ use crate::formula::CurveIndex;
 use crate::geometry::outline::{Point, minus, norm};
 use std::collections::BTreeMap;
 
-/// What is on a side of a border.
+/// The area on one side of a border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Side {
-    /// A region, by its place in the list.
+    /// A region, by its index.
     Region(usize),
     /// Outside the tool.
     Outside,
@@ -20,29 +20,29 @@ pub(super) enum Side {
     Axis,
 }
 
-/// A line between two joints of the map, with the same neighbours all along.
+/// A line between two joints of the map, with the same owners on both sides all along.
 #[derive(Clone, Debug)]
 pub(super) struct Border {
-    /// The joints at its ends.
+    /// Indices of the joints at its ends.
     pub(super) ends: [usize; 2],
-    /// On its left and its right. A region is on the left, of two the one listed first.
+    /// The areas on its left and its right. A region is on the left; of two regions, the one listed first.
     pub(super) sides: [Side; 2],
-    /// Its course in lines and arcs.
+    /// Its geometry, as lines and arcs.
     pub(super) strokes: Vec<Stroke>,
-    /// Whether its arcs are the true ones, rather than as good as one sees.
+    /// True if its arcs are exact, rather than approximations below the visible tolerance.
     pub(super) exact: bool,
 }
 
-/// How near two corners are that are one, and how good the drawing is.
+/// Length tolerances of the map, in the tool's unit: `weld` merges corners, `seen` is the visible accuracy.
 #[derive(Clone, Copy)]
 pub(super) struct Nearness {
     pub(super) weld: f64,
     pub(super) seen: f64,
-    /// How far a corner may lie from where curves meet.
+    /// The largest distance of a corner from the intersection of its curves.
     pub(super) reach: f64,
 }
 
-/// Finds the borders between pieces.
+/// Finds the borders between polygons.
 pub(super) fn borders(curves: &mut Curves<'_>, pieces: &[Piece], near: Nearness) -> Vec<Border> {
     let (mut points, mut edges) = edges(pieces, near);
     let mut chains = chains(&edges, points.len());
@@ -51,7 +51,7 @@ pub(super) fn borders(curves: &mut Curves<'_>, pieces: &[Piece], near: Nearness)
     chains.iter().map(|chain| border(curves, &edges, chain, &points, near)).collect()
 }
 
-/// The edges in rows, each from one joint to the next.
+/// Returns the edges as chains, each from one joint to the next.
 fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
     let mut leaving: Vec<Vec<usize>> = vec![Vec::new(); corners];
     let mut coming: Vec<Vec<usize>> = vec![Vec::new(); corners];
@@ -74,7 +74,7 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
     };
     let mut taken = vec![false; edges.len()];
     let mut chains = Vec::new();
-    // First what begins at a joint, then what is closed in itself.
+    // Chains that begin at a joint come first, closed loops last.
     let starts = (0..edges.len()).filter(|place| !followed[*place]).chain(0..edges.len());
     for start in starts.collect::<Vec<_>>() {
         if taken[start] {
@@ -94,8 +94,7 @@ fn chains(edges: &[Edge], corners: usize) -> Vec<Vec<usize>> {
     chains
 }
 
-/// Draws together what is shorter than can be seen: where several bent curves meet in a point,
-/// their chords leave a speck.
+/// Contracts chains that are too short to see: where several bent curves meet in a point, their chords leave a speck.
 fn contract(edges: &mut [Edge], chains: &mut Vec<Vec<usize>>, points: &[Point], speck: f64) {
     let mut joint: Vec<usize> = (0..points.len()).collect();
     chains.retain(|chain| {
@@ -117,12 +116,12 @@ fn contract(edges: &mut [Edge], chains: &mut Vec<Vec<usize>>, points: &[Point], 
     }
 }
 
-/// The joints at the ends of a row.
+/// Returns the joints at the ends of a chain.
 fn ends(edges: &[Edge], chain: &[usize]) -> [usize; 2] {
     [edges[chain[0]].ends[0], edges[chain[chain.len() - 1]].ends[1]]
 }
 
-/// Moves the joints to where their curves truly meet.
+/// Moves the joints to the exact intersections of their curves.
 fn polish(
     curves: &mut Curves<'_>,
     edges: &[Edge],
@@ -162,7 +161,7 @@ fn polish(
     }
 }
 
-/// The border that a row of edges is.
+/// Returns the border along a chain of edges.
 fn border(
     curves: &mut Curves<'_>,
     edges: &[Edge],

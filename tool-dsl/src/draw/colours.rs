@@ -1,5 +1,5 @@
-//! Colours that the colour-blind tell apart too: Paul Tol's "light" scheme for areas with dark
-//! text on them (SRON/EPS/TN/09-002, 2021), reds for what cuts, darks for what does not.
+//! Colours that can be told apart with colour vision deficiency: Paul Tol's "light" scheme for areas with dark text on
+//! them (SRON/EPS/TN/09-002, 2021), reds for cutting surfaces, dark colours for the others.
 
 use super::borders::{Border, Side};
 use crate::model::Model;
@@ -11,7 +11,7 @@ const AREAS: [&str; 9] = [
 const CUTTING: [&str; 4] = ["#c1121f", "#e8590c", "#a61e6b", "#ff5d5d"];
 const OTHER: [&str; 5] = ["#1f2933", "#1d5fa8", "#6b4a1f", "#2f6f4f", "#6d4aa5"];
 
-/// A colour for each region, so that no two neighbours have the same.
+/// Returns a colour for each region, different for neighbours as far as the palette allows.
 pub(super) fn areas(regions: usize, borders: &[Border]) -> Vec<&'static str> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut used = [0; AREAS.len()];
@@ -35,7 +35,7 @@ pub(super) fn areas(regions: usize, borders: &[Border]) -> Vec<&'static str> {
     chosen.into_iter().map(|colour| AREAS[colour]).collect()
 }
 
-/// The colour of each surface.
+/// Returns the colour of each surface.
 pub(super) fn surfaces(model: &Model) -> Vec<&'static str> {
     let (mut cutting, mut other) = (CUTTING.iter().cycle(), OTHER.iter().cycle());
     let next = |cuts: bool| if cuts { cutting.next() } else { other.next() };

@@ -1,5 +1,4 @@
-//! The tool's surface as a drawing measures it: faces with their diameters and radii, and the
-//! heights at which one ends.
+//! The dimensions of the tool's surface: faces with their diameters and radii, and the heights of their ends.
 
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
@@ -7,10 +6,10 @@ use super::view::is_outline;
 use crate::geometry::outline::{Point, cross, dot, minus, norm};
 use crate::model::{Model, Unit};
 
-/// Lengths are equal that differ by less than this part of the tool's size.
+/// Lengths that differ by less than this fraction of the tool's size are considered equal.
 const EQUAL: f64 = 1e-7;
 
-/// What is measured of a face.
+/// The dimension of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Measure {
     /// A cylinder, by its radius.
@@ -19,23 +18,23 @@ pub(super) enum Measure {
     Arc(Point, f64),
     /// A cone, by its angle to the axis in degrees.
     Cone(f64),
-    /// Nothing.
+    /// No dimension.
     Other,
 }
 
-/// All that one surface has of one cylinder, one arc; or one straight or other stroke of it.
+/// All parts of a surface on one cylinder or one arc; or a single other stroke of it.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
     pub(super) surface: usize,
     pub(super) measure: Measure,
-    /// How long it is.
+    /// The total length.
     pub(super) length: f64,
-    /// Its longest stroke.
+    /// The longest stroke.
     pub(super) longest: Stroke,
 }
 
 impl Face {
-    /// Its measure as it is written.
+    /// Returns the dimension as text.
     pub(super) fn figure(&self, unit: Unit) -> Option<String> {
         match self.measure {
             Measure::Cylinder(radius) => Some(format!("⌀{}", tidy(2.0 * radius, unit))),
@@ -45,13 +44,13 @@ impl Face {
         }
     }
 
-    /// Whether every drawing says its measure: a cone's often is only an edge broken.
+    /// Returns whether the dimension is always noted. That of a cone is not, since it is often only a broken edge.
     pub(super) fn is_telling(&self) -> bool {
         matches!(self.measure, Measure::Cylinder(_) | Measure::Arc(..))
     }
 }
 
-/// A length of a drawing: as many decimals as a workshop reads.
+/// Formats a length, with as many decimals as usual in a workshop.
 pub(super) fn tidy(value: f64, unit: Unit) -> String {
     let decimals = match unit {
         Unit::Millimetre => 3,
@@ -59,19 +58,19 @@ pub(super) fn tidy(value: f64, unit: Unit) -> String {
         Unit::Metre => 6,
     };
     match trimmed(&format!("{value:.decimals$}")) {
-        // Too small for that: as many figures as show it.
-        text if text == "0" && value.abs() > 1e-12 => crate::diagnostic::figure(value),
+        // A length too small for that gets as many digits as it needs.
+        text if text == "0" && value.abs() > 1e-12 => crate::diagnostic::format_number(value),
         text => text,
     }
 }
 
-/// Decimals without the zeros that end them.
+/// Removes trailing zeros of a decimal number.
 fn trimmed(text: &str) -> String {
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// The surface's faces.
+/// Returns the faces of the surface.
 pub(super) fn faces(model: &Model, borders: &[Border], size: f64) -> Vec<Face> {
     let mut faces: Vec<Face> = Vec::new();
     for border in borders.iter().filter(|border| is_outline(border)) {
@@ -122,8 +121,8 @@ fn alike(a: Measure, b: Measure, size: f64) -> bool {
     }
 }
 
-/// The heights at which the surface has a corner, a tangent joint of two faces or its end, from
-/// below, each with its outermost place.
+/// Returns the heights at which the surface has a corner, a tangent joint of two faces, or an end, from bottom to top.
+/// Each is given with its outermost point.
 pub(super) fn heights(model: &Model, borders: &[Border], size: f64) -> Vec<Point> {
     let outline: Vec<&Border> = borders.iter().filter(|border| is_outline(border)).collect();
     let surface = |border: &Border| match border.sides[0] {
@@ -145,7 +144,7 @@ pub(super) fn heights(model: &Model, borders: &[Border], size: f64) -> Vec<Point
             steps.extend(border.strokes.last().map(|last| last.to));
         }
     }
-    // An arc may reach farther than its ends.
+    // An arc may reach beyond its ends.
     let strokes = || outline.iter().flat_map(|border| &border.strokes);
     for (k, of) in [(0, f64::min as fn(f64, f64) -> f64), (1, f64::max)] {
         let ends = strokes().map(|stroke| (stroke.span()[k], stroke.from[0].max(stroke.to[0])));
@@ -164,7 +163,7 @@ pub(super) fn heights(model: &Model, borders: &[Border], size: f64) -> Vec<Point
     levels
 }
 
-/// Whether two strokes are one line, or of one circle.
+/// Returns whether two strokes continue each other on one line or lie on one circle.
 fn one(a: &Stroke, b: &Stroke, size: f64) -> bool {
     match (a.circle, b.circle) {
         (None, None) => {

@@ -1,4 +1,4 @@
-//! The splitting curves as the drawing asks for them: one at a time, where it matters.
+//! Evaluates the splitting curves for the drawing, each prepared when it is first used.
 
 use crate::bound::Extent;
 use crate::expr::interval::{Cell, Encloser, Interval};
@@ -8,19 +8,19 @@ use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::geometry::outline::{Point, dot, minus, norm};
 use crate::model::Model;
 
-/// A curve that can be asked for its value at a point and its signs in a box.
+/// A curve prepared for evaluation at a point and for its signs in a box.
 enum Asked<'m> {
-    /// `a d + b z + c`
+    /// The line `a d + b z + c`.
     Line([f64; 3]),
-    /// Any other.
+    /// Any other curve.
     Bent(Box<(Evaluator<'m>, Encloser<'m>)>),
 }
 
-/// All curves of a tool. What is needed for one is made when it is first asked for.
+/// All curves of a tool. A curve is prepared when it is first used.
 pub(super) struct Curves<'m> {
     model: &'m Model,
     asked: Vec<Option<Asked<'m>>>,
-    /// The step over which slopes are taken.
+    /// The step of the finite differences, in the tool's unit.
     step: f64,
 }
 
@@ -41,12 +41,12 @@ impl<'m> Curves<'m> {
         })
     }
 
-    /// Whether a curve is a straight line.
+    /// Returns whether a curve is a straight line.
     pub(super) fn straight(&mut self, curve: CurveIndex) -> bool {
         matches!(self.asked(curve), Asked::Line(_))
     }
 
-    /// A curve's value at a point; where it has none, it is positive.
+    /// Returns a curve's value at a point; +∞ where it is undefined.
     pub(super) fn value(&mut self, curve: CurveIndex, [d, z]: Point) -> f64 {
         let id = self.model.curves[curve].value;
         let value = match self.asked(curve) {
@@ -59,7 +59,7 @@ impl<'m> Curves<'m> {
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// The signs that a curve can have in a box.
+    /// Returns the signs that a curve can have in a box.
     pub(super) fn signs(&mut self, curve: CurveIndex, low: Point, high: Point) -> Signs {
         let id = self.model.curves[curve].value;
         let range = match self.asked(curve) {
@@ -93,25 +93,26 @@ impl<'m> Curves<'m> {
         if signs == 0 { ANY } else { signs }
     }
 
-    /// A curve's slope at a point.
+    /// Returns a curve's gradient at a point, by finite differences.
     fn slope(&mut self, curve: CurveIndex, [d, z]: Point) -> Point {
         let h = self.step;
         if let Asked::Line([a, b, _]) = self.asked(curve) {
             return [*a, *b];
         }
-        // The axis is a mirror: d is not taken below it.
+        // The axis is a mirror: negative d is not sampled.
         let low = (d - h).max(0.0);
         let along = (self.value(curve, [d + h, z]) - self.value(curve, [low, z])) / (d + h - low);
         let up = (self.value(curve, [d, z + h]) - self.value(curve, [d, z - h])) / (2.0 * h);
         [along, up]
     }
 
-    /// How far a point is from a curve, if that went on as it does at the point.
+    /// Returns the first-order estimate of a point's distance from a curve.
     pub(super) fn distance(&mut self, curve: CurveIndex, p: Point) -> f64 {
         self.value(curve, p).abs() / norm(self.slope(curve, p))
     }
 
-    /// The point of a curve next to a point, no farther from it than `reach`.
+    /// Returns the foot of a point on a curve by Newton's method, or the point itself if the foot is farther away than
+    /// `reach`.
     pub(super) fn foot(&mut self, curve: CurveIndex, from: Point, reach: f64) -> Point {
         let mut p = from;
         for _ in 0..4 {
@@ -122,8 +123,9 @@ impl<'m> Curves<'m> {
         if norm(minus(p, from)) <= reach { p } else { from }
     }
 
-    /// Where two constraints meet, next to a point and no farther from it than `reach`; and how
-    /// squarely. `None` stands for the axis.
+    /// Returns the intersection of two constraints near a point, by Newton's method, and the sine of the angle at which
+    /// they meet. `None` in `pair` stands for the axis. Returns `None` if they meet at too small an angle, or farther
+    /// away than `reach`.
     pub(super) fn meet(
         &mut self,
         pair: [Option<CurveIndex>; 2],
@@ -149,7 +151,7 @@ impl<'m> Curves<'m> {
     }
 }
 
-/// The coefficients of a curve that is a straight line.
+/// Returns the coefficients of a curve that is a straight line.
 fn line(model: &Model, curve: CurveIndex) -> Option<[f64; 3]> {
     let polynomial = Polynomial::of(&model.graph, model.curves[curve].value)?;
     let mut line = [0.0; 3];

@@ -1,18 +1,18 @@
-//! The strokes of the letters, drawn for this program: one line wide, 14 high for capitals and
-//! figures, 10 for small letters, 4 below the line. Each stroke begins at a place and goes on as
-//! relative SVG path data; y grows downward and the line is at 0.
+//! The strokes of the built-in alphabet. All strokes are one line wide. Capitals and digits are 14 units high,
+//! lower-case letters 10; descenders reach 4 units below the baseline. Each stroke has a start point and continues as
+//! relative SVG path data. The y axis points downward, and the baseline is at 0.
 
-/// Where a stroke begins, and how it goes on.
+/// The start point of a stroke, and its path data.
 pub(super) type Stroke = (f32, f32, &'static str);
 
-/// A letter: its width, and its strokes.
+/// A glyph: its width, and its strokes.
 pub(super) type Glyph = (f32, &'static [Stroke]);
 
 const BOWL: &str = "c0-2.4-1.6-4-4-4s-4 1.6-4 4v2c0 2.4 1.6 4 4 4s4-1.6 4-4";
 const BELLY: &str = "c0-2.4 1.6-4 4-4s4 1.6 4 4v2c0 2.4-1.6 4-4 4s-4-1.6-4-4";
 const RING: &str = "c3 0 5 2 5 5v4c0 3-2 5-5 5s-5-2-5-5v-4c0-3 2-5 5-5z";
 
-/// The glyph of a letter without marks; `None` for one that is not drawn.
+/// Returns the glyph of a character without diacritic; `None` if the alphabet does not have it.
 pub(super) fn glyph(letter: char) -> Option<Glyph> {
     capital(letter).or_else(|| small(letter)).or_else(|| figure(letter)).or_else(|| sign(letter))
 }
@@ -299,7 +299,7 @@ fn sign(letter: char) -> Option<Glyph> {
     })
 }
 
-/// A letter with a mark as the letter and the mark, which is drawn above a small letter.
+/// Splits a character into its base character and its diacritic, which is drawn above a lower-case letter.
 pub(super) fn marked(letter: char) -> Option<(char, &'static [Stroke])> {
     const DOTS: &[Stroke] = &[(2., -13.5, "v-.4m4 0v.4")];
     const ACUTE: &[Stroke] = &[(3., -12., "l3-2.5")];

@@ -1,4 +1,4 @@
-//! Below the section: what its lines and signs stand for.
+//! The legend below the section, which explains its lines and symbols.
 
 use super::Picture;
 use super::colours;
@@ -8,13 +8,13 @@ use super::regions::Marks;
 use super::sheet::{Anchor, INK, Look, Sheet, lines};
 use crate::geometry::outline::Point;
 
-/// The height of capitals, and of a line.
+/// The height of capitals; `LINE` is the height of a line. Sheet units.
 const SIZE: f64 = 7.5;
 const LINE: f64 = 16.0;
-/// How long a sample is.
+/// The length of a sample line, in sheet units.
 const SAMPLE: f64 = 24.0;
 
-/// A sign that is explained.
+/// A symbol that the legend explains.
 enum Sign {
     Surface { colour: &'static str, cutting: bool },
     Split,
@@ -24,7 +24,7 @@ enum Sign {
     Break,
 }
 
-/// Draws the legend under everything that is there.
+/// Draws the legend below everything drawn so far.
 pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
     let [low, high] = sheet.frame();
     let room = (high[0] - low[0]).max(300.0);

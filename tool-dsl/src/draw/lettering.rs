@@ -1,24 +1,24 @@
-//! Text as strokes of a built-in alphabet, so that a drawing needs no font and looks the same
-//! everywhere, as SVG and as PNG.
+//! Text as strokes of a built-in alphabet, so that a drawing needs no font and looks the same everywhere, as SVG and as
+//! PNG.
 
 use super::glyphs::{Stroke, glyph, marked};
 use std::fmt::Write;
 
-/// The height of capitals in the alphabet's own units.
+/// The height of capitals, in units of the alphabet.
 const HEIGHT: f64 = 14.0;
-/// The space between two letters.
+/// The space between two letters, in units of the alphabet.
 const GAP: f32 = 3.4;
 
-/// What is drawn where no glyph is known.
+/// The strokes drawn for an unknown character.
 const UNKNOWN: &[Stroke] = &[(0.0, 0.0, "v-14h8v14z")];
 
-/// How wide a line of text is whose capitals are `size` high.
+/// Returns the width of a line of text whose capitals are `size` high.
 pub fn width(text: &str, size: f64) -> f64 {
     let letters = text.chars().map(|letter| advance(letter) + GAP).sum::<f32>();
     f64::from((letters - GAP).max(0.0)) * size / HEIGHT
 }
 
-/// The path data of a line of text in the alphabet's units, from (0, 0) to the right.
+/// Returns the path data of a line of text in units of the alphabet, from (0, 0) to the right.
 pub fn strokes(text: &str) -> String {
     let mut data = String::new();
     let mut pen = 0.0;
@@ -26,7 +26,7 @@ pub fn strokes(text: &str) -> String {
         let (base, mark) = marked(letter).unwrap_or((letter, &[]));
         let strokes = glyph(base).map_or(UNKNOWN, |(_, strokes)| strokes);
         let raised = if base.is_uppercase() { -4.0 } else { 0.0 };
-        // Writing to a String does not fail.
+        // Writing to a `String` cannot fail.
         for (x, y, rest) in strokes {
             let _ = write!(data, "M{} {}{rest}", short(pen + x), short(*y));
         }
@@ -38,12 +38,12 @@ pub fn strokes(text: &str) -> String {
     data
 }
 
-/// The factor from the alphabet's units to text whose capitals are `size` high.
+/// Returns the scale factor from units of the alphabet to text whose capitals are `size` high.
 pub fn scale(size: f64) -> f64 {
     size / HEIGHT
 }
 
-/// Text in lines no wider than `room`, broken at spaces.
+/// Breaks text at spaces into lines no wider than `room`.
 pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

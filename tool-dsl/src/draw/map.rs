@@ -1,4 +1,4 @@
-//! The pieces of the section welded to one map: which owners lie on the sides of each edge.
+//! Welds the polygons of the section to a planar map, whose edges have an owner on each side.
 
 use super::borders::{Nearness, Side};
 use super::section::Piece;
@@ -6,7 +6,7 @@ use crate::formula::CurveIndex;
 use crate::geometry::outline::{Point, cross, minus, norm};
 use std::collections::HashMap;
 
-/// A piece of a border, from one welded corner to another.
+/// A part of a border, from one welded corner to another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     pub(super) ends: [usize; 2],
@@ -14,12 +14,13 @@ pub(super) struct Edge {
     pub(super) curve: Option<CurveIndex>,
 }
 
-/// The side of a piece: which piece it is of, and its curve.
+/// A side of a polygon: the polygon's index, and the side's curve.
 type Half = (usize, Option<CurveIndex>);
-/// Sides by their corners, the smaller first: on the left and on the right of the way between.
+/// Sides by their corner indices, smaller index first: the polygon on the left and the one on the right of that
+/// direction.
 type Halves = HashMap<[usize; 2], [Option<Half>; 2]>;
 
-/// The welded corners, and the edges between two owners.
+/// Returns the welded corners, and the edges between two owners.
 pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>) {
     let mut weld = Weld { near: near.weld, points: Vec::new(), buckets: HashMap::new() };
     let mut halves = Halves::new();
@@ -31,7 +32,7 @@ pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>)
     }
     let mut points = weld.points;
     matched(&mut halves, &points);
-    // Of corners that are one, any may have come first: those on the axis are put on it.
+    // Any of several welded corners may have come first, so corners near the axis are moved onto it.
     points.iter_mut().filter(|p| p[0].abs() <= near.weld).for_each(|p| p[0] = 0.0);
     let owners = without_specks(pieces, &halves, &points, near.seen);
     let mut edges = Vec::new();
@@ -56,13 +57,13 @@ pub(super) fn edges(pieces: &[Piece], near: Nearness) -> (Vec<Point>, Vec<Edge>)
             });
         }
     }
-    // A hash map has another order every time.
+    // The iteration order of a hash map varies.
     edges.sort_unstable_by_key(|edge| edge.ends);
     (points, edges)
 }
 
-/// Splits sides of cells that are cut on one side only, where the other found it needless: each then
-/// has its counterpart.
+/// Splits sides of cells that are divided on one side only, where the other cell did not need the division. Afterwards
+/// each side has its counterpart.
 fn matched(halves: &mut Halves, points: &[Point]) {
     let mut lone: Vec<[usize; 2]> = halves
         .iter()
@@ -70,7 +71,7 @@ fn matched(halves: &mut Halves, points: &[Point]) {
         .map(|(ends, _)| *ends)
         .collect();
     lone.sort_unstable();
-    // Cells' sides are level or upright, at places that are equal to the last bit.
+    // Sides of cells are horizontal or vertical, at coordinates that are equal to the last bit.
     let line = |ends: &[usize; 2]| {
         let [a, b] = ends.map(|end| points[end]);
         (0..2).find(|k| a[*k] == b[*k]).map(|k| (k, a[k].to_bits()))
@@ -104,7 +105,7 @@ fn matched(halves: &mut Halves, points: &[Point]) {
         }
         let Some(pair) = halves.remove(&ends) else { continue };
         for part in row.windows(2) {
-            // The way from the smaller corner to the larger, against that of the whole.
+            // The direction from the smaller corner index to the larger may be opposite to that of the whole side.
             let key = [part[0].min(part[1]), part[0].max(part[1])];
             let same = (part[0] < part[1]) == up;
             for (way, half) in pair.iter().enumerate() {
@@ -117,7 +118,7 @@ fn matched(halves: &mut Halves, points: &[Point]) {
     }
 }
 
-/// Corners, those that are one put together.
+/// Corners, with coincident ones merged.
 struct Weld {
     near: f64,
     points: Vec<Point>,
@@ -141,7 +142,7 @@ impl Weld {
         self.points.len() - 1
     }
 
-    /// The sides of a piece that have a length.
+    /// Returns the sides of a polygon that have a length.
     fn around(&mut self, piece: &Piece) -> Vec<(usize, usize, Option<CurveIndex>)> {
         let corners: Vec<usize> =
             piece.corners.iter().map(|corner| self.corner(corner.at)).collect();
@@ -154,8 +155,8 @@ impl Weld {
     }
 }
 
-/// Who owns each piece. Where bent curves meet or nearly touch, their chords leave specks and
-/// slivers that nobody can see: those go to whom they border on most.
+/// Returns the owner of each polygon. Where bent curves meet or nearly touch, their chords leave specks and slivers too
+/// small to see. Those are given to the owner with which they share the longest border.
 fn without_specks(
     pieces: &[Piece],
     halves: &Halves,
@@ -172,7 +173,7 @@ fn without_specks(
             Some((a, b, norm(minus(points[ends[1]], points[ends[0]]))))
         })
         .collect();
-    // Pieces of one owner that hang together, by their first.
+    // Connected polygons of one owner (union-find), represented by the first one.
     let mut whole: Vec<usize> = (0..pieces.len()).collect();
     for (a, b, _) in shared.iter().filter(|(a, b, _)| owners[*a] == owners[*b]) {
         let (a, b) = (root(&mut whole, *a), root(&mut whole, *b));
@@ -220,7 +221,7 @@ fn without_specks(
     owners
 }
 
-/// The first piece of those that a piece hangs together with.
+/// Returns the representative of a polygon's connected component, with path halving.
 fn root(whole: &mut [usize], mut place: usize) -> usize {
     while whole[place] != place {
         whole[place] = whole[whole[place]];

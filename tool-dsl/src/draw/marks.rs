@@ -1,4 +1,4 @@
-//! What is marked inside regions: which way they push, and where that is undefined.
+//! Marks inside regions: arrows along the directions, and the points where directions are undefined.
 
 use super::shape::{Frame, Shape};
 use super::view::View;
@@ -6,10 +6,10 @@ use crate::expr::value::{At, Evaluator};
 use crate::geometry::outline::{Point, cross, minus, norm};
 use crate::model::Model;
 
-/// An arrow on the sheet, from its tail to its head.
+/// An arrow on the sheet, as tail and head.
 pub(super) type Arrow = [Point; 2];
 
-/// The directions of a tool's regions.
+/// Evaluates the directions of a tool's regions.
 pub(super) struct Directions<'m> {
     model: &'m Model,
     evaluator: Evaluator<'m>,
@@ -21,7 +21,7 @@ impl<'m> Directions<'m> {
         Directions { model, evaluator: Evaluator::new(&model.graph, roots) }
     }
 
-    /// The direction to the surface at a point of a region, if there is one.
+    /// Returns the direction to the surface at a point of a region; `None` if it is undefined there.
     pub(super) fn at(&mut self, region: usize, [d, z]: Point) -> Option<Point> {
         self.evaluator.set(At::meridian(d, z));
         let [across, _, along] = self.model.regions[region].direction;
@@ -29,14 +29,14 @@ impl<'m> Directions<'m> {
         ((norm(way) - 1.0).abs() < 1e-3).then_some(way)
     }
 
-    /// The point that a region's directions all lead away from or toward, if there is one: they
-    /// are undefined there. It is sought where lines along three of them meet.
+    /// Returns the point toward or away from which all directions of a region point, if there is one; directions are
+    /// undefined there. It is the common intersection of the lines along three directions.
     pub(super) fn focus(&mut self, region: usize, shape: &Shape, view: &View) -> Option<Point> {
         let [low, high] = shape.frame();
         let (middle, _) = shape.pole(1.0);
         let around = [[0.0, 0.0], [0.31, 0.17], [-0.23, 0.29], [0.19, -0.33], [-0.27, -0.21]];
         let mut seen: Vec<(Point, Point)> = Vec::new();
-        // The smaller the region, the nearer.
+        // The sampled neighbourhood shrinks if the region is too small for it.
         for near in [1.0, 0.4, 0.1] {
             seen.clear();
             for [u, v] in around {
@@ -65,7 +65,7 @@ impl<'m> Directions<'m> {
         (near && shape.room(on_sheet, 1.0) > -0.05).then_some(p)
     }
 
-    /// A few arrows where there is room for them.
+    /// Returns a few arrows, placed where there is room for them.
     pub(super) fn arrows(
         &mut self,
         region: usize,
@@ -73,7 +73,7 @@ impl<'m> Directions<'m> {
         view: &View,
         taken: &[Frame],
     ) -> Vec<Arrow> {
-        /// Between places that are looked at, and between arrows.
+        /// The distance between candidate positions, and the minimum distance between arrows, in sheet units.
         const STEP: f64 = 9.0;
         const APART: f64 = 40.0;
         let [low, high] = shape.frame();
@@ -95,7 +95,7 @@ impl<'m> Directions<'m> {
         let mut arrows: Vec<Arrow> = Vec::new();
         let mut middles: Vec<Point> = Vec::new();
         while arrows.len() < most {
-            // Where there is room, and away from the others.
+            // Prefers positions with room around them and far from the other arrows.
             let worth = |(room, p): &(f64, Point)| {
                 let apart =
                     middles.iter().map(|m| norm(minus(*m, *p))).fold(f64::INFINITY, f64::min);
@@ -114,7 +114,7 @@ impl<'m> Directions<'m> {
                     ends.iter().all(|end| shape.room(*end, 1.0) > 2.0 && clear(*end, taken) > 1.0);
                 clear.then_some(ends)
             };
-            // Short ones only where there is nothing better.
+            // Short arrows are used only for a region without any other.
             let lengths =
                 if arrows.is_empty() { &[18.0, 14.0, 10.0, 7.0][..] } else { &[18.0, 14.0] };
             if let Some(arrow) = lengths.iter().find_map(fits) {
@@ -126,7 +126,7 @@ impl<'m> Directions<'m> {
     }
 }
 
-/// How far a point is from boxes.
+/// Returns the distance of a point from the nearest box; -1 inside one.
 fn clear(p: Point, taken: &[Frame]) -> f64 {
     let off = |frame: &Frame| {
         let out = [0, 1].map(|k| (frame[0][k] - p[k]).max(p[k] - frame[1][k]));
@@ -135,7 +135,7 @@ fn clear(p: Point, taken: &[Frame]) -> f64 {
     taken.iter().map(off).fold(f64::INFINITY, f64::min)
 }
 
-/// An arrow's head as a filled triangle.
+/// Returns an arrow's head as a filled triangle.
 pub(super) fn head([tail, head]: Arrow, length: f64) -> [Point; 3] {
     let way = minus(head, tail);
     let size = norm(way);

@@ -1,14 +1,13 @@
-//! A checked tool to its drawing, as SVG: the section with its regions on the right, plain and
-//! hatched on the left, measured and named, as figs. 7.3 and 7.4 of Ho (1999) show it.
+//! Draws a checked tool as SVG: the section with its regions on the right half and hatched on the left half, with
+//! dimensions and names, in the style of figs. 7.3 and 7.4 of Ho (1999).
 //!
 //! ```text
 //! plan ──section──▶ pieces ──borders──▶ lines and arcs with their neighbours ──view──▶ the sheet
 //! ```
 //!
-//! Everything is told by the plan's tree and its curves, so that a profile and regions written by
-//! hand are drawn the same way. Corners are where curves meet, to the last digits; so what is
-//! measured is exact. The text is drawn in strokes of its own (`lettering`), and the same tool
-//! gives the same bytes every time.
+//! The drawing is derived only from the plan's tree and its curves, so profiles and regions written by hand are drawn
+//! the same way. Corners are computed as intersections of curves, to full precision, so the dimensions are exact. Text
+//! is drawn in strokes of a built-in alphabet (`lettering`). The same tool always gives the same bytes.
 
 mod borders;
 mod colours;
@@ -38,18 +37,20 @@ pub use sheet::Lettering;
 use sheet::{Anchor, Look, Sheet};
 use view::View;
 
-/// What the drawing is made of.
+/// The content of a drawing.
 struct Picture<'m> {
     model: &'m Model,
     borders: Vec<Border>,
     view: View,
-    /// The regions' places on the sheet, as listed.
+    /// The regions' shapes on the sheet, in the order of the model's regions.
     shapes: Vec<Shape>,
-    /// The tool's size, which rounding is measured by.
+    /// The tool's size, the scale of tolerances for rounding.
     size: f64,
 }
 
-/// Draws a tool as SVG; a solid has no axis, so no section shows it whole. The drawing says what it is of, so it needs no caption; it lies on white.
+/// Draws a tool as SVG, on a white background. The drawing has a title and needs no caption.
+///
+/// Returns `None` for a solid: it has no axis, so no section shows all of it.
 pub fn svg(tool: &CheckedTool, lettering: Lettering) -> Option<String> {
     if tool.model.domain == Domain::Space {
         return None;
@@ -71,7 +72,7 @@ impl<'m> Picture<'m> {
     fn new(tool: &'m CheckedTool) -> Picture<'m> {
         let (model, extent) = (&tool.model, &tool.extent);
         let height = extent.high - extent.low;
-        // What one unit of the sheet is at least, in the tool's.
+        // A lower bound on one unit of the sheet, in the tool's unit.
         let unit = (height / 500.0).min(extent.radius / 60.0);
         // Odd shares, so that no side of a cell runs along a curve.
         let low = [0.0, extent.low - 0.0213 * height];
@@ -97,18 +98,18 @@ impl<'m> Picture<'m> {
         Picture { model, borders, view, shapes, size }
     }
 
-    /// The region's surface.
+    /// Returns the index of a region's surface.
     fn surface(&self, region: usize) -> usize {
         self.model.regions[region].surface
     }
 }
 
-/// Name, description and unit, above everything.
+/// Writes name, description and unit above the drawing.
 fn title(tool: &CheckedTool, sheet: &mut Sheet) {
     let model = &tool.model;
     let [low, high] = sheet.frame();
     let room = (high[0] - low[0]).max(400.0);
-    let unit = model.unit.word();
+    let unit = model.unit.symbol();
     let mut lines = Vec::new();
     if let Some(title) = &model.title {
         lines = lettering::wrapped(title, 8.5, room);
@@ -136,7 +137,7 @@ mod tests {
         compiled.outcome.unwrap_or_else(|refusal| panic!("{refusal:?}")).tool
     }
 
-    /// The areas of the regions of the exact fig. 7.3, in closed form.
+    /// The areas of the regions of the exact fig. 7.3 have closed forms.
     #[test]
     fn regions_have_their_areas() {
         let tool = tool(include_str!("../../../tools-library/tools/fig_7_3_exact.tool"));
@@ -156,17 +157,17 @@ mod tests {
             4.0,
             std::f64::consts::FRAC_PI_4,
         ];
-        // The profile goes from the tip up, the thesis from the housing down.
+        // The profile runs from the tip upward; the thesis lists the regions from the housing downward.
         for (region, expected) in expected.into_iter().rev().enumerate() {
             let scale = picture.view.scale;
             let area = picture.shapes[region].area() / (scale * scale);
             let name = &tool.model.regions[region].name;
-            // Areas are taken of chords a third of a unit of the sheet off.
+            // Areas are computed from chords that are a third of a sheet unit off at most.
             assert!((area - expected).abs() < 0.03, "{name}: {area}, not {expected}");
         }
     }
 
-    /// At every joint as many borders of a region end as begin.
+    /// Asserts that at every joint as many borders of a region end as begin.
     fn closed(picture: &Picture<'_>) {
         for region in 0..picture.model.regions.len() {
             let mut open = std::collections::BTreeMap::new();
@@ -184,7 +185,7 @@ mod tests {
         }
     }
 
-    /// The parts of all of these meet without a gap, whatever curves bound them.
+    /// The regions of all these tools meet without a gap, whatever curves bound them.
     #[test]
     fn regions_are_closed() {
         let profiles = [
@@ -212,7 +213,7 @@ mod tests {
         }
     }
 
-    /// The surface is closed: from the axis, from joint to joint, to the axis.
+    /// The surface is connected: from the axis, from joint to joint, back to the axis.
     #[test]
     fn a_profile_is_found_again() {
         let text = r#"tool Slot "of a profile with an undercut and a fillet" {

@@ -1,5 +1,5 @@
-//! Beside the section: names and measures of faces on the left, names of small regions and heights
-//! on the right.
+//! Notes beside the section: names and dimensions of faces on the left, names of small regions and heights on the
+//! right.
 
 use super::Picture;
 use super::colours;
@@ -11,11 +11,11 @@ use super::sheet::{Anchor, Look, Sheet, THIN, lines};
 use super::view::is_outline;
 use crate::geometry::outline::{Point, minus, norm};
 
-/// The height of capitals.
+/// The height of capitals, in sheet units.
 const SIZE: f64 = 7.5;
-/// Between lines of notes.
+/// The distance between lines of notes, in sheet units.
 const GAP: f64 = 13.5;
-/// From the section to where leaders turn, and on to the notes.
+/// Distances from the section to the bend of a leader, and to the notes, in sheet units.
 const KNEE: f64 = 12.0;
 const AWAY: f64 = 30.0;
 
@@ -27,17 +27,17 @@ pub(super) fn draw(picture: &Picture<'_>, marks: &Marks, sheet: &mut Sheet) {
     levels(picture, &steps, edge, sheet);
 }
 
-/// A note with the place that it is about.
+/// A note, with the point that it refers to.
 struct Note {
     text: String,
     colour: &'static str,
-    /// Where its leader ends.
+    /// The end of its leader.
     at: Point,
-    /// Where its leader leaves the level.
+    /// The point at which its leader bends toward the end.
     bend: Point,
 }
 
-/// The faces: their surface's name and their measure.
+/// Draws the notes of faces: the surface's name and the face's dimension.
 fn left(picture: &Picture<'_>, sheet: &mut Sheet) {
     let view = &picture.view;
     let room = ((view.height + 60.0) / GAP) as usize;
@@ -76,8 +76,8 @@ fn left(picture: &Picture<'_>, sheet: &mut Sheet) {
     sheet.path(&format!("fill=\"{THIN}\""), &lines(&heads));
 }
 
-/// The faces that are noted: cylinders and arcs, and something of every surface; the longest, if
-/// they are too many.
+/// Chooses the faces to note: cylinders and arcs, and at least one face of every surface. If they are more than `room`,
+/// the longest ones are kept.
 fn chosen(picture: &Picture<'_>, room: usize) -> Vec<Face> {
     let unit = picture.model.unit;
     let all = faces(picture.model, &picture.borders, picture.size);
@@ -91,7 +91,7 @@ fn chosen(picture: &Picture<'_>, room: usize) -> Vec<Face> {
             None => chosen.push(face.clone()),
         }
     }
-    // Of a surface without cylinder and arc, the longest face.
+    // The longest face of each surface that has no cylinder and no arc.
     let best = |surface: usize| -> Option<usize> {
         let of = |place: &usize| chosen[*place].surface == surface;
         let told = (0..chosen.len()).filter(of).any(|place| chosen[place].is_telling());
@@ -116,13 +116,13 @@ fn chosen(picture: &Picture<'_>, room: usize) -> Vec<Face> {
     chosen
 }
 
-/// Where a face's leader ends in the left half, and where it bends toward it.
+/// Returns the end of a face's leader in the left half, and the point at which it bends toward it.
 fn pointed(picture: &Picture<'_>, face: &Face) -> (Point, Point) {
     let view = &picture.view;
     let stroke = view.stroke(&face.longest);
     let [mut x, mut y] = stroke.at(0.5);
     if stroke.circle.is_none() {
-        // Not onto a break line.
+        // Moves the end away from a break line.
         for seam in view.seams() {
             if (y - seam).abs() < 12.0 {
                 y = seam - 22.0;
@@ -132,8 +132,8 @@ fn pointed(picture: &Picture<'_>, face: &Face) -> (Point, Point) {
         }
     }
     let at = [-x, y];
-    // Away from the material, which is on the left of a stroke as the tool has it: on the sheet,
-    // where heights grow downward, on its right.
+    // The leader points away from the material. The material is on the left of a stroke in the tool's coordinates, and
+    // on its right on the sheet, where y points downward.
     let way = match stroke.circle {
         None => minus(stroke.to, stroke.from),
         Some((centre, _)) => {
@@ -147,7 +147,7 @@ fn pointed(picture: &Picture<'_>, face: &Face) -> (Point, Point) {
     if dy == 0.0 { (at, at) } else { (at, [at[0] + 15.0 * dx, at[1] + 15.0 * dy]) }
 }
 
-/// The names of regions that found no room inside; returns how far they reach.
+/// Draws the names of regions that do not fit inside. Returns the x coordinate that they reach.
 fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut Sheet) -> f64 {
     let half = picture.view.half;
     let mut rows: Vec<(&str, Point)> = marks
@@ -163,7 +163,7 @@ fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut She
     let mut leaders = Vec::new();
     let mut first = 0;
     while first < rows.len() {
-        // Those that stand close together begin at the same distance.
+        // Notes close together begin at the same distance from the section.
         let close = |k: &usize| places[*k] - places[*k - 1] < 1.3 * GAP;
         let end = (first + 1..rows.len()).take_while(close).last().unwrap_or(first) + 1;
         let low = places[first].min(rows[first].1[1]) - SIZE;
@@ -185,7 +185,7 @@ fn right(picture: &Picture<'_>, marks: &Marks, levels: &[Point], sheet: &mut She
     edge
 }
 
-/// How wide the tool is between two heights of the sheet.
+/// Returns the radius of the tool on the sheet between two heights of the sheet.
 fn widest(picture: &Picture<'_>, [low, high]: [f64; 2]) -> f64 {
     picture
         .borders
@@ -201,7 +201,7 @@ fn widest(picture: &Picture<'_>, [low, high]: [f64; 2]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// A height at which a note stands between lines rather than on one.
+/// Returns a height at which a note lies between dimension lines rather than on one.
 fn off(y: f64, levels: &[f64]) -> f64 {
     let nearest = levels.iter().copied().min_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
     match nearest {
@@ -210,7 +210,7 @@ fn off(y: f64, levels: &[f64]) -> f64 {
     }
 }
 
-/// The heights that are noted; of too many the more crowded are left out.
+/// Returns the heights to note. If there are too many, the most crowded ones are left out.
 fn steps(picture: &Picture<'_>) -> Vec<Point> {
     let mut steps = heights(picture.model, &picture.borders, picture.size);
     let most = ((picture.view.height + 80.0) / 11.5) as usize;
@@ -223,14 +223,14 @@ fn steps(picture: &Picture<'_>) -> Vec<Point> {
     steps
 }
 
-/// The heights, along one line from the tip.
+/// Draws the heights as dimensions along one line from the tip.
 fn levels(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut Sheet) {
     let view = &picture.view;
     let Some(&[_, origin]) = steps.first() else { return };
     let line = edge + 20.0;
     let unit = picture.model.unit;
     let places: Vec<Point> = steps.iter().map(|step| view.place(*step)).collect();
-    // From above, as `spread` wants it.
+    // The order is from the top of the sheet, as `spread` requires.
     let wanted: Vec<f64> = places.iter().rev().map(|place| place[1]).collect();
     let texts = spread(&wanted, 11.5);
     let mut thin = Vec::new();
@@ -252,7 +252,7 @@ fn levels(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut Sheet) 
         }
         let mut figure = tidy(steps[k][1] - origin, unit);
         if last {
-            figure = format!("{figure} {}", unit.word());
+            figure = format!("{figure} {}", unit.symbol());
         }
         sheet.text(&figure, [line + 15.0, text_y], Look::plain(SIZE, Anchor::Left));
     }
@@ -264,10 +264,10 @@ fn levels(picture: &Picture<'_>, steps: &[Point], edge: f64, sheet: &mut Sheet) 
     });
 }
 
-/// Places for notes that would like to stand at `wanted`, which grow, no two nearer than `gap`:
-/// those that crowd stand about their middle.
+/// Returns positions for notes with preferred positions `wanted`, which are in ascending order. No two are nearer than
+/// `gap`; notes that would crowd are centred on the mean of their preferred positions.
 fn spread(wanted: &[f64], gap: f64) -> Vec<f64> {
-    // Each cluster: the sum of where its first note would be, and how many it has.
+    // Each cluster: the sum of the positions that its notes would give its first note, and the number of notes.
     let mut clusters: Vec<(f64, usize)> = Vec::new();
     for place in wanted {
         let mut cluster = (*place, 1);

@@ -1,4 +1,4 @@
-//! The section itself: regions, surfaces, splitting curves, directions, singular points.
+//! Draws the section: regions, surfaces, splitting curves, directions, singular points.
 
 use super::Picture;
 use super::borders::Side;
@@ -11,21 +11,21 @@ use super::stroke::Stroke;
 use super::view::{is_outline, mirrored};
 use crate::geometry::outline::Point;
 
-/// What was marked, for those who note and explain it.
+/// Results of drawing the section that the notes and the legend need.
 pub(super) struct Marks {
-    /// Regions whose name found no room inside, with a place in each.
+    /// Regions whose name does not fit inside, each with a point in it.
     pub(super) unnamed: Vec<(usize, Point)>,
-    /// Where directions are undefined.
+    /// Points on the sheet at which directions are undefined.
     pub(super) singular: Vec<Point>,
-    /// Whether any region has a radial direction on the axis, which has none.
+    /// True if any region has a radial direction next to the axis; on the axis, there is none.
     pub(super) axis: bool,
-    /// Whether there are borders between regions.
+    /// True if there are borders between regions.
     pub(super) splits: bool,
 }
 
-/// Sizes that a region's name is tried in.
+/// Text sizes to try for a region's name, largest first.
 const SIZES: [f64; 3] = [8.5, 7.5, 6.5];
-/// The radius of the rings about singular points.
+/// The radius of the circles around singular points.
 const RING: f64 = 4.0;
 
 /// Draws the section about the axis.
@@ -51,7 +51,7 @@ pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
         };
         let (mut place, _) = shape.pole(1.0);
         let dot = [[place[0] - 2.0, place[1] - 2.0], [place[0] + 2.0, place[1] + 2.0]];
-        // A name that leaves no room for an arrow goes outside, if that helps.
+        // A name that leaves no room for an arrow is written outside, if that helps.
         let name = name(picture, region, shape, &rings);
         let mut own = draw(&[name.as_ref().map_or(dot, |name| name.frame)]);
         let mut outside = name.is_none();
@@ -60,7 +60,7 @@ pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
             outside = !own.is_empty();
         }
         if own.is_empty() && outside {
-            // The leader begins where the arrow does.
+            // The leader begins at the arrow's tail.
             own = draw(&[]);
             place = own.first().map_or(place, |arrow| arrow[0]);
         }
@@ -87,10 +87,10 @@ pub(super) fn draw(picture: &Picture<'_>, sheet: &mut Sheet) -> Marks {
     Marks { unnamed, singular, axis, splits }
 }
 
-/// The regions' areas on the right, the hatched section on the left.
+/// Draws the regions' areas on the right half and the hatched section on the left half.
 fn areas(picture: &Picture<'_>, sheet: &mut Sheet) {
     let colours = colours::areas(picture.shapes.len(), &picture.borders);
-    // A hair of its own colour about each area hides the seams between them.
+    // A thin outline in the area's own colour hides the seams between areas.
     sheet.group("fill-rule=\"evenodd\" stroke-width=\".6\" opacity=\".62\"", |sheet| {
         for (shape, colour) in picture.shapes.iter().zip(colours) {
             let all = data(shape.loops.iter().flatten());
@@ -100,13 +100,13 @@ fn areas(picture: &Picture<'_>, sheet: &mut Sheet) {
     let whole = Shape::new(&picture.borders, &picture.view, |side| matches!(side, Side::Region(_)));
     let left: Vec<Stroke> = whole.loops.iter().flatten().map(mirrored).collect();
     sheet.path("fill=\"#f4f5f7\" fill-rule=\"evenodd\"", &data(&left));
-    // What falls on the right rises on the left.
+    // The shape is the right half, so its hatch lines are mirrored for the left half.
     let hatches = whole.hatched(9.0);
     let mirrored = hatches.iter().map(|row| row.map(|[x, y]| [-x, y]));
     sheet.path("fill=\"none\" stroke=\"#c3c9d2\" stroke-width=\".6\"", &lines(mirrored));
 }
 
-/// The curves between regions, dashed; whether there are any.
+/// Draws the curves between regions as dashed lines. Returns whether there are any.
 fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
     let between: Vec<Stroke> = picture
         .borders
@@ -119,7 +119,7 @@ fn splits(picture: &Picture<'_>, sheet: &mut Sheet) -> bool {
     !between.is_empty()
 }
 
-/// The surfaces on both sides; what cuts lies on top.
+/// Draws the surfaces on both halves, cutting surfaces on top.
 fn outline(picture: &Picture<'_>, sheet: &mut Sheet) {
     let colours = colours::surfaces(picture.model);
     let look = "fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
@@ -147,7 +147,7 @@ fn outline(picture: &Picture<'_>, sheet: &mut Sheet) {
     });
 }
 
-/// The break lines where a long cylinder is shortened.
+/// Draws the break lines where a long cylinder is shortened.
 fn seams(picture: &Picture<'_>, sheet: &mut Sheet) {
     let half = picture.view.half + 7.0;
     for y in picture.view.seams() {
@@ -167,7 +167,7 @@ fn seams(picture: &Picture<'_>, sheet: &mut Sheet) {
     }
 }
 
-/// The axis, a little longer than the tool.
+/// Draws the axis, slightly longer than the tool.
 fn axis_line(picture: &Picture<'_>, sheet: &mut Sheet) {
     let row = [[0.0, 12.0], [0.0, -picture.view.height - 12.0]];
     let look = "fill=\"none\" stroke=\"#22272e\" stroke-width=\".8\" stroke-dasharray=\"12 3 2 3\"";
@@ -175,19 +175,19 @@ fn axis_line(picture: &Picture<'_>, sheet: &mut Sheet) {
     row.into_iter().for_each(|p| sheet.reach(p));
 }
 
-/// Where a region's name stands, how large, and the box about it.
+/// A region's name on the sheet: text size, position and bounding box.
 struct Name {
     size: f64,
     at: Point,
     frame: Frame,
 }
 
-/// The place for a region's name inside, if there is one.
+/// Returns a position for a region's name inside the region, if there is one.
 fn name(picture: &Picture<'_>, region: usize, shape: &Shape, rings: &[Frame]) -> Option<Name> {
     let text = &picture.model.regions[region].name;
     let across = SIZES[1] / width(text, SIZES[1]).max(SIZES[1]);
     let (place, _) = shape.pole(across);
-    // A ring is stepped around.
+    // Shifted positions are tried too, to avoid the circles of singular points.
     let tries = SIZES.into_iter().flat_map(|size| [0.0, 9.0, -9.0, 16.0, -16.0].map(|s| (size, s)));
     tries
         .map(|(size, shift)| {
@@ -216,7 +216,8 @@ fn draw_arrows(arrows: &[Arrow], sheet: &mut Sheet) {
     });
 }
 
-/// Where regions' directions are undefined, each place once; the axis is one by itself.
+/// Returns the isolated points at which regions' directions are undefined, without duplicates. The axis is handled
+/// separately.
 fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point> {
     let mut found: Vec<Point> = Vec::new();
     for (region, shape) in picture.shapes.iter().enumerate() {
@@ -234,7 +235,7 @@ fn singular(picture: &Picture<'_>, directions: &mut Directions<'_>) -> Vec<Point
     found
 }
 
-/// Whether directions next to the axis have a part away from it.
+/// Returns whether directions next to the axis have a radial component.
 fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
     picture.borders.iter().any(|border| {
         let ([Side::Region(region), Side::Axis], Some(stroke)) =
@@ -244,7 +245,7 @@ fn axis(picture: &Picture<'_>, directions: &mut Directions<'_>) -> bool {
         };
         let [_, z] = stroke.at(0.5);
         let way = directions.at(region, [1e-6 * picture.size, z]);
-        // A centre on the axis, seen from beside it, points along it.
+        // A direction toward a centre on the axis points along the axis, as seen from beside it.
         way.is_some_and(|way| way[0].abs() > 1e-3)
     })
 }

@@ -1,10 +1,9 @@
-//! The section divided among its owners: the half plane's box in cells, each cut by the splits
-//! that the plan still leaves open in it.
+//! Divides the section among the owners of the plan's tree. The bounding box in the half plane is divided into cells,
+//! and each cell is cut by the splits that the plan leaves open in it.
 //!
-//! A cell that provably has one owner stays whole. One that only straight lines divide is cut
-//! exactly, at any size. Where a curve bends, cells are halved until its chords are flat. Every
-//! side of a cell is cut at the same places from both sides, since what happens along it depends on
-//! the side alone.
+//! A cell that provably has one owner stays whole. A cell that only straight lines divide is cut exactly, at any size.
+//! Where a curve bends, cells are halved until its chords are flat. Every side of a cell is cut at the same points from
+//! both cells, since the cut of a side depends on the side alone.
 
 use super::curves::Curves;
 use crate::formula::{CurveIndex, NEGATIVE, ZERO};
@@ -15,45 +14,45 @@ use std::collections::HashSet;
 /// The plan's tree of owners.
 pub(super) type Owners = Tree<Option<usize>>;
 
-/// A convex piece of the section with one owner, counter-clockwise.
+/// A convex polygon of the section with one owner, counter-clockwise.
 pub(super) struct Piece {
     pub(super) owner: Option<usize>,
     pub(super) corners: Vec<Corner>,
 }
 
-/// A corner of a piece, and the curve that the side after it lies on, if one does.
+/// A corner of a polygon, and the curve on which the side after it lies, if any.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) at: Point,
     pub(super) curve: Option<CurveIndex>,
 }
 
-/// Lengths by which the division is judged.
+/// Length tolerances of the division, in the tool's unit.
 #[derive(Clone, Copy)]
 pub(super) struct Fineness {
     /// The largest cell that a bent curve may cross.
     pub(super) cell: f64,
-    /// How far a chord may be from its curve.
+    /// The largest distance of a chord from its curve.
     pub(super) flat: f64,
-    /// Places nearer to each other than this are one.
+    /// Points nearer to each other than this are considered equal.
     pub(super) same: f64,
 }
 
-/// How often a cell may be halved.
+/// The maximum number of halvings of a cell.
 const DEPTH: u32 = 24;
-/// Cells beyond which none is halved: two curves that nearly coincide would take any number.
+/// The number of cells beyond which none is halved. Two curves that nearly coincide would take any number of cells.
 const CELLS: usize = 8_000;
-/// Splits that one cell may be cut by.
+/// The maximum number of splits that may cut one cell.
 const SPLITS: usize = 12;
 
-/// A cell by its place in a lattice of whole numbers, and its side.
+/// A cell: its corner in an integer lattice, and its side length.
 #[derive(Clone, Copy)]
 struct Cell {
     corner: [u64; 2],
     side: u64,
 }
 
-/// The box that is divided, with its lattice.
+/// The lattice over the box that is divided.
 struct Lattice {
     low: Point,
     unit: f64,
@@ -65,7 +64,7 @@ impl Lattice {
     }
 }
 
-/// Divides the box from the axis to `high`, up from `low`.
+/// Divides the box from the axis to `high[0]` and from height `low[1]` to `high[1]`.
 pub(super) fn divide(
     curves: &mut Curves<'_>,
     owners: &Owners,
@@ -93,12 +92,12 @@ struct Division<'c, 'm> {
     lattice: Lattice,
     fineness: Fineness,
     cells: Vec<(Cell, Owners)>,
-    /// Corners of all cells: a side may have some of its neighbours' on it.
+    /// Corners of all cells. A side of a cell may have corners of its neighbours on it.
     corners: HashSet<[u64; 2]>,
 }
 
 impl Division<'_, '_> {
-    /// Cuts a cell's tree down to what is open in it, and halves it as long as that does not do.
+    /// Prunes the tree to the splits that are open in a cell, and halves the cell until it is fine enough.
     fn cell(&mut self, cell: Cell, tree: &Owners) {
         let [low, high] = self.ends(cell);
         let tree = self.open(tree, low, high);
@@ -121,7 +120,7 @@ impl Division<'_, '_> {
         [self.lattice.at([i, j]), self.lattice.at([i + cell.side, j + cell.side])]
     }
 
-    /// What of a tree is open in a box.
+    /// Returns the part of a tree that is open in a box.
     fn open(&mut self, tree: &Owners, low: Point, high: Point) -> Owners {
         let Tree::Split { curve, strict, below, above } = tree else { return tree.clone() };
         let signs = self.curves.signs(*curve, low, high);
@@ -140,7 +139,7 @@ impl Division<'_, '_> {
         Tree::Split { curve: *curve, strict: *strict, below, above }
     }
 
-    /// Whether cutting a cell by this tree is as good as it need be.
+    /// Returns whether cutting a cell by this tree is accurate enough.
     fn fine(&mut self, tree: &Owners, low: Point, high: Point) -> bool {
         let mut splits = Vec::new();
         tested(tree, &mut splits);
@@ -153,12 +152,12 @@ impl Division<'_, '_> {
         if side < 2.0 * self.fineness.flat {
             return true;
         }
-        // Where a bent curve meets another, the chord must not miss the place.
+        // Where a bent curve meets another curve, the chord must not miss the intersection.
         let alone = splits.len() == bent.len() && self.one(&bent, low, high);
         alone && side < self.fineness.cell && self.flat(bent[0], low, high)
     }
 
-    /// Whether bent curves are one and the same about a box, differently written.
+    /// Returns whether bent curves are one and the same curve around a box, written differently.
     fn one(&mut self, bent: &[CurveIndex], low: Point, high: Point) -> bool {
         let side = high[0] - low[0];
         let places = [[0.5, 0.5], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
@@ -173,7 +172,7 @@ impl Division<'_, '_> {
             })
     }
 
-    /// Whether a curve is as good as its chord in a box.
+    /// Returns whether a curve is well approximated by its chord in a box.
     fn flat(&mut self, curve: CurveIndex, low: Point, high: Point) -> bool {
         let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
         let mut crossings = Vec::new();
@@ -185,7 +184,7 @@ impl Division<'_, '_> {
             }
         }
         match crossings.as_slice() {
-            // It is not here, or too small to matter.
+            // The curve does not cross the box, or the box is too small to matter.
             [] => {
                 let side = high[0] - low[0];
                 let middle = [low[0] + side / 2.0, low[1] + side / 2.0];
@@ -200,7 +199,7 @@ impl Division<'_, '_> {
         }
     }
 
-    /// Where a curve crosses a side, from whichever end it is asked.
+    /// Returns the crossing of a curve with a side. The result does not depend on the order of the ends.
     fn crossing(&mut self, curve: CurveIndex, a: (Point, f64), b: (Point, f64)) -> Point {
         let (a, b) = if (a.0[1], a.0[0]) <= (b.0[1], b.0[0]) { (a, b) } else { (b, a) };
         let between = |t: f64| [0, 1].map(|k| a.0[k] + t * (b.0[k] - a.0[k]));
@@ -217,7 +216,7 @@ impl Division<'_, '_> {
         between(low.0 + share * (high.0 - low.0))
     }
 
-    /// The pieces of a cell.
+    /// Returns the polygons of a cell.
     fn pieces(&mut self, cell: Cell, tree: &Owners) -> Vec<Piece> {
         let [i, j] = cell.corner;
         let s = cell.side;
@@ -234,7 +233,7 @@ impl Division<'_, '_> {
         pieces
     }
 
-    /// The corners of a side but its last: its own, and its neighbours' between.
+    /// Appends the corners of a side except the last: its own, and those of its neighbours in between.
     fn side(&self, a: [u64; 2], b: [u64; 2], corners: &mut Vec<Corner>) {
         let middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
         let length = a[0].abs_diff(b[0]) + a[1].abs_diff(b[1]);
@@ -246,7 +245,7 @@ impl Division<'_, '_> {
         }
     }
 
-    /// Cuts a convex polygon as a tree says.
+    /// Cuts a convex polygon by a tree.
     fn cut(&mut self, corners: Vec<Corner>, tree: &Owners, pieces: &mut Vec<Piece>) {
         match tree {
             Tree::Leaf(owner) => pieces.push(Piece { owner: *owner, corners }),
@@ -269,7 +268,7 @@ impl Division<'_, '_> {
         }
     }
 
-    /// The curve's values at corners; a value that only rounding tells from 0 is 0.
+    /// Returns the curve's values at corners. A value that differs from 0 only by rounding is set to 0.
     fn values(&mut self, curve: CurveIndex, corners: &[Corner]) -> Vec<f64> {
         let values: Vec<f64> =
             corners.iter().map(|corner| self.curves.value(curve, corner.at)).collect();
@@ -277,7 +276,7 @@ impl Division<'_, '_> {
         values.into_iter().map(|v| if v.abs() < 1e-10 * largest { 0.0 } else { v }).collect()
     }
 
-    /// The part of a polygon on one side of a curve.
+    /// Returns the part of a polygon on one side of a curve.
     fn part(
         &mut self,
         curve: CurveIndex,
@@ -321,7 +320,7 @@ impl Division<'_, '_> {
     }
 }
 
-/// The curves that a tree tests.
+/// Collects the curves that a tree tests.
 fn tested(tree: &Owners, curves: &mut Vec<CurveIndex>) {
     if let Tree::Split { curve, below, above, .. } = tree {
         if !curves.contains(curve) {
@@ -332,13 +331,13 @@ fn tested(tree: &Owners, curves: &mut Vec<CurveIndex>) {
     }
 }
 
-/// How often the sign changes on the way around.
+/// Returns the number of sign changes around a polygon.
 fn changes(values: &[f64]) -> usize {
     let signs: Vec<bool> = values.iter().filter(|v| **v != 0.0).map(|v| *v > 0.0).collect();
     (0..signs.len()).filter(|k| signs[*k] != signs[(k + 1) % signs.len()]).count()
 }
 
-/// A polygon as triangles about its middle.
+/// Divides a polygon into triangles about its centroid.
 fn fan(corners: &[Corner]) -> Vec<Vec<Corner>> {
     let count = corners.len() as f64;
     let at = [0, 1].map(|k| corners.iter().map(|corner| corner.at[k]).sum::<f64>() / count);
@@ -347,7 +346,7 @@ fn fan(corners: &[Corner]) -> Vec<Vec<Corner>> {
     (0..corners.len()).map(|k| vec![middle, corners[k], next(k)]).collect()
 }
 
-/// Puts the corners of each piece on the sides of the others that they lie on.
+/// Inserts the corners of each polygon into the sides of the others on which they lie.
 fn joined(pieces: &mut [Piece], near: f64) {
     let all: Vec<Point> =
         pieces.iter().flat_map(|piece| piece.corners.iter().map(|corner| corner.at)).collect();

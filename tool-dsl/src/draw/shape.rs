@@ -1,25 +1,25 @@
-//! A region on the sheet: what it is filled by, what is inside it, where there is most room.
+//! A region on the sheet: its outline, point queries, and the position with most room.
 
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use super::view::View;
 use crate::geometry::outline::{Point, dot, minus, norm};
 
-/// How far the chords are from the curves by which room is measured.
+/// The chord tolerance of the outline that distances are measured from, in sheet units.
 const FLAT: f64 = 0.3;
 
 /// An area of the sheet within closed loops of strokes.
 pub(super) struct Shape {
     pub(super) loops: Vec<Vec<Stroke>>,
-    /// Its border in short lines.
+    /// The outline as short line segments.
     lines: Vec<[Point; 2]>,
 }
 
-/// A box of the sheet by its corners of least and most coordinates.
+/// A bounding box on the sheet, as lowest and highest coordinates.
 pub(super) type Frame = [Point; 2];
 
 impl Shape {
-    /// The area on whose borders' side `inside` holds.
+    /// Returns the area bounded by those borders for which `inside` holds on exactly one side.
     pub(super) fn new(borders: &[Border], view: &View, inside: impl Fn(Side) -> bool) -> Shape {
         let mut rest: Vec<([usize; 2], Vec<Stroke>)> = Vec::new();
         for border in borders {
@@ -52,17 +52,17 @@ impl Shape {
         Shape { loops, lines }
     }
 
-    /// More lines that nothing shall cross, all of them level.
+    /// Adds lines that nothing may cross, all of them horizontal.
     pub(super) fn keep_off(&mut self, lines: impl IntoIterator<Item = [Point; 2]>) {
         self.lines.extend(lines);
     }
 
-    /// Whether there is anything of it.
+    /// Returns whether the shape is empty.
     pub(super) fn is_empty(&self) -> bool {
         self.loops.is_empty()
     }
 
-    /// The box about it.
+    /// Returns the bounding box.
     pub(super) fn frame(&self) -> Frame {
         let mut frame = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for p in self.loops.iter().flatten().flat_map(|stroke| stroke.points(FLAT)) {
@@ -74,7 +74,7 @@ impl Shape {
         frame
     }
 
-    /// Its area.
+    /// Returns the area, in squared sheet units.
     pub(super) fn area(&self) -> f64 {
         let rows = self.loops.iter().map(|row| {
             let points: Vec<Point> = row.iter().flat_map(|stroke| stroke.points(FLAT)).collect();
@@ -85,7 +85,8 @@ impl Shape {
         rows.sum::<f64>().abs() / 2.0
     }
 
-    /// How far a point is from the border: positive inside. A step to the side counts `across`.
+    /// Returns the signed distance of a point from the outline, positive inside. Horizontal distances are multiplied by
+    /// `across`.
     pub(super) fn room(&self, p: Point, across: f64) -> f64 {
         let scaled = |q: Point| [q[0] * across, q[1]];
         let mut nearest = f64::INFINITY;
@@ -102,13 +103,13 @@ impl Shape {
         if inside { nearest } else { -nearest }
     }
 
-    /// The place with most room about it, to a unit of the sheet; where a step to the side counts
-    /// `across` (Mapbox's pole of inaccessibility).
+    /// Returns the point farthest inside, to half a unit of the sheet, and its distance from the outline. Horizontal
+    /// distances are multiplied by `across`. The method is Mapbox's pole of inaccessibility.
     pub(super) fn pole(&self, across: f64) -> (Point, f64) {
         let [low, high] = self.frame();
         let size = (high[0] - low[0]).min(high[1] - low[1]).max(1e-3);
         let half = (size / 2.0).max((high[0] - low[0]).max(high[1] - low[1]) / 40.0);
-        // From a cell's middle to its corner.
+        // The distance from a cell's centre to its corner, relative to half its side.
         let corner = (1.0 + across * across).sqrt();
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
         let mut best = (middle, self.room(middle, across));
@@ -142,13 +143,14 @@ impl Shape {
         best
     }
 
-    /// Whether a box lies wholly inside.
+    /// Returns whether a box lies entirely inside.
     pub(super) fn holds(&self, [low, high]: Frame) -> bool {
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
         self.room(middle, 1.0) > 0.0 && !self.lines.iter().any(|line| crosses(*line, [low, high]))
     }
 
-    /// Where lines that fall by one for each step to the right enter and leave it.
+    /// Returns the segments of hatch lines inside the shape. The lines have the equation `x + y = c`, with `c` in steps
+    /// of `step`.
     pub(super) fn hatched(&self, step: f64) -> Vec<[Point; 2]> {
         let [low, high] = self.frame();
         let mut c = ((low[0] + low[1]) / step).ceil() * step;
@@ -169,7 +171,7 @@ impl Shape {
     }
 }
 
-/// How far a point is from a line between two others.
+/// Returns the distance of a point from a line segment.
 fn distance(p: Point, a: Point, b: Point) -> f64 {
     let (way, q) = (minus(b, a), minus(p, a));
     let share = (dot(q, way) / dot(way, way)).clamp(0.0, 1.0);
@@ -177,7 +179,7 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
     norm([q[0] - share * way[0], q[1] - share * way[1]])
 }
 
-/// Whether a line meets a box (Liang and Barsky 1984).
+/// Returns whether a line segment meets a box (Liang and Barsky 1984).
 fn crosses([a, b]: [Point; 2], [low, high]: Frame) -> bool {
     let way = minus(b, a);
     let (mut enter, mut leave) = (0.0f64, 1.0f64);

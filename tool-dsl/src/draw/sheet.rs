@@ -1,11 +1,11 @@
-//! The sheet: SVG, written so that it is small and the same every time.
+//! The sheet: writes compact SVG, the same for the same drawing every time.
 
 use super::lettering::{scale, strokes, width};
 use super::stroke::Stroke;
 use crate::geometry::outline::Point;
 use std::fmt::Write;
 
-/// Which end of a line of text is at its place.
+/// The end of a line of text that is anchored at its position.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Anchor {
     Left,
@@ -13,21 +13,21 @@ pub(super) enum Anchor {
     Right,
 }
 
-/// Ink that is nearly black.
+/// Near-black, the default colour of text and lines.
 pub(super) const INK: &str = "#22272e";
-/// Ink of dimensions and leaders.
+/// The colour of dimension lines and leaders.
 pub(super) const THIN: &str = "#6b7280";
 
-/// What text is made of.
+/// The rendering of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lettering {
-    /// Strokes of the built-in alphabet: it looks the same everywhere and needs no font.
+    /// Strokes of the built-in alphabet: text looks the same everywhere and needs no font.
     Strokes,
-    /// SVG text in the font of the page that it stands in: it can be searched, and is smaller.
+    /// SVG text in the font of the page that embeds the drawing: text can be searched, and the file is smaller.
     Page,
 }
 
-/// What is drawn so far. Text lies above all else.
+/// The drawing so far. Text lies above everything else.
 pub(super) struct Sheet {
     lettering: Lettering,
     drawn: String,
@@ -38,13 +38,13 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// An empty sheet.
+    /// Returns an empty sheet.
     pub(super) fn new(lettering: Lettering) -> Sheet {
         let empty = String::new;
         Sheet { lettering, drawn: empty(), halos: empty(), texts: empty(), low: None, high: None }
     }
 
-    /// Shapes that share attributes; nothing if there are none.
+    /// Draws shapes that share attributes. Writes nothing if there are no shapes.
     pub(super) fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Sheet)) {
         let open = format!("<g {attributes}>");
         self.drawn.push_str(&open);
@@ -57,22 +57,22 @@ impl Sheet {
         }
     }
 
-    /// A path.
+    /// Draws a path. Writes nothing if `data` is empty.
     pub(super) fn path(&mut self, attributes: &str, data: &str) {
         if !data.is_empty() {
             let space = if attributes.is_empty() { "" } else { " " };
-            // Writing to a String does not fail.
+            // Writing to a `String` cannot fail.
             let _ = write!(self.drawn, "<path{space}{attributes} d=\"{data}\"/>");
         }
     }
 
-    /// A ring.
+    /// Draws a circle.
     pub(super) fn ring(&mut self, [x, y]: Point, radius: f64) {
         let (x, y, radius) = (short(x), short(y), short(radius));
         let _ = write!(self.drawn, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>");
     }
 
-    /// A line of text whose middle height is at a place; `halo` keeps lines away from it.
+    /// Draws a line of text, vertically centred at `at`. `halo` adds a translucent white background.
     pub(super) fn text(&mut self, text: &str, at: Point, look: Look) {
         let wide = width(text, look.size);
         let left = match look.anchor {
@@ -113,7 +113,7 @@ impl Sheet {
         );
     }
 
-    /// How wide a page's font is nobody knows, so the text keeps to the end that it is held by.
+    /// Draws text in the page's font. Its width is unknown, so the text is anchored at the given end.
     fn letters(&mut self, text: &str, [x, y]: Point, look: Look) {
         let colour = coloured("fill", look.colour);
         let bold = if look.bold { " font-weight=\"bold\"" } else { "" };
@@ -122,7 +122,7 @@ impl Sheet {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::Right => " text-anchor=\"end\"",
         };
-        // Capitals are some 0.72 of what a font calls its size.
+        // Capitals are about 0.72 of the font size.
         let size = short(look.size / 0.72);
         let _ = write!(
             self.texts,
@@ -133,7 +133,7 @@ impl Sheet {
         );
     }
 
-    /// Makes the sheet large enough for a place.
+    /// Extends the sheet to contain a point.
     pub(super) fn reach(&mut self, p: Point) {
         let low = self.low.get_or_insert(p);
         *low = [low[0].min(p[0]), low[1].min(p[1])];
@@ -141,12 +141,12 @@ impl Sheet {
         *high = [high[0].max(p[0]), high[1].max(p[1])];
     }
 
-    /// The corners of what is drawn.
+    /// Returns the bounding box of the drawing.
     pub(super) fn frame(&self) -> [Point; 2] {
         [self.low.unwrap_or_default(), self.high.unwrap_or_default()]
     }
 
-    /// The whole as SVG, white below.
+    /// Returns the SVG document, on a white background.
     pub(super) fn finish(self, title: &str) -> String {
         const MARGIN: f64 = 12.0;
         let [low, high] = self.frame();
@@ -173,10 +173,10 @@ impl Sheet {
     }
 }
 
-/// How a line of text looks.
+/// The appearance of a line of text.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
-    /// The height of its capitals.
+    /// The height of capitals, in sheet units.
     pub(super) size: f64,
     pub(super) anchor: Anchor,
     pub(super) colour: &'static str,
@@ -185,13 +185,13 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Plain text.
+    /// Returns plain text of a size.
     pub(super) fn plain(size: f64, anchor: Anchor) -> Look {
         Look { size, anchor, colour: INK, bold: false, halo: false }
     }
 }
 
-/// Path data of strokes, in rows where each begins at the end of the one before.
+/// Returns the path data of strokes. Strokes that continue the previous one need no move command.
 pub(super) fn data<'s>(strokes: impl IntoIterator<Item = &'s Stroke>) -> String {
     let mut data = String::new();
     let mut pen: Option<[String; 2]> = None;
@@ -204,7 +204,7 @@ pub(super) fn data<'s>(strokes: impl IntoIterator<Item = &'s Stroke>) -> String 
             continue;
         }
         let _ = match stroke.circle {
-            // y grows downward, so what turns left on paper turns right here.
+            // The y axis points downward, so a left turn in a y-up plane appears as a right turn here.
             Some((_, radius)) => {
                 let (radius, sweep) = (short(radius), u8::from(stroke.left()));
                 write!(data, "A{radius} {radius} 0 0 {sweep} {} {}", to[0], to[1])
@@ -218,7 +218,7 @@ pub(super) fn data<'s>(strokes: impl IntoIterator<Item = &'s Stroke>) -> String 
     data
 }
 
-/// Path data of straight lines through rows of points.
+/// Returns the path data of polylines.
 pub(super) fn lines<R: AsRef<[Point]>>(rows: impl IntoIterator<Item = R>) -> String {
     let mut all = Vec::new();
     for row in rows {
@@ -227,14 +227,14 @@ pub(super) fn lines<R: AsRef<[Point]>>(rows: impl IntoIterator<Item = R>) -> Str
     data(&all)
 }
 
-/// A number of the sheet: two decimals at most.
+/// Formats a number with at most two decimals.
 pub(super) fn short(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// An attribute for a colour that is not the usual one.
+/// Returns a colour attribute, or nothing for the default colour.
 fn coloured(what: &str, colour: &str) -> String {
     if colour == INK { String::new() } else { format!(" {what}=\"{colour}\"") }
 }

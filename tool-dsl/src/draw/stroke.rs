@@ -1,4 +1,4 @@
-//! Lines and arcs, the strokes that everything is drawn with.
+//! Strokes: the lines and arcs of a drawing.
 
 use crate::geometry::outline::{Point, cross, dot, minus, norm};
 use std::f64::consts::PI;
@@ -16,19 +16,19 @@ impl Stroke {
         Stroke { from, to, circle: None }
     }
 
-    /// The same the other way.
+    /// Returns the stroke in the opposite direction.
     pub(super) fn reversed(self) -> Stroke {
         Stroke { from: self.to, to: self.from, ..self }
     }
 
-    /// Whether it turns left, as drawn with the second coordinate up.
+    /// Returns whether an arc turns left, with the second coordinate pointing up.
     pub(super) fn left(&self) -> bool {
         self.circle.is_some_and(|(centre, _)| {
             cross(minus(self.from, centre), minus(self.to, centre)) > 0.0
         })
     }
 
-    /// The angle that an arc turns by, 0 for a line.
+    /// Returns the angle that an arc turns by, 0 for a line.
     fn turn(&self) -> f64 {
         self.circle.map_or(0.0, |(centre, _)| {
             let (a, b) = (minus(self.from, centre), minus(self.to, centre));
@@ -36,7 +36,7 @@ impl Stroke {
         })
     }
 
-    /// The point at a share of its length.
+    /// Returns the point at a fraction of the length.
     pub(super) fn at(&self, share: f64) -> Point {
         let Some((centre, _)) = self.circle else {
             return [0, 1].map(|k| self.from[k] + share * (self.to[k] - self.from[k]));
@@ -46,13 +46,13 @@ impl Stroke {
         [centre[0] + a[0] * cos - a[1] * sin, centre[1] + a[0] * sin + a[1] * cos]
     }
 
-    /// Its length.
+    /// Returns the length.
     pub(super) fn length(&self) -> f64 {
         self.circle
             .map_or(norm(minus(self.to, self.from)), |(_, radius)| radius * self.turn().abs())
     }
 
-    /// Points along it but the last, from chords that are no farther from it than `flat`.
+    /// Returns points along the stroke except the last, such that the chords deviate by at most `flat`.
     pub(super) fn points(&self, flat: f64) -> Vec<Point> {
         let Some((_, radius)) = self.circle else { return vec![self.from] };
         let most = 2.0 * (1.0 - flat / radius).clamp(0.0, 1.0).acos();
@@ -60,7 +60,7 @@ impl Stroke {
         (0..count).map(|k| self.at(k as f64 / count as f64)).collect()
     }
 
-    /// The lowest and highest second coordinate.
+    /// Returns the lowest and highest second coordinate.
     pub(super) fn span(&self) -> [f64; 2] {
         let mut span = [self.from[1].min(self.to[1]), self.from[1].max(self.to[1])];
         if let Some((centre, radius)) = self.circle {
@@ -76,7 +76,7 @@ impl Stroke {
         span
     }
 
-    /// The largest first coordinate.
+    /// Returns the largest first coordinate.
     pub(super) fn widest(&self) -> f64 {
         let turned = |[d, z]: Point| [-z, d];
         let circle = self.circle.map(|(centre, radius)| (turned(centre), radius));
@@ -85,7 +85,7 @@ impl Stroke {
     }
 }
 
-/// The circle through three points, if they are not in a row.
+/// Returns the circle through three points, unless they are almost collinear.
 fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (u, v) = (minus(b, a), minus(c, a));
     let twice = 2.0 * cross(u, v);
@@ -96,7 +96,7 @@ fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     (radius.is_finite() && !flat).then_some(([a[0] + q[0], a[1] + q[1]], radius))
 }
 
-/// The strokes of a row of points that is an arc; `foot` leads to the true curve.
+/// Returns the strokes of a row of points that lie on an arc, or `None`. `foot` projects a point onto the true curve.
 pub(super) fn round(
     row: &[Point],
     mut foot: impl FnMut(Point) -> Point,
@@ -109,7 +109,7 @@ pub(super) fn round(
         let k = (place.floor() as usize).min(last - 1);
         Stroke::line(row[k], row[k + 1]).at(place - k as f64)
     };
-    // A circle's end is its beginning and tells nothing.
+    // The last point of a closed circle equals the first, so it gives no information.
     let step = if closed { 0.2 } else { 0.25 };
     let feet = [0.0, 1.0, 2.0, 3.0, 4.0].map(|k| foot(at(k * step)));
     let (centre, radius) = circle([feet[0], feet[2], feet[4]])?;
@@ -127,7 +127,7 @@ pub(super) fn round(
     Some(ends.windows(2).map(|pair| arc(row[pair[0]], row[pair[1]])).collect())
 }
 
-/// Lines and arcs along a row of points, no farther from any of them than `seen`.
+/// Fits lines and arcs to a row of points, no farther than `seen` from any of them.
 pub(super) fn fitted(row: &[Point], seen: f64) -> Vec<Stroke> {
     let last = row.len() - 1;
     let line = Stroke::line(row[0], row[last]);

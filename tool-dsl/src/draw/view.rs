@@ -1,33 +1,32 @@
-//! Where a point of the section lies on the sheet: the axis is x = 0, the lowest point y = 0, the
-//! spindle above. Long plain cylinders are shortened, as draughtsmen do, so that what is thin
-//! stays readable.
+//! The map from the section to the sheet. On the sheet the axis is x = 0, the lowest point is at y = 0, and the spindle
+//! is above. Long plain cylinders are shortened, as in technical drawings, so that thin tools stay readable.
 
 use super::borders::{Border, Side};
 use super::stroke::Stroke;
 use crate::geometry::outline::Point;
 
-/// The most room that the section takes on the sheet: its whole width, its height.
+/// The largest extent of the section on the sheet: full width and height, in sheet units.
 const ROOM: [f64; 2] = [330.0, 500.0];
-/// The height of a section that is shortened, in its widths.
+/// The height of a shortened section, as a multiple of its width.
 const SLIM: f64 = 4.8;
-/// A shortened cylinder is at least this long, in widths of the section.
+/// The minimum length of a shortened cylinder, as a multiple of the section's width.
 const LEAST: f64 = 0.7;
 
-/// A stretch of the axis that is left out.
+/// An interval of the axis that is left out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut {
     low: f64,
     high: f64,
 }
 
-/// The section's place on the sheet.
+/// The section's placement on the sheet.
 #[derive(Clone, Debug)]
 pub(super) struct View {
-    /// Sheet lengths to one of the tool's.
+    /// Sheet units per unit of length of the tool.
     pub(super) scale: f64,
     low: f64,
     cuts: Vec<Cut>,
-    /// Half the section's width, and its height, on the sheet.
+    /// Half the section's width on the sheet; `height` is its height there.
     pub(super) half: f64,
     pub(super) height: f64,
 }
@@ -63,13 +62,13 @@ impl View {
         View { scale, low, cuts, half: radius * scale, height: left * scale }
     }
 
-    /// The place of a point on the sheet, in the right half.
+    /// Maps a point of the section to the right half of the sheet.
     pub(super) fn place(&self, [d, z]: Point) -> Point {
         let gone: f64 = self.cuts.iter().map(|cut| (z.min(cut.high) - cut.low).max(0.0)).sum();
         [d * self.scale, -(z - self.low - gone) * self.scale]
     }
 
-    /// The point at a place of the sheet.
+    /// Maps a point of the sheet back to the section.
     pub(super) fn point(&self, [x, y]: Point) -> Point {
         let mut z = self.low - y / self.scale;
         for cut in &self.cuts {
@@ -80,7 +79,7 @@ impl View {
         [x / self.scale, z]
     }
 
-    /// A stroke on the sheet.
+    /// Maps a stroke to the sheet.
     pub(super) fn stroke(&self, stroke: &Stroke) -> Stroke {
         let (from, to) = (self.place(stroke.from), self.place(stroke.to));
         let circle = stroke.circle.map(|(centre, radius)| {
@@ -90,19 +89,19 @@ impl View {
         Stroke { from, to, circle }
     }
 
-    /// The heights at which something is left out.
+    /// Returns the heights on the sheet at which a part of the axis is left out.
     pub(super) fn seams(&self) -> Vec<f64> {
         self.cuts.iter().map(|cut| self.place([0.0, cut.low])[1]).collect()
     }
 }
 
-/// What is left out of plain stretches, so that the whole is no longer than `SLIM` widths.
+/// Returns the intervals to leave out of the plain cylinders, so that the whole is about `SLIM` widths long.
 fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
     let wanted = SLIM * width;
     if length <= 1.15 * wanted {
         return Vec::new();
     }
-    // The most that is kept of any stretch, by halving.
+    // The length kept of each cylinder is found by bisection.
     let (mut least, mut most) = (LEAST * width, length);
     let left = |keep: f64| length - plain.iter().map(|[a, b]| (b - a - keep).max(0.0)).sum::<f64>();
     for _ in 0..40 {
@@ -116,7 +115,7 @@ fn cuts(plain: &[[f64; 2]], length: f64, width: f64) -> Vec<Cut> {
         .collect()
 }
 
-/// The mirror image of a stroke.
+/// Returns the mirror image of a stroke.
 pub(super) fn mirrored(stroke: &Stroke) -> Stroke {
     let turned = |[x, y]: Point| [-x, y];
     Stroke {
@@ -126,7 +125,7 @@ pub(super) fn mirrored(stroke: &Stroke) -> Stroke {
     }
 }
 
-/// Whether a border is the tool's surface.
+/// Returns whether a border is part of the tool's surface.
 pub(super) fn is_outline(border: &Border) -> bool {
     border.sides[1] == Side::Outside
 }

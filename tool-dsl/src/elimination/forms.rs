@@ -1,5 +1,5 @@
-//! Expressions as linear forms in the coordinates, and in monomials and roots of them, each taken for a
-//! variable of its own; and what is known of such variables.
+//! Expressions as linear forms in the coordinates, and in monomials and roots of them, each taken as a
+//! separate variable; and the facts known about such variables.
 
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Encloser};
@@ -9,21 +9,21 @@ use crate::model::Model;
 use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The distance from the axis.
+/// The monomial of the distance from the axis.
 const RADIUS: Monomial = [1, 0, 0, 0];
 
-/// What elimination takes for a variable of its own.
+/// A quantity that elimination treats as a separate variable.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Variable {
     /// A product of powers of coordinates.
     Monomial(Monomial),
-    /// A root or an absolute value.
+    /// The value of a node that is a root or an absolute value.
     Root(Id),
     /// The absolute value of a node.
     Size(Id),
 }
 
-/// `Σ factor · variable + constant`
+/// A linear form, `Σ factor · variable + constant`.
 #[derive(Clone, Debug)]
 pub(super) struct Form {
     pub(super) factors: BTreeMap<usize, Number>,
@@ -44,7 +44,7 @@ impl Form {
     pub(super) fn plus(mut self, other: &Form, factor: &Number) -> Form {
         let sum = |own: &Number, more: &Number| {
             let more = factor * more;
-            // What cancels but for the last bits is nothing.
+            // A sum that cancels except for its last bits is 0.
             if own.agrees(&-&more) { Number::int(0) } else { own + &more }
         };
         for (variable, more) in &other.factors {
@@ -64,10 +64,11 @@ impl Form {
     }
 }
 
-/// The variables met so far.
+/// The variables encountered so far, with their indices.
 pub(super) struct Variables<'m> {
     graph: &'m Graph,
-    /// In the half plane regions meet in points, for which roots of several squares need no choices.
+    /// True in space. In the half plane regions meet in points, for which roots of several squares need no
+    /// case distinction.
     of_space: bool,
     known: BTreeMap<Variable, usize>,
 }
@@ -87,12 +88,12 @@ impl<'m> Variables<'m> {
         *self.known.entry(variable).or_insert(next)
     }
 
-    /// An expression as a linear form, if it is one.
+    /// Returns an expression as a linear form, if it is one.
     pub(super) fn form(&mut self, root: Id) -> Option<Form> {
         let mut polynomials = Polynomials::default();
         polynomials.of(self.graph, root);
         let polynomial = |id: &Id| polynomials.known(*id);
-        // What the form is summed up from; each once, however often it is shared.
+        // The terms of the form, each once, even if it is shared.
         let (mut open, mut parts) = (vec![root], BTreeSet::new());
         while let Some(id) = open.pop() {
             if parts.insert(id) && polynomial(&id).is_none() {
@@ -123,7 +124,8 @@ impl<'m> Variables<'m> {
         forms.remove(&root)
     }
 
-    /// A comparison of squares as one of sizes, whose signs may be known in a box.
+    /// Returns a comparison of squares as a comparison of absolute values. Where the sign of a squared node
+    /// is known in the box, the node itself replaces its absolute value.
     pub(super) fn compared(&mut self, value: Id, cell: Cell) -> Option<Form> {
         let [a, b] = squares_compared(self.graph, value)?;
         let a = self.unsquared(&a, cell)?;
@@ -146,8 +148,9 @@ impl<'m> Variables<'m> {
         }
     }
 
-    /// A root of a sum of squares of coordinates less constants, a distance from a point, is no less
-    /// than any linear form with a slope of 1 that is 0 there.
+    /// Returns lower bounds of distances, as forms that are at most 0. The root of a sum of squared
+    /// coordinate differences is the distance from a point. It is at least any linear form with a gradient of
+    /// length 1 that vanishes at that point.
     pub(super) fn projections<'f>(&mut self, forms: impl Iterator<Item = &'f Form>) -> Vec<Form> {
         let forms: Vec<&Form> = forms.collect();
         let mut facts = Vec::new();
@@ -177,7 +180,7 @@ impl<'m> Variables<'m> {
         self.known.iter().filter_map(root).collect()
     }
 
-    /// The point from which a root is the distance, by coordinate.
+    /// Returns the point from which a root is the distance, by coordinate.
     fn centre(&mut self, root: Id) -> Option<BTreeMap<usize, Number>> {
         let (parts, all) = squares(self.graph, root);
         let mut point = BTreeMap::new();
@@ -203,9 +206,10 @@ impl<'m> Variables<'m> {
         form
     }
 
-    /// What is nowhere above 0: minus a square, a distance or a root; and whatever is squared
-    /// under a root, less the root. Beside them, of each root those of which one is nowhere above 0:
-    /// the root, less what is squared under it, each with the one sign or the other.
+    /// Returns two kinds of facts. First, forms that are nowhere above 0: the negative of a square, a
+    /// distance or a root; and any term squared under a root, with either sign, minus the root. Second, for
+    /// each root, alternatives of which at least one is at most 0 at every point: the root, plus or minus
+    /// each term squared under it.
     pub(super) fn facts(&mut self) -> (Vec<Form>, Vec<(usize, Vec<Form>)>) {
         let (mut facts, mut choices) = (Vec::new(), Vec::new());
         for (variable, at) in self.known.clone() {
@@ -228,7 +232,7 @@ impl<'m> Variables<'m> {
                         Variable::Monomial(_) => (Vec::new(), false),
                     };
                     let count = squares.len();
-                    // Of more variables than there are nothing is known.
+                    // Facts cover the existing variables only; forms with new ones are dropped.
                     let variables = self.known.len();
                     parts.extend(squares.into_iter().filter_map(|part| self.form(part)));
                     parts.retain(|form| form.factors.keys().all(|v| *v < variables));
@@ -256,13 +260,13 @@ impl<'m> Variables<'m> {
 enum Squared {
     /// The square of a node.
     Of(Id),
-    /// A sum of squares, whose root is a node.
+    /// A sum of squares whose root is this node.
     Root(Id),
 }
 
-/// The two sides of a comparison of squares.
+/// Returns the two sides of a comparison of squares.
 fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
-    let Node::Sub(a, b) = *graph.node(graph.seen(value)) else { return None };
+    let Node::Sub(a, b) = *graph.node(graph.proof_form(value)) else { return None };
     let side = |id: Id| match *graph.node(id) {
         Node::Mul(a, b) if a == b => Some(Squared::Of(a)),
         _ => Some(Squared::Root(graph.find(&Node::Sqrt(id))?)),
@@ -270,7 +274,7 @@ fn squares_compared(graph: &Graph, value: Id) -> Option<[Squared; 2]> {
     Some([side(a)?, side(b)?])
 }
 
-/// Whether a curve compares the squares of what has roots itself.
+/// Returns whether a curve compares squares of expressions that contain roots.
 pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
     let root = |id: &Id| matches!(graph.node(*id), Node::Sqrt(_));
     let of_root = |side: &Squared| match side {
@@ -280,8 +284,8 @@ pub(super) fn compares_roots(graph: &Graph, value: Id) -> bool {
     squares_compared(graph, value).is_some_and(|sides| sides.iter().any(of_root))
 }
 
-/// What is squared in a root of a sum of squares, of which an absolute value is one, and whether that
-/// is all of the sum.
+/// Returns the terms squared under a root of a sum of squares, and whether the sum has no others. An absolute
+/// value is the root of one square.
 fn squares(graph: &Graph, root: Id) -> (Vec<Id>, bool) {
     let sum = match *graph.node(root) {
         Node::Sqrt(sum) => sum,

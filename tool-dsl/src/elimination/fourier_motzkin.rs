@@ -1,16 +1,16 @@
-//! Fourier and Motzkin's elimination: what linear conditions say of fewer variables.
+//! Fourier–Motzkin elimination: the consequences of linear conditions for fewer variables.
 //!
-//! Doubles choose what is combined, and take what is small for rounding. A result is believed once the combination
-//! that led to it was made again with 256 bits ([`Condition::exactly`]).
+//! The algorithm chooses combinations in doubles and treats small values as rounding. A result is accepted
+//! only after the combination that led to it was repeated with 256 bits ([`Condition::exactly`]).
 
 use crate::number::{self, Number};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// A residue below this, relative to the curve's largest coefficient, or to the unit that conditions are
-/// in, is rounding.
+/// The bound below which a residue is rounding, relative to the curve's largest coefficient, or to the unit
+/// of the conditions.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// The most conditions that elimination may grow to.
+/// The largest number of conditions that elimination may produce.
 const CONDITIONS: usize = 600;
 
 /// `Σ factor · variable + constant`, with 256 bits.
@@ -21,7 +21,7 @@ pub(super) struct Exact {
 }
 
 impl Exact {
-    /// The sum of multiples of two.
+    /// Returns `by · self + other_by · other`.
     pub(super) fn combined(&self, by: &Number, other: &Exact, other_by: &Number) -> Exact {
         let sum = |a: &Number, b: &Number| match (a.is_zero(), b.is_zero()) {
             (true, true) => Number::int(0),
@@ -34,7 +34,7 @@ impl Exact {
     }
 }
 
-/// `Σ factor · variable + constant ≤ 0`, or `< 0`, but for a positive factor.
+/// `Σ factor · variable + constant ≤ 0`, or `< 0`, up to a positive factor.
 #[derive(Clone, Debug)]
 pub(super) struct Condition {
     pub(super) factors: Vec<f64>,
@@ -43,15 +43,15 @@ pub(super) struct Condition {
     origin: Origin,
 }
 
-/// The form that a condition was given as, or the two conditions that it was combined from.
+/// The origin of a condition: the form it was given as, or the two conditions it was combined from.
 #[derive(Clone, Debug)]
 enum Origin {
     Given(Rc<Exact>),
     Sum(Rc<Sum>),
 }
 
-/// The multiples of two conditions in which a variable cancels: of the first, which bounds it from above, and of the
-/// second, which bounds it from below.
+/// A positive combination of two conditions in which a variable cancels: the first bounds it from above, the
+/// second from below.
 #[derive(Debug)]
 struct Sum {
     upper: Origin,
@@ -59,7 +59,8 @@ struct Sum {
     variable: usize,
 }
 
-/// A condition combined with 256 bits, and the sizes of what its factors and its constant are sums of.
+/// A condition combined with 256 bits, with the sums of absolute values of the terms of each factor and of
+/// the constant.
 struct Combined {
     exact: Rc<Exact>,
     sizes: Vec<f64>,
@@ -80,8 +81,9 @@ impl Condition {
         Condition { strict, ..self }
     }
 
-    /// The condition's factor of a variable and its constant with 256 bits, and what of the constant may be rounding,
-    /// if it bounds that variable alone, or nothing if none is `wanted`. The factor may be as small as rounding.
+    /// Returns the coefficient of the `wanted` variable, the constant, and the rounding error of the
+    /// constant, computed with 256 bits. Returns `None` if the condition has another variable (any variable,
+    /// if none is `wanted`), or if its combination is unusable. The coefficient may be as small as rounding.
     pub(super) fn exactly(&self, wanted: Option<usize>) -> Option<(Number, Number, f64)> {
         let Combined { exact, sizes, size } = &*combined(&self.origin, &mut HashMap::new());
         let mut factor = Number::int(0);
@@ -97,7 +99,7 @@ impl Condition {
         size.is_finite().then(|| (factor, exact.constant.clone(), number::ROUNDING * size))
     }
 
-    /// Returns whether it is false whatever its variables are, with 256 bits too.
+    /// Returns whether the condition is false for all values of its variables, confirmed with 256 bits.
     pub(super) fn is_absurd(&self) -> bool {
         let least = if self.strict { -ROUNDING } else { 0.0 };
         self.constant > least
@@ -108,7 +110,7 @@ impl Condition {
     }
 }
 
-/// Combines again what a condition was combined from; each part once.
+/// Repeats the combination behind a condition with 256 bits, each part once.
 fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> Rc<Combined> {
     let sum = match origin {
         Origin::Given(exact) => {
@@ -123,7 +125,7 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
     }
     let [a, b] = [&sum.upper, &sum.lower].map(|origin| combined(origin, known));
     let (x, y) = (-&b.exact.factors[sum.variable], a.exact.factors[sum.variable].clone());
-    // Factors stay near 1 however often they are combined.
+    // Rescaling keeps factors near 1 through repeated combination.
     let scale = Number::from_f64(x.to_f64().abs().max(y.to_f64().abs()).log2().floor().exp2());
     let down = |n: &Number| scale.as_ref().and_then(|scale| n.over(scale)).unwrap_or(n.clone());
     let (x, y) = (down(&x), down(&y));
@@ -131,7 +133,7 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
     exact.factors[sum.variable] = Number::int(0);
     let both = |a: f64, b: f64| a * x.to_f64().abs() + b * y.to_f64().abs();
     let sizes = a.sizes.iter().zip(&b.sizes).map(|(a, b)| both(*a, *b)).collect();
-    // Only positive multiples keep the inequality; a size beyond all bounds is believed by nobody.
+    // Only positive multiples preserve the inequality. An infinite size marks the result as unusable.
     let is_kept = !x.is_negative() && !y.is_negative();
     let size = if is_kept { both(a.size, b.size) } else { f64::INFINITY };
     let result = Rc::new(Combined { exact: Rc::new(exact), sizes, size });
@@ -139,8 +141,8 @@ fn combined(origin: &Origin, known: &mut HashMap<*const Sum, Rc<Combined>>) -> R
     result
 }
 
-/// Conditions in a unit of their own, a power of two near the largest constant; and that unit. So what is
-/// rounding does not depend on the unit that a tool is written in.
+/// Rescales conditions to a unit of their own, a power of two near the largest constant, and returns that
+/// unit. The rounding tolerance therefore does not depend on the unit that a tool is written in.
 pub(super) fn in_own_unit(conditions: Vec<Condition>) -> (Vec<Condition>, f64) {
     let mut conditions: Vec<Condition> = conditions.into_iter().map(scaled).collect();
     let largest = conditions.iter().fold(0f64, |most, c| most.max(c.constant.abs()));
@@ -149,14 +151,14 @@ pub(super) fn in_own_unit(conditions: Vec<Condition>) -> (Vec<Condition>, f64) {
     (conditions, unit)
 }
 
-/// The conditions that remain when some variables may be anything, those first that leave fewest;
-/// `None` if there are too many.
+/// Eliminates variables, always the one that adds fewest conditions. Returns `None` if there are too many
+/// conditions.
 pub(super) fn without(
     mut conditions: Vec<Condition>,
     mut variables: Vec<usize>,
 ) -> Option<Vec<Condition>> {
     while !variables.is_empty() {
-        // What is bounded from one side only takes its conditions along.
+        // A variable bounded from one side only is eliminated by dropping its conditions.
         let loose = |variable: &usize| {
             let any = |sign: f64| conditions.iter().any(|c| sign * c.factors[*variable] > 0.0);
             !any(1.0) || !any(-1.0)
@@ -181,7 +183,7 @@ pub(super) fn without(
     Some(conditions)
 }
 
-/// The conditions that remain when a variable may be anything; `None` if there are too many.
+/// Eliminates one variable. Returns `None` if there are too many conditions.
 fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Condition>> {
     let (mut upper, mut lower, mut rest) = (Vec::new(), Vec::new(), Vec::new());
     for condition in tightest(conditions) {
@@ -209,7 +211,7 @@ fn eliminate(conditions: Vec<Condition>, variable: usize) -> Option<Vec<Conditio
     Some(rest)
 }
 
-/// Of conditions with the same factors, the one that says most.
+/// Keeps only the tightest of the conditions that have the same factors.
 fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
     let mut kept: Vec<Condition> = Vec::new();
     for condition in conditions {
@@ -220,7 +222,7 @@ fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
         match kept.iter_mut().find(same) {
             Some(other) => {
                 let above = condition.constant - other.constant;
-                // The strict one of two that differ by rounding says more.
+                // If two conditions differ by rounding only, the strict one is tighter.
                 let same = above.abs() <= ROUNDING * condition.constant.abs().max(1.0);
                 let stricter = condition.strict && !other.strict;
                 if if same && condition.strict != other.strict { stricter } else { above > 0.0 } {
@@ -233,7 +235,7 @@ fn tightest(conditions: Vec<Condition>) -> Vec<Condition> {
     kept
 }
 
-/// A condition with its largest factor 1 and rounding's residues removed.
+/// Scales a condition to a largest factor of 1 and sets residues of rounding to 0.
 pub(super) fn scaled(mut condition: Condition) -> Condition {
     let largest = condition.factors.iter().fold(0f64, |m, f| m.max(f.abs()));
     if largest > ROUNDING {

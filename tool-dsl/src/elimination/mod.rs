@@ -1,12 +1,12 @@
-//! Curves that are linear in the coordinates, or in monomials and roots of them, each taken for a
-//! variable of its own: what signs they can have together, by Fourier and Motzkin's elimination, which
-//! sees where borders meet in a corner. What it says is shown with the 256 bits of constants.
+//! The signs that linear curves can have together, by Fourier–Motzkin elimination. Curves are linear in the
+//! coordinates, or in monomials and roots of them, each taken as a separate variable. Elimination recognises
+//! borders that meet in a corner. Its results are confirmed with the 256 bits of constants.
 
 mod forms;
 mod fourier_motzkin;
 
 use crate::expr::Id;
-use crate::expr::interval::{self, Cell, EVERYTHING, Interval};
+use crate::expr::interval::{self, Cell, ENTIRE, Interval};
 use crate::expr::polynomial::monomial_of;
 use crate::formula::{ANY, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
@@ -15,28 +15,29 @@ use forms::{Form, Variable, Variables, compares_roots};
 use fourier_motzkin::{Condition, Exact, ROUNDING, in_own_unit, scaled, without};
 use std::rc::Rc;
 
-/// The most combinations of choices.
+/// The largest number of combinations of choices.
 const CHOICES: usize = 8;
 
 /// The curves that are linear in the coordinates or in monomials of them.
 pub(crate) struct Linear {
-    /// Each curve that is a linear form, and behind them depths.
+    /// The linear form of each curve, followed by those of depths; `None` where there is none.
     forms: Vec<Option<Known>>,
     variables: usize,
-    /// The variable that is the coordinate along each axis that the domain has.
+    /// The variable of the coordinate along each axis of the domain.
     axes: [Option<usize>; 3],
-    /// What holds everywhere.
+    /// Conditions that hold everywhere.
     facts: Vec<Condition>,
-    /// Conditions of which one holds everywhere, for each of several roots.
+    /// For several roots, alternatives of which at least one holds at every point.
     choices: Vec<(usize, Vec<Condition>)>,
 }
 
-/// A linear form.
+/// The linear form of a curve or a depth.
 struct Known {
     exact: Rc<Exact>,
     /// The conditions that it is not positive, and that it is not negative.
     sides: [Condition; 2],
-    /// True if a factor is so small beside another that doubles would lose it as rounding: fewer conditions prove less.
+    /// True if a factor is so small next to another that doubles would lose it as rounding. The form is then
+    /// not used, which proves less but nothing false.
     is_lost: bool,
 }
 
@@ -51,15 +52,15 @@ impl Known {
 }
 
 impl Linear {
-    /// What is known at once.
+    /// Collects the linear curves, without depths and choices.
     pub(crate) fn new(model: &Model) -> Linear {
         Linear { choices: Vec::new(), ..Linear::of(model, [], None) }
     }
 
-    /// With the depths of [`Model::depths`], and with what takes a choice.
+    /// Collects the linear curves, the depths of [`Model::depths`], and the choices for roots.
     ///
-    /// Where curves compare squares of roots, all that compare squares are taken for comparisons of
-    /// what is squared, as far as its sign is known in a box that has the tool.
+    /// If some curve compares squares of expressions with roots, every comparison of squares becomes a
+    /// comparison of the squared expressions, where their signs are known in a box that contains the tool.
     pub(crate) fn with_depths(model: &Model, cell: Cell) -> Linear {
         let mut values = model.curves.iter().map(|curve| curve.value);
         let roots = values.any(|value| compares_roots(&model.graph, value)).then_some(cell);
@@ -108,7 +109,7 @@ impl Linear {
         }
     }
 
-    /// A box of which, by the linear curves alone, all points with these signs are.
+    /// Returns a box that contains all points with these signs, according to the linear curves alone.
     pub(crate) fn reach(&self, signs: &[Signs]) -> Cell {
         Cell {
             sides: self
@@ -121,8 +122,8 @@ impl Linear {
         let (conditions, unit) = in_own_unit(self.conditions(signs));
         let largest = unit * conditions.iter().fold(0f64, |most, c| most.max(c.constant.abs()));
         let others = (0..self.variables).filter(|variable| *variable != wanted).collect();
-        let Some(conditions) = without(conditions, others) else { return EVERYTHING };
-        let mut range = EVERYTHING;
+        let Some(conditions) = without(conditions, others) else { return ENTIRE };
+        let mut range = ENTIRE;
         for condition in conditions.into_iter().map(scaled) {
             let double = condition.factors[wanted];
             let end = -unit * condition.constant / double;
@@ -137,7 +138,7 @@ impl Linear {
             let Some((factor, constant, noise)) = condition.exactly(Some(wanted)) else { continue };
             let Some(end) = (-&constant).over(&factor) else { continue };
             let end = Interval::about(&end);
-            // Doubles that are computed from the range stay on its outside.
+            // The slack keeps doubles that are computed from the range outside it.
             let size = largest + end.low.abs().max(end.high.abs());
             let slack = noise / factor.to_f64().abs() + ROUNDING * size;
             if double > 0.0 && !factor.is_negative() {
@@ -177,8 +178,8 @@ impl Linear {
         self.absurd(self.conditions(signs))
     }
 
-    /// Whether these signs contradict one another, if what is linear in the curves settles it: of straight
-    /// lines elimination overlooks nothing.
+    /// Returns whether these signs contradict one another, if the linear part of the curves decides it. For
+    /// straight lines elimination is complete.
     pub(super) fn judged(&self, signs: &[Signs]) -> Option<bool> {
         let rest = self.without_any(self.conditions(signs))?;
         if rest.iter().any(Condition::is_absurd) {
@@ -195,7 +196,7 @@ impl Linear {
         asked.all(|(form, _)| straight(form)).then_some(false)
     }
 
-    /// The same as [`Linear::contradictory`] in a region, whose depth is not negative.
+    /// The same as [`Linear::contradictory`] in a region, where its depth is not negative.
     pub(crate) fn contradictory_in(&self, region: Option<usize>, signs: &[Signs]) -> bool {
         let mut conditions = self.conditions(signs);
         let depth = region.and_then(|region| self.forms[signs.len() + region].as_ref());
@@ -203,7 +204,7 @@ impl Linear {
         self.absurd(conditions)
     }
 
-    /// Whether one region is nowhere deeper than another, or than the outside, where curves have
+    /// Returns whether one region is nowhere deeper than another, or than the outside, where curves have
     /// these signs.
     pub(crate) fn no_deeper(&self, signs: &[Signs], a: Option<usize>, b: Option<usize>) -> bool {
         let zero = Number::int(0);
@@ -219,9 +220,9 @@ impl Linear {
         self.absurd(conditions)
     }
 
-    /// Whether no point keeps the conditions, whatever is chosen for roots in them.
+    /// Returns whether no point satisfies the conditions, whichever alternative holds for each root in them.
     fn absurd(&self, mut conditions: Vec<Condition>) -> bool {
-        // What is known of variables that nothing else mentions leads nowhere.
+        // Facts about variables that nothing else mentions have no consequences.
         let asked = conditions.split_off(self.facts.len());
         let mentioned: Vec<bool> = (0..self.variables)
             .map(|variable| {
@@ -248,7 +249,7 @@ impl Linear {
             || !choices.is_empty() && self.none_of(conditions, &choices)
     }
 
-    /// Whether every choice is absurd.
+    /// Returns whether every combination of alternatives is contradictory.
     fn none_of(&self, conditions: Vec<Condition>, choices: &[&Vec<Condition>]) -> bool {
         let Some((first, rest)) = choices.split_first() else { return self.none_keeps(conditions) };
         first.iter().all(|choice| {
@@ -262,7 +263,7 @@ impl Linear {
         self.without_any(conditions).is_some_and(|rest| rest.iter().any(Condition::is_absurd))
     }
 
-    /// What remains of conditions, in their own unit, when all variables may be anything.
+    /// Eliminates all variables from conditions, in their own unit.
     fn without_any(&self, conditions: Vec<Condition>) -> Option<Vec<Condition>> {
         without(in_own_unit(conditions).0, (0..self.variables).collect())
     }
@@ -274,7 +275,7 @@ mod tests {
     use crate::compile;
     use crate::source::Source;
 
-    /// `d < 1` and `d > 1 - 1e-13` hold in a thin ring, which doubles cannot tell from nothing.
+    /// `d < 1` and `d > 1 - 1e-13` hold in a thin ring, which doubles cannot distinguish from the empty set.
     #[test]
     fn what_only_rounding_contradicts_is_no_contradiction() {
         let ball = "hypot(d, z - 3) <= 3";

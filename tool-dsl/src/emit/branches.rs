@@ -7,8 +7,8 @@ use crate::plan::Tree;
 use std::collections::{BTreeSet, HashMap};
 
 impl Writer<'_> {
-    /// A tree as nested `if`s; `leaf` writes a leaf's value and `needs` names its nodes. What every
-    /// way down will need is computed before the first test.
+    /// Writes a tree as nested `if`s. `leaf` writes the value of a leaf, and `needs` lists its nodes. Nodes
+    /// that every path down the tree needs are computed before the first test.
     pub(super) fn nested<L>(
         &self,
         code: &mut Tokens,
@@ -21,7 +21,7 @@ impl Writer<'_> {
         self.branch(code, tree, &always, leaf, &BTreeSet::new());
     }
 
-    /// A tree's code, and whether it is nothing but an `if`.
+    /// Writes a tree's code, and returns whether it is a single `if`.
     fn branch<L>(
         &self,
         code: &mut Tokens,
@@ -66,7 +66,7 @@ impl Writer<'_> {
         bare
     }
 
-    /// Notes the nodes that every way down a tree needs, for each of its trees.
+    /// Records, for each subtree, the nodes that every path down from it needs.
     fn always<L>(
         &self,
         tree: &Tree<L>,
@@ -87,8 +87,8 @@ impl Writer<'_> {
         known.insert(std::ptr::from_ref(tree), own);
     }
 
-    /// A tree as lanes walk it: `leaf` is told the mask of the lanes that come to it. The nodes that
-    /// are named at the end are returned.
+    /// Writes a tree as a traversal by lanes. `leaf` receives the mask of the lanes that reach it. Returns
+    /// the nodes that have a name at the end.
     pub(super) fn walked<L: PartialEq + Default>(
         &self,
         code: &mut Tokens,
@@ -102,17 +102,17 @@ impl Writer<'_> {
     }
 }
 
-/// A walk of lanes down a tree, as it is written.
+/// The state while writing a traversal by lanes.
 struct Walk<'w, 'g, L, F> {
     writer: &'w Writer<'g>,
     always: HashMap<*const Tree<L>, BTreeSet<Id>>,
-    /// How many masks have a name.
+    /// The number of masks named so far.
     masks: usize,
     leaf: &'w F,
 }
 
 impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
-    /// The code for the lanes of a mask, and what is named in it.
+    /// Writes the code for the lanes of a mask, and returns the nodes named in it.
     fn below(
         &mut self,
         code: &mut Tokens,
@@ -138,7 +138,7 @@ impl<L: PartialEq + Default, F: Fn(&mut Tokens, &str, &L)> Walk<'_, '_, L, F> {
         scope
     }
 
-    /// One side of a split, if it leads anywhere.
+    /// Writes one side of a split, unless it is the default leaf.
     fn side(
         &mut self,
         code: &mut Tokens,

@@ -25,17 +25,17 @@ enum Operand {
     Constant(f64),
 }
 
-/// Writes the body of one function.
+/// A writer of the body of one function.
 pub(super) struct Writer<'g> {
     pub(super) graph: &'g Graph,
     curves: &'g [Curve],
     form: Form,
-    /// How often a node is used in this function: what is used once is written in its place.
+    /// The number of uses of each node in this function. A node that is used once is written inline.
     uses: BTreeMap<Id, usize>,
 }
 
 impl<'g> Writer<'g> {
-    /// A writer for a function that computes some roots and tests some curves.
+    /// Makes a writer for a function that computes some roots and tests some curves.
     pub(super) fn new(
         graph: &'g Graph,
         curves: &'g [Curve],
@@ -59,7 +59,7 @@ impl<'g> Writer<'g> {
         writer
     }
 
-    /// A writer for a function that computes some roots and walks down a tree.
+    /// Makes a writer for a function that computes some roots and descends a tree.
     pub(super) fn of_tree<L>(
         graph: &'g Graph,
         curves: &'g [Curve],
@@ -72,7 +72,7 @@ impl<'g> Writer<'g> {
         Writer::new(graph, curves, form, roots, &tests)
     }
 
-    /// A curve's test as a person reads it.
+    /// Writes the test of a curve for people.
     pub(super) fn shown(
         graph: &Graph,
         curves: &[Curve],
@@ -85,7 +85,7 @@ impl<'g> Writer<'g> {
         code.done().to_string()
     }
 
-    /// An expression as a person reads it.
+    /// Writes an expression for people.
     pub(super) fn written(graph: &Graph, curves: &[Curve], id: Id) -> String {
         let writer = Writer { graph, curves, form: Form::Scalar, uses: BTreeMap::new() };
         let mut code = Tokens::default();
@@ -97,8 +97,8 @@ impl<'g> Writer<'g> {
         self.uses.keys().any(|id| *self.graph.node(*id) == Node::Coord(coord))
     }
 
-    /// The definitions of what the function needs besides a point: the reciprocal of the unit of
-    /// length, `d` and `q`.
+    /// Returns the definitions that the function needs besides a point: the reciprocal of the unit of length,
+    /// `d` and `q`.
     pub(super) fn given(&self) -> TokenStream {
         let per_length = self.uses(Coord::PerLength).then(|| {
             quote! { let per_length = Lane::of(length, 1.0) / length; }
@@ -112,8 +112,8 @@ impl<'g> Writer<'g> {
         quote! { #per_length #across }
     }
 
-    /// The two sides of `c ≤ 0` as `left ≤ right`; a sum has the sign of its comparison exactly, so
-    /// nothing is lost by not adding it up.
+    /// Returns the two sides of `c ≤ 0` as `left ≤ right`. A rounded sum has the sign of its comparison
+    /// exactly, so nothing is lost by not adding.
     fn sides(&self, curve: CurveIndex) -> [Operand; 2] {
         let value = self.curves[curve].value;
         let operand = |id: Id| match self.graph.constant(id) {
@@ -131,7 +131,7 @@ impl<'g> Writer<'g> {
         }
     }
 
-    /// The nodes that a curve's test needs.
+    /// Returns the nodes that a curve's test needs.
     pub(super) fn compared(&self, curve: CurveIndex) -> impl Iterator<Item = Id> {
         self.sides(curve).into_iter().filter_map(|operand| match operand {
             Operand::Node(id) => Some(id),
@@ -139,7 +139,7 @@ impl<'g> Writer<'g> {
         })
     }
 
-    /// The test of a curve, its operands already bound where they are shared. A constant stands on
+    /// Writes the test of a curve, whose shared operands are already bound. In scalar code a constant is on
     /// the right.
     pub(super) fn test(&self, code: &mut Tokens, curve: CurveIndex, strict: bool) {
         let [left, right] = self.sides(curve);
@@ -167,7 +167,7 @@ impl<'g> Writer<'g> {
         operand(code, &second);
     }
 
-    /// A constant as an operand of its own.
+    /// Writes a constant as an operand of its own.
     fn constant(&self, code: &mut Tokens, value: f64) {
         match self.form {
             Form::Scalar => code.number(value),
@@ -175,7 +175,7 @@ impl<'g> Writer<'g> {
         };
     }
 
-    /// A node where it is used: its name if it has one, else its expression.
+    /// Writes a node as an operand: its name if it has one, else its expression.
     pub(super) fn value(&self, code: &mut Tokens, id: Id) {
         if self.named(id) {
             code.word(&name(id));
@@ -189,18 +189,18 @@ impl<'g> Writer<'g> {
         }
     }
 
-    /// A node as the value of a block.
+    /// Writes a node as the value of a block.
     pub(super) fn leaf(&self, code: &mut Tokens, id: Id) {
         if self.named(id) { self.value(code, id) } else { self.operation(code, id) }
     }
 
-    /// Whether a node has a `let` of its own.
+    /// Returns whether a node has its own `let`.
     fn named(&self, id: Id) -> bool {
         let free = matches!(self.graph.node(id), Node::Const(_) | Node::Coord(_));
         !free && self.uses.get(&id).is_some_and(|uses| *uses > 1)
     }
 
-    /// A node's operation, whatever its name.
+    /// Writes a node's operation, even if the node has a name.
     fn operation(&self, code: &mut Tokens, id: Id) {
         let two = |code: &mut Tokens, a: &Id, sign: &str, b: &Id| {
             self.value(code, *a);
@@ -273,14 +273,14 @@ impl<'g> Writer<'g> {
         }
     }
 
-    /// A `let` for every shared node that some roots need and that is not yet in scope.
+    /// Writes a `let` for every shared node that some roots need and that is not yet in scope.
     pub(super) fn lets(
         &self,
         code: &mut Tokens,
         roots: impl IntoIterator<Item = Id>,
         scope: &mut BTreeSet<Id>,
     ) {
-        // Operands first, so every name is known where it is used.
+        // Operands come first, so every name is defined before its use.
         for id in self.graph.needed(roots) {
             if self.named(id) && scope.insert(id) {
                 code.word("let").word(&name(id)).sign("=");
@@ -291,7 +291,7 @@ impl<'g> Writer<'g> {
     }
 }
 
-/// The curves that a tree tests, and how.
+/// Collects the curves that a tree tests, each with the strictness of the test.
 fn tested<L>(tree: &Tree<L>, tests: &mut BTreeSet<(CurveIndex, bool)>) {
     if let Tree::Split { curve, strict, below, above } = tree {
         tests.insert((*curve, *strict));

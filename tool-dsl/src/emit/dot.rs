@@ -1,11 +1,11 @@
-//! The tree of splits as a graph, in Graphviz's DOT.
+//! The tree of splits as a graph in Graphviz's DOT.
 
 use super::code::Writer;
 use crate::checked::CheckedTool;
 use crate::plan::Tree;
 use std::fmt::Write;
 
-/// The owners' tree: a box for each test, whose left way holds, and a leaf for each region.
+/// Writes the tree of owners: a box per test, whose left branch is taken if it holds, and a leaf per region.
 pub fn dot(tool: &CheckedTool) -> String {
     let mut graph = Dot { tool, text: String::new(), nodes: 0 };
     graph.tree(&tool.plan.owner);

@@ -1,22 +1,22 @@
-//! A tool between its text and its Rust, as text: what a reviewer compares after a change of the compiler.
+//! The intermediate stages of a tool as text, which reviewers compare after a change of the compiler.
 
 use super::code::Writer;
 use crate::checked::CheckedTool;
-use crate::diagnostic::figure;
+use crate::diagnostic::format_number;
 use crate::expr::Id;
 use crate::formula::Formula;
 use crate::source::Source;
 use crate::syntax;
 use std::fmt::Write;
 
-/// The syntax tree of a text, an item a line, without places.
+/// Lists the syntax tree of a text, one line per item, without source locations.
 pub fn tree(source: &Source) -> String {
     let Ok(tree) = syntax::parse(source, &mut Vec::new()) else { return String::new() };
     let head = format!("{:?} {} {:?}\n", tree.domain, tree.name.word, tree.title);
     tree.items.iter().fold(head, |text, item| text + &unplaced(&format!("{item:?}")) + "\n")
 }
 
-/// A debug text without its spans.
+/// Removes the spans from a debug text.
 fn unplaced(text: &str) -> String {
     let mut parts = text.split("Span { start: ");
     let mut plain = parts.next().unwrap_or_default().to_owned();
@@ -29,15 +29,15 @@ fn unplaced(text: &str) -> String {
     plain.replace("Number(", "").replace(" (prec: 256))", "")
 }
 
-/// What a file says, resolved: frame, curves, surfaces; and how far the solid reaches.
+/// Lists the resolved model: frame, curves, surfaces, and the extent of the solid.
 pub fn model(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut text = String::new();
     // Writing to a String does not fail.
     let _ = writeln!(text, "{:?} {} {:?}", model.domain, model.name, model.title);
-    let _ = writeln!(text, "unit {}", model.unit.word());
+    let _ = writeln!(text, "unit {}", model.unit.symbol());
     let down = if model.frame.down { ", spindle -z" } else { "" };
-    let _ = writeln!(text, "tip {}{down}", figure(model.frame.tip.to_f64()));
+    let _ = writeln!(text, "tip {}{down}", format_number(model.frame.tip.to_f64()));
     for side in tool.extent.cell().sides {
         let _ = writeln!(text, "reach {:?} to {:?}", side.low, side.high);
     }
@@ -55,7 +55,7 @@ pub fn model(tool: &CheckedTool) -> String {
     text
 }
 
-/// The regions: where they are, and what is felt there.
+/// Lists the regions: their conditions, and the quantities evaluated there.
 pub fn regions(tool: &CheckedTool) -> String {
     let model = &tool.model;
     let mut text = String::new();
@@ -64,15 +64,15 @@ pub fn regions(tool: &CheckedTool) -> String {
         let surface = &model.surfaces[region.surface].name;
         let _ = writeln!(text, "region {} as {surface}", region.name);
         let _ = writeln!(text, "  where {}", condition(&region.inside));
-        let felt = [
+        let evaluation = [
             ("depth", region.depth),
             ("magnitude", region.magnitude),
             ("niceness", region.niceness),
         ];
-        for (name, id) in felt {
+        for (name, id) in evaluation {
             let _ = writeln!(text, "  {name} {}", expression(tool, id));
         }
-        let course = region.course.0.map(|part| expression(tool, part));
+        let course = region.raw_direction.0.map(|part| expression(tool, part));
         let _ = writeln!(text, "  direction ({})", course.join(", "));
     }
     text

@@ -1,10 +1,10 @@
-//! A checked tool to Rust: straight-line code without loops, recursion, tables or panics, in two
-//! forms of one plan. Emitting cannot fail, since everything is found before it.
+//! Emission of a checked tool as Rust: straight-line code without loops, recursion, tables or panics, in two
+//! forms of one plan. Emission cannot fail, since all errors are found earlier.
 
 mod branches;
 mod code;
 mod dot;
-mod felt;
+mod lanes;
 mod listing;
 mod tokens;
 
@@ -13,12 +13,12 @@ pub use listing::{model, regions, tree};
 
 use crate::bound::across;
 use crate::checked::CheckedTool;
-use crate::diagnostic::figure;
+use crate::diagnostic::format_number;
 use crate::digest;
 use crate::domain::Domain;
 use crate::draw::{self, Lettering};
 use crate::expr::Id;
-use crate::model::Outputs;
+use crate::model::RegionOutputs;
 use crate::plan::Tree;
 use code::{Form, Writer};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
@@ -26,15 +26,15 @@ use quote::{format_ident, quote};
 use std::fmt::Write;
 use tokens::{Tokens, literal};
 
-/// The type and its evaluators. Its documentation has the tool's drawing, which only rustdoc is
-/// shown: an editor that shows documentation as text is spared it.
+/// Emits the type and its evaluators. The documentation of the type has no drawing, since an editor would
+/// show it as text; see [`documented`].
 pub fn emit(tool: &CheckedTool) -> TokenStream {
     code(tool, &quote! {})
 }
 
 /// The same with the tool's drawing on the type's page, for rustdoc.
 pub fn documented(tool: &CheckedTool) -> TokenStream {
-    // One line within a block, so that nothing in it is read as Markdown.
+    // One line inside a block element, so that nothing in it is parsed as Markdown.
     let drawing = draw::svg(tool, Lettering::Page).map(|svg| format!("<div>{svg}</div>"));
     code(tool, &drawing.map(|drawing| quote! { #[doc = ""] #[doc = #drawing] }).unwrap_or_default())
 }
@@ -42,14 +42,14 @@ pub fn documented(tool: &CheckedTool) -> TokenStream {
 fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     let name = Ident::new(&tool.model.name, Span::call_site());
     let docs = documentation(tool);
-    let card = card(tool);
+    let info = info(tool);
     let scalar = scalar(tool);
-    let lanes = felt::felt(tool);
-    // Of a profile more is known.
+    let lanes = lanes::evaluator(tool);
+    // A profile needs no enclosure by interval evaluation: its geometry is known.
     let enclose = tool.model.outline().next().is_none().then(|| {
         quote! {
-            fn enclose(sides: [[f64; 2]; 3], at: [f64; 3]) -> Option<Enclosed> {
-                Some(Enclosed::of::<Self>(sides, at))
+            fn enclose(sides: [[f64; 2]; 3], at: [f64; 3]) -> Option<EvaluationEnclosure> {
+                Some(EvaluationEnclosure::of::<Self>(sides, at))
             }
         }
     });
@@ -62,12 +62,12 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
         #[allow(clippy::all, clippy::pedantic, unused_imports, unused_variables, unused_parens)]
         const _: () = {
             use ::touchoff::tool::{
-                Ask, Card, Circle, Depth, Enclosed, Evaluators, FeltLanes, Lane, Piece, Region, Shape,
-                Slab, Surface,
+                Outputs, ToolInfo, Circle, DepthBounds, EvaluationEnclosure, Evaluators, LaneEvaluation, Lane, ProfileSegment, Region, Symmetry,
+                EnvelopeSlab, Surface,
             };
 
             impl Evaluators for #name {
-                #card
+                #info
                 #scalar
                 #enclose
                 #lanes
@@ -76,16 +76,16 @@ fn code(tool: &CheckedTool, drawing: &TokenStream) -> TokenStream {
     }
 }
 
-/// A type that has the tool's name and no meaning: after an error it keeps the code that uses the
-/// tool quiet, so that one mistake gives one message.
+/// Emits a type that has the tool's name and no meaning. After an error it prevents further errors in code
+/// that uses the tool, so that one mistake gives one message.
 pub fn skeleton(name: &str) -> TokenStream {
     let name = Ident::new(name, Span::call_site());
-    let mut functions = quote! { fn card() -> &'static Card { ::core::unreachable!() } };
+    let mut functions = quote! { fn info() -> &'static ToolInfo { ::core::unreachable!() } };
     let empty = quote! { ::core::unreachable!() };
     functions.extend(quote! {
-        fn feel_lanes<L: Lane>(
-            point: [L; 3], length: L, present: L::Mask, ask: Ask,
-        ) -> FeltLanes<L> { #empty }
+        fn evaluate_lanes<L: Lane>(
+            point: [L; 3], length: L, present: L::Mask, outputs: Outputs,
+        ) -> LaneEvaluation<L> { #empty }
     });
     functions.extend(function("contains", false, &quote! { bool }, &empty));
     functions.extend(function("owner", false, &quote! { Option<usize> }, &empty));
@@ -100,7 +100,7 @@ pub fn skeleton(name: &str) -> TokenStream {
 
         #[allow(unused)]
         const _: () = {
-            use ::touchoff::tool::{Ask, Card, Evaluators, FeltLanes, Lane};
+            use ::touchoff::tool::{Outputs, ToolInfo, Evaluators, LaneEvaluation, Lane};
             impl Evaluators for #name { #functions }
         };
     }
@@ -112,7 +112,7 @@ fn documentation(tool: &CheckedTool) -> String {
         "{}\n\nUnit: {}. {}.\n\n\
          | region | surface |\n|---|---|\n",
         model.title.as_deref().unwrap_or(&model.name),
-        model.unit.word(),
+        model.unit.symbol(),
         reach(tool),
     );
     for region in &model.regions {
@@ -124,10 +124,10 @@ fn documentation(tool: &CheckedTool) -> String {
     text
 }
 
-/// How far a tool reaches along its axis and about it, or a solid along x, y and z.
+/// Describes the extent of a tool along its axis and around it, or of a solid along x, y and z.
 fn reach(tool: &CheckedTool) -> String {
     let extent = &tool.extent;
-    let tidy = |v: f64| figure(if v.abs() < 1e-9 * extent.scale() { 0.0 } else { v });
+    let tidy = |v: f64| format_number(if v.abs() < 1e-9 * extent.scale() { 0.0 } else { v });
     match tool.model.domain {
         Domain::HalfPlane => format!(
             "Reaches from z = {} to {}, and {} from the axis",
@@ -143,7 +143,7 @@ fn reach(tool: &CheckedTool) -> String {
     }
 }
 
-fn card(tool: &CheckedTool) -> TokenStream {
+fn info(tool: &CheckedTool) -> TokenStream {
     let model = &tool.model;
     let name = &model.name;
     let title = model.title.as_deref().unwrap_or("");
@@ -158,17 +158,17 @@ fn card(tool: &CheckedTool) -> TokenStream {
     });
     let slabs = tool.envelope().iter().map(|slab| {
         let [low, high, radius] = [slab.low, slab.high, slab.radius].map(literal);
-        quote! { Slab::new(#low, #high, #radius) }
+        quote! { EnvelopeSlab::new(#low, #high, #radius) }
     });
     let pieces = model.outline().map(|piece| {
         let [[fd, fz], [td, tz]] = piece.ends.map(|end| end.map(literal));
         let surface = piece.surface;
         match piece.circle {
-            None => quote! { Piece::line([#fd, #fz], [#td, #tz], #surface) },
+            None => quote! { ProfileSegment::line([#fd, #fz], [#td, #tz], #surface) },
             Some((centre, radius, convex)) => {
                 let ([cd, cz], radius) = (centre.map(literal), literal(radius));
                 quote! {
-                    Piece::arc(
+                    ProfileSegment::arc(
                         [[#fd, #fz], [#td, #tz]],
                         Circle { centre: [#cd, #cz], radius: #radius, convex: #convex },
                         #surface,
@@ -188,41 +188,41 @@ fn card(tool: &CheckedTool) -> TokenStream {
             None => quote! { None },
         });
     let shape = match model.domain {
-        Domain::HalfPlane => quote! { Shape::Revolved },
+        Domain::HalfPlane => quote! { Symmetry::Revolved },
         Domain::Space => {
             let [x, y] = across(&tool.extent).map(|ends| {
                 let ends = ends.map(literal);
                 quote! { [#(#ends),*] }
             });
-            quote! { Shape::Solid { across: [#x, #y] } }
+            quote! { Symmetry::Solid { across: [#x, #y] } }
         }
     };
     quote! {
-        fn card() -> &'static Card {
+        fn info() -> &'static ToolInfo {
             static SURFACES: &[Surface] = &[#(#surfaces),*];
             static REGIONS: &[Region] = &[#(#regions),*];
-            static SLABS: &[Slab] = &[#(#slabs),*];
-            static OUTLINE: &[Piece] = &[#(#pieces),*];
-            static CARD: Card = Card::new(
+            static SLABS: &[EnvelopeSlab] = &[#(#slabs),*];
+            static OUTLINE: &[ProfileSegment] = &[#(#pieces),*];
+            static INFO: ToolInfo = ToolInfo::new(
                 [#name, #title],
                 ::touchoff::Unit::#unit,
                 (SURFACES, REGIONS),
                 (#shape, SLABS),
-                (OUTLINE, Depth { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
+                (OUTLINE, DepthBounds { least: #least, lipschitz: #lipschitz, rounding: #rounding }),
                 #digest,
             );
-            &CARD
+            &INFO
         }
     }
 }
 
-/// What an evaluator computes.
+/// One quantity that an evaluator computes.
 struct Output {
     name: &'static str,
-    /// Whether it depends on the unit of the part.
+    /// True if it depends on the unit of the part.
     with_length: bool,
     vector: bool,
-    of: fn(&Outputs) -> Vec<Id>,
+    of: fn(&RegionOutputs) -> Vec<Id>,
 }
 
 const OUTPUTS: [Output; 5] = [
@@ -243,7 +243,7 @@ impl Output {
     }
 }
 
-/// The evaluators of one point.
+/// Emits the evaluators for one point.
 fn scalar(tool: &CheckedTool) -> TokenStream {
     let mut all =
         of_tests(tool, ("contains", &quote! { bool }), &tool.plan.inside, &|code, inside| {
@@ -262,7 +262,7 @@ fn scalar(tool: &CheckedTool) -> TokenStream {
         let tree = tool
             .plan
             .owner
-            // Outside nobody asks, so those leaves join their siblings.
+            // Evaluators of outputs are not called outside, so those leaves are replaced by their siblings.
             .map(&|owner: &Option<usize>| {
                 owner.map(|r| (output.of)(&tool.model.regions[r].outputs))
             });
@@ -286,7 +286,7 @@ fn function(name: &str, length: bool, result: &TokenStream, body: &TokenStream) 
     }
 }
 
-/// The body of a function whose leaves are one or three expressions.
+/// Writes the body of a function whose leaves are one or three expressions.
 fn body(tool: &CheckedTool, tree: &Tree<Vec<Id>>) -> TokenStream {
     let model = &tool.model;
     let mut roots = Vec::new();
@@ -300,7 +300,7 @@ fn body(tool: &CheckedTool, tree: &Tree<Vec<Id>>) -> TokenStream {
     quote! { #given #code }
 }
 
-/// One value as it is, several as an array.
+/// Writes one value as it is, several as an array.
 fn together<T>(code: &mut Tokens, values: &[T], one: impl Fn(&mut Tokens, &T)) {
     if let [only] = values {
         return one(code, only);
@@ -325,7 +325,7 @@ fn leaves(tree: &Tree<Vec<Id>>, roots: &mut Vec<Id>) {
     }
 }
 
-/// A function of a tree that needs nothing but its tests.
+/// Emits a function of a tree that needs nothing except its tests.
 fn of_tests<L>(
     tool: &CheckedTool,
     (name, result): (&str, &TokenStream),
@@ -340,7 +340,7 @@ fn of_tests<L>(
     function(name, false, result, &quote! { #given #code })
 }
 
-/// The code as a person reads it, without the drawing in its documentation.
+/// Formats the code for people, without the drawing in its documentation.
 pub fn rust(tool: &CheckedTool) -> String {
     let tokens = code(tool, &quote! {});
     match syn::parse2(tokens.clone()) {

@@ -1,9 +1,9 @@
-//! Tokens, written one behind the other: what is written is never copied.
+//! An append-only list of tokens, so that tokens once written are never copied.
 
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 use quote::TokenStreamExt;
 
-/// Code as it grows.
+/// Code under construction.
 #[derive(Default)]
 pub(super) struct Tokens(TokenStream);
 
@@ -21,13 +21,13 @@ impl Tokens {
         self
     }
 
-    /// A name or a keyword.
+    /// Appends a name or a keyword.
     pub(super) fn word(&mut self, word: &str) -> &mut Tokens {
         self.0.append(Ident::new(word, Span::call_site()));
         self
     }
 
-    /// An operator or other punctuation.
+    /// Appends an operator or other punctuation.
     pub(super) fn sign(&mut self, sign: &str) -> &mut Tokens {
         let mut rest = sign.chars().peekable();
         while let Some(char) = rest.next() {
@@ -37,7 +37,7 @@ impl Tokens {
         self
     }
 
-    /// A double as a literal that reads back as the same double.
+    /// Appends a double as a literal that is parsed back to the same double.
     pub(super) fn number(&mut self, value: f64) -> &mut Tokens {
         let size = value.abs();
         if value.is_sign_negative() && size != 0.0 {
@@ -54,17 +54,17 @@ impl Tokens {
         self
     }
 
-    /// What is between parentheses.
+    /// Appends a group in parentheses.
     pub(super) fn paren(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
         self.group(Delimiter::Parenthesis, inner)
     }
 
-    /// What is between braces.
+    /// Appends a group in braces.
     pub(super) fn brace(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
         self.group(Delimiter::Brace, inner)
     }
 
-    /// What is between brackets.
+    /// Appends a group in brackets.
     pub(super) fn bracket(&mut self, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
         self.group(Delimiter::Bracket, inner)
     }
@@ -76,26 +76,26 @@ impl Tokens {
         self
     }
 
-    /// A call of one of `Lane`'s functions.
+    /// Appends a call of one of `Lane`'s functions.
     pub(super) fn lane(&mut self, name: &str, inner: impl FnOnce(&mut Tokens)) -> &mut Tokens {
         self.word("Lane").sign("::").word(name).paren(inner)
     }
 
-    /// Whether any lane of a mask is set.
+    /// Appends a test for any lane set in a mask.
     pub(super) fn any(&mut self, mask: &str) -> &mut Tokens {
         self.word("L").sign("::").word("any").paren(|code| {
             code.word(mask);
         })
     }
 
-    /// A constant for all lanes.
+    /// Appends a constant for all lanes.
     pub(super) fn of_lanes(&mut self, value: f64) -> &mut Tokens {
         self.word("z").sign(".").word("of").paren(|code| {
             code.number(value);
         })
     }
 
-    /// Whether this is one word and nothing else.
+    /// Returns whether this consists of one word only.
     pub(super) fn is_word(&self, word: &str) -> bool {
         let mut tokens = self.0.clone().into_iter();
         let first = tokens.next();
@@ -103,7 +103,7 @@ impl Tokens {
     }
 }
 
-/// A double as a literal.
+/// Returns a double as a literal.
 pub(super) fn literal(value: f64) -> TokenStream {
     let mut tokens = Tokens::default();
     tokens.number(value);

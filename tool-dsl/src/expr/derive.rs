@@ -1,13 +1,13 @@
-//! The derivative, by the rules of calculus.
+//! Symbolic derivatives, by the rules of calculus.
 
 use super::{Coord, Graph, Id, Node};
 use std::collections::HashMap;
 
-/// The derivative of `of` with respect to a coordinate: one of `d` and `z`, which are a tool's, or
-/// of `x`, `y` and `z`, which are a solid's and which `d` depends on.
+/// Returns the derivative of `of` with respect to a coordinate: `d` or `z` of a tool, or `x`, `y` or `z` of a
+/// solid, which `d` depends on.
 ///
-/// Where a root, a minimum or an absolute value has a kink, one of its one-sided derivatives is
-/// taken (of a root of 0, the value 0), so that the result is finite wherever the function is.
+/// Where a root, a minimum or an absolute value is not smooth, the result is one of its one-sided
+/// derivatives; for a root of 0 it is 0. So the result is finite wherever the function is.
 pub fn derivative(graph: &mut Graph, of: Id, by: Coord) -> Id {
     let mut known = HashMap::new();
     for id in graph.needed([of]) {

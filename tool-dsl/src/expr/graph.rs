@@ -1,37 +1,37 @@
-//! The graph and the rules by which it folds as it grows.
+//! The expression graph, and the rules by which it is folded during construction.
 
 use super::node::{Coord, Id, Node};
 use crate::number::Number;
 use std::collections::{BTreeSet, HashMap};
 
-/// Expressions with shared parts.
+/// Expressions with shared subexpressions.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     nodes: Vec<Node>,
-    /// How many operations lie between a node and its farthest leaf.
+    /// The number of operations between each node and its farthest leaf.
     heights: Vec<u32>,
     known: HashMap<Node, Id>,
-    /// What else expressions are written as.
+    /// Alternative forms of expressions, for proofs.
     also: HashMap<Id, Id>,
 }
 
 impl Graph {
-    /// The node behind an id.
+    /// Returns the node of an id.
     pub fn node(&self, id: Id) -> &Node {
         &self.nodes[id.index()]
     }
 
-    /// How many operations lie between a node and its farthest leaf.
+    /// Returns the number of operations between a node and its farthest leaf.
     pub fn height(&self, id: Id) -> u32 {
         self.heights[id.index()]
     }
 
-    /// All nodes, operands first.
+    /// Returns all nodes, operands first.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// The nodes that some roots need, operands first.
+    /// Returns the nodes that some roots need, operands first.
     pub fn needed(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
         let mut open: Vec<Id> = roots.into_iter().collect();
         let mut wanted = BTreeSet::new();
@@ -43,8 +43,8 @@ impl Graph {
         wanted.into_iter().collect()
     }
 
-    /// What a node is the sum of squares of, if it is one: nodes, and `None` for the distance from the
-    /// axis.
+    /// Returns the nodes whose squares a node is the sum of, if it visibly is such a sum. `None` in the list
+    /// is the distance from the axis.
     pub(crate) fn squares_of(&self, id: Id) -> Option<Vec<Option<Id>>> {
         match self.node(id) {
             Node::Mul(a, b) if a == b => Some(vec![Some(*a)]),
@@ -58,7 +58,7 @@ impl Graph {
         }
     }
 
-    /// The constant that a node is, if it is one.
+    /// Returns the value of a constant node.
     pub fn constant(&self, id: Id) -> Option<&Number> {
         match self.node(id) {
             Node::Const(value) => Some(value),
@@ -70,20 +70,21 @@ impl Graph {
         self.constant(id).is_some_and(|c| *c == Number::int(value))
     }
 
-    /// States that two expressions are the same function: one that is computed, since it rounds little,
-    /// and one that proofs see through.
-    pub(crate) fn also(&mut self, computed: Id, seen: Id) {
+    /// States that two expressions are the same function: one that is computed, since it rounds little, and
+    /// one whose form proofs can use.
+    pub(crate) fn add_proof_alias(&mut self, computed: Id, seen: Id) {
         self.also.insert(computed, seen);
         let opposite = [computed, seen].map(|id| self.neg(id));
         self.also.insert(opposite[0], opposite[1]);
     }
 
-    /// What proofs see of an expression: itself, unless [something else](Graph::also) was said.
-    pub(crate) fn seen(&self, id: Id) -> Id {
+    /// Returns the form of an expression that proofs use: the expression itself, unless
+    /// [another form](Graph::also) was stated.
+    pub(crate) fn proof_form(&self, id: Id) -> Id {
         self.also.get(&id).copied().unwrap_or(id)
     }
 
-    /// Where a node is, if it is in the graph.
+    /// Returns the id of a node, if it is in the graph.
     pub(crate) fn find(&self, node: &Node) -> Option<Id> {
         self.known.get(node).copied()
     }
@@ -100,17 +101,17 @@ impl Graph {
         id
     }
 
-    /// A constant.
+    /// Adds a constant.
     pub fn number(&mut self, value: Number) -> Id {
         self.put(Node::Const(value))
     }
 
-    /// A whole constant.
+    /// Adds an integer constant.
     pub fn int(&mut self, value: i64) -> Id {
         self.number(Number::int(value))
     }
 
-    /// A coordinate.
+    /// Adds a coordinate.
     pub fn coord(&mut self, coord: Coord) -> Id {
         self.put(Node::Coord(coord))
     }
@@ -133,7 +134,7 @@ impl Graph {
         }
     }
 
-    /// A node as `rest + constant`, where it visibly is such a sum.
+    /// Splits a node into `rest + constant`, if it visibly is such a sum.
     fn split(&self, id: Id) -> Option<(Id, Number)> {
         match self.node(id) {
             Node::Add(rest, shift) => Some((*rest, self.constant(*shift)?.clone())),
@@ -141,8 +142,8 @@ impl Graph {
         }
     }
 
-    /// `a + b`. Constants wander to the outside, so that the frame's shift and the file's own
-    /// numbers meet and are rounded once.
+    /// `a + b`. Constants move outward, so that the frame's shift and the file's own numbers meet and are
+    /// rounded once.
     pub fn add(&mut self, a: Id, b: Id) -> Id {
         match (self.node(a).clone(), self.node(b).clone()) {
             (Node::Const(x), Node::Const(y)) => return self.number(&x + &y),
@@ -258,7 +259,7 @@ impl Graph {
         self.put(Node::Sub(a, b))
     }
 
-    /// `a · b`, a constant factor first; `d · d` is the square that needs no root.
+    /// `a · b`, with a constant factor first. `d · d` becomes `Q`, which needs no root.
     pub fn mul(&mut self, a: Id, b: Id) -> Id {
         match (self.node(a).clone(), self.node(b).clone()) {
             (Node::Const(x), Node::Const(y)) => return self.number(&x * &y),
@@ -278,7 +279,7 @@ impl Graph {
             }
             (Node::Neg(u), Node::Neg(v)) => return self.mul(u, v),
             (Node::Sub(c, v), _) if a == b && self.constant(c).is_some() => {
-                // (c - v)² = (v - c)², so that a square is written one way.
+                // (c - v)² = (v - c)², so that a square has one form only.
                 let root = self.sub(v, c);
                 return self.mul(root, root);
             }
@@ -334,7 +335,7 @@ impl Graph {
         }
     }
 
-    /// The smaller of two.
+    /// The smaller of two expressions.
     pub fn min(&mut self, a: Id, b: Id) -> Id {
         match (self.constant(a).cloned(), self.constant(b).cloned()) {
             (Some(x), Some(y)) => self.number(x.min(y)),
@@ -343,7 +344,7 @@ impl Graph {
         }
     }
 
-    /// The larger of two.
+    /// The larger of two expressions.
     pub fn max(&mut self, a: Id, b: Id) -> Id {
         match (self.constant(a).cloned(), self.constant(b).cloned()) {
             (Some(x), Some(y)) => self.number(x.max(y)),
@@ -362,7 +363,7 @@ impl Graph {
         }
     }
 
-    /// The square root; `None` of a negative constant.
+    /// The square root; `None` for a negative constant.
     pub fn sqrt(&mut self, a: Id) -> Option<Id> {
         match self.node(a).clone() {
             Node::Const(value) => value.sqrt().map(|root| self.number(root)),
@@ -371,7 +372,7 @@ impl Graph {
         }
     }
 
-    /// `base^(halves/2)`; `None` where a constant base has no such power.
+    /// `base^(halves/2)`; `None` if a constant base has no such power.
     pub fn power(&mut self, base: Id, halves: i32) -> Option<Id> {
         if halves < 0 {
             let below = self.power(base, -halves)?;

@@ -1,10 +1,11 @@
-//! Enclosures: every operation rounds outward by one step of the last place, so that the true
-//! value over a box lies between the ends.
+//! Interval enclosures. Every operation rounds outward by one unit in the last place, so that the exact value
+//! over a box lies between the ends.
 
 use super::{Coord, Graph, Id, Node};
 use crate::number::Number;
 
-/// All numbers between two ends. A quantity that may be undefined encloses everything.
+/// The numbers between two ends, which are included. A quantity that may be undefined is enclosed by
+/// [`ENTIRE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The lower end.
@@ -13,27 +14,27 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Nothing but 0.
+/// The interval of 0 alone.
 pub const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
 
-/// Nothing but 1.
+/// The interval of 1 alone.
 pub(crate) const ONE: Interval = Interval { low: 1.0, high: 1.0 };
-/// Nothing but -1.
+/// The interval of -1 alone.
 const MINUS_ONE: Interval = Interval { low: -1.0, high: -1.0 };
 
-/// Every number.
-pub const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
+/// The interval of all real numbers.
+pub const ENTIRE: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
 impl Interval {
-    /// The interval between two ends.
+    /// Returns the interval between two ends.
     pub fn new(low: f64, high: f64) -> Interval {
         Interval { low, high }
     }
 
-    /// A constant, of which only its double is known.
+    /// Encloses a constant: exactly if it is a double, else by the doubles around its nearest one.
     pub(crate) fn about(value: &Number) -> Interval {
         let nearest = value.to_f64();
-        // Most are doubles.
+        // Most constants are doubles.
         if Number::from_f64(nearest).as_ref() == Some(value) {
             return Interval { low: nearest, high: nearest };
         }
@@ -44,31 +45,32 @@ impl Interval {
         Interval { low: -self.high, high: -self.low }
     }
 
-    /// What two intervals that enclose the same have in common.
+    /// Returns the intersection of two enclosures of the same quantity.
     pub(crate) fn common(self, other: Interval) -> Interval {
         Interval { low: self.low.max(other.low), high: self.high.min(other.high) }
     }
 
-    /// The number halfway between the ends.
+    /// Returns the midpoint.
     pub fn middle(self) -> f64 {
         self.low / 2.0 + self.high / 2.0
     }
 
-    /// Rounds outward; a NaN end means that nothing is known.
+    /// Rounds outward. A NaN end gives [`ENTIRE`].
     pub(crate) fn out(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
-            return EVERYTHING;
+            return ENTIRE;
         }
         Interval { low: low.next_down(), high: high.next_up() }
     }
 
-    /// The same, known not to be negative if `sure`: rounding outward does not make it so.
+    /// Clamps the lower end to 0 if the quantity is known to be nonnegative (`sure`), since rounding outward
+    /// may make it negative.
     fn at_least_0(self, sure: bool) -> Interval {
         if sure { Interval { low: self.low.max(0.0), ..self } } else { self }
     }
 
     pub(crate) fn plus(self, other: Interval) -> Interval {
-        // Nothing is rounded.
+        // Adding 0 is exact.
         if self == ZERO || other == ZERO {
             return if self == ZERO { other } else { self };
         }
@@ -78,7 +80,7 @@ impl Interval {
 
     pub(crate) fn times(self, other: Interval) -> Interval {
         match (self, other) {
-            // Nothing is rounded.
+            // Factors 0, 1 and -1 are exact.
             (ZERO, _) | (_, ZERO) => return ZERO,
             (ONE, value) | (value, ONE) => return value,
             (MINUS_ONE, value) | (value, MINUS_ONE) => return value.negated(),
@@ -101,7 +103,7 @@ impl Interval {
 
     pub(crate) fn reciprocal(self) -> Interval {
         if self.low <= 0.0 && self.high >= 0.0 {
-            return EVERYTHING;
+            return ENTIRE;
         }
         Interval::out(1.0 / self.high, 1.0 / self.low)
     }
@@ -110,12 +112,12 @@ impl Interval {
         Interval { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// The smaller of two.
+    /// Encloses the smaller of two quantities.
     pub(crate) fn min(self, other: Interval) -> Interval {
         Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 
-    /// The larger of two.
+    /// Encloses the larger of two quantities.
     pub(crate) fn max(self, other: Interval) -> Interval {
         Interval { low: self.low.max(other.low), high: self.high.max(other.high) }
     }
@@ -144,29 +146,29 @@ impl Interval {
         }
     }
 
-    /// Undefined somewhere: then nothing is known.
+    /// Encloses the square root; [`ENTIRE`] if the operand may be negative.
     pub(crate) fn sqrt(self) -> Interval {
         if self.low < 0.0 {
-            return EVERYTHING;
+            return ENTIRE;
         }
         Interval::out(self.low.sqrt(), self.high.sqrt()).at_least_0(true)
     }
 }
 
-/// A box of space. A tool's lies in the half plane of y = 0, x ≥ 0.
+/// An axis-aligned box in space. A tool's box lies in the half plane y = 0, x ≥ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Along x, y and z.
+    /// The sides along x, y and z.
     pub sides: [Interval; 3],
 }
 
 impl Cell {
-    /// The box of a tool's half plane with these distances from the axis and places along it.
+    /// Returns the box of a tool's half plane with these distances from the axis and coordinates along it.
     pub fn half_plane(d: Interval, z: Interval) -> Cell {
         Cell { sides: [d, ZERO, z] }
     }
 
-    /// The same with another side along an axis.
+    /// Replaces the side along an axis.
     #[must_use]
     pub fn with(mut self, axis: usize, side: Interval) -> Cell {
         self.sides[axis] = side;
@@ -178,60 +180,60 @@ impl Cell {
         Cell { sides: at.map(|at| Interval::new(at, at)) }
     }
 
-    /// The point in the middle.
+    /// Returns the centre.
     pub fn middle(&self) -> [f64; 3] {
         self.sides.map(Interval::middle)
     }
 
-    /// The smallest box around two.
+    /// Returns the smallest box that contains both.
     pub(crate) fn hull(&self, other: &Cell) -> Cell {
         let [a, b, c] = self.sides;
         let [d, e, f] = other.sides;
         Cell { sides: [a.hull(d), b.hull(e), c.hull(f)] }
     }
 
-    /// What two boxes have in common; one whose sides end before they begin if nothing.
+    /// Returns the intersection of two boxes. If it is empty, some side has `low > high`.
     pub(crate) fn common(&self, other: &Cell) -> Cell {
         Cell { sides: [0, 1, 2].map(|axis| self.sides[axis].common(other.sides[axis])) }
     }
 
-    /// Whether the two have a point in common.
+    /// Returns whether two boxes have a common point.
     pub(crate) fn meets(&self, other: &Cell) -> bool {
         self.common(other).sides.iter().all(|side| side.low <= side.high)
     }
 
-    /// The square of the distance from the axis.
+    /// Encloses the square of the distance from the axis.
     pub(crate) fn squared_radius(&self) -> Interval {
         let [x, y, _] = self.sides;
-        // Exact where it can be.
+        // Enclosing y² = 0 would only add rounding.
         if y == ZERO { x.square() } else { x.square().plus(y.square()) }
     }
 
-    /// The distance from the axis.
+    /// Encloses the distance from the axis.
     pub(crate) fn radius(&self) -> Interval {
         let [x, y, _] = self.sides;
         if y == ZERO { x.abs() } else { self.squared_radius().sqrt() }
     }
 }
 
-/// Encloses chosen nodes of a graph over one box after another; what nobody asks of a box is not
+/// Encloses chosen nodes of a graph over one box after another. For each box only the requested nodes are
 /// computed.
 #[derive(Clone, Debug)]
 pub struct Encloser<'g> {
     graph: &'g Graph,
-    /// What each root needs, operands first, constants left out; of other nodes nothing.
+    /// The nodes that each root needs, operands first, without constants; empty for nodes that are not roots.
     needed: Vec<Vec<Id>>,
     values: Vec<Interval>,
-    /// For which box each was computed last.
+    /// The number of the box for which each value was last computed.
     done: Vec<u32>,
     now: u32,
     cell: Cell,
 }
 
 impl<'g> Encloser<'g> {
-    /// An encloser of some nodes.
+    /// Makes an encloser for some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Encloser<'g> {
-        let mut values = vec![EVERYTHING; graph.nodes().len()];
+        let mut values = vec![ENTIRE; graph.nodes().len()];
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
             let mut order = graph.needed([root]);
@@ -248,7 +250,7 @@ impl<'g> Encloser<'g> {
         Encloser { graph, needed, values, done, now: 0, cell: Cell { sides: [ZERO; 3] } }
     }
 
-    /// Moves to a box.
+    /// Selects the box.
     pub fn set(&mut self, cell: Cell) {
         self.cell = cell;
         self.now = self.now.wrapping_add(1);
@@ -258,7 +260,7 @@ impl<'g> Encloser<'g> {
         }
     }
 
-    /// The enclosure of one of the nodes over the present box.
+    /// Returns the enclosure over the selected box of one of the nodes given to [`Encloser::new`].
     pub fn get(&mut self, root: Id) -> Interval {
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
@@ -281,7 +283,7 @@ impl<'g> Encloser<'g> {
             Node::Coord(Coord::Z) => cell.sides[2],
             Node::Coord(Coord::D) => cell.radius(),
             Node::Coord(Coord::Q) => cell.squared_radius(),
-            Node::Coord(Coord::Length | Coord::PerLength) => EVERYTHING,
+            Node::Coord(Coord::Length | Coord::PerLength) => ENTIRE,
             Node::Neg(a) => v(a).negated(),
             Node::Add(a, b) => v(a).plus(v(b)),
             Node::Sub(a, b) => v(a).plus(v(b).negated()),
@@ -305,7 +307,8 @@ impl<'g> Encloser<'g> {
     }
 }
 
-/// A box cut in two across its longest side; a side that spans magnitudes is cut between them.
+/// Bisects a box across its longest side. A side that spans several orders of magnitude is cut at their
+/// geometric middle, or at 0.
 pub(crate) fn halves(cell: Cell) -> [Cell; 2] {
     let length = |axis: usize| cell.sides[axis].high - cell.sides[axis].low;
     let longer = |most, axis| if length(axis) > length(most) { axis } else { most };

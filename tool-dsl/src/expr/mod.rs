@@ -1,16 +1,16 @@
-//! Expressions as one shared graph: the single statement of what a tool computes.
+//! Expressions as one shared graph: the only definition of the values that a tool computes.
 //!
-//! All statements about a tool are statements about this graph. The derivative ([`mod@derive`]) is more of it. An
-//! enclosure ([`interval`]) and a value ([`value`]) are walks over it. The emitted Rust and the interpreter's tape are
-//! listings of it.
+//! All statements about a tool are statements about this graph. The derivative ([`mod@derive`]) adds nodes to
+//! it. Enclosures ([`interval`]) and values ([`value`]) are computed by walks over it. The emitted Rust and
+//! the interpreter's tape are listings of it.
 //!
-//! # What a node means
+//! # Meaning of a node
 //!
-//! A node means a partial function `f(x, y, z, u)`, real where it is defined. `x, y, z` is the point that is evaluated,
-//! in the tool's frame (the tip is the origin, `+z` points toward the spindle; a solid's frame is its file's) and in the
-//! file's unit of length. `u > 0` is the length of the file's unit in units of the part, which only
-//! [`Coord::Length`] and [`Coord::PerLength`] read. Operands come first: the meaning is defined by induction over
-//! [`Id`]s.
+//! A node denotes a partial function `f(x, y, z, u)`, real where it is defined. `x, y, z` is the point of
+//! evaluation, in the tool's frame (the tip is the origin, `+z` points toward the spindle; a solid's frame is
+//! its file's) and in the file's unit of length. `u > 0` is the length of the file's unit in units of the
+//! part, which only [`Coord::Length`] and [`Coord::PerLength`] read. Operands precede their nodes: the
+//! meaning is defined by induction over [`Id`]s.
 //!
 //! | node | meaning | defined |
 //! |---|---|---|
@@ -26,42 +26,46 @@
 //! | `Sqrt(a)` | `√a` | where `a ≥ 0` |
 //! | `Select { low, high, then, other }` | `then` where `low ≤ high`, else `other` | where `low`, `high` and the chosen side are |
 //!
-//! `Quotient` is written by [`derive`](mod@derive) and by directions only, for the derivative of a root at 0; a text's
-//! `/` is `Div`. Both sides of a `Select` are computed in code for lanes. So a side may be undefined where it is not
-//! chosen, and no node may have an effect or a trap: all of them are IEEE operations that return NaN or an infinity.
+//! Only [`derive`](mod@derive) and directions create a `Quotient`, for the derivative of a root at 0; the `/`
+//! of a text is `Div`. Code for lanes computes both sides of a `Select`. A side may therefore be undefined
+//! where it is not chosen, and no node may have a side effect or trap: all of them are IEEE operations that
+//! return NaN or an infinity.
 //!
-//! # What a value is
+//! # Computed values
 //!
-//! | walk | gives | differs from the meaning by |
+//! | walk | result | difference from the meaning |
 //! |---|---|---|
-//! | [`Evaluator`](value::Evaluator), emitted code, tape | `f64`, one IEEE operation for a node in the order of ids | one rounding for a node and for a constant; a partial function gives NaN or an infinity |
-//! | [`Encloser`](interval::Encloser) | an interval that holds the value at every point of a box where the node is defined | nothing: ends are rounded outward |
-//! | constants, [`Number`](crate::number::Number) | 256 bits, rounded half to even | `2^-256` relative for an operation |
+//! | [`Evaluator`](value::Evaluator), emitted code, tape | `f64`, one IEEE operation per node in the order of ids | one rounding per node and per constant; a partial function gives NaN or an infinity |
+//! | [`Encloser`](interval::Encloser) | an interval that contains the value at every point of a box where the node is defined | none: ends are rounded outward |
+//! | constants, [`Number`](crate::number::Number) | 256 bits, rounded half to even | `2^-256` relative per operation |
 //!
-//! `min(a, b)` and `max(a, b)` give `b` where the operands are equal or one is NaN, as vector instructions do: this
-//! decides the sign of a zero, never a real value. A `Select` takes `other` where a comparison meets NaN. No walk
-//! fuses a multiplication with an addition, and none calls a function of a library but the square root, which IEEE
-//! rounds correctly. So all walks over `f64` have the same bits on every machine.
+//! `min(a, b)` and `max(a, b)` give `b` where the operands are equal or one is NaN, as vector instructions
+//! do. This decides the sign of a zero, never a real value. A `Select` takes `other` where a comparison
+//! involves NaN. No walk fuses a multiplication with an addition, and none calls a library function except
+//! the square root, which IEEE rounds correctly. All walks over `f64` therefore have the same bits on every
+//! machine.
 //!
 //! # Invariants
 //!
 //! [`Graph`]'s functions establish them, and there is no other way to add a node:
 //!
 //! 1. **Order.** An operand's id is less than its node's. A walk in the order of ids needs no recursion.
-//! 2. **Sharing.** Equal nodes are one node: `a == b` for ids says that two expressions are written alike, and two
-//!    expressions with different ids may still be the same function.
-//! 3. **Folding.** A node whose operands are constants is a constant; `0 + a`, `1 · a`, `a - a`, `a / a` and a double
-//!    negation do not exist. Constants move outward through sums and products, so that the frame's shift and a text's
-//!    numbers meet in 256 bits and are rounded once. Folding keeps the meaning wherever the unfolded expression is
-//!    defined, and may define it where it was not: `a / a` is 1 at a zero of `a`.
-//! 4. **Radius.** `d · d` is `Q`, `√Q` is `D`, `x² + y²` is `Q`: what needs no root has none.
-//! 5. **Height.** At most 300 operations lie between an expression of a text and a coordinate (`resolve::lower` refuses
-//!    more), so a walk that recurses does not exhaust the stack.
-//! 6. **Aliases.** `Graph::also(a, b)` states that `a` and `b` are the same real function wherever both are defined.
-//!    Code computes `a`, which rounds less; proofs read `b`, whose form they know. Whoever states it owes the
-//!    derivation: `regionalise::nearer` is the only one, and has it beside each statement.
+//! 2. **Sharing.** Equal nodes are one node: `a == b` for ids means that two expressions have the same form.
+//!    Two expressions with different ids may still be the same function.
+//! 3. **Folding.** A node whose operands are constants is a constant; `0 + a`, `1 · a`, `a - a`, `a / a` and
+//!    a double negation do not exist. Constants move outward through sums and products, so that the frame's
+//!    shift and the numbers of a text meet in 256 bits and are rounded once. Folding keeps the meaning
+//!    wherever the unfolded expression is defined, and may define it elsewhere: `a / a` is 1 at a zero of
+//!    `a`.
+//! 4. **Radius.** `d · d` is `Q`, `√Q` is `D`, `x² + y²` is `Q`: no root is computed where none is needed.
+//! 5. **Height.** At most 300 operations lie between an expression of a text and a coordinate
+//!    (`resolve::lower` refuses more), so a recursive walk does not exhaust the stack.
+//! 6. **Aliases.** `Graph::also(a, b)` states that `a` and `b` are the same real function wherever both are
+//!    defined. Code computes `a`, which rounds less; proofs read `b`, whose form they can use. The caller
+//!    must derive the identity: `regionalise::nearer` is the only caller and has the derivation next to each
+//!    statement.
 //!
-//! Nodes are only added. An [`Id`] stays valid, and keeps its meaning, as long as its graph lives.
+//! Nodes are only added. An [`Id`] stays valid, and keeps its meaning, for the lifetime of its graph.
 
 pub mod derive;
 mod graph;

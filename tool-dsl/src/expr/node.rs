@@ -1,19 +1,19 @@
-//! Nodes: what one step of an expression computes, of what.
+//! Nodes of expressions: one operation and its operands each.
 
 use crate::number::Number;
 
-/// A node of a [`Graph`](super::Graph). A larger id never is an operand of a smaller one.
+/// The id of a node of a [`Graph`](super::Graph). A node's operands have smaller ids than the node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub(super) u32);
 
 impl Id {
-    /// The node's place in the list.
+    /// Returns the node's index in the list of nodes.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A coordinate of the point that is felt, in the tool's frame.
+/// A coordinate of the point of evaluation, in the tool's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Coord {
     /// x, across the axis
@@ -26,13 +26,13 @@ pub enum Coord {
     D,
     /// Its square, `x² + y²`
     Q,
-    /// How many of the part's units of length one of the file's is
+    /// The length of the file's unit in units of the part
     Length,
     /// Its reciprocal
     PerLength,
 }
 
-/// What a node computes.
+/// The operation of a node.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Node {
     /// A constant.
@@ -49,7 +49,7 @@ pub enum Node {
     Mul(Id, Id),
     /// `a / b`
     Div(Id, Id),
-    /// `a / b`, and 0 where `b` is 0: a derivative at a kink
+    /// `a / b`, and 0 where `b` is 0: a derivative where the function is not smooth
     Quotient(Id, Id),
     /// The smaller
     Min(Id, Id),
@@ -61,11 +61,11 @@ pub enum Node {
     Sqrt(Id),
     /// `then` where `low ≤ high`, `other` elsewhere
     Select {
-        /// Left of the comparison.
+        /// The left side of the comparison.
         low: Id,
-        /// Right of the comparison.
+        /// The right side of the comparison.
         high: Id,
-        /// The value where it holds.
+        /// The value where the comparison holds.
         then: Id,
         /// The value elsewhere.
         other: Id,
@@ -73,7 +73,7 @@ pub enum Node {
 }
 
 impl Node {
-    /// The node's operands.
+    /// Returns the node's operands.
     pub fn operands(&self) -> impl Iterator<Item = Id> {
         let four = match *self {
             Node::Const(_) | Node::Coord(_) => [None; 4],

@@ -1,15 +1,15 @@
-//! Expressions as polynomials of the coordinates, where they are such: to recognise curves that
-//! are equal up to a factor.
+//! Expressions as polynomials in the coordinates, where they are polynomials, to recognise curves that are
+//! equal up to a factor.
 
 use super::{Coord, Graph, Id, Node};
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::number::{Number, ROUNDING};
 use std::collections::{BTreeMap, HashMap};
 
-/// Exponents of (d, x, y, z); d² is the same as x² + y² only outside this module.
+/// The exponents of (d, x, y, z). Within this module d² and x² + y² are different polynomials.
 pub(crate) type Monomial = [u8; 4];
 
-/// The exponents of one coordinate alone; of the file's unit of length, none.
+/// Returns the exponents of one coordinate alone; all 0 for the file's unit of length.
 pub(crate) fn monomial_of(coord: Coord) -> Monomial {
     match coord {
         Coord::D => [1, 0, 0, 0],
@@ -21,19 +21,19 @@ pub(crate) fn monomial_of(coord: Coord) -> Monomial {
     }
 }
 
-/// A sum of monomials.
+/// A sum of monomials with constant coefficients.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial(BTreeMap<Monomial, Number>);
 
 /// The highest degree that is recognised.
 const DEGREE: u8 = 8;
 
-/// The polynomials that nodes are, each found once.
+/// The polynomials of nodes, each computed once.
 #[derive(Default)]
 pub(crate) struct Polynomials(HashMap<Id, Option<Polynomial>>);
 
 impl Polynomials {
-    /// The polynomial that a node is, if it is one.
+    /// Returns the polynomial of a node, if it is one.
     pub(crate) fn of(&mut self, graph: &Graph, id: Id) -> Option<&Polynomial> {
         let mut open = vec![id];
         while let Some(id) = open.last().copied() {
@@ -48,14 +48,14 @@ impl Polynomials {
         self.known(id)
     }
 
-    /// That of a node which was asked for, or of one that such a node needs.
+    /// Returns the polynomial of a node that was requested before, or that such a node needs.
     pub(crate) fn known(&self, id: Id) -> Option<&Polynomial> {
         self.0.get(&id)?.as_ref()
     }
 }
 
 impl Polynomial {
-    /// The polynomial that a node is, if it is one.
+    /// Returns the polynomial of a node, if it is one.
     pub fn of(graph: &Graph, id: Id) -> Option<Polynomial> {
         let mut all = Polynomials::default();
         all.of(graph, id);
@@ -110,17 +110,17 @@ impl Polynomial {
         Some(product)
     }
 
-    /// Nothing.
+    /// Returns the zero polynomial.
     pub(crate) fn zero() -> Polynomial {
         Polynomial(BTreeMap::new())
     }
 
-    /// A constant.
+    /// Returns a constant polynomial.
     pub(crate) fn constantly(value: &Number) -> Polynomial {
         Polynomial::zero().plus(&Polynomial(BTreeMap::from([([0; 4], value.clone())])))
     }
 
-    /// Returns a coordinate.
+    /// Returns a coordinate as a polynomial.
     pub(crate) fn coordinate(coord: Coord) -> Polynomial {
         Polynomial(BTreeMap::from([(monomial_of(coord), Number::int(1))]))
     }
@@ -139,8 +139,8 @@ impl Polynomial {
         Polynomial::zero().plus(&square((Coord::D, d))).plus(&square((Coord::Z, z)))
     }
 
-    /// Whether it is zero wherever another is, as far as that shows: it is nothing, a multiple of the
-    /// other or of its square, or, if the other is linear, vanishes when that is put in.
+    /// Returns whether this provably vanishes wherever `other` does: it is zero, a multiple of the other or
+    /// of its square, or vanishes after substitution of the other, if that is linear.
     pub(crate) fn vanishes_on(&self, other: &Polynomial) -> bool {
         if self.is_nothing() || self.ratio(other).is_some() || self.is_square_of(other) {
             return true;
@@ -148,17 +148,18 @@ impl Polynomial {
         self.on_line(other).is_some_and(|left| left.0.is_empty())
     }
 
-    /// Whether it is 0 all over.
+    /// Returns whether this is the zero polynomial.
     pub(crate) fn is_nothing(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Whether it is a multiple of another's square.
+    /// Returns whether this is a multiple of another's square.
     pub(crate) fn is_square_of(&self, other: &Polynomial) -> bool {
         other.times(other).is_some_and(|square| self.ratio(&square).is_some())
     }
 
-    /// Returns what is left of it on a straight line, in one coordinate less.
+    /// Returns the restriction to a straight line, with one coordinate less; `None` if the other polynomial
+    /// is not linear in one.
     pub(crate) fn on_line(&self, line: &Polynomial) -> Option<Polynomial> {
         let degree = |monomial: &Monomial| monomial.iter().sum::<u8>();
         let linear = line.0.keys().all(|monomial| degree(monomial) <= 1);
@@ -181,13 +182,13 @@ impl Polynomial {
             }
             left = left.plus(&term);
         }
-        // What nearly cancels is rounding of constants with 256 bits.
+        // A coefficient that nearly cancels is rounding error of the 256-bit constants.
         let most = self.0.values().map(|value| value.to_f64().abs()).fold(0.0, f64::max);
         left.0.retain(|_, value| value.to_f64().abs() > most * ROUNDING);
         Some(left)
     }
 
-    /// Its values over a box.
+    /// Encloses the values over a box.
     pub(crate) fn over(&self, cell: &Cell) -> Interval {
         let bases = [cell.radius(), cell.sides[0], cell.sides[1], cell.sides[2]];
         let term = |(monomial, value): (&Monomial, &Number)| {
@@ -197,9 +198,9 @@ impl Polynomial {
         self.0.iter().map(term).fold(ZERO, Interval::plus)
     }
 
-    /// Of a conic and a straight line that do not cross but may touch: the sign that the conic has on
-    /// one whole side of the line (whether positive), and whether that side is where the line is
-    /// negative. Where the conic has the other sign it is convex, and so lies on one side of each of
+    /// Compares a conic with a straight line that it does not cross but may touch. Returns the sign that the
+    /// conic has on one whole side of the line (true if positive), and whether that is the side where the
+    /// line is negative. A conic is convex where it has the other sign, and so lies on one side of each of
     /// its tangents.
     pub(crate) fn clear_of(&self, line: &Polynomial) -> Option<(bool, bool)> {
         let planar = |m: &Monomial| m[1] == 0 && m[2] == 0 && m[0] + m[3] <= 2;
@@ -220,13 +221,13 @@ impl Polynomial {
             factors[usize::from(monomial.iter().sum::<u8>())] = value.clone();
         }
         let [c, b, a] = factors;
-        // No two roots: b² ≤ 4 a c, up to the 256 bits of constants.
+        // At most one root: b² ≤ 4 a c, up to the 256 bits of constants.
         let (square, four) = (&b * &b, &Number::int(4) * &(&a * &c));
         let apart = (&square - &four).to_f64();
         if apart > 2f64.powi(-150) * (square.to_f64() + four.to_f64().abs()) {
             return None;
         }
-        // Where it is nearest to the line it falls toward the side of the other sign.
+        // Nearest to the line, the conic decreases toward the side of the other sign.
         let lowest = if a.is_zero() { 0.0 } else { -b.to_f64() / (2.0 * a.to_f64()) };
         let [line_d, line_z] = [[1, 0, 0, 0], [0, 0, 0, 1]].map(|m| line.factor(m));
         let rest = line.factor([0; 4]);
@@ -245,27 +246,27 @@ impl Polynomial {
         (rise.abs() > 1e-6 * scale).then_some((positive, (rise > 0.0) != positive))
     }
 
-    /// Returns the factor of a product of powers, rounded.
+    /// Returns the coefficient of a monomial, rounded to a double.
     pub(crate) fn factor(&self, monomial: Monomial) -> f64 {
         self.0.get(&monomial).map_or(0.0, Number::to_f64)
     }
 
-    /// Returns the same with 256 bits.
+    /// Returns the coefficient of a monomial with 256 bits.
     pub(crate) fn exact_factor(&self, monomial: Monomial) -> Number {
         self.0.get(&monomial).cloned().unwrap_or(Number::int(0))
     }
 
-    /// Whether it is linear.
+    /// Returns whether the degree is at most 1.
     pub(crate) fn is_linear(&self) -> bool {
         self.0.keys().all(|monomial| monomial.iter().sum::<u8>() <= 1)
     }
 
-    /// Returns the same line with a slope of 1, if it is linear and not constant.
+    /// Returns the polynomial scaled to a gradient of length 1, if it is linear and not constant.
     pub(crate) fn with_unit_slope(&self) -> Option<Polynomial> {
         Some(self.scaled(&Number::int(1).over(&self.slope_squared()?.sqrt()?)?))
     }
 
-    /// The square of its gradient's length, if it is linear.
+    /// Returns the squared length of the gradient, if this is linear.
     pub(crate) fn slope_squared(&self) -> Option<Number> {
         let mut sum = Number::int(0);
         for (monomial, value) in &self.0 {
@@ -278,7 +279,7 @@ impl Polynomial {
         Some(sum)
     }
 
-    /// The derivative by one of a monomial's four coordinates.
+    /// Returns the derivative by one of a monomial's four coordinates, given by index.
     pub(crate) fn derivative(&self, by: usize) -> Polynomial {
         let mut sum = Polynomial::zero();
         for (monomial, value) in &self.0 {
@@ -291,7 +292,7 @@ impl Polynomial {
         sum
     }
 
-    /// Whether this is the square of the distance from a point: in d and z, or in x, y and z.
+    /// Returns whether this is the squared distance from a point, in d and z or in x, y and z.
     pub(crate) fn is_squared_distance(&self) -> bool {
         let (one, four) = (Number::int(1), Number::int(4));
         let mut sum = Number::int(0);
@@ -303,8 +304,8 @@ impl Polynomial {
                 _ => return false,
             }
         }
-        // p - m² with the middle m: nothing is left beside the squares. Each linear term has its
-        // square.
+        // p - m² with the centre m leaves nothing except the squares. Each linear term needs the square of
+        // its coordinate.
         let squared = |monomial: &Monomial| {
             monomial.iter().sum::<u8>() != 1 || self.0.contains_key(&monomial.map(|e| 2 * e))
         };
@@ -314,14 +315,14 @@ impl Polynomial {
         self.0.keys().all(squared) && rounding <= 2f64.powi(-180) * (1.0 + constant.to_f64().abs())
     }
 
-    /// The sum of its terms: what cancels is gone from it.
+    /// Writes the sum of its terms as an expression, without the terms that cancelled.
     pub fn expression(&self, graph: &mut Graph) -> Id {
         let mut sum = graph.int(0);
         for (monomial, factor) in &self.0 {
             let mut term = graph.number(factor.clone());
             for (exponent, coord) in monomial.iter().zip([Coord::D, Coord::X, Coord::Y, Coord::Z]) {
                 let base = graph.coord(coord);
-                // Powers of a coordinate exist.
+                // Nonnegative integer powers of a coordinate always exist.
                 let power = graph.power(base, 2 * i32::from(*exponent)).unwrap_or(base);
                 term = graph.mul(term, power);
             }
@@ -330,7 +331,7 @@ impl Polynomial {
         sum
     }
 
-    /// The factor by which `self` is `other`, if it is a multiple of it.
+    /// Returns the factor `f` of `self = f · other`, if `self` is a multiple of `other`.
     pub fn ratio(&self, other: &Polynomial) -> Option<Number> {
         if !self.0.keys().eq(other.0.keys()) {
             return None;
@@ -341,7 +342,7 @@ impl Polynomial {
             let (a, b) = (a.to_f64(), b.to_f64() * about);
             (a - b).abs() <= 1e-9 * (a.abs() + b.abs())
         };
-        // Most curves differ in the first digits.
+        // A comparison of doubles rejects most curves cheaply.
         if !self.0.values().zip(other.0.values()).all(near) {
             return None;
         }
@@ -350,7 +351,7 @@ impl Polynomial {
         same.then_some(factor)
     }
 
-    /// The value, if nothing but a constant is left.
+    /// Returns the value, if the polynomial is constant.
     pub fn constant(&self) -> Option<Number> {
         match self.0.len() {
             0 => Some(Number::int(0)),
@@ -359,12 +360,12 @@ impl Polynomial {
         }
     }
 
-    /// The factor, if this is a multiple of d.
+    /// Returns the factor, if this is a multiple of d.
     pub fn multiple_of_d(&self) -> Option<&Number> {
         if self.0.len() == 1 { self.0.get(&[1, 0, 0, 0]) } else { None }
     }
 
-    /// The terms.
+    /// Returns the monomials with their coefficients.
     pub fn terms(&self) -> impl Iterator<Item = (Monomial, &Number)> {
         self.0.iter().map(|(monomial, value)| (*monomial, value))
     }

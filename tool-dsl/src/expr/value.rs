@@ -1,9 +1,9 @@
-//! The value of expressions at a point, in `f64`, one operation at a time in the graph's order:
-//! the reference for emitted code, which performs the same operations.
+//! Values of expressions at a point, in `f64`, one operation at a time in the graph's order. This is the
+//! reference for emitted code, which performs the same operations.
 
 use super::{Coord, Graph, Id, Node};
 
-/// Evaluates chosen nodes of a graph again and again.
+/// Evaluates chosen nodes of a graph at one point after another.
 #[derive(Clone, Debug)]
 pub struct Evaluator<'g> {
     graph: &'g Graph,
@@ -11,7 +11,7 @@ pub struct Evaluator<'g> {
     values: Vec<f64>,
 }
 
-/// A point by its coordinates in the tool's frame.
+/// A point of evaluation: its coordinates in the tool's frame, and the unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct At {
     /// x
@@ -24,25 +24,25 @@ pub struct At {
     pub d: f64,
     /// `x² + y²`
     pub q: f64,
-    /// The file's unit of length in the part's
+    /// The length of the file's unit in units of the part
     pub length: f64,
 }
 
 impl At {
-    /// A point of space.
+    /// Returns a point of space.
     pub fn point(x: f64, y: f64, z: f64) -> At {
         let q = x * x + y * y;
         At { x, y, z, d: q.sqrt(), q, length: 1.0 }
     }
 
-    /// A point of the half plane that the profile lies in.
+    /// Returns a point of the half plane that contains the profile.
     pub fn meridian(d: f64, z: f64) -> At {
         At { x: d, y: 0.0, z, d, q: d * d, length: 1.0 }
     }
 }
 
 impl<'g> Evaluator<'g> {
-    /// An evaluator of some nodes.
+    /// Makes an evaluator for some nodes.
     pub fn new(graph: &'g Graph, roots: impl IntoIterator<Item = Id>) -> Evaluator<'g> {
         let mut order = graph.needed(roots);
         let mut values = vec![0.0; graph.nodes().len()];
@@ -57,7 +57,7 @@ impl<'g> Evaluator<'g> {
         Evaluator { graph, order, values }
     }
 
-    /// Moves to a point.
+    /// Evaluates the nodes at a point.
     pub fn set(&mut self, at: At) {
         for &id in &self.order {
             let v = |id: Id| self.values[id.index()];
@@ -91,23 +91,23 @@ impl<'g> Evaluator<'g> {
         }
     }
 
-    /// The value of a node at the present point.
+    /// Returns the value of a node at the current point.
     pub fn get(&self, id: Id) -> f64 {
         self.values[id.index()]
     }
 }
 
-/// `a / b`, and 0 where `b` is 0.
+/// Returns `a / b`, and 0 where `b` is 0.
 pub fn quotient(a: f64, b: f64) -> f64 {
     if b == 0.0 { 0.0 } else { a / b }
 }
 
-/// The smaller; `b` if they are equal or one is NaN (as SSE and AVX decide).
+/// Returns the smaller; `b` if they are equal or one is NaN, as SSE and AVX do.
 pub fn min(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// The larger; `b` if they are equal or one is NaN.
+/// Returns the larger; `b` if they are equal or one is NaN.
 pub fn max(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }

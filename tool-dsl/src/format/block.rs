@@ -3,41 +3,41 @@
 use super::token::{Kind, Token};
 use super::{STEP, WIDTH, line};
 
-/// What stands in a block, one below the other.
+/// An element of a block, on lines of its own.
 pub(super) enum Node<'t> {
     /// Comments on a line of their own.
     Comments(Comments<'t>),
-    /// An item, a property, a segment.
+    /// An item, a property or a segment.
     Statement(Statement<'t>),
 }
 
 pub(super) struct Comments<'t> {
-    /// Whether a blank line stands before.
+    /// True if a blank line precedes it.
     blank: bool,
     run: &'t [Token<'t>],
 }
 
 pub(super) struct Statement<'t> {
-    /// Whether a blank line stands before.
+    /// True if a blank line precedes it.
     blank: bool,
-    /// As far as its `;` or `{`.
+    /// The tokens up to its `;` or `{`.
     code: &'t [Token<'t>],
-    /// Comments behind that on the same line.
+    /// Comments after that on the same line.
     beside: &'t [Token<'t>],
     body: Option<Body<'t>>,
 }
 
 struct Body<'t> {
     nodes: Vec<Node<'t>>,
-    /// Its `}`; nothing where the text ends before.
+    /// Its `}`, or nothing if the text ends before.
     close: &'static str,
-    /// Comments behind its `}` on the same line.
+    /// Comments after its `}` on the same line.
     beside: &'t [Token<'t>],
-    /// Whether it was written on one line and may stay there.
+    /// True if it was written on one line and may stay there.
     one_line: bool,
 }
 
-/// The nodes of a whole text.
+/// Returns the nodes of a whole text.
 pub(super) fn nodes<'t>(tokens: &'t [Token<'t>]) -> Vec<Node<'t>> {
     Reader { tokens, at: 0 }.nodes(false)
 }
@@ -66,7 +66,7 @@ impl<'t> Reader<'t> {
         nodes
     }
 
-    /// The comments that come next and stand on one line.
+    /// Returns the next comments that are on one line.
     fn comments(&self) -> &'t [Token<'t>] {
         let rest = &self.tokens[self.at..];
         let belongs = |(at, token): (usize, &Token<'_>)| {
@@ -75,13 +75,13 @@ impl<'t> Reader<'t> {
         &rest[..rest.iter().enumerate().take_while(|next| belongs(*next)).count()]
     }
 
-    /// Whether there are comments and nothing but a `}` stands behind them on their line.
+    /// Returns whether there are comments that end their line, except for a `}` after them.
     fn ends_behind(&self, run: &[Token<'_>]) -> bool {
         let behind = self.tokens.get(self.at + run.len());
         !run.is_empty() && behind.is_none_or(|token| token.newlines > 0 || token.is("}"))
     }
 
-    /// Takes the comments that stand on the same line as what was read last.
+    /// Consumes the comments on the same line as the last token.
     fn beside(&mut self) -> &'t [Token<'t>] {
         let run = match self.tokens.get(self.at) {
             Some(next) if next.newlines == 0 => self.comments(),
@@ -130,7 +130,7 @@ impl<'t> Reader<'t> {
     }
 }
 
-/// The text of nodes.
+/// Writes nodes as text.
 pub(super) fn write(nodes: &[Node<'_>]) -> String {
     let mut page = String::new();
     write_at(nodes, 0, &mut page);
@@ -176,7 +176,7 @@ impl Statement<'_> {
         }
     }
 
-    /// A region of one property that was written on one line.
+    /// Returns the line of a region with one property that was written on one line.
     fn on_one_line(&self) -> Option<String> {
         let body = self.body.as_ref().filter(|body| body.one_line)?;
         let [Node::Statement(property)] = body.nodes.as_slice() else { return None };

@@ -1,23 +1,23 @@
-//! One statement: its spaces, and its breaks where it is too long for a line.
+//! One statement: its spaces, and its line breaks if it is too long.
 
 use super::token::{Kind, Token};
 use super::{STEP, WIDTH};
 use std::iter::repeat_n;
 
-/// Words of the language that a line may be broken before.
+/// Keywords before which a line may be broken.
 const PARTS: [&str; 7] = ["allow", "as", "at", "center", "radius", "where", "with"];
-/// Ranks of breaks within one bracket; those of an inner bracket are all higher.
+/// The number of ranks of breaks within one bracket. Those of an inner bracket are all higher.
 const RANKS: usize = 5;
 
-/// A token as it stands in a statement.
+/// A token with its layout in a statement.
 struct Piece<'t> {
     text: &'t str,
     kind: Kind,
-    /// Whether a space stands before, if no line begins.
+    /// True if a space precedes it, unless it begins a line.
     space: bool,
-    /// Whether a line may begin here; of two places the lower rank is taken.
+    /// The rank of a line break here, if it is allowed. A lower rank is preferred.
     rank: Option<usize>,
-    /// Whether a line must begin here.
+    /// True if a line must begin here.
     begins: bool,
 }
 
@@ -30,7 +30,7 @@ impl Piece<'_> {
         self.kind == Kind::Mark && ["{", "}"].contains(&self.text)
     }
 
-    /// Columns that it takes; those of a comment that ends the line do not count.
+    /// Returns the number of columns it takes, which is 0 for a comment that ends the line.
     fn width(&self) -> usize {
         if self.kind == Kind::Ending {
             0
@@ -40,14 +40,14 @@ impl Piece<'_> {
     }
 }
 
-/// Tokens on one line.
+/// Writes tokens on one line.
 pub(super) fn joined(tokens: &[Token<'_>]) -> String {
     let mut text = String::new();
     run(&pieces(tokens), &mut text);
     text
 }
 
-/// Writes a statement, without a line's end behind it.
+/// Writes a statement, without a line end after it.
 pub(super) fn write(tokens: &[Token<'_>], indent: usize, page: &mut String) {
     let mut pieces = pieces(tokens);
     let width: usize = pieces.iter().map(Piece::width).sum();
@@ -70,7 +70,7 @@ pub(super) fn write(tokens: &[Token<'_>], indent: usize, page: &mut String) {
     }
 }
 
-/// Lets the parts of a long statement begin lines: the conditions, the list in braces, the brace.
+/// Makes the parts of a long statement begin lines: the conditions, the list in braces, and the brace.
 fn part(pieces: &mut [Piece<'_>]) {
     let Some(last) = pieces.len().checked_sub(1) else { return };
     if pieces.iter().all(|piece| piece.rank.is_none() && !piece.begins) {
@@ -83,7 +83,8 @@ fn part(pieces: &mut [Piece<'_>]) {
     }
 }
 
-/// Writes pieces on as many lines as they need, the first at `own`, the others at `hang`.
+/// Writes pieces on as many lines as necessary, with `own` as the indent of the first and `hang` as that of
+/// the others.
 fn fill(mut rest: &[Piece<'_>], own: usize, hang: usize, page: &mut String) {
     let mut indent = own;
     while !rest.is_empty() {
@@ -92,7 +93,7 @@ fn fill(mut rest: &[Piece<'_>], own: usize, hang: usize, page: &mut String) {
         let mut fits = true;
         for (at, piece) in rest.iter().enumerate() {
             if let Some(rank) = piece.rank.filter(|_| at > 0) {
-                // The last of the lowest rank that fits, or else the first of all.
+                // The last break of the lowest rank that fits, or else the first of all.
                 if best.is_none_or(|(lowest, _)| fits && rank <= lowest) {
                     best = Some((rank, at));
                 }
@@ -165,7 +166,7 @@ fn space(before: &Token<'_>, token: &Token<'_>) -> bool {
     !calls
 }
 
-/// How much a line would rather not begin at `token`.
+/// Returns the rank of a line break before `token`, if it is allowed.
 fn rank(before: &Token<'_>, token: &Token<'_>) -> Option<usize> {
     if token.kind == Kind::Ending {
         return None;

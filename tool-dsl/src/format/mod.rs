@@ -1,16 +1,16 @@
-//! A tool's text as it is usually written.
+//! The formatter of a tool's text.
 //!
 //! ```text
 //! text ──token──▶ tokens and comments ──block──▶ statements ──line──▶ text
 //! ```
 //!
-//! The syntax tree has no comments, so the layout goes by the tokens. Statements end in `;` or have
-//! a block; that is all it knows of the items, and a new one needs nothing here. What it writes has
-//! the same tokens and comments in the same order, and formatting it again changes nothing.
+//! The syntax tree has no comments, so the layout uses tokens. A statement ends in `;` or has a block. The
+//! formatter knows nothing else about items, so a new item needs no change here. The output has the same
+//! tokens and comments in the same order, and formatting it again changes nothing.
 //!
-//! An item has a line. Several blank lines become one. A line is broken where it outgrows 100
-//! columns and after a line comment, nowhere else; a region of one property may stay on its line.
-//! `*`, `/`, `^` and signs stand tight, all other operators between spaces.
+//! Each item has its own line. Several blank lines become one. A line is broken only where it exceeds 100
+//! columns and after a line comment; a region with one property may stay on its line. There is no space
+//! around `*`, `/`, `^` and after a sign; all other operators have spaces on both sides.
 
 mod block;
 mod line;
@@ -22,12 +22,15 @@ use crate::diagnostic::{Diagnostic, any_error};
 use crate::source::Source;
 use crate::syntax;
 
-/// Columns of a line; comments at its end may reach further.
+/// The number of columns in a line. Comments at its end may extend further.
 const WIDTH: usize = 100;
-/// Columns of a step inwards.
+/// The number of columns per level of indentation.
 const STEP: usize = 4;
 
-/// Lays out a tool's text. One with errors of syntax gives these instead.
+/// Formats a tool's text.
+///
+/// # Errors
+/// The diagnostics of a text with syntax errors.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     if syntax::parse(source, &mut diagnostics).is_err() || any_error(&diagnostics) {
@@ -36,7 +39,7 @@ pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     layout(&source.text).map_err(|diagnostic| vec![diagnostic])
 }
 
-/// Lays out a text that may be more than the grammar knows. Lines end as the file's do.
+/// Formats a text that the grammar may not accept. Line ends stay as in the text.
 fn layout(text: &str) -> Result<String, Diagnostic> {
     if text.contains("\r\n") {
         return Ok(lines(&text.replace("\r\n", "\n"))?.replace('\n', "\r\n"));

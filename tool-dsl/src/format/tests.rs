@@ -1,4 +1,4 @@
-//! Layouts to the letter, and what no layout may change.
+//! Exact layouts, and invariants of every layout.
 
 use super::token::tokens;
 use super::{format, layout};
@@ -7,14 +7,14 @@ use crate::syntax::parse;
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Every construct of the language, also those that the grammar does not know yet.
+/// Every construct of the language, including those that the grammar does not know yet.
 const WHOLE: &str = include_str!("whole.tool");
 
 fn laid(text: &str) -> String {
     layout(text).expect("tokens")
 }
 
-/// The tokens and the comments, each in order.
+/// Returns the tokens and the comments, each in order.
 fn content(text: &str) -> (Vec<String>, Vec<String>) {
     let tokens = tokens(text).expect("tokens");
     let (comments, code): (Vec<_>, Vec<_>) = tokens.iter().partition(|token| token.is_comment());
@@ -24,7 +24,7 @@ fn content(text: &str) -> (Vec<String>, Vec<String>) {
     (texts(code), texts(comments))
 }
 
-/// What Rust's own lexer makes of a text, without spans and spacing.
+/// Returns the tokens that Rust's own lexer finds in a text, without spans and spacing.
 fn rust_tokens(text: &str) -> Vec<String> {
     fn flatten(stream: proc_macro2::TokenStream, all: &mut Vec<String>) {
         for token in stream {
@@ -43,7 +43,7 @@ fn rust_tokens(text: &str) -> Vec<String> {
     all
 }
 
-/// The syntax tree without its places.
+/// Returns the syntax tree without source locations.
 fn tree(text: &str) -> String {
     let tree = parse(&Source::new("t.tool", text), &mut Vec::new()).ok();
     let shown = format!("{tree:?}");
@@ -52,7 +52,7 @@ fn tree(text: &str) -> String {
     parts.fold(first, |all, part| all + part.split_once('}').map_or("", |(_, rest)| rest))
 }
 
-/// Lays out a text and asks for what holds of every layout.
+/// Formats a text and checks the invariants of every layout.
 fn sound(text: &str) -> String {
     let once = laid(text);
     assert_eq!(laid(&once), once, "not idempotent:\n{text}");
@@ -72,7 +72,7 @@ fn tool_files() -> Vec<PathBuf> {
         "tool-dsl/src/format",
     ];
     let own = folders.map(|folder| home.join(folder).read_dir().expect("a folder of the project"));
-    // The shared examples are more where they are; a checkout alone has none.
+    // The shared examples are added where they exist; a checkout alone has none.
     let shared = home.join("../shared/examples").read_dir().ok();
     let mut files = Vec::new();
     for entry in own.into_iter().chain(shared).flatten() {
@@ -88,7 +88,7 @@ fn tool_files() -> Vec<PathBuf> {
 #[test]
 fn the_whole_language_is_laid_out() {
     assert_eq!(sound(WHOLE), WHOLE);
-    // As little space as there can be, and a line for each token.
+    // As little space as possible, and a line per token.
     let (code, _) = content(WHOLE);
     let without_comments: String = sound(&code.join(" ")).split_whitespace().collect();
     assert_eq!(sound(&code.join("\n")).split_whitespace().collect::<String>(), without_comments);
@@ -119,7 +119,7 @@ fn the_library_stands_as_it_is_formatted() {
     }
 }
 
-/// The page on the language shows what it says of the layout.
+/// The examples on the language page are formatted.
 #[test]
 fn the_page_stands_as_it_is_formatted() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/language.md");
@@ -134,7 +134,7 @@ fn the_page_stands_as_it_is_formatted() {
     assert!(count > 10);
 }
 
-/// A statement at a tool's level, formatted; without the indent.
+/// Formats a statement of a tool, and removes the indent.
 fn statement(text: &str) -> String {
     let all = sound(&format!("tool T {{\n{text}\n}}"));
     let inside = all.strip_prefix("tool T {\n").and_then(|all| all.strip_suffix("}\n"));
@@ -153,7 +153,7 @@ fn operators_are_spaced_as_they_bind() {
     assert_eq!(one("spindle   - z;"), "spindle -z;");
     assert_eq!(one("let a = 1e-5 - 2E+3mm-1;"), "let a = 1e-5 - 2E+3mm - 1;");
     assert_eq!(one("niceness a . b ,cutting:- 1;"), "niceness a.b, cutting: -1;");
-    // Words of the language are names elsewhere.
+    // Keywords of the language are names elsewhere.
     assert_eq!(
         one("curve c=where-radius*start-to -toward;"),
         "curve c = where - radius*start - to - toward;"
@@ -297,7 +297,7 @@ fn between() -> impl Strategy<Value = &'static str> {
     ])
 }
 
-/// Tokens with gaps before them; words and numbers keep a space at least.
+/// Joins tokens with gaps before them. Words and numbers keep at least one space between them.
 fn spread(code: &[String], gaps: &[&str]) -> String {
     let glues = |text: &str| text.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '"');
     let mut text = String::new();
@@ -312,7 +312,7 @@ fn spread(code: &[String], gaps: &[&str]) -> String {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Whatever stands between the tokens, the layout keeps the content and is its own layout.
+    /// With any gaps between the tokens, formatting keeps the content and is idempotent.
     #[test]
     fn any_spacing_is_sound(gaps in prop::collection::vec(between(), 600)) {
         let (code, _) = content(WHOLE);
@@ -321,7 +321,7 @@ proptest! {
         prop_assert_eq!(rust_tokens(&code.join(" ")), rust_tokens(&laid.replace("///", "//")));
     }
 
-    /// The tools that we have mean the same, however they were spaced.
+    /// The existing tools keep their meaning, however they are spaced.
     #[test]
     fn any_spacing_keeps_the_meaning(
         file in prop::sample::select(tool_files()),
@@ -336,7 +336,7 @@ proptest! {
         }
     }
 
-    /// Spaces alone decide nothing but where one-line regions stand.
+    /// Spaces alone matter only where a region is on one line.
     #[test]
     fn line_ends_decide_nothing(gaps in prop::collection::vec(prop::sample::select(vec!["\n", "  \n", "\n\t"]), 600)) {
         let (code, _) = content(WHOLE);
@@ -344,7 +344,7 @@ proptest! {
         prop_assert_eq!(laid(&spread), laid(&code.join("\n")));
     }
 
-    /// A layout takes any text, good or not, and loses nothing of it.
+    /// The formatter accepts any text, valid or not, and loses nothing of it.
     #[test]
     fn no_text_is_too_strange(text in "([a-z{}();,:=+*^/. \n\"-]|/\\*|\\*/|//|bsp|where|region|[0-9]){0,60}") {
         let all = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
@@ -356,7 +356,7 @@ proptest! {
 fn errors_of_syntax_are_reported() {
     let diagnostics = format(&Source::new("t.tool", "tool T { units mm let a = 1; }"));
     assert!(diagnostics.is_err_and(|diagnostics| diagnostics[0].code() == "T0117"));
-    // What is wrong with the tool itself is not the layout's to judge.
+    // The formatter does not report errors in the tool itself.
     assert!(format(&Source::new("t.tool", "tool T{let a=b;}")).is_ok());
 }
 

@@ -1,12 +1,12 @@
-//! Tokens with what a layout has to know of each.
+//! Tokens with the properties that the layout needs.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::{self, Rule};
 
-/// What a token is to its neighbours.
+/// The role of a token, which decides the spaces around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A word of the language, where it is one.
+    /// A keyword, where the name is one.
     Word,
     /// A name, a number or a text.
     Value,
@@ -14,7 +14,7 @@ pub(super) enum Kind {
     Sign,
     /// An operator or other punctuation.
     Mark,
-    /// A comment that the line may go on behind.
+    /// A comment after which the line may continue.
     Inline,
     /// A comment that ends its line: `// …`, or one of several lines.
     Ending,
@@ -25,7 +25,7 @@ pub(super) enum Kind {
 pub(super) struct Token<'t> {
     pub(super) text: &'t str,
     pub(super) kind: Kind,
-    /// Line ends between it and what stands before.
+    /// The number of line ends between it and the token before.
     pub(super) newlines: usize,
 }
 
@@ -39,11 +39,11 @@ impl Token<'_> {
     }
 }
 
-/// Words that no name, point or value follows at once; all others are followed by one.
+/// Keywords that are not directly followed by a name, a point or a value; all others are.
 const COMPLETE: [&str; 7] = ["arc", "away", "concave", "cutting", "line", "nearest", "regions"];
 
-/// What was read last, of which the kind of the next token follows: an operand never stands beside
-/// an operand, so a word that does is one of the language.
+/// The last token, which determines the kind of the next. An operand never follows an operand, so a name that
+/// does is a keyword.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Last {
     Nothing,
@@ -52,7 +52,7 @@ enum Last {
     DirectionColon,
 }
 
-/// The tokens of a text.
+/// Returns the tokens of a text.
 pub(super) fn tokens(text: &str) -> Result<Vec<Token<'_>>, Diagnostic> {
     let (mut last, mut first, mut end) = (Last::Nothing, "", 0);
     let mut tokens = Vec::new();

@@ -1,8 +1,8 @@
-//! Where two pieces of an outline meet.
+//! Intersections of two segments of an outline.
 
 use super::outline::{Point, Segment, cross, dot, doubles, minus, norm};
 
-/// Where two segments meet, but for the end that neighbours share.
+/// Returns a common point of two segments. For neighbours, the start of `b` that they share does not count.
 pub(crate) fn meeting(a: &Segment, b: &Segment, neighbours: bool) -> Option<Point> {
     let candidates = match (&a.circle, &b.circle) {
         (None, None) => line_line(a, b),

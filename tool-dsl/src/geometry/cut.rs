@@ -1,59 +1,60 @@
-//! Polygons of the section, whose edges may be curved, and the cutting of them by curves.
+//! Polygons of the section with possibly curved edges, and their division by curves.
 
 use super::outline::{Point, cross, dot, minus, norm};
-use super::shape::{ON, Shape, between};
+use super::shape::{CurveFunction, ON, between};
 use crate::formula::CurveIndex;
 
-/// Places this close are one, in sizes.
+/// The distance below which points coincide, relative to the size of the section.
 pub(crate) const NEAR: f64 = 1e-9;
-/// How far a curve may stand out from its chord, in chords: beyond, another branch is meant.
+/// The largest distance of a curve from its chord, in chord lengths. A point farther away belongs to another
+/// branch.
 const BULGE: f64 = 0.15;
-/// The step, in chords, by which it is seen where a curve's value turns back.
+/// The step, in chord lengths, of the differences that locate an extremum of a curve's value.
 const NARROW: f64 = 1e-3;
 
-/// What a polygon's edge is.
+/// The shape of a polygon's edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Edge {
     Straight,
     /// A chord of one of the tool's curves.
     Along(CurveIndex),
-    /// A chord of something else.
+    /// A chord of some other curve.
     Chord,
 }
 
-/// A convex part of the section with one owner, but for the bulge of its curved edges. Edge `k`
-/// runs from vertex `k` to the next.
+/// A part of the section with one owner, convex except for the bulge of its curved edges. Edge `k` leads from
+/// vertex `k` to the next.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     pub(crate) owner: Option<usize>,
-    /// Which piece it was before it was cut, of those that who asks keeps.
+    /// The index, in the caller's list, of the piece that this one was cut from.
     pub(crate) origin: usize,
     pub(crate) vertices: Vec<Point>,
     pub(crate) edges: Vec<Edge>,
 }
 
-/// Where a piece lies, or what a curve cuts it into.
+/// The position of a piece relative to a curve, or the parts that the curve cuts it into.
 pub(crate) enum Cut {
     Below,
     Above,
-    /// It is no more than its border.
+    /// The piece is degenerate: its border has no interior.
     Nothing,
     Both(Option<Piece>, Option<Piece>),
 }
 
-/// A vertex with its side and the edge that follows.
+/// A vertex with its side and the edge that follows it.
 type Corner = (Point, i8, Edge);
 
-/// A curve that cuts, among all.
+/// The curve that cuts, as an index into all curves.
 #[derive(Clone, Copy)]
 pub(crate) struct Cutter<'a, 'g> {
-    pub(crate) shapes: &'a [Shape<'g>],
+    pub(crate) shapes: &'a [CurveFunction<'g>],
     pub(crate) curve: CurveIndex,
     pub(crate) size: f64,
 }
 
 impl Piece {
-    /// The parts on the two sides of a curve.
+    /// Divides the piece into the parts on the two sides of a curve.
     pub(crate) fn cut(&self, cutter: Cutter<'_, '_>) -> Cut {
         let corners = cutter.corners(self);
         let has = |side: i8| corners.iter().any(|corner| corner.1 == side);
@@ -68,14 +69,15 @@ impl Piece {
             }
             (true, false) => Cut::Below,
             (false, true) => Cut::Above,
-            // Nothing is clearly on a side: its middle decides, or it is no more than its border.
+            // No vertex is clearly on a side: the centre decides, unless the piece is degenerate.
             (false, false) if is_thin(&self.vertices, cutter.size) => Cut::Nothing,
             (false, false) if cutter.shape().below(self.middle()) => Cut::Below,
             (false, false) => Cut::Above,
         }
     }
 
-    /// Where it lies for certain: the middle and half the sides of a box about it and what bulges.
+    /// Returns the centre and half the sides of a box that certainly contains the piece, with the bulge of
+    /// its edges.
     pub(crate) fn about(&self) -> [Point; 2] {
         let [low, high] = self.vertices.iter().fold(
             [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
@@ -88,13 +90,13 @@ impl Piece {
         [between(low, high, 0.5), [half[0] + bulge, half[1] + bulge]]
     }
 
-    /// The mean of its vertices.
+    /// Returns the mean of its vertices.
     pub(crate) fn middle(&self) -> Point {
         let count = self.vertices.len() as f64;
         [0, 1].map(|k| self.vertices.iter().map(|p| p[k]).sum::<f64>() / count)
     }
 
-    /// Its middle, and those of the lines between two of its vertices each.
+    /// Returns its centre, and the midpoints between any two of its vertices.
     pub(crate) fn chords(&self) -> impl Iterator<Item = Point> {
         let pairs =
             self.vertices.iter().enumerate().flat_map(|(k, a)| {
@@ -103,15 +105,15 @@ impl Piece {
         std::iter::once(self.middle()).chain(pairs)
     }
 
-    /// Whether it is so thin that it may lie between a curve and its chord.
+    /// Returns whether it is so thin that it may lie between a curve and its chord.
     pub(crate) fn is_sliver(&self) -> bool {
         let first = self.vertices[0];
         let long = self.vertices.iter().map(|p| norm(minus(*p, first))).fold(0.0, f64::max);
         self.area() < 0.05 * long * long
     }
 
-    /// Whether a point lies on an edge, or may lie on what a chord stands for.
-    pub(crate) fn has_on_edge(&self, p: Point, shapes: &[Shape<'_>], size: f64) -> bool {
+    /// Returns whether a point lies on an edge, or may lie on the curve that an edge is a chord of.
+    pub(crate) fn has_on_edge(&self, p: Point, shapes: &[CurveFunction<'_>], size: f64) -> bool {
         let close = NEAR * size;
         let on = |[a, b]: [Point; 2], edge: Edge| {
             let bulge = BULGE * norm(minus(b, a)) + close;
@@ -127,7 +129,7 @@ impl Piece {
         (0..count).any(|k| on([self.vertices[k], self.vertices[(k + 1) % count]], self.edges[k]))
     }
 
-    /// Twice its area.
+    /// Returns twice its area.
     pub(crate) fn area(&self) -> f64 {
         let first = self.vertices[0];
         let fan = self.vertices.windows(2);
@@ -136,11 +138,11 @@ impl Piece {
 }
 
 impl<'a, 'g> Cutter<'a, 'g> {
-    fn shape(&self) -> &'a Shape<'g> {
+    fn shape(&self) -> &'a CurveFunction<'g> {
         &self.shapes[self.curve]
     }
 
-    /// The vertices with their sides, and those where an edge crosses the curve.
+    /// Returns the vertices with their sides, and the points where an edge crosses the curve.
     fn corners(&self, piece: &Piece) -> Vec<Corner> {
         let (shape, count) = (self.shape(), piece.vertices.len());
         let sides: Vec<i8> = piece.vertices.iter().map(|p| shape.side(*p, self.size)).collect();
@@ -165,7 +167,8 @@ impl<'a, 'g> Cutter<'a, 'g> {
         corners
     }
 
-    /// Where an edge is farthest on a side that neither of its ends is on.
+    /// Returns the point at which an edge reaches farthest onto a side that neither end is on, with that
+    /// side.
     fn detour(&self, [a, b]: [Point; 2], sides: [i8; 2], edge: Edge) -> Option<(Point, i8)> {
         let shape = self.shape();
         let there = |top: Point| {
@@ -177,7 +180,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
             Edge::Along(other) if other != self.curve => other,
             Edge::Along(_) | Edge::Chord => return None,
         };
-        // A curve stands out from its chord, and so may reach over.
+        // A curve deviates from its chord and may therefore reach across.
         let along = Cutter { curve: other, ..*self };
         let chord = norm(minus(b, a));
         let near = |p: Point| {
@@ -188,11 +191,11 @@ impl<'a, 'g> Cutter<'a, 'g> {
             let parts = [0.5, 0.15, 0.85, 0.03, 0.97, 0.3, 0.7];
             return parts.into_iter().find_map(|part| there(along.bend(a, b, part)?));
         }
-        // It may begin on the curve and leave to the one side, its chord to the other.
+        // The edge may begin on the curve and leave to one side while its chord leaves to the other.
         if let Some(found) = self.leaves([a, b], sides, other) {
             return Some(found);
         }
-        // A narrow curve may cross it twice and be far from both ends.
+        // A narrow curve may cross the edge twice, far from both ends.
         let mut part = self.turn(a, b)?;
         let top = between(a, b, part);
         if there(top).is_none() && !near(top) {
@@ -211,8 +214,8 @@ impl<'a, 'g> Cutter<'a, 'g> {
         there(along.bend(a, b, part)?)
     }
 
-    /// Where an edge of another curve is on the other side than its farther end, if it begins on the
-    /// curve and leaves to there.
+    /// Returns a point at which an edge along `other` lies on the opposite side from its far end, if the edge
+    /// begins on the cutting curve and leaves toward that side.
     fn leaves(&self, ends: [Point; 2], sides: [i8; 2], other: CurveIndex) -> Option<(Point, i8)> {
         let (from, far) = match sides {
             [0, far] if far != 0 => (0, far),
@@ -233,24 +236,24 @@ impl<'a, 'g> Cutter<'a, 'g> {
         })
     }
 
-    /// Where along a line the curve's value turns back.
+    /// Returns the parameter of the extremum of the curve's value between two points, if there is one.
     fn turn(&self, a: Point, b: Point) -> Option<f64> {
         let [_, slope, bend] = self.shape().course(a, b);
         let turn = -slope / (2.0 * bend);
         (turn > 0.0 && turn < 1.0).then_some(turn)
     }
 
-    /// What lies on one side.
+    /// Returns the vertices and edges of the part on one side.
     fn half(&self, corners: &[Corner], side: i8) -> Option<(Vec<Point>, Vec<Edge>)> {
         let (mut vertices, mut edges) = (Vec::new(), Vec::new());
         let along = if self.shape().is_line() { Edge::Straight } else { Edge::Along(self.curve) };
         let count = corners.len();
-        // Behind a corner of the other side, so that the way along the curve comes last.
+        // Starting after a corner of the other side puts the edge along the curve last.
         let start = corners.iter().position(|corner| corner.1 == -side)?;
         for k in 1..=count {
             let (p, own, edge) = corners[(start + k) % count];
             let [before, after] = [k - 1, k + 1].map(|k| corners[(start + k) % count].1);
-            // What only touches the curve is not on this side.
+            // A vertex that only touches the curve does not belong to this side.
             if own == side || (own == 0 && (before == side || after == side)) {
                 vertices.push(p);
                 edges.push(if own == 0 && after != side { along } else { edge });
@@ -264,7 +267,8 @@ impl<'a, 'g> Cutter<'a, 'g> {
         Some((vertices, edges))
     }
 
-    /// Where an edge between points on different sides crosses, on the curve that it is a chord of.
+    /// Returns the point where an edge between points on different sides crosses the cutting curve, on the
+    /// curve that the edge is a chord of.
     fn crossing(&self, a: Point, b: Point, edge: Edge) -> Point {
         let shape = self.shape();
         let on_chord = between(a, b, shape.zero_between(a, b));
@@ -286,8 +290,8 @@ impl<'a, 'g> Cutter<'a, 'g> {
         if norm(minus(p, on_chord)) < BULGE * chord && (0.0..=1.0).contains(&part) {
             return p;
         }
-        // Newton's method found where they cross elsewhere. Where they hardly cross at all, the
-        // chord's point is as good.
+        // Newton's method found another crossing of the two curves. Where they hardly cross at all, the point
+        // on the chord is as good.
         let along = Cutter { curve: other, ..*self };
         let (mut low, mut high) = (0.0, 1.0);
         let below = shape.below(a);
@@ -299,15 +303,15 @@ impl<'a, 'g> Cutter<'a, 'g> {
         along.bend(a, b, low).unwrap_or(on_chord)
     }
 
-    /// A point of the curve beside a part of a chord.
+    /// Returns the point of the curve on the normal of a chord at a parameter of it.
     fn bend(&self, a: Point, b: Point, part: f64) -> Option<Point> {
         let shape = self.shape();
         let across = [-(b[1] - a[1]), b[0] - a[0]];
         let from = between(a, b, part);
         let at = |s: f64| [from[0] + s * across[0], from[1] + s * across[1]];
-        if matches!(shape, Shape::Conic { .. }) {
+        if matches!(shape, CurveFunction::Conic { .. }) {
             let [v0, slope, bend] = shape.course(from, at(1.0));
-            // The root nearer to the chord, by the form that does not cancel.
+            // The root nearer to the chord, in the form that does not cancel.
             let root = (slope * slope - 4.0 * bend * v0).sqrt();
             let s = -2.0 * v0 / (slope + root.copysign(slope));
             return (s.abs() < 4.0 * BULGE).then_some(at(s));
@@ -327,7 +331,7 @@ impl<'a, 'g> Cutter<'a, 'g> {
     }
 }
 
-/// Whether a point is this close to a line between two others.
+/// Returns whether a point is within this distance of the line segment between two others.
 pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], close: f64) -> bool {
     let (way, off) = (minus(b, a), minus(p, a));
     let length = norm(way);
@@ -335,7 +339,7 @@ pub(crate) fn is_along(p: Point, [a, b]: [Point; 2], close: f64) -> bool {
     cross(way, off).abs() / length < close && (0.0..=length).contains(&along)
 }
 
-/// Whether all vertices are in a line, but for rounding.
+/// Returns whether all vertices lie on one line, up to rounding.
 fn is_thin(vertices: &[Point], size: f64) -> bool {
     let Some(&first) = vertices.first() else { return true };
     let far = |a: Point| {
@@ -351,7 +355,7 @@ fn is_thin(vertices: &[Point], size: f64) -> bool {
     };
     let last = far(first);
     let way = minus(last, far(last));
-    // Points in one place have no direction, and are thin.
+    // Points that coincide have no direction, and are thin.
     let least = ON * size * norm(way);
     !vertices.iter().any(|p| cross(way, minus(*p, last)).abs() > least)
 }

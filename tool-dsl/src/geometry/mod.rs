@@ -1,5 +1,5 @@
-//! Geometry of the half plane that several passes share: a profile's segments, where two of them cross, polygons that
-//! curves cut, and curves as functions of a point.
+//! Geometry of the half plane that several passes share: the segments of a profile, their intersections,
+//! polygons that curves cut, and curves as functions of a point.
 
 pub(crate) mod crossing;
 pub(crate) mod cut;

@@ -1,37 +1,37 @@
-//! A profile as geometry: pieces and their distance functions.
+//! A profile as geometry: segments and their distance functions.
 //!
-//! Everything is in the tool's frame, `[d, z]`, counter-clockwise: the material lies on the left.
+//! Everything is in the tool's frame, `[d, z]`, counter-clockwise: the material is on the left.
 
 use crate::expr::{Coord, Graph, Id};
 use crate::number::Number;
 use crate::source::Span;
 
-/// A point by constants.
-pub(crate) type Place = [Number; 2];
-/// A point by doubles.
+/// A point with exact coordinates.
+pub(crate) type ExactPoint = [Number; 2];
+/// A point in doubles.
 pub(crate) type Point = [f64; 2];
 
-/// Two directions closer than this are tangent.
+/// The sine of the angle below which two directions count as tangent.
 pub(crate) const TANGENT: f64 = 1e-9;
 
 /// The circle of an arc.
 #[derive(Clone, Debug)]
 pub(crate) struct Circle {
-    pub(crate) centre: Place,
+    pub(crate) centre: ExactPoint,
     pub(crate) radius: Number,
-    /// Whether the material is inside.
+    /// True if the material is inside the circle.
     pub(crate) convex: bool,
 }
 
 /// One segment of a profile.
 #[derive(Clone, Debug)]
 pub(crate) struct Segment {
-    pub(crate) from: Place,
-    pub(crate) to: Place,
+    pub(crate) from: ExactPoint,
+    pub(crate) to: ExactPoint,
     pub(crate) circle: Option<Circle>,
     pub(crate) surface: usize,
     pub(crate) span: Span,
-    /// The same in doubles.
+    /// The same geometry in doubles.
     flat: Flat,
 }
 
@@ -40,14 +40,14 @@ pub(crate) struct Segment {
 struct Flat {
     from: Point,
     to: Point,
-    /// The direction of travel, of a line.
+    /// The unit direction of travel of a line.
     along: Point,
-    /// Centre and radius, of an arc.
+    /// The centre, radius and convexity of an arc.
     circle: Option<(Point, f64, bool)>,
 }
 
 impl Flat {
-    fn new(from: &Place, to: &Place, circle: Option<&Circle>) -> Flat {
+    fn new(from: &ExactPoint, to: &ExactPoint, circle: Option<&Circle>) -> Flat {
         let [from, to] = [from, to].map(doubles);
         let circle =
             circle.map(|circle| (doubles(&circle.centre), circle.radius.to_f64(), circle.convex));
@@ -55,7 +55,7 @@ impl Flat {
     }
 }
 
-pub(crate) fn doubles(place: &Place) -> Point {
+pub(crate) fn doubles(place: &ExactPoint) -> Point {
     [place[0].to_f64(), place[1].to_f64()]
 }
 
@@ -82,7 +82,7 @@ fn unit(a: Point) -> Point {
 
 impl Segment {
     pub(crate) fn new(
-        [from, to]: [Place; 2],
+        [from, to]: [ExactPoint; 2],
         circle: Option<Circle>,
         surface: usize,
         span: Span,
@@ -91,17 +91,18 @@ impl Segment {
         Segment { from, to, circle, surface, span, flat }
     }
 
-    /// Its ends.
+    /// Returns its start and end.
     pub(crate) fn ends(&self) -> [Point; 2] {
         [self.flat.from, self.flat.to]
     }
 
-    /// Centre, radius and whether the material is inside, of an arc.
+    /// Returns the centre and radius of an arc, and whether the material is inside the circle.
     pub(crate) fn round(&self) -> Option<(Point, f64, bool)> {
         self.flat.circle
     }
 
-    /// The angle at the start of an arc about its centre, and the turn to its end.
+    /// Returns the polar angle of an arc's start about its centre, and the signed angle from there to its
+    /// end, in radians; zeros for a line.
     pub(crate) fn angles(&self) -> [f64; 2] {
         let Some((centre, _, convex)) = self.flat.circle else { return [0.0; 2] };
         let [a, b] = self.ends().map(|end| minus(end, centre));
@@ -115,26 +116,26 @@ impl Segment {
         [a[1].atan2(a[0]), turn]
     }
 
-    /// The length from end to end.
+    /// Returns the distance between its ends.
     pub(crate) fn chord(&self) -> f64 {
         norm(minus(self.flat.to, self.flat.from))
     }
 
-    /// The same piece walked the other way, with the other side's material.
+    /// Returns the segment traversed in reverse, with the material on its other side.
     pub(crate) fn reversed(&self) -> Segment {
         let circle = self.circle.clone().map(|circle| Circle { convex: !circle.convex, ..circle });
         Segment::new([self.to.clone(), self.from.clone()], circle, self.surface, self.span)
     }
 
-    /// The mirror image in the axis, walked so that the material stays on the left.
+    /// Returns the mirror image in the axis, traversed so that the material stays on the left.
     pub(crate) fn mirrored(&self) -> Segment {
-        let mirror = |[d, z]: &Place| [-d, z.clone()];
+        let mirror = |[d, z]: &ExactPoint| [-d, z.clone()];
         let circle = self.circle.clone();
         let circle = circle.map(|circle| Circle { centre: mirror(&circle.centre), ..circle });
         Segment::new([mirror(&self.to), mirror(&self.from)], circle, self.surface, self.span)
     }
 
-    /// The unit direction into the material at a point of the piece's line or circle.
+    /// Returns the unit normal into the material at a point of the segment's line or circle.
     pub(crate) fn inward(&self, p: Point) -> Point {
         match self.flat.circle {
             None => [-self.flat.along[1], self.flat.along[0]],
@@ -144,14 +145,15 @@ impl Segment {
         }
     }
 
-    /// The direction of travel at its start or end.
+    /// Returns the unit direction of travel at its start or end.
     pub(crate) fn tangent(&self, at_end: bool) -> Point {
         let Some((centre, _, convex)) = self.flat.circle else { return self.flat.along };
         let out = unit(minus(self.ends()[usize::from(at_end)], centre));
         if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
     }
 
-    /// How far a point is on the material's side of the piece's whole line or circle.
+    /// Returns the signed distance of a point from the segment's whole line or circle, positive on the
+    /// material's side.
     pub(crate) fn signed(&self, p: Point) -> f64 {
         match self.flat.circle {
             None => cross(self.flat.along, minus(p, self.flat.from)),
@@ -162,15 +164,15 @@ impl Segment {
         }
     }
 
-    /// How far a point is from the piece.
+    /// Returns the distance of a point from the segment.
     pub(crate) fn away(&self, p: Point) -> f64 {
         let [before, after] = self.sector(p);
         let [from, to] = self.ends().map(|end| norm(minus(p, end)));
         if before < 0.0 || after < 0.0 { from.min(to) } else { self.signed(p).abs() }
     }
 
-    /// How far a point lies behind the normal at the start and before that at the end; both at
-    /// least 0 where the nearest point of the piece is not one of its ends.
+    /// Returns the distances of a point past the normal at the start and ahead of the normal at the end. Both
+    /// are at least 0 where the nearest point of the segment is not one of its ends.
     pub(crate) fn sector(&self, p: Point) -> [f64; 2] {
         let [from, to] = self.ends();
         match self.flat.circle {
@@ -183,7 +185,7 @@ impl Segment {
         }
     }
 
-    /// The expression of [`Segment::signed`].
+    /// Returns the expression of [`Segment::signed`].
     pub(crate) fn depth(&self, graph: &mut Graph) -> Option<Id> {
         match &self.circle {
             None => {
@@ -191,7 +193,7 @@ impl Segment {
                 if tx.is_zero() || tz.is_zero() {
                     return linear(graph, [-&tz, tx], &self.from);
                 }
-                // From a point of the line, so that what is far from the tip does not cancel.
+                // Anchoring at a point of the line avoids cancellation far from the tip.
                 Some(anchored(graph, [-&tz, tx], &self.from))
             }
             Some(circle) => {
@@ -202,7 +204,7 @@ impl Segment {
         }
     }
 
-    /// The expressions of [`Segment::sector`], up to a positive factor.
+    /// Returns the expressions of [`Segment::sector`], up to a positive factor.
     pub(crate) fn sides(&self, graph: &mut Graph) -> Option<[Id; 2]> {
         match &self.circle {
             None => {
@@ -211,7 +213,7 @@ impl Segment {
                 Some([linear(graph, [tx, tz], &self.from)?, linear(graph, back, &self.to)?])
             }
             Some(circle) => {
-                let radial = |place: &Place| -> Option<[Number; 2]> {
+                let radial = |place: &ExactPoint| -> Option<[Number; 2]> {
                     let [d, z] = [0, 1].map(|k| &place[k] - &circle.centre[k]);
                     Some([d.over(&circle.radius)?, z.over(&circle.radius)?])
                 };
@@ -229,21 +231,22 @@ impl Segment {
         }
     }
 
-    /// The unit direction of a line, to 256 bits.
+    /// Returns the unit direction of a line, to 256 bits.
     pub(crate) fn direction(&self) -> Option<[Number; 2]> {
         unit_between(&self.from, &self.to)
     }
 }
 
-/// Returns the unit vector from one place to another, to 256 bits; none if they are the same.
-pub(crate) fn unit_between(from: &Place, to: &Place) -> Option<[Number; 2]> {
+/// Returns the unit vector from one point to another, to 256 bits; none if they coincide.
+pub(crate) fn unit_between(from: &ExactPoint, to: &ExactPoint) -> Option<[Number; 2]> {
     let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
     let length = (&(&d * &d) + &(&z * &z)).sqrt()?;
     Some([d.over(&length)?, z.over(&length)?])
 }
 
-/// `way · (p - from)`, the difference first: it rounds as much as `p` is far from there.
-pub(crate) fn anchored(graph: &mut Graph, way: [Number; 2], from: &Place) -> Id {
+/// Returns `way · (p - from)`, computed from the difference, so that its rounding error is proportional to
+/// the distance from `from`.
+pub(crate) fn anchored(graph: &mut Graph, way: [Number; 2], from: &ExactPoint) -> Id {
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
     let [from_d, from_z] = from.clone().map(|part| graph.number(part));
     let [off_d, off_z] = [graph.sub(d, from_d), graph.sub(z, from_z)];
@@ -252,10 +255,10 @@ pub(crate) fn anchored(graph: &mut Graph, way: [Number; 2], from: &Place) -> Id 
     graph.add(d, z)
 }
 
-/// The same, its constant put together.
-pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &Place) -> Option<Id> {
+/// Returns the same with its constants combined.
+pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &ExactPoint) -> Option<Id> {
     let constant = -&(&(&way[0] * &from[0]) + &(&way[1] * &from[1]));
-    // What cancels in 256 bits is 0.
+    // A value that cancels in 256 bits is 0.
     let tidy = |value: Number| if value.to_f64().abs() < 1e-60 { Number::int(0) } else { value };
     let [wd, wz] = way.map(tidy);
     let (d, z) = (graph.coord(Coord::D), graph.coord(Coord::Z));
@@ -265,8 +268,8 @@ pub(crate) fn linear(graph: &mut Graph, way: [Number; 2], from: &Place) -> Optio
     Some(graph.add(sum, constant))
 }
 
-/// The square of the distance from a place.
-pub(crate) fn squared(graph: &mut Graph, place: &Place) -> Id {
+/// Returns the squared distance from a point.
+pub(crate) fn squared(graph: &mut Graph, place: &ExactPoint) -> Id {
     let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
     let squares = [0, 1].map(|k| {
         let there = graph.number(place[k].clone());
@@ -276,19 +279,19 @@ pub(crate) fn squared(graph: &mut Graph, place: &Place) -> Id {
     graph.add(squares[0], squares[1])
 }
 
-/// The distance from a place.
-pub(crate) fn distance(graph: &mut Graph, place: &Place) -> Option<Id> {
+/// Returns the distance from a point.
+pub(crate) fn distance(graph: &mut Graph, place: &ExactPoint) -> Option<Id> {
     let square = squared(graph, place);
     graph.sqrt(square)
 }
 
-/// The turn from one direction to the next: positive to the left, 0 if they are tangent.
+/// Returns the sine of the turn from one direction to the next: positive to the left, 0 if they are tangent.
 pub(crate) fn turn(incoming: Point, outgoing: Point) -> f64 {
     let sine = cross(incoming, outgoing);
     if sine.abs() < TANGENT && dot(incoming, outgoing) > 0.0 { 0.0 } else { sine }
 }
 
-/// Points along a segment, its ends among them.
+/// Returns points along a segment, including its ends.
 pub(crate) fn along(segment: &Segment) -> Vec<Point> {
     let [from, to] = segment.ends();
     let Some((centre, ..)) = segment.flat.circle else { return vec![from, to] };
@@ -306,7 +309,7 @@ pub(crate) fn along(segment: &Segment) -> Vec<Point> {
         .collect()
 }
 
-/// Points on a segment, and the way from each into the material.
+/// Returns points on a segment, each with the unit normal into the material.
 pub(crate) fn stations(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
     let [from, to] = segment.ends();
     let [start, turn] = segment.angles();
@@ -325,7 +328,7 @@ pub(crate) fn stations(segment: &Segment, count: usize) -> Vec<[Point; 2]> {
         .collect()
 }
 
-/// The box about an outline: its ends, and where an arc stands out farthest.
+/// Returns the bounding box of an outline from its ends and the extreme points of its arcs.
 pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     let mut widen = |p: Point| {
@@ -348,13 +351,13 @@ pub(crate) fn reach(outline: &[Segment]) -> [Point; 2] {
     [low, high]
 }
 
-/// The place of the piece that is nearest to a point.
+/// Returns the location of the segment that is nearest to a point.
 pub(crate) fn nearest_span(outline: &[Segment], p: Point) -> Option<Span> {
     let nearest = outline.iter().min_by(|a, b| a.away(p).total_cmp(&b.away(p)));
     nearest.map(|segment| segment.span)
 }
 
-/// The largest radius of an outline between two heights, rounded up where it is not a given one.
+/// Returns the largest radius of an outline between two heights, rounded up unless it is that of an end.
 pub(crate) fn radius_between(outline: &[Segment], low: f64, high: f64) -> f64 {
     let up = |d: f64| d * (1.0 + 4.0 * f64::EPSILON);
     let mut widest = 0.0f64;

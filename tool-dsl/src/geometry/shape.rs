@@ -1,38 +1,38 @@
-//! Curves of the section in doubles: their values, and the sides that points and boxes are on.
+//! Curves of the section in doubles: their values, and the sides on which points and boxes lie.
 
 use super::outline::{Point, norm};
 use crate::expr::polynomial::Polynomials;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Graph, Id};
 
-/// What is closer to a curve than this part of the section's size lies on it.
+/// The distance below which a point lies on a curve, relative to the section's size.
 pub(crate) const ON: f64 = 1e-10;
-/// Rounding of a polynomial's value, in parts of the sum of its terms' sizes.
+/// The rounding error of a polynomial's value, relative to the sum of the absolute values of its terms.
 const ROUNDING: f64 = 2e-14;
 
-/// A curve as a function of the section's points.
-pub(crate) enum Shape<'g> {
-    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, `u` and `v` from the section's middle.
+/// A curve as a function on the section.
+pub(crate) enum CurveFunction<'g> {
+    /// `Σ cᵢⱼ uⁱ vʲ` for `i + j ≤ 2`, with `u` and `v` relative to the section's centre.
     Conic { middle: Point, factors: [f64; 6] },
-    /// Anything else.
+    /// Any other curve.
     Other(std::cell::RefCell<Evaluator<'g>>, Id),
 }
 
-/// A curve's value at a point, its gradient, and the size of its terms.
+/// A curve's value at a point, its gradient, and the sum of the absolute values of its terms.
 pub(crate) struct Value {
     pub(crate) value: f64,
     pub(crate) gradient: Point,
     terms: f64,
 }
 
-impl<'g> Shape<'g> {
+impl<'g> CurveFunction<'g> {
     pub(crate) fn new(
         graph: &'g Graph,
         id: Id,
         middle: Point,
         polynomials: &mut Polynomials,
-    ) -> Shape<'g> {
-        let other = || Shape::Other(Evaluator::new(graph, [id]).into(), id);
+    ) -> CurveFunction<'g> {
+        let other = || CurveFunction::Other(Evaluator::new(graph, [id]).into(), id);
         let Some(polynomial) = polynomials.of(graph, id) else { return other() };
         let mut factors = [0.0; 6];
         let [m, n] = middle;
@@ -50,16 +50,16 @@ impl<'g> Shape<'g> {
                 _ => return other(),
             }
         }
-        Shape::Conic { middle, factors }
+        CurveFunction::Conic { middle, factors }
     }
 
     pub(crate) fn is_line(&self) -> bool {
-        matches!(self, Shape::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
+        matches!(self, CurveFunction::Conic { factors, .. } if factors[3..].iter().all(|c| *c == 0.0))
     }
 
     pub(crate) fn at(&self, p: Point) -> Value {
         match self {
-            Shape::Conic { middle, factors: c } => {
+            CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
                 let (a, b) = (c[1] * u, c[2] * v);
                 let (uu, uv, vv) = (c[3] * u * u, c[4] * u * v, c[5] * v * v);
@@ -69,7 +69,7 @@ impl<'g> Shape<'g> {
                     terms: c[0].abs() + a.abs() + b.abs() + uu.abs() + uv.abs() + vv.abs(),
                 }
             }
-            Shape::Other(evaluator, id) => {
+            CurveFunction::Other(evaluator, id) => {
                 let mut evaluator = evaluator.borrow_mut();
                 let mut value = |d: f64, z: f64| {
                     evaluator.set(At::meridian(d, z));
@@ -88,7 +88,8 @@ impl<'g> Shape<'g> {
         }
     }
 
-    /// -1, 0 or 1: the side of the curve that a point is on, 0 for what is as good as on it.
+    /// Returns the side of the curve on which a point lies: -1 or 1, or 0 if the point is on the curve within
+    /// tolerance.
     pub(crate) fn side(&self, p: Point, size: f64) -> i8 {
         let Value { value, gradient, terms } = self.at(p);
         if value.abs() <= ON * size * norm(gradient) || value.abs() <= ROUNDING * terms {
@@ -99,11 +100,11 @@ impl<'g> Shape<'g> {
 
     pub(crate) fn value(&self, p: Point) -> f64 {
         match self {
-            Shape::Conic { middle, factors: c } => {
+            CurveFunction::Conic { middle, factors: c } => {
                 let (u, v) = (p[0] - middle[0], p[1] - middle[1]);
                 c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v
             }
-            Shape::Other(evaluator, id) => {
+            CurveFunction::Other(evaluator, id) => {
                 let mut evaluator = evaluator.borrow_mut();
                 evaluator.set(At::meridian(p[0], p[1]));
                 evaluator.get(*id)
@@ -111,9 +112,9 @@ impl<'g> Shape<'g> {
         }
     }
 
-    /// The side of the curve that a whole box is on, if a rough bound shows it: -1, 1, else 0.
+    /// Returns the side of the curve on which a whole box lies, if a rough bound proves it: -1 or 1, else 0.
     pub(crate) fn side_of_box(&self, middle: Point, half: Point) -> i8 {
-        let Shape::Conic { factors: c, .. } = self else { return 0 };
+        let CurveFunction::Conic { factors: c, .. } = self else { return 0 };
         let Value { value, gradient: [a, b], terms } = self.at(middle);
         let [u, v] = half;
         let most = a.abs() * u + b.abs() * v;
@@ -124,16 +125,16 @@ impl<'g> Shape<'g> {
         if value < 0.0 { -1 } else { 1 }
     }
 
-    /// `v0 + slope t + bend t²`, the value on the way from one point to another: of a conic exactly,
-    /// of others about.
+    /// Returns the coefficients of `v0 + slope t + bend t²`, the value along the segment between two points
+    /// for t from 0 to 1. They are exact for a conic and approximate for other curves.
     pub(crate) fn course(&self, a: Point, b: Point) -> [f64; 3] {
         let [v0, vm, v1] = [a, between(a, b, 0.5), b].map(|p| self.value(p));
         [v0, 4.0 * vm - 3.0 * v0 - v1, 2.0 * (v0 - 2.0 * vm + v1)]
     }
 
-    /// How far from one point to another on the other side the curve is crossed, as a part.
+    /// Returns the parameter of the zero between two points on different sides.
     pub(crate) fn zero_between(&self, a: Point, b: Point) -> f64 {
-        if matches!(self, Shape::Conic { .. }) {
+        if matches!(self, CurveFunction::Conic { .. }) {
             let [v0, slope, bend] = self.course(a, b);
             let root = (slope * slope - 4.0 * bend * v0).max(0.0).sqrt();
             let q = -(slope + root.copysign(slope)) / 2.0;
@@ -150,7 +151,7 @@ impl<'g> Shape<'g> {
         low
     }
 
-    /// The sign, without tolerance.
+    /// Returns whether the value is at most 0, without tolerance.
     pub(crate) fn below(&self, p: Point) -> bool {
         self.value(p) <= 0.0
     }

@@ -1,38 +1,39 @@
-//! The interpreter: a checked tool without Rust's compiler.
+//! The interpreter: evaluation of a checked tool without Rust's compiler.
 //!
-//! Three ways to ask. [`Interpreter::at`] follows the text's own rule, region by region in the order
-//! of the list, and is the reference for everything that is generated. For tools that are loaded at
-//! run time there is the plan: [`Walk`] follows it for one point, doing what that point needs;
-//! [`Tape`] is the whole plan as a list of operations, each done for a block of points before the
-//! next. All perform the operations of the generated code, one rounding each: the plan has its bits
-//! everywhere, the reference but for corners, where a test that the plan left out because it cannot
-//! fail would fail by rounding (within an ulp of the tool's size).
+//! There are three forms of evaluation. [`Interpreter::at`] follows the rule of the text, region by region in
+//! the order of the list, and is the reference for all generated code. The other two follow the plan, for
+//! tools loaded at run time. [`PlanWalk`] evaluates one point and computes only what that point needs.
+//! [`Tape`] is a list of operations, each applied to a block of points before the next.
+//!
+//! All perform the operations of the generated code, with one rounding each. The plan gives the same bits in
+//! every form. The reference differs only at corners, within an ulp of the tool's size: there a test that the
+//! plan left out, because it cannot fail, would fail by rounding.
 
 mod tape;
 mod walk;
 
 pub use tape::{BLOCK, Lanes, Tape};
-pub use walk::{Registers, Scratch, Value, Walk};
+pub use walk::{PlanWalk, Registers, Scratch, Value};
 
 use crate::checked::CheckedTool;
 use crate::expr::value::{At, Evaluator};
 use crate::expr::{Coord, Id, Node};
 use crate::formula::CurveIndex;
 
-/// What is felt at a point.
+/// The evaluation at a point inside the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Felt {
-    /// The region's place in the list.
+pub struct Evaluation {
+    /// The index of the region in the list.
     pub region: usize,
-    /// Penetration depth in the file's unit.
+    /// The penetration depth in the file's unit.
     pub depth: f64,
-    /// Magnitude.
+    /// The magnitude.
     pub magnitude: f64,
-    /// Unit vector to the surface.
+    /// The unit vector toward the surface.
     pub direction: [f64; 3],
-    /// The magnitude's gradient.
+    /// The gradient of the magnitude.
     pub gradient: [f64; 3],
-    /// Niceness.
+    /// The niceness.
     pub niceness: f64,
 }
 
@@ -44,7 +45,7 @@ pub struct Interpreter<'t> {
 }
 
 impl<'t> Interpreter<'t> {
-    /// An interpreter of a tool.
+    /// Makes an interpreter for a tool.
     pub fn new(tool: &'t CheckedTool) -> Interpreter<'t> {
         let model = &tool.model;
         let roots = model
@@ -55,16 +56,16 @@ impl<'t> Interpreter<'t> {
         Interpreter { tool, evaluator: Evaluator::new(&model.graph, roots) }
     }
 
-    /// What is felt at a point of the tool's frame, in the file's unit; `None` outside.
-    /// `length` is the file's unit of length measured in the part's.
-    pub fn at(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Felt> {
+    /// Evaluates the tool at a point of its frame, in the file's unit; `None` outside. `length` is the length
+    /// of the file's unit in units of the part.
+    pub fn at(&mut self, [x, y, z]: [f64; 3], length: f64) -> Option<Evaluation> {
         self.evaluator.set(At { length, ..At::point(x, y, z) });
         let model = &self.tool.model;
         let value = |curve: CurveIndex| self.evaluator.get(model.curves[curve].value);
         let region = model.regions.iter().position(|region| region.inside.holds(&value))?;
         let get = |id: Id| self.evaluator.get(id);
         let outputs = &model.regions[region].outputs;
-        Some(Felt {
+        Some(Evaluation {
             region,
             depth: get(outputs.depth),
             magnitude: get(outputs.magnitude),
@@ -75,11 +76,11 @@ impl<'t> Interpreter<'t> {
     }
 }
 
-/// How many numbers the plan can give for a point: owner (-1 outside), depth, magnitude, niceness,
+/// The number of values that the plan gives per point: owner (-1 outside), depth, magnitude, niceness,
 /// direction, gradient.
 pub const OUTPUTS: usize = 10;
 
-/// Where an operation finds an operand.
+/// The index of an operand's value.
 type Slot = u32;
 
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +113,7 @@ enum Operation {
 }
 
 impl Operation {
-    /// The operation of a node, its operands where `slot` says.
+    /// Returns the operation of a node; `slot` maps its operands to the indices of their values.
     fn of(node: &Node, slot: impl Fn(&Id) -> Slot) -> Operation {
         let s = slot;
         match node {

@@ -1,4 +1,4 @@
-//! The plan for blocks of points.
+//! Evaluation of the plan for blocks of points.
 
 use super::{OUTPUTS, Operation, Slot};
 use crate::checked::CheckedTool;
@@ -8,23 +8,23 @@ use crate::formula::CurveIndex;
 use crate::plan::Tree;
 use std::collections::HashMap;
 
-/// How many points a tape does at a time.
+/// The number of points that a tape evaluates at a time.
 pub const BLOCK: usize = 64;
 
-/// The numbers of a block of points.
+/// One value per point of a block.
 pub type Lanes = [f64; BLOCK];
 
-/// A part of a tool's plan as a list of operations over blocks of points.
+/// A part of a tool's plan as a list of operations on blocks of points.
 #[derive(Clone, Debug)]
 pub struct Tape {
     operations: Vec<Operation>,
-    /// Where each output is found, and how much of the tape it needs.
+    /// The slot of each output, and the number of operations up to it.
     outputs: Vec<(Slot, usize)>,
 }
 
 impl Tape {
-    /// The tape of what is felt in a region: depth, magnitude, niceness, direction, gradient.
-    pub fn felt(tool: &CheckedTool, region: usize) -> Tape {
+    /// Makes the tape of the outputs in a region: depth, magnitude, niceness, direction, gradient.
+    pub fn evaluation(tool: &CheckedTool, region: usize) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
         let mut outputs = Vec::with_capacity(OUTPUTS - 1);
         for root in tool.model.regions[region].outputs.roots() {
@@ -34,8 +34,8 @@ impl Tape {
         Tape { operations: writer.operations, outputs }
     }
 
-    /// The tape of the distance from points outside to the tool, its only output.
-    pub fn outside(tool: &CheckedTool) -> Tape {
+    /// Makes the tape whose only output is the distance from points outside to the tool.
+    pub fn clearance(tool: &CheckedTool) -> Tape {
         let mut writer = TapeWriter { tool, operations: Vec::new(), slots: HashMap::new() };
         let slot = writer.tree(&tool.plan.outside);
         Tape { outputs: vec![(slot, writer.operations.len())], operations: writer.operations }
@@ -48,10 +48,10 @@ impl Tape {
         }
     }
 
-    /// Evaluates as many of the first outputs as there are results at the first points of a block,
-    /// given in the tool's frame and the file's unit; `length` is the file's unit of length measured
-    /// in the part's. `registers` are kept between calls. It is inlined so that its loops are
-    /// compiled for the vectors that the caller has.
+    /// Evaluates the first `results.len()` outputs at the first `count` points of a block. Points are in the
+    /// tool's frame and the file's unit; `length` is the length of the file's unit in units of the part.
+    /// `registers` are kept between calls. The function is inlined so that its loops are compiled for the
+    /// caller's vector instructions.
     #[inline(always)]
     pub fn run(
         &self,
@@ -76,13 +76,13 @@ impl Tape {
     }
 }
 
-/// So many lanes that vectors are full.
+/// Rounds up to a number of lanes that fills vectors.
 pub(super) fn whole(count: usize) -> usize {
     count.next_multiple_of(8).min(BLOCK)
 }
 
-/// One operation on a block. The loops stand here, not in closures, which would be compiled without
-/// the vector instructions of the caller.
+/// Performs one operation on a block. The loops are written out here, since closures would be compiled
+/// without the caller's vector instructions.
 #[inline(always)]
 pub(super) fn perform(
     operation: &Operation,

@@ -1,4 +1,4 @@
-//! The plan for one point after another.
+//! Evaluation of the plan for one point at a time.
 
 use super::tape::{perform as block, whole};
 use super::{BLOCK, Lanes, OUTPUTS, Operation, Slot};
@@ -7,15 +7,15 @@ use crate::expr::{Coord, Id};
 use crate::plan::Tree;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Operations in the order in which they are done; the last is what is asked for.
+/// Operations in the order of evaluation; the last one gives the result.
 type List = Vec<Slot>;
 
 /// A test, or an owner.
 #[derive(Clone, Debug)]
-enum Fork {
+enum PlanNode {
     Owner(Option<usize>),
-    /// Where a curve's operations find its value below 0 (or at 0, if not strict) the walk goes on
-    /// at the next place, else at `above`.
+    /// If the curve's value is below 0 (or 0, if not strict) the walk continues at the next fork, else at
+    /// `above`.
     Test {
         curve: usize,
         strict: bool,
@@ -23,16 +23,16 @@ enum Fork {
     },
 }
 
-/// A tool's plan that does for a point what it needs and no more.
+/// A tool's plan in a form that computes only what a point needs.
 #[derive(Clone, Debug)]
-pub struct Walk {
+pub struct PlanWalk {
     operations: Vec<Operation>,
     curves: Vec<List>,
     regions: Vec<[List; OUTPUTS - 1]>,
-    forks: Vec<Fork>,
+    forks: Vec<PlanNode>,
 }
 
-/// What a walk computes with: numbers, or what knows more of them.
+/// A number type for the walk: doubles, or types that carry more information, such as intervals.
 pub trait Value:
     Copy
     + Default
@@ -42,36 +42,37 @@ pub trait Value:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// A constant.
+    /// Returns a constant.
     fn of(value: f64) -> Self;
-    /// Square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
-    /// Absolute value.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// Whether `a ≤ b` may be, and whether it may not be; of numbers one of the two.
+    /// Returns whether `a ≤ b` is possible, and whether its negation is possible. For plain numbers exactly
+    /// one is true.
     fn le(a: Self, b: Self) -> [bool; 2];
-    /// The same of `a < b`.
+    /// Returns the same for `a < b`.
     fn lt(a: Self, b: Self) -> [bool; 2];
-    /// What lies between two of which it is not known which one counts.
+    /// Returns a value that encloses both, for an undecided choice between them.
     #[must_use]
     fn either(self, _other: Self) -> Self {
         self
     }
 
-    /// The smaller; `b` where they are equal.
+    /// Returns the smaller; `b` if they are equal.
     #[must_use]
     fn min(a: Self, b: Self) -> Self {
         pick(Self::lt(a, b), a, b)
     }
 
-    /// The larger; `b` where they are equal.
+    /// Returns the larger; `b` if they are equal.
     #[must_use]
     fn max(a: Self, b: Self) -> Self {
         pick(Self::lt(b, a), a, b)
     }
 }
 
-/// The first where a test succeeds, the second where it fails.
+/// Returns `then` if a test holds, `other` if it fails, and an enclosure of both if it is undecided.
 fn pick<V: Value>([yes, no]: [bool; 2], then: V, other: V) -> V {
     match (yes, no) {
         (true, true) => then.either(other),
@@ -100,35 +101,35 @@ impl Value for f64 {
     }
 }
 
-/// What a walk remembers of a point; kept between calls.
+/// The intermediate values at a point; the memory is kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch<V = f64> {
     values: Vec<V>,
-    /// When each value was computed last.
+    /// The number of the evaluation that last computed each value.
     done: Vec<u32>,
     now: u32,
 }
 
-/// What a walk remembers of a block of points; kept between calls.
+/// The intermediate values of a block of points; the memory is kept between calls.
 #[derive(Clone, Debug, Default)]
 pub struct Registers {
     values: Vec<Lanes>,
-    /// When each was computed last.
+    /// The number of the evaluation that last computed each value.
     done: Vec<u32>,
     now: u32,
-    /// Places of the plan that are still to be gone to, and which lanes go there.
+    /// Forks of the plan still to visit, with the lanes that reach them.
     open: Vec<(usize, u64)>,
 }
 
-impl Walk {
-    /// The walk of a tool.
-    pub fn new(tool: &CheckedTool) -> Walk {
+impl PlanWalk {
+    /// Makes the walk of a tool.
+    pub fn new(tool: &CheckedTool) -> PlanWalk {
         let graph = &tool.model.graph;
         let slot = |id: &Id| id.index() as Slot;
         let list = |id: Id| graph.needed([id]).iter().map(slot).collect::<List>();
         let mut forks = Vec::new();
         flatten(&tool.plan.owner, &mut forks);
-        Walk {
+        PlanWalk {
             operations: graph.nodes().iter().map(|node| Operation::of(node, slot)).collect(),
             curves: tool.model.curves.iter().map(|curve| list(curve.value)).collect(),
             regions: tool
@@ -144,21 +145,22 @@ impl Walk {
         }
     }
 
-    /// Allocates what the walk of a point keeps, so that [`Walk::run`] and [`Walk::felt`] allocate nothing.
+    /// Allocates the memory of a walk for a point, so that [`PlanWalk::run`] and [`PlanWalk::evaluate`] do
+    /// not allocate.
     pub fn reserve<V: Value>(&self, scratch: &mut Scratch<V>) {
         scratch.start(self.operations.len());
     }
 
-    /// Allocates what the walk of a block keeps, so that [`Walk::owners`] allocates nothing.
+    /// Allocates the memory of a walk for a block, so that [`PlanWalk::owners`] does not allocate.
     pub fn reserve_block(&self, registers: &mut Registers) {
         registers.start(self.operations.len());
-        // A place of the plan is gone to once a block at most.
+        // The walk visits each fork at most once per block.
         registers.open.reserve(self.forks.len());
     }
 
-    /// Writes as many of a point's first outputs as there are results; all but the owner mean
-    /// nothing outside. The point is of the tool's frame, in the file's unit; `length` is the
-    /// file's unit of length measured in the part's.
+    /// Writes the first `results.len()` outputs at a point. Outside, only the owner is meaningful. The point
+    /// is in the tool's frame and the file's unit; `length` is the length of the file's unit in units of the
+    /// part.
     pub fn run<V: Value>(
         &self,
         point: [V; 3],
@@ -170,8 +172,8 @@ impl Walk {
         let mut at = 0;
         let owner = loop {
             match &self.forks[at] {
-                Fork::Owner(owner) => break *owner,
-                Fork::Test { curve, strict, above } => {
+                PlanNode::Owner(owner) => break *owner,
+                PlanNode::Test { curve, strict, above } => {
                     let value = self.value(&self.curves[*curve], point, length, scratch);
                     let [below, _] = below(value, *strict);
                     at = if below { at + 1 } else { *above };
@@ -184,8 +186,9 @@ impl Walk {
         self.felt_in(owner, point, length, scratch, rest);
     }
 
-    /// Visits each owner that a point may have whose coordinates are known to lie between ends, `None` outside,
-    /// with its depth; and of the tests that were not decided on the way the first, and whether it is below 0.
+    /// Visits every possible owner, with its depth, of a point whose coordinates are known to lie between
+    /// bounds; `None` is the outside. Also passes the first test on the path that was undecided, if any, and
+    /// whether its value is taken to be below 0.
     pub fn each_owner<V: Value>(
         &self,
         point: [V; 3],
@@ -197,13 +200,13 @@ impl Walk {
         let mut open = vec![(0, None)];
         while let Some((at, test)) = open.pop() {
             match &self.forks[at] {
-                Fork::Owner(owner) => {
+                PlanNode::Owner(owner) => {
                     let depth = |owner: usize| &self.regions[owner][0];
                     let owner = owner
                         .map(|owner| (owner, self.value(depth(owner), point, length, scratch)));
                     visit(owner, test);
                 }
-                Fork::Test { curve, strict, above } => {
+                PlanNode::Test { curve, strict, above } => {
                     let value = self.value(&self.curves[*curve], point, length, scratch);
                     match below(value, *strict) {
                         [true, true] => {
@@ -218,9 +221,9 @@ impl Walk {
         }
     }
 
-    /// The owners of the first points of a block: a region's place in the list, -1 outside. Only what
-    /// some point needs is computed. It is inlined so that its loops are compiled for the vectors
-    /// that the caller has.
+    /// Writes the owners of the first points of a block: a region's index in the list, -1 outside. Only what
+    /// some point needs is computed. The function is inlined so that its loops are compiled for the caller's
+    /// vector instructions.
     #[inline(always)]
     pub fn owners(
         &self,
@@ -236,7 +239,7 @@ impl Walk {
         open.push((0, u64::MAX >> (64 - lanes)));
         while let Some((at, here)) = open.pop() {
             match &self.forks[at] {
-                Fork::Owner(owner) => {
+                PlanNode::Owner(owner) => {
                     let owner = owner.map_or(-1.0, |owner| owner as f64);
                     for (lane, result) in owners[..lanes].iter_mut().enumerate() {
                         if here >> lane & 1 == 1 {
@@ -244,7 +247,7 @@ impl Walk {
                         }
                     }
                 }
-                Fork::Test { curve, strict, above } => {
+                PlanNode::Test { curve, strict, above } => {
                     let mut value = 0;
                     for &slot in &self.curves[*curve] {
                         value = slot as usize;
@@ -270,8 +273,9 @@ impl Walk {
         }
     }
 
-    /// What is felt at a point of a region, as [`Tape::felt`](super::Tape::felt) gives it.
-    pub fn felt(
+    /// Evaluates the outputs of a region at a point, in the order of
+    /// [`Tape::evaluation`](super::Tape::evaluation).
+    pub fn evaluate(
         &self,
         owner: usize,
         point: [f64; 3],
@@ -311,7 +315,7 @@ impl Walk {
 }
 
 impl<V: Value> Scratch<V> {
-    /// Forgets the last point.
+    /// Invalidates the values of the last point.
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
             self.values.resize(slots, V::default());
@@ -324,7 +328,7 @@ impl<V: Value> Scratch<V> {
 }
 
 impl Registers {
-    /// Forgets the last block.
+    /// Invalidates the values of the last block.
     fn start(&mut self, slots: usize) {
         if self.values.len() < slots || self.now == u32::MAX {
             self.values.resize(slots, [0.0; BLOCK]);
@@ -336,20 +340,20 @@ impl Registers {
     }
 }
 
-fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<Fork>) {
+fn flatten(tree: &Tree<Option<usize>>, forks: &mut Vec<PlanNode>) {
     match tree {
-        Tree::Leaf(owner) => forks.push(Fork::Owner(*owner)),
+        Tree::Leaf(owner) => forks.push(PlanNode::Owner(*owner)),
         Tree::Split { curve, strict, below, above } => {
             let at = forks.len();
-            forks.push(Fork::Owner(None));
+            forks.push(PlanNode::Owner(None));
             flatten(below, forks);
-            forks[at] = Fork::Test { curve: *curve, strict: *strict, above: forks.len() };
+            forks[at] = PlanNode::Test { curve: *curve, strict: *strict, above: forks.len() };
             flatten(above, forks);
         }
     }
 }
 
-/// Whether a value may be below 0, or at 0 if not strict, and whether it may not be.
+/// Returns whether a value may be below 0 (or 0, if not strict), and whether it may not be.
 fn below<V: Value>(value: V, strict: bool) -> [bool; 2] {
     if strict { V::lt(value, V::of(0.0)) } else { V::le(value, V::of(0.0)) }
 }

@@ -1,24 +1,25 @@
-//! Corners where pieces meet: a leaf sends those that rounding may bring astray to their owner.
+//! Corners where pieces meet. Leaves return points that rounding may bring astray near a corner to one of its
+//! owners.
 
 use super::Tree;
 use super::section::{Owners, Planner};
 use crate::formula::CurveIndex;
 use crate::geometry::cut::{Cut, Cutter, NEAR, Piece};
 use crate::geometry::outline::{Point, minus};
-use crate::geometry::shape::Shape;
+use crate::geometry::shape::CurveFunction;
 use std::rc::Rc;
 
-/// Where pieces meet, and whose they are.
+/// A point where pieces meet, with the owners of these pieces.
 pub(super) struct Corner {
     at: Point,
     owners: Vec<Option<usize>>,
 }
 
-/// The places where whole pieces meet, each piece with the box about it.
+/// Returns the points where whole pieces meet. Each piece comes with its bounding box.
 pub(super) fn corners(
     mut places: Vec<Point>,
     whole: &[(Rc<Piece>, [Point; 2])],
-    (shapes, size): (&[Shape<'_>], f64),
+    (shapes, size): (&[CurveFunction<'_>], f64),
 ) -> Vec<Corner> {
     let close = NEAR * size;
     let near = |p: Point, q: Point| (p[0] - q[0]).abs() < close && (p[1] - q[1]).abs() < close;
@@ -43,14 +44,14 @@ pub(super) fn corners(
 }
 
 impl Planner<'_> {
-    /// The corners that rounding may find on a side of a curve.
+    /// Returns the corners that rounding may place on a side of a curve.
     pub(super) fn corners_on(&self, side: i8, curve: CurveIndex, corners: &[usize]) -> Vec<usize> {
         let there = |at: &usize| self.shapes[curve].side(self.corners[*at].at, self.size) != -side;
         corners.iter().copied().filter(there).collect()
     }
 
-    /// An owner, but for corners where some pieces meet that are not his: rounding may bring a point
-    /// of theirs here, where nobody else has a piece, so they are split off.
+    /// Returns a leaf for an owner, with the corners split off at which only pieces of other owners meet.
+    /// Rounding may bring a point near such a corner here, where its owner has no piece.
     pub(super) fn leaf(
         &self,
         owner: Option<usize>,

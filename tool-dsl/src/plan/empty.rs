@@ -1,4 +1,4 @@
-//! Proofs that no point has given signs: by elimination where curves are linear, else by boxes that
+//! Proofs that no point has given signs: by elimination where curves are linear, otherwise by boxes that
 //! cover the domain.
 
 use crate::bound::Prover;
@@ -8,28 +8,32 @@ use crate::expr::interval::halves;
 use crate::formula::{ANY, Signs};
 use crate::model::Model;
 
-/// The most boxes of one proof, in the half plane and in space.
+/// The largest number of boxes in one proof, in the half plane and in space.
 const BOXES: usize = 96;
 const BOXES_OF_SPACE: usize = 400;
 
-/// Proves sets of signs impossible.
-pub(crate) struct Void<'m> {
+/// A prover that combinations of signs are impossible.
+pub(crate) struct EmptinessProver<'m> {
     linear: Linear,
     domain: Domain,
     prover: Prover<'m>,
 }
 
-impl<'m> Void<'m> {
-    pub(crate) fn new(model: &'m Model) -> Void<'m> {
-        Void { linear: Linear::new(model), domain: model.domain, prover: Prover::new(model) }
+impl<'m> EmptinessProver<'m> {
+    pub(crate) fn new(model: &'m Model) -> EmptinessProver<'m> {
+        EmptinessProver {
+            linear: Linear::new(model),
+            domain: model.domain,
+            prover: Prover::new(model),
+        }
     }
 
-    /// Whether provably no point has these signs.
+    /// Returns whether provably no point has these signs.
     pub(super) fn proved(&mut self, signs: &[Signs]) -> bool {
         self.linear.judged(signs).unwrap_or_else(|| self.uncovered(signs))
     }
 
-    /// Whether no box of a cover of the domain can have the signs.
+    /// Returns whether no box of a cover of the domain can have the signs.
     fn uncovered(&mut self, signs: &[Signs]) -> bool {
         let mut open = vec![self.domain.whole(2f64.powi(300))];
         let mut left = match self.domain {

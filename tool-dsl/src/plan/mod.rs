@@ -1,18 +1,18 @@
 //! The order of splits: a binary space partition of the tool's domain by its curves.
 //!
-//! Every test takes a curve's zero to one side, that of the region listed earlier; where both
-//! sides want it, the curve is split once more. A side that provably has no point is not tested
-//! for (`empty`). So a tree gives every point its owner as the regions' list does (in real
-//! arithmetic; a test that is left out can no longer fail by rounding), and only the order of the
-//! tests is chosen: greedily by the information that they give about
-//! samples of the domain, cheap curves first, `bsp` before all.
+//! Every test sends the zeros of a curve to one side, that of the region listed earlier. If both sides need
+//! them, the curve is split once more. A side that provably has no point is not tested (`empty`). A tree
+//! therefore gives every point the owner that the list of regions gives it, in real arithmetic; a test that
+//! is left out can no longer fail by rounding. Only the order of the tests is free. It is chosen greedily by
+//! the information that tests give about samples of the domain, with cheap curves preferred and the curves of
+//! `bsp` first.
 
 mod corners;
 mod empty;
+mod roots;
 mod samples;
 mod section;
 mod signs;
-mod zeros;
 
 use crate::bound::Extent;
 use crate::diagnostic::{CheckKind, Diagnostic};
@@ -22,29 +22,29 @@ use crate::model::Model;
 use crate::number::Number;
 use signs::by_signs;
 
-/// The most tests of one tree.
+/// The largest number of tests in one tree.
 const LARGEST: usize = 20_000;
 
-/// A binary decision tree over the curves' signs.
+/// A binary decision tree over the signs of curves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Tree<L> {
-    /// Decided.
+    /// A decision.
     Leaf(L),
-    /// To be decided by one more sign.
+    /// A test of one more sign.
     Split {
-        /// Which curve.
+        /// The index of the curve.
         curve: CurveIndex,
-        /// Whether its zeros go to `above`: the test is `c < 0` rather than `c ≤ 0`.
+        /// True if its zeros go to `above`: the test is `c < 0` rather than `c ≤ 0`.
         strict: bool,
-        /// Where the test holds.
+        /// The subtree where the test holds.
         below: Box<Tree<L>>,
-        /// Where it does not.
+        /// The subtree where it does not.
         above: Box<Tree<L>>,
     },
 }
 
 impl<L: Clone + PartialEq> Tree<L> {
-    /// A split, or its common leaf if it makes no difference.
+    /// Returns a split, or the common subtree if both sides are equal.
     fn split(curve: CurveIndex, strict: bool, below: Tree<L>, above: Tree<L>) -> Tree<L> {
         if below == above {
             return below;
@@ -52,7 +52,7 @@ impl<L: Clone + PartialEq> Tree<L> {
         Tree::Split { curve, strict, below: Box::new(below), above: Box::new(above) }
     }
 
-    /// The tree with other leaves; `None` is a leaf that nobody asks for and joins its sibling.
+    /// Replaces the leaves. A leaf mapped to `None` is never reached; its sibling takes its place.
     pub fn map<M: Clone + PartialEq>(&self, leaf: &impl Fn(&L) -> Option<M>) -> Option<Tree<M>> {
         match self {
             Tree::Leaf(own) => leaf(own).map(Tree::Leaf),
@@ -65,13 +65,13 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
-    /// The tree where a test is known to hold or to fail.
+    /// Simplifies the tree, given that a test of the curve `known` holds or fails.
     fn knowing(&self, known: CurveIndex, strictly: bool, holds: bool) -> Tree<L> {
         match self {
             Tree::Leaf(_) => self.clone(),
             Tree::Split { curve, strict, below, above } if *curve == known => {
                 match (holds, strictly, *strict) {
-                    // c < 0 implies c ≤ 0, and c > 0 that neither holds.
+                    // c < 0 implies c ≤ 0; if c ≤ 0 fails, so does c < 0.
                     (true, true, _) | (true, false, false) => below.knowing(known, strictly, holds),
                     (false, false, _) | (false, true, true) => {
                         above.knowing(known, strictly, holds)
@@ -93,7 +93,7 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
-    /// How many tests there are.
+    /// Returns the number of tests.
     pub fn tests(&self) -> usize {
         match self {
             Tree::Leaf(_) => 0,
@@ -101,7 +101,7 @@ impl<L: Clone + PartialEq> Tree<L> {
         }
     }
 
-    /// The leaf of a point where the curves have these values.
+    /// Returns the leaf of a point where the curves have these values.
     pub fn at(&self, value: &impl Fn(CurveIndex) -> f64) -> &L {
         match self {
             Tree::Leaf(leaf) => leaf,
@@ -117,26 +117,29 @@ impl<L: Clone + PartialEq> Tree<L> {
 /// The trees of a tool.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Which region a point belongs to, by its place in the list.
+    /// The index of the region that owns a point.
     pub owner: Tree<Option<usize>>,
-    /// Whether a point belongs to any.
+    /// True for points that belong to any region.
     pub inside: Tree<bool>,
-    /// The distance to the tool of a point outside; without a profile, a lower bound.
+    /// The distance from a point outside to the tool; without a profile, a lower bound of it.
     pub outside: Tree<Id>,
 }
 
 /// A tool with the order of its splits.
 #[derive(Clone, Debug)]
 pub struct PlannedTool {
-    /// The tool, with the curves that its plan adds behind those of the file.
+    /// The tool, with the curves that its plan adds after those of the file.
     pub model: Model,
-    /// The reach of the solid.
+    /// The extent of the solid.
     pub extent: Extent,
     /// The order of splits.
     pub plan: Plan,
 }
 
-/// Plans a tool's splits.
+/// Plans the splits of a tool.
+///
+/// # Errors
+/// If a tree would have more than [`LARGEST`] tests, or a profile's cells cannot be separated.
 pub(crate) fn plan(mut model: Model, extent: Extent) -> Result<PlannedTool, Diagnostic> {
     let plan = trees(&mut model, &extent)?;
     Ok(PlannedTool { model, extent, plan })
@@ -152,13 +155,13 @@ fn trees(model: &mut Model, extent: &Extent) -> Result<Plan, Diagnostic> {
         }
         None => (by_signs(model, extent)?, Tree::Leaf(beside(model, extent))),
     };
-    // Of one tree, so that inside is where an owner is, to the last bit.
+    // Both trees have the same tests, so `inside` agrees with `owner` to the last bit.
     let inside = owner.map(&|owner: &Option<usize>| Some(owner.is_some()));
     let inside = inside.unwrap_or(Tree::Leaf(false));
     Ok(Plan { owner, inside, outside })
 }
 
-/// A tree that asks for the section's box first: beyond, curves may come round again.
+/// Returns a tree that tests the section's box first, since curves may recur beyond it.
 fn boxed(model: &mut Model, extent: &Extent, tree: Tree<Option<usize>>) -> Tree<Option<usize>> {
     let graph = &mut model.graph;
     let [d, z] = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
@@ -177,10 +180,12 @@ fn boxed(model: &mut Model, extent: &Extent, tree: Tree<Option<usize>>) -> Tree<
     })
 }
 
-/// How far the outside was divided, in tools' sizes from the middle of the axis.
+/// The distance up to which the division of the outside is used, in sizes of the tool from the middle of its
+/// axis.
 const DIVIDED: f64 = 48.0;
 
-/// Distances to the nearest feature as far as those are known, and farther out to the cylinder.
+/// Returns a tree of the distances to the nearest feature up to [`DIVIDED`] sizes, and of the distance to the
+/// cylinder farther out.
 fn within_reach(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> {
     let bound = beside(model, extent);
     let graph = &mut model.graph;
@@ -197,7 +202,7 @@ fn within_reach(model: &mut Model, extent: &Extent, tree: Tree<Id>) -> Tree<Id> 
     Tree::split(model.curves.len() - 1, false, tree, Tree::Leaf(bound))
 }
 
-/// The distance to the box about the solid, of a tool to the cylinder.
+/// Returns the distance to the box around the solid; for a tool, to its cylinder.
 fn beside(model: &mut Model, extent: &Extent) -> Id {
     let graph = &mut model.graph;
     let zero = graph.int(0);
@@ -210,7 +215,7 @@ fn beside(model: &mut Model, extent: &Extent) -> Id {
             graph.number(number)
         });
         let mut beyond = graph.sub(here, high);
-        // There is nothing beyond the axis.
+        // The half plane has no points beyond the axis.
         if *coord != Coord::D {
             let below = graph.sub(low, here);
             beyond = graph.max(below, beyond);
@@ -222,12 +227,12 @@ fn beside(model: &mut Model, extent: &Extent) -> Id {
     graph.sqrt(square).unwrap_or(zero)
 }
 
-/// That a tree outgrew its bound.
+/// Returns the error for a tree that exceeds its limit.
 fn too_large(model: &Model) -> Diagnostic {
     Diagnostic::new(model.name_span, CheckKind::TooManyTests { most: LARGEST })
 }
 
-/// What a curve costs to evaluate, in additions.
+/// Returns the cost of evaluating each curve, in additions.
 fn costs(model: &Model) -> Vec<f64> {
     use crate::expr::{Coord, Node};
     let cost = |node: &Node| match node {
@@ -241,7 +246,7 @@ fn costs(model: &Model) -> Vec<f64> {
     model.curves.iter().map(curve).collect()
 }
 
-/// The bits that a part of a whole has, times its weight.
+/// Returns the information content of a part of a whole in bits, multiplied by the part's weight.
 fn bits(part: f64, whole: f64) -> f64 {
     if part > 0.0 { -part * (part / whole).log2() } else { 0.0 }
 }

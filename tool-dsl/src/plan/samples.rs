@@ -1,35 +1,38 @@
-//! Points of the section whose owners are known: what a curve tells about them.
+//! Points of the section with known owners, and the information that curves give about them.
 
 use super::bits;
 use super::section::PRICE;
 use crate::formula::CurveIndex;
 use crate::geometry::outline::Point;
-use crate::geometry::shape::Shape;
+use crate::geometry::shape::CurveFunction;
 
-/// Additions that a side where several owners are left will cost at least.
+/// The least cost, in additions, of a side on which several owners remain.
 const TEST: f64 = 8.0;
-/// Bits that an owner counts for who is found again on both sides: without, trees grow by half.
+/// The penalty, in bits, for each owner that remains on both sides. Without it, trees grow by half.
 const TORN: f64 = 0.2;
 
-/// All samples, in words of up to 64 of one owner.
+/// All samples, in words of up to 64 with the same owner.
 pub(super) struct Samples {
     owners: Vec<usize>,
     weights: Vec<Vec<f64>>,
-    /// Of each curve, which samples lie below it.
+    /// For each curve, a bit per sample that is below it.
     below: Vec<Vec<u64>>,
-    /// Owners are below this.
+    /// An upper limit of the owners' indices.
     count: usize,
 }
 
-/// Some samples: words, which of a word they are, and their weight.
+/// A subset of the samples: indices of words, the bits taken from each, and their weight.
 #[derive(Default)]
-pub(super) struct Few(Vec<(usize, u64, f64)>);
+pub(super) struct SampleSubset(Vec<(usize, u64, f64)>);
 
 impl Samples {
-    pub(super) fn new(all: &[(Point, f64, Option<usize>)], shapes: &[Shape<'_>]) -> Samples {
+    pub(super) fn new(
+        all: &[(Point, f64, Option<usize>)],
+        shapes: &[CurveFunction<'_>],
+    ) -> Samples {
         let runs: Vec<&[(Point, f64, Option<usize>)]> =
             all.chunk_by(|a, b| a.2 == b.2).flat_map(|run| run.chunks(64)).collect();
-        let below = |shape: &Shape<'_>| {
+        let below = |shape: &CurveFunction<'_>| {
             let bits = |run: &&[(Point, f64, Option<usize>)]| {
                 let mut bits = 0;
                 for (k, (p, ..)) in run.iter().enumerate() {
@@ -49,16 +52,16 @@ impl Samples {
         }
     }
 
-    pub(super) fn all(&self) -> Few {
+    pub(super) fn all(&self) -> SampleSubset {
         let word = |(at, weights): (usize, &Vec<f64>)| {
             (at, u64::MAX >> (64 - weights.len()), weights.iter().sum())
         };
-        Few(self.weights.iter().enumerate().map(word).collect())
+        SampleSubset(self.weights.iter().enumerate().map(word).collect())
     }
 
-    /// Those below a curve, and those above.
-    pub(super) fn divided(&self, few: &Few, curve: CurveIndex) -> [Few; 2] {
-        let mut sides = [Few::default(), Few::default()];
+    /// Returns the samples below a curve, and those above.
+    pub(super) fn divided(&self, few: &SampleSubset, curve: CurveIndex) -> [SampleSubset; 2] {
+        let mut sides = [SampleSubset::default(), SampleSubset::default()];
         for word in &few.0 {
             for (side, (bits, weight)) in self.sides(*word, curve).into_iter().enumerate() {
                 if bits != 0 {
@@ -69,7 +72,7 @@ impl Samples {
         sides
     }
 
-    /// Which samples of a word are below a curve and which above, and their weights.
+    /// Returns the samples of a word that are below a curve and those above, with their weights.
     fn sides(&self, (word, bits, weight): (usize, u64, f64), curve: CurveIndex) -> [(u64, f64); 2] {
         let below = bits & self.below[curve][word];
         if below == bits {
@@ -90,8 +93,8 @@ impl Samples {
         sum
     }
 
-    /// How uncertain the owner of one of some samples is, in bits.
-    pub(super) fn uncertain(&self, few: &Few) -> f64 {
+    /// Returns the entropy of the owner of a sample, in bits.
+    pub(super) fn uncertain(&self, few: &SampleSubset) -> f64 {
         let mut counts = vec![0.0; self.count];
         for (word, _, weight) in &few.0 {
             counts[self.owners[*word]] += weight;
@@ -100,9 +103,9 @@ impl Samples {
         counts.iter().map(|count| bits(*count, all)).sum::<f64>() / all.max(f64::MIN_POSITIVE)
     }
 
-    /// What a curve's side tells about the owners of some samples that were so uncertain, in bits,
-    /// less what is left to test.
-    pub(super) fn gain(&self, few: &Few, uncertain: f64, curve: CurveIndex) -> f64 {
+    /// Returns the information, in bits, that a curve's side gives about the owners of some samples whose
+    /// entropy is `uncertain`, less the cost of the tests that remain.
+    pub(super) fn gain(&self, few: &SampleSubset, uncertain: f64, curve: CurveIndex) -> f64 {
         let mut counts = vec![[0.0; 2]; self.count];
         let mut totals = [0.0; 2];
         for word in &few.0 {

@@ -1,35 +1,35 @@
-//! The plan of a profile's tool: the partition is known as polygons, and splits cut them until one
-//! owner is left.
+//! The plan of a tool with a profile. Its partition is known as polygons, and splits cut them until one owner
+//! is left.
 
 use super::corners::{Corner, corners};
-use super::samples::{Few, Samples};
-use super::zeros::Zeros;
+use super::roots::Zeros;
+use super::samples::{SampleSubset, Samples};
 use super::{LARGEST, Tree, costs};
 use crate::diagnostic::{CheckKind, Diagnostic};
 use crate::expr::Id;
 use crate::formula::{CurveIndex, Formula};
 use crate::geometry::cut::{Cut, Cutter, Piece};
 use crate::geometry::outline::{self, Point, minus, norm};
-use crate::geometry::shape::Shape;
+use crate::geometry::shape::CurveFunction;
 use crate::model::{Model, Over, Section};
 use crate::regionalise::cells;
 use crate::regionalise::{ROUNDING, overlay};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// Chords of a curved edge, at first and where so few misled.
+/// The number of chords per curved edge: at first, and on retries after coarser polygons gave a wrong tree.
 const CHORDS: [u32; 3] = [8, 40, 200];
 
-/// Curves that are passed over because their points belong to both sides.
+/// The number of curves that may be passed over because their zeros belong to both sides.
 const DOUBLES: usize = 6;
 
 pub(super) type Owners = Tree<Option<usize>>;
 
-/// Bits that an addition must be worth.
+/// The information, in bits, that must justify one addition.
 pub(super) const PRICE: f64 = 0.01;
-/// What a test costs that the tree does elsewhere too: lanes do it once.
+/// The relative cost of a test that the tree also makes elsewhere: code for lanes computes it once.
 const AGAIN: f64 = 0.3;
-/// The owners' tree, and that of the features which are nearest outside.
+/// Returns the tree of owners, and that of the distances to the features that are nearest outside.
 pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id>), Diagnostic> {
     let mut tried = try_trees(model, section, CHORDS[0]);
     for chords in &CHORDS[1..] {
@@ -40,8 +40,8 @@ pub(super) fn trees(model: &Model, section: &Section) -> Result<(Owners, Tree<Id
     tried
 }
 
-/// Whether a tree finds an owner far outside, where no piece was: all around, and along each line
-/// to where a strip beside it leads.
+/// Returns whether a tree has an owner far outside, where there was no piece. The test uses points all
+/// around, and points in thin strips along the lines and normals of the outline.
 pub(super) fn claims_far(model: &Model, section: &Section, tree: &Owners) -> bool {
     let (shapes, size) = overlay::shapes(&model.graph, &model.curves, &section.outline);
     let [low, high] = outline::reach(&section.outline).map(|end| end[1]);
@@ -83,7 +83,7 @@ fn try_trees(
     let (inner, outer) = (section.inner.cells(chords), section.outer.cells(chords));
     let whole = |cell: &cells::Cell, owner| overlay::piece(cell, owner, &shapes, size);
 
-    let mut all = Ground::default();
+    let mut all = PlanInput::default();
     for cell in &inner {
         match &section.over {
             None => all.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part))),
@@ -102,7 +102,7 @@ fn try_trees(
     }
     let inside = model.regions.iter().map(|region| &region.inside).collect();
     let owners = plan(model, &shapes, size, all, inside)?;
-    // A sliver between a curve and its chord can have been given to another.
+    // A sliver between a curve and its chord may have been given to the wrong owner.
     let owner = |p: Point| *owners.at(&|curve| shapes[curve].value(p));
     let part = |region: usize| match &section.over {
         Some(over) => over.regions[region].0,
@@ -112,11 +112,11 @@ fn try_trees(
         return Err(inseparable(model, p));
     }
 
-    let mut outside = Ground::default();
+    let mut outside = PlanInput::default();
     for cell in &outer {
         outside.add(cell, [whole(cell, Some(cell.part))], |_| Some(Some(cell.part)));
     }
-    // Just under the surface, where rounding may take a point of it, the same features go on.
+    // Rounding may move a point of the surface just below it, so the same features continue there.
     for (piece, cell) in section.inner.shell(chords) {
         let Some(part) = section.outer.part_of(section.outer.pieces() - 1 - piece) else {
             continue;
@@ -137,17 +137,17 @@ fn try_trees(
     Ok((owners, outside.unwrap_or(Tree::Leaf(section.outside[0].clearance))))
 }
 
-/// What is to be told apart: pieces, points with their weights, and points to check the tree by.
+/// The input of a plan: pieces to separate, weighted sample points, and points to check the tree with.
 #[derive(Default)]
-pub(super) struct Ground {
+pub(super) struct PlanInput {
     pub(super) pieces: Vec<Rc<Piece>>,
     samples: Vec<(Point, f64, Option<usize>)>,
     witnesses: Vec<(Point, Option<usize>)>,
     pub(super) corners: Vec<Point>,
 }
 
-impl Ground {
-    /// Adds a cell's pieces, and its points as far as their owner is known.
+impl PlanInput {
+    /// Adds the pieces of a cell, and its points where their owner is known.
     fn add(
         &mut self,
         cell: &cells::Cell,
@@ -166,13 +166,19 @@ impl Ground {
 }
 
 impl Over {
-    /// The region of a part where a condition is the first to hold.
+    /// Returns the region of a part in which the given condition is the first to hold.
     fn region(&self, part: usize, condition: usize) -> Option<usize> {
         self.regions.iter().position(|pair| *pair == (part, condition))
     }
 
-    /// The region of a point of a part, unless it is as good as on a border.
-    fn owner(&self, part: usize, p: Point, shapes: &[Shape<'_>], size: f64) -> Option<usize> {
+    /// Returns the region of a point in a part, unless the point is on a border within tolerance.
+    fn owner(
+        &self,
+        part: usize,
+        p: Point,
+        shapes: &[CurveFunction<'_>],
+        size: f64,
+    ) -> Option<usize> {
         let near = Cell::new(false);
         let holds = |sign: i8| {
             let value = |curve: CurveIndex| match shapes[curve].side(p, size) {
@@ -185,21 +191,21 @@ impl Over {
             self.conditions.iter().position(|condition| condition.holds(&value))
         };
         let low = holds(-1)?;
-        // Off every curve that was asked for, the sign does not matter.
+        // Away from every curve that was evaluated, the sign does not matter.
         let high = if near.get() { holds(1)? } else { low };
         if low == high { self.region(part, low) } else { None }
     }
 }
 
-/// Plans what tells the pieces of a ground apart.
+/// Plans the splits that separate the pieces of a ground.
 ///
-/// Curved edges are chords here, so a cut may leave a sliver that is nobody's; `inside` are the
-/// owners' conditions, by which such are told.
+/// Curved edges are chords here, so a cut may leave a sliver that belongs to no owner. The owners'
+/// conditions, `inside`, identify such slivers.
 fn plan<'m>(
     model: &'m Model,
-    shapes: &'m [Shape<'m>],
+    shapes: &'m [CurveFunction<'m>],
     size: f64,
-    ground: Ground,
+    ground: PlanInput,
     inside: Vec<&'m Formula>,
 ) -> Result<Owners, Diagnostic> {
     let samples = Samples::new(&ground.samples, shapes);
@@ -233,21 +239,21 @@ fn plan<'m>(
 
 pub(super) struct Planner<'m> {
     model: &'m Model,
-    pub(super) shapes: &'m [Shape<'m>],
+    pub(super) shapes: &'m [CurveFunction<'m>],
     pub(super) costs: Vec<f64>,
     samples: Samples,
     pub(super) corners: Vec<Corner>,
     inside: Vec<&'m Formula>,
     used: Vec<bool>,
-    /// The pieces before any was cut, and what is about them.
+    /// The pieces before any cut, each with its bounding box.
     whole: Vec<(Rc<Piece>, [Point; 2])>,
-    /// Of each curve that was tried, where each of these lies.
+    /// For each curve that was tried, the side of each whole piece.
     sides: Vec<Vec<Option<Side>>>,
     pub(super) size: f64,
     tests: usize,
 }
 
-/// Where a whole piece lies, and so all that is cut from it.
+/// The side of a whole piece, and therefore of everything cut from it.
 #[derive(Clone, Copy)]
 enum Side {
     Below,
@@ -255,7 +261,7 @@ enum Side {
     Torn,
 }
 
-/// Pieces on the two sides of a curve.
+/// The pieces on the two sides of a curve.
 pub(super) struct Halves {
     pub(super) below: Vec<Rc<Piece>>,
     pub(super) above: Vec<Rc<Piece>>,
@@ -265,7 +271,7 @@ impl Planner<'_> {
     pub(super) fn tree(
         &mut self,
         pieces: &[Rc<Piece>],
-        (samples, corners): (Few, Vec<usize>),
+        (samples, corners): (SampleSubset, Vec<usize>),
         mut open: Vec<CurveIndex>,
     ) -> Result<Owners, Diagnostic> {
         let first = pieces.first().and_then(|piece| piece.owner);
@@ -299,11 +305,12 @@ impl Planner<'_> {
         })
     }
 
-    /// The curve that tells most about the owners for what it costs, and what it divides.
+    /// Returns the curve that gives most information about the owners relative to its cost, and its division
+    /// of the pieces.
     fn choose(
         &mut self,
         pieces: &[Rc<Piece>],
-        samples: &Few,
+        samples: &SampleSubset,
         open: &mut Vec<CurveIndex>,
     ) -> Option<(CurveIndex, Halves, Zeros)> {
         let uncertain = self.samples.uncertain(samples);
@@ -327,7 +334,7 @@ impl Planner<'_> {
                 open.retain(|other| *other != curve);
                 continue;
             }
-            // A curve that only cuts through cells brings nobody apart; keep it for later.
+            // A curve that cuts through cells without separating owners is kept as a last resort.
             let owners = |pieces: &[Rc<Piece>]| {
                 let mut owners: Vec<_> = pieces.iter().map(|piece| piece.owner).collect();
                 owners.sort_unstable();
@@ -339,7 +346,7 @@ impl Planner<'_> {
                 fallback = fallback.or(Some((curve, halves, Zeros::Below)));
                 continue;
             }
-            // A curve whose points belong to both sides costs a tree of its own.
+            // A curve whose points belong to both sides needs a tree of its own for them.
             let zeros = self.zeros(curve, &halves);
             if zeros != Zeros::Both {
                 return Some((curve, halves, zeros));
@@ -357,8 +364,8 @@ impl Planner<'_> {
         double.or(fallback)
     }
 
-    /// Whose pieces are that no curve tells apart: slivers between a curve and its chord, but for
-    /// one owner's.
+    /// Returns the owner of pieces that no curve separates. All but one owner's pieces are slivers between a
+    /// curve and its chord.
     fn settle(&self, pieces: &[Rc<Piece>]) -> Option<usize> {
         let true_ones: Vec<&Rc<Piece>> = pieces.iter().filter(|piece| self.owns(piece)).collect();
         let rest = if true_ones.is_empty() { pieces.iter().collect() } else { true_ones };
@@ -366,7 +373,7 @@ impl Planner<'_> {
         largest.and_then(|piece| piece.owner)
     }
 
-    /// Whether a piece is its owner's, in its middle.
+    /// Returns whether the centre of a piece satisfies its owner's condition.
     fn owns(&self, piece: &Piece) -> bool {
         let middle = piece.middle();
         let value = |curve: CurveIndex| self.shapes[curve].value(middle);

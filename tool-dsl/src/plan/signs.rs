@@ -1,6 +1,6 @@
-//! The plan of regions by hand: only their conditions are known, and splits decide them by signs.
+//! The plan of regions written by hand. Only their conditions are known, and splits decide them by signs.
 
-use super::empty::Void;
+use super::empty::EmptinessProver;
 use super::{LARGEST, Tree, bits, costs, too_large};
 use crate::bound::{Extent, spread};
 use crate::diagnostic::Diagnostic;
@@ -8,17 +8,25 @@ use crate::expr::value::{At, Evaluator};
 use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
 use crate::model::Model;
 
-/// The owners' tree of written regions, of which only the conditions are known.
+/// Returns the tree of owners for regions of which only the conditions are known.
+///
+/// # Errors
+/// If the tree would have more than [`LARGEST`] tests.
 pub(super) fn by_signs(model: &Model, extent: &Extent) -> Result<Tree<Option<usize>>, Diagnostic> {
     let samples = samples(model, extent);
     let all: Vec<u32> = (0..samples.len() as u32).collect();
     let costs = costs(model);
-    let mut planner =
-        Planner { model, samples: &samples, costs: &costs, void: Void::new(model), tests: 0 };
+    let mut planner = Planner {
+        model,
+        samples: &samples,
+        costs: &costs,
+        void: EmptinessProver::new(model),
+        tests: 0,
+    };
     planner.tree(vec![ANY; model.curves.len()], &all)
 }
 
-/// A point: the side of each curve, and the owner.
+/// A sample point: its side of each curve, and its owner.
 struct Sample {
     signs: Vec<Signs>,
     owner: Option<usize>,
@@ -48,12 +56,12 @@ struct Planner<'m> {
     model: &'m Model,
     samples: &'m [Sample],
     costs: &'m [f64],
-    void: Void<'m>,
+    void: EmptinessProver<'m>,
     tests: usize,
 }
 
 impl Planner<'_> {
-    /// The tree for the points whose curves have these signs.
+    /// Returns the tree for the points at which curves have these signs.
     fn tree(
         &mut self,
         mut signs: Vec<Signs>,
@@ -74,7 +82,7 @@ impl Planner<'_> {
                     .collect()
             };
             let (low, high) = (of(below), of(above));
-            // Nobody is asked about a side that has no point.
+            // A side that provably has no point needs no test.
             let with = |side| {
                 let mut signs = signs.clone();
                 signs[curve] = side;
@@ -98,7 +106,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Who can own a point with these signs, in the order of the list.
+    /// Returns the possible owners of points with these signs, in the order of the list.
     fn possible(&self, signs: &[Signs]) -> Vec<Option<usize>> {
         let mut possible = Vec::new();
         for (index, region) in self.model.regions.iter().enumerate() {
@@ -115,7 +123,7 @@ impl Planner<'_> {
         possible
     }
 
-    /// The next test: a curve, and whether its zeros go above.
+    /// Returns the next test: a curve, and whether its zeros go above.
     fn choose(
         &self,
         signs: &[Signs],
@@ -140,7 +148,7 @@ impl Planner<'_> {
             }
         }
         let curve = listed.copied().or(best.map(|(_, curve)| curve)).unwrap_or(0);
-        // The zero goes to the side of the region listed earlier.
+        // The zeros go to the side of the region listed earlier.
         let below = atoms.iter().find(|(c, _)| *c == curve).is_none_or(|(_, below)| *below);
         let strict = match signs[curve] {
             s if s & (NEGATIVE | POSITIVE) == NEGATIVE => true,
@@ -150,7 +158,7 @@ impl Planner<'_> {
         (curve, strict)
     }
 
-    /// Bits of information that a curve's sign gives about the owners of samples.
+    /// Returns the information, in bits, that a curve's sign gives about the owners of samples.
     fn gain(&self, curve: CurveIndex, samples: &[u32]) -> f64 {
         let mut counts: Vec<(Option<usize>, [f64; 2])> = Vec::new();
         for sample in samples {
@@ -170,7 +178,7 @@ impl Planner<'_> {
     }
 }
 
-/// Bits that a side gives about classes whose weights on the two sides are known.
+/// Returns the information, in bits, that a side gives about classes with known weights on the two sides.
 fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
     let totals = counts.clone().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
     let all = totals[0] + totals[1];
@@ -182,7 +190,7 @@ fn information(counts: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
     (before - after) / all
 }
 
-/// The signs on the two sides of a test.
+/// Returns the signs on the two sides of a test.
 fn sides(signs: Signs, strict: bool) -> (Signs, Signs) {
     let below = if strict { NEGATIVE } else { NEGATIVE | ZERO };
     (signs & below, signs & !below)

@@ -1,5 +1,5 @@
-//! The domain as boxes: each with the regions that it can have points of, by the tests of the tree
-//! that is emitted.
+//! The domain as boxes, each with the regions that it may have points of, according to the tests of the
+//! emitted tree.
 
 use crate::expr::interval::halves;
 use crate::expr::interval::{Cell, Encloser};
@@ -8,14 +8,14 @@ use crate::formula::{ANY, CurveIndex, NEGATIVE, Signs, ZERO};
 use crate::model::Model;
 use crate::plan::Tree;
 
-/// A leaf that a box can have points of, and the signs that its way down the tree demands.
+/// A leaf that a box may have points of, and the signs demanded on its path down the tree.
 #[derive(Clone, Debug)]
 pub(super) struct Claim {
     pub(super) owner: Option<usize>,
     pub(super) signs: Vec<(CurveIndex, Signs)>,
 }
 
-/// Asks which leaves a box can have points of.
+/// Determines the leaves that a box may have points of.
 pub(super) struct Cover<'m> {
     model: &'m Model,
     tree: &'m Tree<Option<usize>>,
@@ -28,19 +28,19 @@ impl<'m> Cover<'m> {
         Cover { model, tree, encloser: Encloser::new(&model.graph, values) }
     }
 
-    /// The signs that a curve can have in the present box.
+    /// Returns the signs that a curve can have in the current box.
     pub(super) fn sign(&mut self, curve: CurveIndex) -> Signs {
         possible(self.encloser.get(self.model.curves[curve].value))
     }
 
-    /// Returns the signs that a curve can have at a claim's points of the present box, by the box and the way down the
-    /// tree.
+    /// Returns the signs that a curve can have at a claim's points in the current box, according to the box
+    /// and the path down the tree.
     pub(super) fn own_sign(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
         let own = claim.signs.iter().filter(|(other, _)| *other == curve);
         own.fold(self.sign(curve), |all, (_, signs)| all & signs)
     }
 
-    /// The claims to a box.
+    /// Returns the claims to a box.
     pub(super) fn claims(&mut self, cell: Cell) -> Vec<Claim> {
         self.encloser.set(cell);
         let mut claims = Vec::new();
@@ -73,10 +73,10 @@ impl<'m> Cover<'m> {
     }
 }
 
-/// Boxes that are still to be looked at, largest first.
+/// The boxes that remain to be examined, as a stack.
 pub(super) struct Boxes {
     open: Vec<Cell>,
-    /// How many were looked at.
+    /// The number of boxes examined.
     pub(super) count: usize,
 }
 
@@ -95,7 +95,7 @@ impl Boxes {
     }
 }
 
-/// Half of a box's diagonal.
+/// Returns half of a box's diagonal.
 pub(super) fn reach(cell: &Cell) -> f64 {
     let squares = cell.sides.iter().map(|side| (side.high - side.low) * (side.high - side.low));
     squares.sum::<f64>().sqrt() / 2.0

@@ -1,8 +1,9 @@
-//! Reports of a certificate: errors and warnings that are proved, and a warning of proofs that stay open.
+//! Diagnostics of a certificate: errors and warnings that are proved, and a warning for proofs that did not
+//! finish.
 
 use super::{Border, Bounds, Certificate};
-use crate::diagnostic::{CheckKind, Diagnostic, Figure};
-use crate::look::deep_on_the_surface;
+use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber};
+use crate::lint::deep_on_the_surface;
 use crate::model::{DirectionSource, Model, Region};
 use crate::plan::PlannedTool;
 use crate::source::Span;
@@ -16,11 +17,11 @@ impl Certificate {
         diagnostics
     }
 
-    /// Returns the diagnostics of single points, which more boxes would not change.
+    /// Returns the diagnostics that rest on single points, which more boxes would not change.
     pub(super) fn certain(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics: Vec<Diagnostic> = Vec::new();
-        // One diagnostic for each pair, and one for each region beside the outside.
+        // One diagnostic per pair of regions, and one per region next to the outside.
         for diagnostic in self.borders.iter().filter_map(|border| jump(model, border)) {
             let same = |other: &Diagnostic| {
                 other.span == diagnostic.span && other.second == diagnostic.second
@@ -32,26 +33,26 @@ impl Certificate {
         let facts = || model.regions.iter().zip(&self.regions);
         let oblique = facts()
             .filter(|(region, _)| region.source != DirectionSource::Oblique)
-            .filter_map(|(region, facts)| Some((region.course.1, (region, facts.oblique?))));
+            .filter_map(|(region, facts)| Some((region.raw_direction.1, (region, facts.oblique?))));
         for (region, (angle, point)) in worst(oblique) {
             diagnostics.push(oblique_direction(region, angle, model.shown(point)));
         }
-        let rises = facts()
-            .filter(|(region, _)| !region.rising)
-            .filter_map(|(region, facts)| Some((region.said.niceness, (region, facts.rises?))));
+        let rises = facts().filter(|(region, _)| !region.rising).filter_map(|(region, facts)| {
+            Some((region.law_spans.niceness, (region, facts.rises?)))
+        });
         for (region, (rate, point)) in worst(rises) {
             let kind = CheckKind::NicenessRises {
                 region: region.name.clone(),
                 place: model.shown(point),
-                rate: Figure(rate),
-                unit: model.unit.word(),
+                rate: FormattedNumber(rate),
+                unit: model.unit.symbol(),
             };
-            diagnostics.push(Diagnostic::new(region.said.niceness, kind));
+            diagnostics.push(Diagnostic::new(region.law_spans.niceness, kind));
         }
         diagnostics
     }
 
-    /// Returns the diagnostics of proofs that stay open, and might not in more boxes.
+    /// Returns the diagnostics of proofs that did not finish; more boxes might finish them.
     fn undecided(&self, tool: &PlannedTool) -> Vec<Diagnostic> {
         let model = &tool.model;
         let mut diagnostics = Vec::new();
@@ -64,7 +65,7 @@ impl Certificate {
                 place: model.shown(first.cell.middle()),
                 more: self.undecided.len() - 1,
                 exact: model.is_exact(),
-                bound: Bounds::of(tool).0.lipschitz.map(Figure),
+                bound: Bounds::of(tool).0.lipschitz.map(FormattedNumber),
             };
             diagnostics.push(Diagnostic::new(model.name_span, kind));
         }
@@ -72,7 +73,7 @@ impl Certificate {
     }
 }
 
-/// A border on which a point was found where depth jumps.
+/// Returns the error for a border with a point where depth jumps.
 fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
     let (point, [own, other]) = border.seen?;
     let (region, beside) = border.between;
@@ -82,13 +83,13 @@ fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
         None => deep_on_the_surface(region, own, place),
         Some(beside) => {
             let kind = CheckKind::DepthJumps {
-                own: Figure(own),
-                other: Figure(other),
+                own: FormattedNumber(own),
+                other: FormattedNumber(other),
                 place,
                 region: region.name.clone(),
                 beside: beside.name.clone(),
             };
-            Diagnostic::new(region.said.depth, kind).and(beside.said.depth, "here")
+            Diagnostic::new(region.law_spans.depth, kind).and(beside.law_spans.depth, "here")
         }
     })
 }
@@ -96,7 +97,8 @@ fn jump(model: &Model, border: &Border) -> Option<Diagnostic> {
 /// A value at a point of a region.
 type Fact<'t> = (&'t Region, (f64, [f64; 3]));
 
-/// The largest of the facts at each place of the text: several regions may share a law, or be parts of one.
+/// Returns the largest fact at each location of the text, since several regions may share a law or come from
+/// one region.
 fn worst<'t>(facts: impl Iterator<Item = (Span, Fact<'t>)>) -> impl Iterator<Item = Fact<'t>> {
     let mut kept: Vec<(Span, Fact<'t>)> = Vec::new();
     for (span, fact) in facts {
@@ -109,15 +111,15 @@ fn worst<'t>(facts: impl Iterator<Item = (Span, Fact<'t>)>) -> impl Iterator<Ite
     kept.into_iter().map(|(_, fact)| fact)
 }
 
-/// A direction that is certainly not the steepest way out.
+/// Returns the warning for a direction that is certainly not that of steepest descent.
 fn oblique_direction(region: &Region, angle: f64, place: String) -> Diagnostic {
     let kind = CheckKind::ObliqueDirection {
         region: region.name.clone(),
-        degrees: Figure(angle.to_degrees()),
-        // An angle is known to a few units of the last place.
+        degrees: FormattedNumber(angle.to_degrees()),
+        // The tolerance covers the rounding of the angle, a few units in the last place.
         inward: angle > PI - 1e-6,
         derived: region.source == DirectionSource::Derived,
         place,
     };
-    Diagnostic::new(region.course.1, kind)
+    Diagnostic::new(region.raw_direction.1, kind)
 }

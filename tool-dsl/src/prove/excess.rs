@@ -1,9 +1,9 @@
-//! By how much one distance exceeds another at most, all over the plane or space.
+//! The largest excess of one distance over another, over the whole plane or space.
 //!
-//! With `|p - a| + |p - b| ≥ |a - b| ≥ |p - a| - |p - b|`, and a linear function of slope 1 that grows from a point by no more than
-//! the distance from it.
+//! The bounds follow from `|p - a| + |p - b| ≥ |a - b| ≥ |p - a| - |p - b|`. Along any path from a point, a
+//! linear function with a gradient of length 1 grows by at most the distance from that point.
 
-use super::root::Rooted;
+use super::root::RootForm;
 use crate::expr::Coord;
 use crate::expr::polynomial::monomial_of;
 use crate::number::{Number, ROUNDING};
@@ -16,10 +16,10 @@ struct FromPoint {
 }
 
 impl FromPoint {
-    fn of(depth: &Rooted) -> Option<FromPoint> {
+    fn of(depth: &RootForm) -> Option<FromPoint> {
         let (factor, under) = depth.root().filter(|_| depth.is_distance())?;
         let half = |coord| &under.exact_factor(monomial_of(coord)) / &Number::int(-2);
-        // The half plane has D and Z, space has the other three; what is missing is 0.
+        // The half plane has D and Z, space has the other three; an absent coordinate is 0.
         let across = half(Coord::D);
         let [x, y, z] = [Coord::X, Coord::Y, Coord::Z].map(half);
         let first = if across.is_zero() { x } else { across };
@@ -36,19 +36,20 @@ impl FromPoint {
     }
 }
 
-/// The value of a linear function at a point.
-fn linear_at(depth: &Rooted, [first, y, z]: &[Number; 3]) -> [Number; 5] {
+/// Returns the terms of a linear function's value at a point.
+fn linear_at(depth: &RootForm, [first, y, z]: &[Number; 3]) -> [Number; 5] {
     let at = |coord, value: &Number| &depth.part().exact_factor(monomial_of(coord)) * value;
     let rest = depth.part().exact_factor([0; 4]);
     [rest, at(Coord::D, first), at(Coord::X, first), at(Coord::Y, y), at(Coord::Z, z)]
 }
 
-/// Returns the most that `a - b` is anywhere, if that is bounded and shows: 0 if it is not positive.
-pub(super) fn excess(a: &Rooted, b: &Rooted) -> Option<f64> {
+/// Returns an upper bound of `a - b` everywhere, if one can be proved; 0 if it is not positive.
+pub(super) fn excess(a: &RootForm, b: &RootForm) -> Option<f64> {
     if !a.is_distance() || !b.is_distance() {
         return None;
     }
-    // A linear function is most above a distance from a point, and least above its opposite, in that point.
+    // A linear function minus a distance from a point is largest at that point. So is the negative of a
+    // distance minus a linear function.
     let terms: Vec<Number> = match (FromPoint::of(a), FromPoint::of(b)) {
         (None, Some(b)) if b.sign > 0 => {
             linear_at(a, &b.centre).into_iter().chain([-&b.rest]).collect()
@@ -77,7 +78,7 @@ mod tests {
     use super::*;
     use crate::expr::polynomial::Polynomial;
 
-    /// A distance in the half plane: from a point with a sign and a constant, or along a unit vector.
+    /// A distance in the half plane: from a point, with a sign and a constant, or along a unit vector.
     #[derive(Clone, Copy)]
     enum Distance {
         Point(i64, [f64; 2], f64),
@@ -85,11 +86,11 @@ mod tests {
     }
 
     impl Distance {
-        fn form(self) -> Rooted {
+        fn form(self) -> RootForm {
             let number = |value: f64| Number::from_f64(value).expect("finite");
             let [d, z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
             match self {
-                Distance::Line([x, y], rest) => Rooted::plainly(
+                Distance::Line([x, y], rest) => RootForm::plainly(
                     &d.scaled(&number(x))
                         .plus(&z.scaled(&number(y)))
                         .plus(&Polynomial::constantly(&number(rest))),
@@ -97,7 +98,7 @@ mod tests {
                 Distance::Point(sign, at, rest) => {
                     let rest = Polynomial::constantly(&number(rest));
                     let under = Polynomial::squared_distance(&at.map(number));
-                    Rooted::new(rest, Number::int(sign), under)
+                    RootForm::new(rest, Number::int(sign), under)
                 }
             }
         }
@@ -133,7 +134,7 @@ mod tests {
                     let at = [k % 400, k / 400].map(|k| f64::from(k) * 0.05 - 10.0);
                     seen = seen.max(less.at(at) - more.at(at));
                 }
-                // Along the line through both points, far out, where differences of distances are largest.
+                // On the line through both points, far away, differences of distances are largest.
                 for t in [-1e6, -2.0, 0.0, 0.5, 1.0, 2.0, 1e6] {
                     let at = [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
                     seen = seen.max(less.at(at) - more.at(at));
@@ -142,7 +143,7 @@ mod tests {
                 assert!(seen >= most - 0.1, "{seen} of {most}");
             }
         }
-        // Twelve pairs of points, and lines beside points either way.
+        // Twelve pairs of points, and pairs of a line and a point in both orders.
         assert_eq!(bounded, 12 + 4 + 4);
     }
 }

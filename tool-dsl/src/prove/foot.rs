@@ -1,53 +1,56 @@
-//! The points of a profile's lines, circles and corners that are nearest to points of their regions: a proof that they are
-//! on the profile.
+//! A proof that feet lie on the profile. The foot of a point is the nearest point of the line, circle or
+//! corner of its region.
 //!
-//! Then depth, being the distance from it, is no less than the distance to the surface, whatever the borders of regions
-//! are. Points that are beyond the normal at a piece's end by `o` are as near to that end as to the line or circle, but
-//! for `2 o`. Of an arc that is so on the end's side of the centre. A point on the other side, at the distance `ρ` from the
-//! centre, is as near but for `2 ρ`; of an arc that turns by `T` it is beyond the normal at one end by `ρ sin (T/2)` at
-//! least, and `sin (T/2)` is half the chord by the radius.
+//! Depth, being the distance to the foot, is then at least the distance to the surface, whatever the borders
+//! of regions are. A point that is beyond the normal at a segment's end by `o` is as near to that end as to
+//! the line or circle, up to `2 o`. For an arc this holds on the end's side of the centre. A point on the
+//! other side, at the distance `ρ` from the centre, is as near up to `2 ρ`. If the arc turns by `T`, that
+//! point is beyond the normal at one end by at least `ρ sin (T/2)`, and `sin (T/2)` is half the chord divided
+//! by the radius.
 
 use super::cover::{Claim, Cover};
-use super::root::{Forms, Rooted};
+use super::root::{Forms, RootForm};
 use crate::expr::Coord;
 use crate::expr::interval::Cell;
 use crate::expr::polynomial::Polynomial;
 use crate::formula::{CurveIndex, one_side};
-use crate::geometry::outline::{Place, Segment, unit_between};
+use crate::geometry::outline::{ExactPoint, Segment, unit_between};
 use crate::model::Model;
 use crate::number::Number;
 use crate::plan::PlannedTool;
 use crate::regionalise::Feature;
 use std::collections::HashMap;
 
-/// Depths that are farther than this part of the tool's size from the distances to their pieces are taken for none. Nearer
-/// ones add to the certificate's slack, so the proof does not depend on this number.
+/// The largest difference, relative to the tool's size, between a depth and the distance to its segment for
+/// the two to count as equal. The difference is added to the certificate's slack, so the proof does not
+/// depend on this number.
 const NEAR: f64 = 1e-13;
 
-/// An end of a region's piece, by linear functions with a slope of 1.
+/// An end of a region's segment, as linear functions with a gradient of length 1.
 struct End {
-    /// The distance from the normal at the end, not negative where feet are on the piece.
+    /// The signed distance from the normal at the end, not negative where feet are on the segment.
     inside: Polynomial,
-    /// Of an arc, how far a point is on the end's side of the centre, and the diameter by the chord.
+    /// For an arc: the signed distance toward the end's side of the centre, and the ratio of diameter to
+    /// chord.
     side: Option<(Polynomial, f64)>,
 }
 
 type Ends = Vec<End>;
 
-/// The pieces of a profile.
+/// The segments of a profile.
 pub(super) struct Feet<'m> {
     model: &'m Model,
-    /// The ends of each region's piece; a corner has none.
+    /// The ends of each region's segment; a corner has none.
     ends: Vec<Ends>,
-    /// How far depths are from these distances at most.
+    /// The largest difference of depths from these distances.
     pub(super) off: f64,
     /// A lower bound of each end's function on a side of a curve.
     beside: HashMap<(usize, usize, CurveIndex, bool), Option<Polynomial>>,
 }
 
 impl<'m> Feet<'m> {
-    /// Returns the pieces of a profile each of whose regions' depths is the distance from its own piece's line, circle or
-    /// corner.
+    /// Returns the segments of a profile, if each region's depth is the distance from the line, circle or
+    /// corner of its own segment.
     pub(super) fn of(tool: &'m PlannedTool, forms: &mut Forms<'_>, size: f64) -> Option<Feet<'m>> {
         let model = &tool.model;
         let section = model.section.as_ref().filter(|_| model.is_exact())?;
@@ -73,7 +76,8 @@ impl<'m> Feet<'m> {
         Some(Feet { model, ends, off, beside: HashMap::new() })
     }
 
-    /// Returns by how much feet of a claim's points of a box are beyond the ends of its owner's piece at most.
+    /// Returns an upper bound of the distance of feet past the ends of their owner's segment, for a claim's
+    /// points in a box.
     pub(super) fn beyond(&mut self, claim: &Claim, cover: &mut Cover<'_>, cell: Cell) -> f64 {
         let Some(owner) = claim.owner else { return 0.0 };
         let mut most = 0.0f64;
@@ -95,8 +99,8 @@ impl<'m> Feet<'m> {
         most
     }
 
-    /// Returns what the distance from an end's normal is at least in a box, on one side of a curve: a line beside it, or a
-    /// conic that does not cross it.
+    /// Returns a lower bound of the distance from an end's normal in a box, on one side of a curve: a nearby
+    /// line, or a conic that does not cross the normal.
     fn least(
         &mut self,
         (owner, end): (usize, usize),
@@ -108,7 +112,7 @@ impl<'m> Feet<'m> {
             let curve = Polynomial::of(&model.graph, model.curves[curve].value)?;
             let end = &ends[owner][end].inside;
             if !curve.is_linear() {
-                // Where the end's function is negative the conic has the other sign all over.
+                // Where the end's function is negative, the conic has the opposite sign throughout.
                 let clear = curve.clear_of(end)? == (below, true);
                 return clear.then(Polynomial::zero);
             }
@@ -120,29 +124,29 @@ impl<'m> Feet<'m> {
     }
 }
 
-/// The linear function that grows along a unit vector and is 0 in a point.
-fn along([d, z]: &[Number; 2], from: &Place) -> Polynomial {
+/// Returns the linear function that grows along a unit vector and is 0 at a point.
+fn along([d, z]: &[Number; 2], from: &ExactPoint) -> Polynomial {
     let [of_d, of_z] = [Coord::D, Coord::Z].map(Polynomial::coordinate);
     let rest = Polynomial::constantly(&-&(&(d * &from[0]) + &(z * &from[1])));
     of_d.scaled(d).plus(&of_z.scaled(z)).plus(&rest)
 }
 
-fn from_point(point: &Place) -> Rooted {
-    Rooted::new(Polynomial::zero(), Number::int(1), Polynomial::squared_distance(point))
+fn from_point(point: &ExactPoint) -> RootForm {
+    RootForm::new(Polynomial::zero(), Number::int(1), Polynomial::squared_distance(point))
 }
 
-/// The distance from a piece's line or circle, positive inside.
-fn distance(segment: &Segment) -> Option<Rooted> {
+/// Returns the distance from a segment's line or circle, positive inside.
+fn distance(segment: &Segment) -> Option<RootForm> {
     let Some(circle) = &segment.circle else {
         let [d, z] = segment.direction()?;
-        return Some(Rooted::plainly(&along(&[-&z, d], &segment.from)));
+        return Some(RootForm::plainly(&along(&[-&z, d], &segment.from)));
     };
     let sign = if circle.convex { 1 } else { -1 };
     let rest = Polynomial::constantly(&(&Number::int(sign) * &circle.radius));
-    Some(Rooted::new(rest, Number::int(-sign), Polynomial::squared_distance(&circle.centre)))
+    Some(RootForm::new(rest, Number::int(-sign), Polynomial::squared_distance(&circle.centre)))
 }
 
-/// The functions that are not negative between the normals at a piece's ends.
+/// Returns the functions that are not negative between the normals at a segment's ends.
 fn ends(segment: &Segment) -> Option<Ends> {
     let Some(circle) = &segment.circle else {
         let ahead = segment.direction()?;
@@ -150,10 +154,11 @@ fn ends(segment: &Segment) -> Option<Ends> {
         let end = |inside: Polynomial| End { inside, side: None };
         return Some(vec![end(along(&ahead, &segment.from)), end(along(&back, &segment.to))]);
     };
-    // Left of the ray to one end and right of that to the other, or the other way round. Arcs are of no more than 180°.
+    // To the left of the ray to one end and to the right of that to the other, or vice versa. Arcs span at
+    // most 180°.
     let sign = Number::int(if circle.convex { 1 } else { -1 });
     let scale = diameter_by_chord([&segment.from, &segment.to], &circle.radius)?;
-    let beside = |end: &Place, sign: &Number| {
+    let beside = |end: &ExactPoint, sign: &Number| {
         let [d, z] = unit_between(&circle.centre, end)?;
         let side = Some((along(&[d.clone(), z.clone()], &circle.centre), scale));
         Some(End { inside: along(&[&-&z * sign, &d * sign], &circle.centre), side })
@@ -161,12 +166,12 @@ fn ends(segment: &Segment) -> Option<Ends> {
     Some(vec![beside(&segment.from, &sign)?, beside(&segment.to, &-&sign)?])
 }
 
-/// Returns the diameter of an arc by its chord, or a little more.
-fn diameter_by_chord([from, to]: [&Place; 2], radius: &Number) -> Option<f64> {
-    // With 256 bits: the ends of a short arc have the first digits of their coordinates in common.
+/// Returns the ratio of an arc's diameter to its chord, rounded up.
+fn diameter_by_chord([from, to]: [&ExactPoint; 2], radius: &Number) -> Option<f64> {
+    // With 256 bits, since the coordinates of a short arc's ends have their leading digits in common.
     let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
     let chord = (&(&d * &d) + &(&z * &z)).sqrt()?;
-    // The nearest double may be less.
+    // The nearest double may be smaller.
     Some((&Number::int(2) * radius).over(&chord)?.to_f64().next_up())
 }
 
@@ -174,7 +179,7 @@ fn diameter_by_chord([from, to]: [&Place; 2], radius: &Number) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// In doubles the chord would be a fifth off.
+    /// In doubles the chord would be wrong by a fifth.
     #[test]
     fn short_arcs_far_out_have_their_chord() {
         let place = |d: &str, z: &str| [d, z].map(|text| Number::decimal(text).expect("a number"));

@@ -1,29 +1,33 @@
 //! A proof that the solid is the set that its profile encloses.
 //!
-//! Let depth be no more than `s` where the solid ends, and no less than the distance to the profile less `s`. Then the
-//! solid ends within `ρ = 2 s` of the profile only. The profile with its mirror image is a simple closed curve. What is
-//! farther from it than `ρ` has two connected pieces, one enclosed and one outside (Jordan), if the distance from the curve
-//! has no critical value up to `ρ`: its level sets are then isotopic (Grove, *Critical point theory for distance
-//! functions*, 1993). Each piece is wholly solid or wholly not, and a point of it tells which.
+//! Let depth be at most `s` where the solid ends, and at least the distance to the profile minus `s`. The
+//! solid then ends only within `ρ = 2 s` of the profile. The profile with its mirror image is a simple closed
+//! curve. The points farther from it than `ρ` form two connected sets, one enclosed and one outside (Jordan),
+//! if the distance from the curve has no critical value up to `ρ`. Its level sets are then isotopic (Grove,
+//! *Critical point theory for distance functions*, 1993). Each of the two sets is entirely solid or entirely
+//! empty, and one point of it decides which.
 //!
-//! A critical point is in the convex hull of the places of the curve that are nearest to it: two places, corners among them,
-//! that face each other, or three, of which some are on pieces that do not follow each other; any two are at most `2 ρ` apart
-//! and see each other through the empty ball. Shortening the way between two of them ends at an end of a piece, at facing
-//! normals, or at a third piece, to which it is shorter still. [`Profile::narrowest`] is no more than the least distance of
-//! such places: of ends from pieces that they are not on, along facing normals, and across circles. Doubles err by far
-//! less than the factor of 2 that is asked for besides.
+//! A critical point is in the convex hull of the points of the curve that are nearest to it. These are two
+//! points, possibly corners, that face each other, or three, not all on consecutive segments. Any two are at
+//! most `2 ρ` apart and see each other through the empty ball. Shortening the connection between two of them
+//! ends at an end of a segment, at facing normals, or at a third segment, to which it is shorter still.
+//! [`Profile::narrowest`] is a lower bound of the distance between such points: from ends to segments that do
+//! not contain them, along facing normals, and across circles. The rounding errors of doubles are far smaller
+//! than the additional factor of 2 that is required.
 //!
-//! From a place of the profile that is nearest to a point inside, an outside point farther than `ρ` from the profile is no
-//! farther than `ρ / sin(β/2)`, with the outside angle `β` of a corner next to it. Twice that covers how arcs bend, since
-//! facing normals, far ends of neighbours and diameters are all longer than four times that. So the surface of the solid is no farther than `4 s / sin(β/2)` from that place.
+//! Starting from a point of the profile that is nearest to an inside point, there is an outside point farther
+//! than `ρ` from the profile at a distance of at most `ρ / sin(β/2)`, where `β` is the outside angle of a
+//! corner next to it. Twice that covers the curvature of arcs, since facing normals, far ends of neighbours
+//! and diameters are all longer than four times that. The surface of the solid is therefore at most
+//! `4 s / sin(β/2)` from that point.
 
 use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm};
 
-/// How narrow the passages of a profile are, and how sharp its corners.
+/// The narrowest passage and the sharpest corner of a profile.
 pub(super) struct Profile {
-    /// The least distance between places of the profile, or of its mirror image, that face each other.
+    /// The least distance between points of the profile, or of its mirror image, that face each other.
     narrowest: f64,
-    /// The sine of half the least angle outside of the material at a corner.
+    /// The sine of half the smallest angle outside the material at a corner.
     sharpest: f64,
 }
 
@@ -38,7 +42,8 @@ impl Profile {
                 let joint = (other == index + 1).then_some([1, 0]);
                 narrowest = narrowest.min(facing(piece, own, joint.as_slice()));
             }
-            // The first piece and the last one go on as their own mirror images, which run the other way.
+            // The first and last segments continue as their own mirror images, which run in the opposite
+            // sense.
             for (other, image) in mirrored.iter().enumerate().skip(index) {
                 let ends = [(index == 0).then_some([0, 1]), (index == last).then_some([1, 0])];
                 let joints: Vec<_> =
@@ -46,7 +51,7 @@ impl Profile {
                 narrowest = narrowest.min(facing(piece, image, &joints));
             }
         }
-        // The whole curve, once around.
+        // The whole closed curve.
         let around = || outline.iter().chain(mirrored.iter().rev());
         let sharpest = around().zip(around().cycle().skip(1)).map(|(before, after)| {
             let [before, after] = [before.tangent(true), after.tangent(false)];
@@ -56,17 +61,17 @@ impl Profile {
         Profile { narrowest, sharpest: sharpest.fold(1.0, f64::min) }
     }
 
-    /// Returns how far the surface of the solid may be from the nearest point of the profile, if depth is off by no more
-    /// than `slack` where the solid ends, and points `beside` the profile tell what is solid; `None` where that does not show
-    /// that the profile encloses the solid.
+    /// Returns an upper bound of the distance from the solid's surface to the profile. `slack` bounds depth
+    /// where the solid ends, and the points that decide which side is solid lie `beside` the profile at that
+    /// distance. Returns `None` if this does not prove that the profile encloses the solid.
     pub(super) fn off(&self, slack: f64, beside: f64) -> Option<f64> {
         let off = 4.0 * slack / self.sharpest;
         (2.0 * off < self.narrowest && 4.0 * slack < beside).then_some(off)
     }
 }
 
-/// Returns a lower bound of the distance between points of two segments that face each other. `joints` are the ends that
-/// the segments share, each as the end of the one and of the other.
+/// Returns a lower bound of the distance between points of two segments that face each other. `joints` are
+/// the ends that the segments share, as pairs of indices of an end of each.
 fn facing(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64 {
     let mut least = f64::INFINITY;
     for (side, from, to) in [(0, one, other), (1, other, one)] {
@@ -86,8 +91,8 @@ fn facing(one: &Segment, other: &Segment, joints: &[[usize; 2]]) -> f64 {
     least
 }
 
-/// Returns the pairs of points, one of each line or circle, that lie on a common normal. Lines, and circles about one
-/// centre, have none: their ends are as near.
+/// Returns the pairs of points, one on each line or circle, that lie on a common normal. Two lines and two
+/// concentric circles have none: the distances from their ends suffice.
 fn normals(one: &Segment, other: &Segment) -> Vec<[Point; 2]> {
     let on = |from: Point, direction: Point, by: f64| {
         [from[0] + by * direction[0], from[1] + by * direction[1]]
@@ -134,14 +139,14 @@ mod tests {
 
     #[test]
     fn narrowest_is_the_width_of_a_slot_a_wall_or_a_bore() {
-        // A groove 0.25 wide in the side; a wall 0.3 thin on the face; a hole 0.2 across in the end.
+        // A groove 0.25 wide in the side; a wall 0.3 thick on the face; a hole of radius 0.1 in the end.
         let groove =
             "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);";
         near(of(groove).narrowest, 0.25);
         let wall = "start (0, 2); line to (4, 2), (4, 0), (4.3, 0), (4.3, 20), (0, 20);";
         near(of(wall).narrowest, 0.3);
         let hole = "start (0, 2); line to (0.1, 2), (0.1, 0), (6, 0), (6, 20), (0, 20);";
-        // Its bottom ends in the axis, beside its wall.
+        // The bottom of the hole ends on the axis, at this distance from its wall.
         near(of(hole).narrowest, 0.1);
         let reach = "start (0, 0); line to (5, 0), (5, 20), (0, 20);";
         near(of(reach).narrowest, 5.0);
@@ -149,16 +154,17 @@ mod tests {
 
     #[test]
     fn narrowest_sees_arcs() {
-        // Where a ball and a neck's hollow come nearest to the axis and to each other.
+        // The closest approach of a ball and of a neck's fillet to the axis and to each other.
         near(of("start (0, 0); arc to (0, 6) center (0, 3);").narrowest, 6.0);
         let neck = "start (0, 0); line to (3, 0), (3, 4); arc to (3, 8) center (3, 6) concave; line to (3, 20), (0, 20);";
         near(of(neck).narrowest, 2.0);
-        // A bead of a sixth of a circle leaves the wall at 30°, as a corner that is sharp outside.
+        // A bead of a sixth of a circle leaves the wall at 30°, like a corner with a small outside angle.
         let bead = "start (0, 0); line to (3, 0), (3, 4); arc to (3, 8) center (3 - 2*sqrt(3), 6); line to (3, 20), (0, 20);";
         near(of(bead).sharpest, 15f64.to_radians().cos());
     }
 
-    /// A joint at which a line goes on as a circle faces nothing, and neither do the sides of a corner.
+    /// At a joint where a line continues as a circle nothing faces anything, and neither do the sides of a
+    /// corner.
     #[test]
     fn neighbours_do_not_face_each_other() {
         let ball = "start (0, 0); arc to (3, 3) center (0, 3); line to (3, 20), (0, 20);";
@@ -174,10 +180,10 @@ mod tests {
         let slot = of(
             "start (0, 0); line to (5, 0), (5, 8), (3, 8), (3, 8.25), (5, 8.25), (5, 20), (0, 20);",
         );
-        // Its bottom has corners of 90° outside.
+        // The bottom of the slot has outside corners of 90°.
         assert!(slot.off(0.02, 0.1).is_some() && slot.off(0.025, 0.2).is_none());
         assert_eq!(slot.off(0.0, 0.1), Some(0.0));
-        // Points that near tell nothing.
+        // Points this close decide nothing.
         assert_eq!(slot.off(0.02, 0.08), None);
     }
 }

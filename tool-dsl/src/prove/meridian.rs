@@ -1,8 +1,9 @@
 //! Solids of revolution about a coordinate axis, proved in a half plane through it.
 //!
-//! Depths, curves, magnitudes and nicenesses are to be functions of the place along the axis and the distance from it, and directions
-//! are to turn with the point, but for where they vanish. All that is proved is then the same in each half plane that ends on the axis, and is proved in
-//! one of them, as of a tool: in far fewer boxes, and where lengths of lengths, `hypot(x, hypot(y, z) - r)`, are lengths.
+//! Depths, curves, magnitudes and nicenesses must be functions of the coordinate along the axis and the
+//! distance from it, and directions must turn with the point, except where they vanish. All proved facts are
+//! then the same in each half plane that ends on the axis, and one of them suffices, as for a tool. This
+//! takes far fewer boxes, and nested lengths such as `hypot(x, hypot(y, z) - r)` become lengths.
 
 use super::rounding::Errors;
 use super::witness::Witness;
@@ -12,22 +13,22 @@ use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO};
 use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
 use crate::expr::{Coord, Graph, Id, Node};
-use crate::model::{Model, Outputs};
+use crate::model::{Model, RegionOutputs};
 use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
 const COORDINATES: [Coord; 3] = [Coord::X, Coord::Y, Coord::Z];
 
-/// A solid of revolution as a tool of a half plane.
+/// A solid of revolution as a tool in a half plane.
 pub(super) struct Meridian {
     pub(super) tool: PlannedTool,
     axis: usize,
-    /// The axes across it: along the first lies the half plane.
+    /// The axes perpendicular to it. The half plane lies along the first.
     across: [usize; 2],
 }
 
 impl Meridian {
-    /// Returns the half plane of a solid, if it is one of revolution as far as that shows.
+    /// Returns the half plane of a solid, if it can be shown to be a solid of revolution.
     pub(super) fn of(tool: &PlannedTool) -> Option<Meridian> {
         if tool.model.domain != Domain::Space {
             return None;
@@ -40,9 +41,9 @@ impl Meridian {
             let [first, second] = *across;
             model.curves.iter().all(|curve| turns.keeps(curve.value))
                 && model.regions.iter().all(|region| {
-                    let felt = [region.depth, region.magnitude, region.niceness];
-                    let (course, _) = region.course;
-                    felt.into_iter().chain([course[*axis]]).all(|id| turns.keeps(id))
+                    let evaluation = [region.depth, region.magnitude, region.niceness];
+                    let (course, _) = region.raw_direction;
+                    evaluation.into_iter().chain([course[*axis]]).all(|id| turns.keeps(id))
                         && turns.turns([course[first], course[second]])
                 })
         })?;
@@ -56,7 +57,7 @@ impl Meridian {
         Some(Meridian { tool, axis, across })
     }
 
-    /// The certificate of the solid, of which this is the half plane, from that of the half plane.
+    /// Converts the certificate of the half plane to that of the solid.
     pub(super) fn turned(&self, proved: Certificate, tool: &PlannedTool) -> Certificate {
         let (model, whole) = (&tool.model, tool.extent.cell());
         let depths = model.regions.iter().map(|region| region.depth);
@@ -88,7 +89,7 @@ impl Meridian {
         point
     }
 
-    /// A box about what a box of the half plane becomes when it is turned.
+    /// Returns a box around the rotation of a box of the half plane.
     fn cell(&self, cell: &Cell) -> Cell {
         let [d, _, z] = cell.sides;
         let mut sides = [ZERO; 3];
@@ -100,10 +101,10 @@ impl Meridian {
     }
 }
 
-/// What of a graph keeps its value or turns with the point that is turned about an axis.
+/// A classification of nodes by their behaviour under rotation of the point about an axis.
 struct Turns<'g> {
     graph: &'g Graph,
-    /// The coordinates across the axis.
+    /// The coordinates perpendicular to the axis.
     across: [Coord; 2],
     polynomials: Polynomials,
     known: HashMap<Id, bool>,
@@ -114,7 +115,8 @@ impl<'g> Turns<'g> {
         Turns { graph, across, polynomials: Polynomials::default(), known: HashMap::new() }
     }
 
-    /// Whether a node keeps its value: a polynomial does if `y ∂/∂z - z ∂/∂y` of it is 0, any other node if its operands do.
+    /// Returns whether a node is invariant: a polynomial if `y ∂/∂z - z ∂/∂y` of it is 0, any other node if
+    /// its operands are.
     fn keeps(&mut self, id: Id) -> bool {
         for id in self.graph.needed([id]) {
             if !self.known.contains_key(&id) {
@@ -130,7 +132,8 @@ impl<'g> Turns<'g> {
         self.known[&id]
     }
 
-    /// Whether two nodes are the coordinates across the axis, both times the same that keeps its value.
+    /// Returns whether two nodes turn with the point: they are the coordinates perpendicular to the axis,
+    /// multiplied by a common invariant factor.
     fn turns(&mut self, [a, b]: [Id; 2]) -> bool {
         let graph = self.graph;
         let is_zero = |id: Id| graph.constant(id).is_some_and(|value| value.is_zero());
@@ -168,7 +171,7 @@ impl<'g> Turns<'g> {
     }
 }
 
-/// A polynomial with `x² + y²` in place of `d²`; none if it has an odd power of `d`.
+/// Returns a polynomial with `x² + y²` in place of `d²`; none if it has an odd power of `d`.
 fn in_space(polynomial: &Polynomial) -> Option<Polynomial> {
     let [x, y] = [Coord::X, Coord::Y].map(Polynomial::coordinate);
     let square = x.times(&x)?.plus(&y.times(&y)?);
@@ -188,7 +191,7 @@ fn in_space(polynomial: &Polynomial) -> Option<Polynomial> {
     Some(sum)
 }
 
-/// Whether a polynomial keeps its value about an axis.
+/// Returns whether a polynomial is invariant under rotation about an axis.
 fn is_kept(polynomial: &Polynomial, across: [Coord; 2]) -> bool {
     let [y, z] = across;
     let term = |by: Coord, times: Coord| {
@@ -199,7 +202,8 @@ fn is_kept(polynomial: &Polynomial, across: [Coord; 2]) -> bool {
     up.plus(&down.scaled(&crate::number::Number::int(-1))).is_nothing()
 }
 
-/// A model on the half plane where the second coordinate across the axis is 0 and the first is not negative.
+/// Returns the model on the half plane where the second coordinate perpendicular to the axis is 0 and the
+/// first is not negative.
 fn in_half_plane(model: &Model, axis: usize, across: [usize; 2]) -> Option<Model> {
     let mut graph = Graph::default();
     let mut moved: HashMap<Id, Id> = HashMap::new();
@@ -208,11 +212,11 @@ fn in_half_plane(model: &Model, axis: usize, across: [usize; 2]) -> Option<Model
     here[across[0]] = graph.coord(Coord::D);
     let squares = [0, 1].map(|axis| graph.mul(here[axis], here[axis]));
     let square = graph.add(squares[0], squares[1]);
-    let felt = model.regions.iter().flat_map(|region| {
-        let felt = [region.depth, region.magnitude, region.niceness];
-        felt.into_iter().chain(region.direction).chain(region.course.0)
+    let evaluation = model.regions.iter().flat_map(|region| {
+        let evaluation = [region.depth, region.magnitude, region.niceness];
+        evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
     });
-    for id in model.graph.needed(felt.chain(model.curves.iter().map(|curve| curve.value))) {
+    for id in model.graph.needed(evaluation.chain(model.curves.iter().map(|curve| curve.value))) {
         let at = |id: &Id| moved[id];
         let there = match model.graph.node(id) {
             Node::Const(value) => graph.number(value.clone()),
@@ -245,10 +249,10 @@ fn in_half_plane(model: &Model, axis: usize, across: [usize; 2]) -> Option<Model
     model.curves.iter_mut().for_each(|curve| curve.value = at(curve.value));
     for region in &mut model.regions {
         region.direction = way(region.direction);
-        region.course.0 = way(region.course.0);
+        region.raw_direction.0 = way(region.raw_direction.0);
         [region.depth, region.magnitude, region.niceness] =
             [region.depth, region.magnitude, region.niceness].map(at);
-        region.outputs = Outputs {
+        region.outputs = RegionOutputs {
             depth: region.depth,
             magnitude: region.magnitude,
             gradient: [zero; 3],

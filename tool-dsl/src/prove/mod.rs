@@ -1,29 +1,42 @@
-//! What is proved about a tool: by interval branch and bound over its domain, on the expressions
-//! that are emitted, and by identities of polynomials where a box cannot tell 0 from nearly 0.
+//! Proofs about a tool, by interval branch and bound over its domain, on the expressions that are emitted.
+//! Identities of polynomials decide where a box cannot distinguish 0 from nearly 0.
 //!
-//! `cover` knows which regions a box can have points of, `slope` how steep expressions are there,
-//! `rounding` how far computed depths err, `root` whether depths agree on a curve, `sum` which curves are differences of depths, `touch` what
-//! conics that touch imply of each other, `excess` how far distances exceed one another, `tangent` how far they differ where a profile is all but
-//! smooth, `jordan` whether a profile encloses the solid, `parting` what parts two regions; `survey` goes from box
-//! to box, of a solid of revolution in a half plane, which `meridian` makes.
+//! A *claim* is a leaf of the emitted tree that a box may have points of, with the signs that the tests on
+//! the path to it demand. A *point box* is so small that it is not divided further. `docs/proofs.md` has the
+//! other terms and the mathematics.
+//!
+//! The submodules:
+//!
+//! - `cover`: the regions that may have points in a box.
+//! - `slope`: the steepness of expressions in a box.
+//! - `rounding`: the error of computed depths.
+//! - `root`: agreement of depths on a curve.
+//! - `sum`: curves that are differences of depths.
+//! - `tangency`: implications between conics that touch.
+//! - `excess`: the largest excess of one distance over another.
+//! - `tangent`: the difference of distances where a profile is nearly smooth.
+//! - `jordan`: whether a profile encloses the solid.
+//! - `borders`: the curves that separate two regions.
+//! - `survey`: the traversal of all boxes.
+//! - `meridian`: the half plane in which a solid of revolution is surveyed.
 
-mod aim;
+mod borders;
 mod cover;
 mod diagnostics;
+mod direction;
 mod excess;
 mod foot;
 mod jordan;
-mod kink;
 mod meridian;
-mod parting;
+mod nonsmooth;
 mod range;
 mod root;
 mod rounding;
 mod slope;
 mod sum;
 mod survey;
+mod tangency;
 mod tangent;
-mod touch;
 mod witness;
 
 use crate::diagnostic::{Diagnostic, Statement};
@@ -33,78 +46,81 @@ use crate::model::{DirectionSource, Region};
 use crate::plan::PlannedTool;
 use meridian::Meridian;
 
-/// At points where three regions or more meet, depths are known to agree to this part of the tool's
-/// size, and nowhere inside a region is depth further below 0: [`Certificate::tolerance`]. By how much they do not agree is
-/// in the slack besides.
+/// At points where three or more regions meet, depths are proved to agree to this part of the tool's size,
+/// and inside a region depth is at most this far below 0: see [`Certificate::tolerance`]. The actual
+/// disagreement is also included in the slack.
 const TOLERANCE: f64 = 1e-6;
 
-/// The boxes, as a part of the tool's size, in which it is looked where depths differ, and whether a third explains how two
-/// meet.
+/// The size of boxes, relative to the tool's size, in which the proof looks for points with different depths,
+/// and for a third depth that explains how two meet.
 const SMALL: f64 = 1.0 / 1024.0;
 
-/// Where both bounds are 1 to this, depth is said to be the distance: a choice, stated by [`Certificate::is_exact`]. `c` of
-/// a distance is lowered by a tenth of it ([`kink::ROUNDING`]).
+/// The relative tolerance within which both bounds must be 1 for depth to count as the distance, see
+/// [`Certificate::is_exact`]. `c` of a distance is lowered by a tenth of it ([`nonsmooth::ROUNDING`]).
 const EXACT: f64 = 1e-8;
 
-/// Boxes that a proof may take, and one while a tool is compiled.
+/// The number of boxes that a proof may use, and that a proof during compilation may use.
 const MANY: usize = 35_000;
 const FEW: usize = 4_000;
 
-/// What is proved about a tool.
+/// The facts proved about a tool.
 #[derive(Clone, Debug)]
 pub struct Certificate {
-    /// Of each region.
+    /// The facts about each region.
     pub regions: Vec<RegionFacts>,
-    /// Of each pair of neighbours and each curve that parts them.
+    /// The facts about each pair of neighbours and each curve that separates them.
     pub borders: Vec<Border>,
-    /// Where a proof did not come to an end.
-    pub undecided: Vec<Undecided>,
-    /// How much depth may change at points where several regions meet, and how far below 0 it may be inside, in the file's
-    /// unit.
+    /// The boxes where a proof did not finish.
+    pub undecided: Vec<OpenProof>,
+    /// The largest change of depth at points where several regions meet, and the largest amount by which it
+    /// is below 0 inside, in the file's unit.
     pub tolerance: f64,
-    /// How many boxes were looked at.
+    /// The number of boxes examined.
     pub boxes: usize,
     /// The least slope of the depth toward the surface.
     least: f64,
-    /// How much depth may jump at points where regions meet that no curve joins, in the file's unit: `c · distance -
-    /// slack ≤ depth ≤ L · distance + slack`, and depth changes by no more than L times the way and the slack. Of a profile,
-    /// how far feet may be beyond a piece's ends, and how far depths are from the distances to the pieces. What is less than
-    /// 2^-95 of the tool's size counts as 0: constants have 256 bits.
+    /// The slack of all bounds, in the file's unit: `c · distance - slack ≤ depth ≤ L · distance + slack`,
+    /// and depth changes by at most L times the length of a path plus the slack. It includes jumps of depth
+    /// at points where regions meet that no curve joins. For a profile it also includes the distance of feet
+    /// past the ends of segments, and the difference of depths from the distances to the segments. A value
+    /// below 2^-95 of the tool's size counts as 0, since constants have 256 bits.
     pub slack: f64,
 }
 
-/// What is proved about a region.
+/// The facts proved about a region.
 #[derive(Clone, Debug)]
 pub struct RegionFacts {
-    /// Its part of the section's area, of a solid's volume: counted, not proved.
+    /// The region's share of the section's area, or of a solid's volume. It is estimated, not proved.
     pub share: f64,
-    /// The depths of its points, in the file's unit.
+    /// The range of depths, in the file's unit.
     pub depth: Interval,
-    /// How steep the depth is: lengths of its gradient.
+    /// The range of the length of the depth's gradient.
     pub steepness: Interval,
-    /// Whether the depth is the distance to a line, a circle or a point.
+    /// True if the depth is the distance to a line, a circle or a point.
     pub distance: bool,
-    /// Magnitudes.
+    /// The range of magnitudes.
     pub magnitude: Interval,
-    /// Niceness, before what is below 0 counts as 0.
+    /// The range of niceness, before values below 0 are replaced by 0.
     pub niceness: Interval,
-    /// Whether niceness nowhere grows with depth, by its slope along that of depth, but for 1e-9 of both lengths: constants
-    /// of a file have few digits.
+    /// True if niceness nowhere grows with depth, according to the product of both gradients, within 1e-9 of
+    /// the product of their lengths. The tolerance is needed because a file's constants have few digits.
     pub falls: bool,
-    /// The angle between the direction and the steepest way down, in radians, if it is known anywhere.
-    pub aside: Option<Interval>,
-    /// The largest angle that is certain at a point, in radians, and the point in the tool's frame: only where the
-    /// direction is not the steepest way out.
+    /// The angle between the direction and the steepest descent of depth, in radians, if it is known
+    /// anywhere.
+    pub direction_error: Option<Interval>,
+    /// The largest angle that is certain at a point, in radians, and that point in the tool's frame. Present
+    /// only where the direction is not that of steepest descent.
     pub oblique: Option<(f64, [f64; 3])>,
-    /// By how much niceness rises for each length of depth where it rises most of the points looked at, and that point
-    /// in the tool's frame.
+    /// The largest rate at which niceness rises with depth at the points examined, per unit of depth, and
+    /// that point in the tool's frame.
     pub rises: Option<(f64, [f64; 3])>,
-    /// Boxes where the direction vanishes; there it is along z.
+    /// The boxes where the direction vanishes; there it is along z.
     pub singular: Vec<Cell>,
-    /// Whether the direction is across an axis that the region touches, and so turns there by up to a
-    /// half turn.
+    /// True if the direction is perpendicular to an axis that the region touches, so that it turns there by
+    /// up to half a turn.
     pub on_axis: bool,
-    /// A bound of the error of the computed depth against its expression's true value, in the file's unit.
+    /// A bound of the difference between the computed depth and the exact value of its expression, in the
+    /// file's unit.
     pub rounding: f64,
 }
 
@@ -117,7 +133,7 @@ impl RegionFacts {
         magnitude: ZERO,
         niceness: ZERO,
         falls: true,
-        aside: None,
+        direction_error: None,
         oblique: None,
         rises: None,
         singular: Vec::new(),
@@ -127,32 +143,32 @@ impl RegionFacts {
 }
 
 /// A point of the tool's frame, and the depths on the two sides of a border there.
-pub type Seen = ([f64; 3], [f64; 2]);
+pub type JumpPoint = ([f64; 3], [f64; 2]);
 
-/// What is proved about two neighbours, or about a region and the outside.
+/// The facts proved about two neighbours, or about a region and the outside.
 #[derive(Clone, Debug)]
 pub struct Border {
-    /// A region and another, `None` for the outside.
+    /// A region and its neighbour, `None` for the outside.
     pub between: (usize, Option<usize>),
-    /// A curve that parts them.
+    /// A curve that separates them.
     pub curve: CurveIndex,
-    /// How far their depths differ on it, 0 if they agree exactly; outside the depth is 0.
+    /// The difference of their depths on it, 0 if they agree exactly. The depth of the outside is 0.
     pub jump: Interval,
-    /// How far their magnitudes differ on it at most.
+    /// The difference of their magnitudes on it.
     pub step: Interval,
     /// The angle between their directions, in radians.
     pub turn: Interval,
-    /// The same where they meet on the surface, if they do.
+    /// The same angle where they meet on the surface, if they do.
     pub turn_on_surface: Option<Interval>,
     /// The depths at which they meet.
     pub depth: Interval,
-    /// A point of the tool's frame where depth jumps, if one was found, and both depths there.
-    pub seen: Option<Seen>,
+    /// A point of the tool's frame where depth jumps, with both depths, if one was found.
+    pub seen: Option<JumpPoint>,
 }
 
-/// A box where a proof did not come to an end, and what was to be proved.
+/// A box where a proof did not finish, and the statement to be proved.
 #[derive(Clone, Debug)]
-pub struct Undecided {
+pub struct OpenProof {
     /// The box, in the tool's frame.
     pub cell: Cell,
     /// The statement.
@@ -160,7 +176,7 @@ pub struct Undecided {
 }
 
 impl Border {
-    /// Takes up what is known of another border of the same two.
+    /// Adds the facts of another border between the same two owners.
     pub fn join(&mut self, other: &Border) {
         self.jump = self.jump.hull(other.jump);
         self.step = self.step.hull(other.step);
@@ -173,31 +189,31 @@ impl Border {
         self.seen = self.seen.or(other.seen);
     }
 
-    /// Whether this is a whole border, on which depths agree exactly, and not a point where others
-    /// come between.
+    /// Returns whether depths agree exactly on the border. Otherwise it is a point where other regions lie
+    /// between the two.
     pub fn is_joined(&self) -> bool {
         self.jump.high == 0.0
     }
 }
 
-/// What is proved of a tool's depth while it is compiled.
+/// The bounds of a tool's depth that are proved during compilation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// See [`Certificate::least`].
+    /// The least slope of the depth toward the surface.
     pub least: Option<f64>,
-    /// See [`Certificate::lipschitz`].
+    /// The Lipschitz constant of the depth: see [`Certificate::lipschitz`].
     pub lipschitz: Option<f64>,
-    /// A bound of the distance of a computed depth from one for which these bounds hold, in the file's unit: rounding, and
-    /// [`Certificate::slack`].
+    /// A bound of the difference between a computed depth and one that satisfies these bounds, in the file's
+    /// unit: rounding, and [`Certificate::slack`].
     pub rounding: f64,
 }
 
 impl Bounds {
-    /// What is proved of a tool in little time, and what is wrong with it by that.
+    /// Returns the bounds that can be proved quickly, and diagnostics for the errors found.
     ///
-    /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves once
-    /// more; regions by hand are looked at in a few thousand boxes, but not for their owners, which the
-    /// plan proves as it is made. So are those of a profile for which a direction is written.
+    /// The depth of a profile is the distance by construction, which [`Certificate::of`] proves
+    /// independently. Regions by hand are examined in a few thousand boxes, except for their owners, which
+    /// planning proves. So are the regions of a profile for which a direction is written.
     pub(crate) fn of(tool: &PlannedTool) -> (Bounds, Vec<Diagnostic>) {
         let rounding = rounding::over(tool);
         let written = |region: &Region| region.source == DirectionSource::Written;
@@ -206,18 +222,19 @@ impl Bounds {
             return (exact, Vec::new());
         }
         let proved = proved(tool, FEW, false);
-        // What is undecided here may not be in more boxes.
+        // A statement that is undecided here may be provable with more boxes.
         let diagnostics = proved.certain(tool);
         if tool.model.is_exact() {
             return (exact, diagnostics);
         }
-        let [least, lipschitz] = [proved.least(), proved.lipschitz()];
+        let [least, lipschitz] = [proved.lower_slope(), proved.lipschitz()];
         let rounding = rounding + proved.slack;
         (Bounds { least, lipschitz, rounding }, diagnostics)
     }
 }
 
-/// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if that is asked for.
+/// Proves as much as possible with a number of boxes. For regions by hand this includes, if `alone` is set,
+/// that no two of them overlap.
 fn proved(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
     match Meridian::of(tool) {
         Some(meridian) => meridian.turned(survey::survey(&meridian.tool, boxes, alone), tool),
@@ -226,33 +243,34 @@ fn proved(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
 }
 
 impl Certificate {
-    /// Proves what can be proved about a tool.
+    /// Proves as much as possible about a tool.
     pub fn of(tool: &PlannedTool) -> Certificate {
         proved(tool, MANY, true)
     }
 
-    /// Whether depth is continuous and 0 on the surface, but for [`Certificate::tolerance`].
+    /// Returns whether depth is continuous and 0 on the surface, within [`Certificate::tolerance`].
     pub fn is_continuous(&self) -> bool {
         let joined = |border: &Border| border.jump.high <= self.tolerance;
         self.undecided.is_empty() && self.borders.iter().all(joined)
     }
 
-    /// `L`, if it is proved: no depth is more than `L` times the distance to the surface, and depth
-    /// changes by no more than `L` times the way, each but for the [slack](Certificate::slack).
+    /// Returns `L`, if it is proved: depth is at most `L` times the distance to the surface, and changes by
+    /// at most `L` times the length of a path, up to the [slack](Certificate::slack).
     pub fn lipschitz(&self) -> Option<f64> {
         let steepest = self.regions.iter().map(|region| region.steepness.high).fold(0.0, f64::max);
         (self.is_continuous() && steepest.is_finite()).then_some(steepest)
     }
 
-    /// `c`, if it is proved: no depth is less than `c` times the distance to the surface, but for the
+    /// Returns `c`, if it is proved: depth is at least `c` times the distance to the surface, up to the
     /// [slack](Certificate::slack).
-    pub fn least(&self) -> Option<f64> {
+    pub fn lower_slope(&self) -> Option<f64> {
         (self.is_continuous() && self.least > 0.0).then_some(self.least)
     }
 
-    /// Whether depth is proved to be the distance to the surface, to a part in 10^8 and the [slack](Certificate::slack).
+    /// Returns whether depth is proved to be the distance to the surface, to a part in 10^8 and up to the
+    /// [slack](Certificate::slack).
     pub fn is_exact(&self) -> bool {
         let one = |bound: Option<f64>| bound.is_some_and(|b| (b - 1.0).abs() < EXACT);
-        one(self.lipschitz()) && one(self.least())
+        one(self.lipschitz()) && one(self.lower_slope())
     }
 }

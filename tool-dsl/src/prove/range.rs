@@ -1,12 +1,12 @@
-//! Between what a region's niceness lies, over the points of the region alone.
+//! The range of a region's niceness, over the points of the region alone.
 //!
-//! An enclosure over a box that sticks out of the region holds for points outside the tool too, where
-//! `1 - depth/r` is more than 1. So boxes are divided by branch and bound, and in each the niceness is
-//! enclosed together with the depth. With `λ` the rate at which niceness falls with depth in the middle
-//! of the box, the sum `s = niceness + λ depth` hardly changes in it; by the mean value theorem it is
-//! within `s(middle) + (∇niceness + λ ∇depth)·(box - middle)`. No point of the region has a depth below 0,
-//! so that niceness is at most the upper end of that, less `λ` times the least depth, if `λ` is not
-//! negative. For a niceness that is affine in depth the excess falls with the square of the box.
+//! An enclosure over a box that extends beyond the region also holds for points outside the tool, where
+//! `1 - depth/r` is more than 1. Boxes are therefore divided by branch and bound, and in each the niceness is
+//! enclosed together with the depth. Let `λ` be the rate at which niceness falls with depth at the centre of
+//! the box. The sum `s = niceness + λ depth` hardly changes in the box. By the mean value theorem it is
+//! within `s(centre) + (∇niceness + λ ∇depth)·(box - centre)`. No point of the region has a depth below 0. If
+//! `λ` is not negative, niceness is therefore at most the upper end of that minus `λ` times the least depth.
+//! For a niceness that is affine in depth, the overestimate falls with the square of the box's size.
 
 use super::cover::Cover;
 use super::slope::{Slope, Slopes};
@@ -16,13 +16,13 @@ use crate::model::Region;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// How many boxes are divided for one end of a range.
+/// The largest number of boxes divided for one end of a range.
 const BOXES: usize = 2_000;
 
-/// Ends are told to this part of the range, or of 1.
+/// The accuracy of ends, relative to the range or to 1.
 const FINE: f64 = 1e-4;
 
-/// A box, and what the end that is looked for is at most in it.
+/// A box, and an upper bound of the required end in it.
 struct Open {
     bound: f64,
     cell: Cell,
@@ -48,7 +48,7 @@ impl PartialEq for Open {
 
 impl Eq for Open {}
 
-/// What a range is computed from.
+/// The inputs of a range.
 pub(super) struct Ranges<'s, 't> {
     pub(super) cover: &'s mut Cover<'t>,
     pub(super) slopes: &'s mut Slopes<'t>,
@@ -63,7 +63,7 @@ impl Ranges<'_, '_> {
         Interval { low, high }
     }
 
-    /// Returns what `sign` times the niceness is at most.
+    /// Returns an upper bound of `sign` times the niceness.
     fn most(&mut self, index: usize, region: &Region, sign: f64, known: f64) -> f64 {
         let mut open = BinaryHeap::from([Open { bound: known, cell: self.whole }]);
         let mut seen = f64::NEG_INFINITY;
@@ -89,8 +89,8 @@ impl Ranges<'_, '_> {
         open.peek().map_or(seen, |open| open.bound)
     }
 
-    /// Returns what `sign` times the niceness is at most in a box, and what it is in its middle; nothing if the box
-    /// has no point that is inside.
+    /// Returns an upper bound of `sign` times the niceness in a box, and its value at the centre; `None` if
+    /// the box has no point that is inside.
     fn enclose(&mut self, region: &Region, sign: f64, cell: Cell) -> Option<(f64, f64)> {
         self.slopes.set(Cell::point(cell.middle()));
         let [depth, nice] = [region.depth, region.niceness].map(|id| self.slopes.get(id).value);
@@ -116,7 +116,8 @@ impl Ranges<'_, '_> {
     }
 }
 
-/// How niceness changes with depth, by the middles of their slopes; 0 where that is not a number.
+/// Returns the rate at which niceness changes with depth, from the midpoints of their slopes; 0 where that is
+/// not finite.
 fn rate(depth: &Slope, niceness: &Slope) -> f64 {
     let along = |one: &Slope, other: &Slope| -> f64 {
         (0..3).map(|k| one.parts[k].middle() * other.parts[k].middle()).sum()
@@ -131,7 +132,7 @@ mod tests {
     use crate::compile;
     use crate::source::Source;
 
-    /// The ranges of a tool's regions, by name.
+    /// Returns the ranges of a tool's regions, with their names.
     fn ranges(text: &str) -> Vec<(String, [f64; 2])> {
         let compiled = compile(&Source::new("a.tool", text));
         let tool = compiled.into_tool().expect("a tool");
@@ -152,7 +153,7 @@ mod tests {
         }
     }
 
-    /// A niceness that is no function of depth: 1 in the middle of the flute's height, 0 at its ends.
+    /// A niceness that is not a function of depth: 1 at half the flute's height, 0 at its ends.
     #[test]
     fn niceness_by_height_is_told_as_well() {
         let mill = "tool Mill { units mm; profile { start (0, 0); line to (3, 0) as face;

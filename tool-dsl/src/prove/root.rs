@@ -1,5 +1,5 @@
-//! Depths as what they usually are, a polynomial and at most one root: `l + k √P`. So it can be
-//! decided exactly, up to the 256 bits of constants, whether they vanish or agree on a curve.
+//! Depths in their usual form, a polynomial and at most one root: `l + k √P`. Whether they vanish or agree on
+//! a curve can then be decided exactly, up to the 256 bits of constants.
 
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Polynomial, Polynomials};
@@ -10,56 +10,57 @@ use std::collections::HashMap;
 
 /// `l + k √P`
 #[derive(Clone, Debug)]
-pub(super) struct Rooted {
+pub(super) struct RootForm {
     plain: Polynomial,
     root: Option<(Number, Polynomial)>,
 }
 
-/// How two depths agree on a curve.
+/// The agreement of two depths on a curve.
 #[derive(Clone, Debug)]
 pub(super) struct Agreement {
-    /// Whether their slopes do too.
+    /// True if their slopes agree too.
     pub(super) smooth: bool,
-    /// What is not negative where it is so.
+    /// A polynomial that is at least 0 where the depths agree, rather than one with the other's opposite
+    /// branch.
     pub(super) branch: Option<Polynomial>,
-    /// The lesser of the two on each side of the curve, if that is known.
+    /// The smaller of the two on each side of the curve, if that is known.
     pub(super) order: Option<Order>,
 }
 
-/// The side of a curve on which the first of two depths is the lesser.
+/// The side of a curve on which the first of two depths is the smaller.
 #[derive(Clone, Debug)]
 pub(super) struct Order {
-    /// True if it is where the curve is positive.
+    /// True if that is where the curve is positive.
     falls: bool,
-    /// Forms that are positive where this holds.
-    positive: Vec<Rooted>,
+    /// Forms that must be positive for this to hold.
+    positive: Vec<RootForm>,
 }
 
 impl Order {
-    /// Returns whether the first of two depths is nowhere more than the other, or less if they are `turned`, where a curve
-    /// has these signs in a box.
+    /// Returns whether, in a box where a curve has these signs, the first of two depths is nowhere larger
+    /// than the second; nowhere smaller if they are `turned`.
     pub(super) fn is_lesser(&self, turned: bool, signs: Signs, cell: &Cell) -> bool {
         let other_side = if self.falls != turned { NEGATIVE } else { POSITIVE };
         signs & other_side == 0 && self.positive.iter().all(|form| form.over_box(cell).low > 0.0)
     }
 }
 
-/// A difference of two forms, with roots squared away.
+/// A difference of two forms, with roots eliminated by squaring.
 struct Difference {
-    /// 0 wherever the difference is.
+    /// A polynomial that is 0 wherever the difference is.
     squared: Polynomial,
-    /// Not negative where the difference is 0.
+    /// A polynomial that is not negative where the difference is 0.
     branch: Option<Polynomial>,
-    /// True if the difference's sign is the opposite of `squared`'s where `branch` and `positive` are positive.
+    /// True if the difference has the opposite sign of `squared` where `branch` and `positive` are positive.
     flipped: bool,
-    positive: Option<Rooted>,
+    positive: Option<RootForm>,
 }
 
-/// Finds the forms of nodes, each once.
+/// The forms of nodes, each computed once.
 pub(super) struct Forms<'g> {
     graph: &'g Graph,
     polynomials: Polynomials,
-    known: HashMap<Id, Option<Rooted>>,
+    known: HashMap<Id, Option<RootForm>>,
 }
 
 impl<'g> Forms<'g> {
@@ -67,8 +68,8 @@ impl<'g> Forms<'g> {
         Forms { graph, polynomials: Polynomials::default(), known: HashMap::new() }
     }
 
-    /// The form of a node, if it has one.
-    pub(super) fn of(&mut self, id: Id) -> Option<Rooted> {
+    /// Returns the form of a node, if it has one.
+    pub(super) fn of(&mut self, id: Id) -> Option<RootForm> {
         for id in self.graph.needed([id]) {
             if !self.known.contains_key(&id) {
                 let form = self.node(id);
@@ -78,16 +79,16 @@ impl<'g> Forms<'g> {
         self.known.get(&id).cloned().flatten()
     }
 
-    fn node(&mut self, id: Id) -> Option<Rooted> {
+    fn node(&mut self, id: Id) -> Option<RootForm> {
         if let Some(plain) = self.polynomials.of(self.graph, id) {
-            return Some(Rooted::plainly(plain));
+            return Some(RootForm::plainly(plain));
         }
         let of = |id: &Id| self.known.get(id)?.as_ref();
         match self.graph.node(id) {
             Node::Sqrt(a) => {
                 let inner = of(a)?;
                 let root = (inner.root.is_none()).then(|| (Number::int(1), inner.plain.clone()))?;
-                Some(Rooted { plain: Polynomial::zero(), root: Some(root) })
+                Some(RootForm { plain: Polynomial::zero(), root: Some(root) })
             }
             Node::Neg(a) => Some(of(a)?.scaled(&Number::int(-1))),
             Node::Add(a, b) => of(a)?.plus(of(b)?),
@@ -104,21 +105,21 @@ impl<'g> Forms<'g> {
     }
 }
 
-impl Rooted {
+impl RootForm {
     /// Returns `plain + factor √under`.
-    pub(super) fn new(plain: Polynomial, factor: Number, under: Polynomial) -> Rooted {
-        Rooted { plain, root: Some((factor, under)) }
+    pub(super) fn new(plain: Polynomial, factor: Number, under: Polynomial) -> RootForm {
+        RootForm { plain, root: Some((factor, under)) }
     }
 
-    /// Returns by how much two distances, with factors of ±1, differ at most in a box; nothing if only one has a root, or
-    /// their signs differ.
-    pub(super) fn apart(&self, other: &Rooted, cell: &Cell) -> Option<f64> {
+    /// Returns an upper bound of the difference of two distances, with root factors of ±1, in a box; `None`
+    /// if only one has a root, or their signs differ.
+    pub(super) fn apart(&self, other: &RootForm, cell: &Cell) -> Option<f64> {
         let minus = Number::int(-1);
         let plain = self.plain.clone().plus(&other.plain.scaled(&minus)).over(cell).abs();
         match (&self.root, &other.root) {
             (None, None) => Some(plain.high),
             (Some((k, p)), Some((m, q))) => {
-                // |√P - √Q| is no more than √|P - Q|.
+                // |√P - √Q| is at most √|P - Q|.
                 let squares = p.clone().plus(&q.scaled(&minus)).over(cell).abs();
                 k.agrees(m).then(|| plain.plus(squares.sqrt()).high)
             }
@@ -126,17 +127,17 @@ impl Rooted {
         }
     }
 
-    /// 0
-    pub(super) fn zero() -> Rooted {
-        Rooted { plain: Polynomial::zero(), root: None }
+    /// Returns the form 0.
+    pub(super) fn zero() -> RootForm {
+        RootForm { plain: Polynomial::zero(), root: None }
     }
 
-    /// A polynomial that is zero wherever the form is, and what must be positive for it to have the
-    /// form's sign too, if not all over.
+    /// Returns a polynomial that is zero wherever the form is. A second polynomial, if present, must be
+    /// positive for the first to have the form's sign too.
     pub(super) fn curve(&self) -> Option<(Polynomial, Option<Polynomial>)> {
         let Some((k, p)) = &self.root else { return Some((self.plain.clone(), None)) };
-        // (l + k √P) (l - k √P) = l² - k² P, and of the factors the second has the sign of l where
-        // that of k is the other.
+        // (l + k √P) (l - k √P) = l² - k² P. The second factor has the sign of l where k has the opposite
+        // sign.
         let sign = Number::int(if k.is_negative() { 1 } else { -1 });
         Some((self.times_conjugate(k, p)?.scaled(&sign), Some(self.plain.scaled(&sign))))
     }
@@ -146,14 +147,14 @@ impl Rooted {
         Some(self.plain.times(&self.plain)?.plus(&p.scaled(&-&(k * k))))
     }
 
-    fn scaled(&self, factor: &Number) -> Rooted {
-        Rooted {
+    fn scaled(&self, factor: &Number) -> RootForm {
+        RootForm {
             plain: self.plain.scaled(factor),
             root: self.root.as_ref().map(|(k, p)| (k * factor, p.clone())),
         }
     }
 
-    fn plus(&self, other: &Rooted) -> Option<Rooted> {
+    fn plus(&self, other: &RootForm) -> Option<RootForm> {
         let root = match (&self.root, &other.root) {
             (root, None) | (None, root) => root.clone(),
             (Some((k, p)), Some((m, q))) => {
@@ -162,24 +163,23 @@ impl Rooted {
                 same.then(|| (!sum.is_zero()).then(|| (sum, p.clone())))?
             }
         };
-        Some(Rooted { plain: self.plain.clone().plus(&other.plain), root })
+        Some(RootForm { plain: self.plain.clone().plus(&other.plain), root })
     }
 
     /// `(c + k √P)² = c² + k² P + 2 c k √P`
-    fn square(&self) -> Option<Rooted> {
+    fn square(&self) -> Option<RootForm> {
         let (c, (k, p)) = (self.plain.constant()?, self.root.as_ref()?);
         let plain = Polynomial::constantly(&(&c * &c)).plus(&p.scaled(&(k * k)));
         let twice = &(&Number::int(2) * &c) * k;
-        Some(Rooted { plain, root: (!twice.is_zero()).then(|| (twice, p.clone())) })
+        Some(RootForm { plain, root: (!twice.is_zero()).then(|| (twice, p.clone())) })
     }
 
-    /// `(m² - k² P) γ / (m + k √P) = γ (m - k √P)`, the way in which depths below flat arcs are
-    /// written.
-    fn over(&self, divisor: &Rooted) -> Option<Rooted> {
+    /// `(m² - k² P) γ / (m + k √P) = γ (m - k √P)`, the form in which depths below flat arcs are written.
+    fn over(&self, divisor: &RootForm) -> Option<RootForm> {
         if self.root.is_some() {
             return None;
         }
-        let conjugate = Rooted {
+        let conjugate = RootForm {
             plain: divisor.plain.clone(),
             root: divisor.root.as_ref().map(|(k, p)| (-k, p.clone())),
         };
@@ -190,25 +190,25 @@ impl Rooted {
         Some(conjugate.scaled(&self.plain.ratio(&divisor.times_conjugate(k, p)?)?))
     }
 
-    /// How two forms agree wherever a curve's polynomial is zero, if they do.
+    /// Returns how two forms agree wherever a curve's polynomial is zero, if they do.
     ///
-    /// Roots are squared away, which also finds where a form agrees with another's opposite branch: so
-    /// a polynomial comes along that is at least 0 where it is this one.
-    pub(super) fn agrees_on(&self, other: &Rooted, curve: &Polynomial) -> Option<Agreement> {
+    /// Squaring the roots also finds where a form agrees with another's opposite branch. The result therefore
+    /// includes a polynomial that is at least 0 where it is this branch.
+    pub(super) fn agrees_on(&self, other: &RootForm, curve: &Polynomial) -> Option<Agreement> {
         let Difference { squared, branch, flipped, positive } = self.minus(other)?;
         let smooth = squared.is_nothing() || squared.is_square_of(curve);
         let order = squared.ratio(curve).map(|ratio| Order {
             falls: ratio.is_negative() != flipped,
-            positive: branch.iter().map(Rooted::plainly).chain(positive).collect(),
+            positive: branch.iter().map(RootForm::plainly).chain(positive).collect(),
         });
         (smooth || squared.vanishes_on(curve)).then_some(Agreement { smooth, branch, order })
     }
 
-    /// Squares the roots of a difference of two forms away.
-    fn minus(&self, other: &Rooted) -> Option<Difference> {
+    /// Returns the difference of two forms, with roots eliminated by squaring.
+    fn minus(&self, other: &RootForm) -> Option<Difference> {
         let minus = Number::int(-1);
         if let Some(difference) = self.plus(&other.scaled(&minus)) {
-            // l + k √P = 0 where l² = k² P, and l has not the sign of k.
+            // l + k √P = 0 where l² = k² P and l does not have the sign of k.
             let (squared, branch) = difference.curve()?;
             return Some(Difference { squared, branch, flipped: false, positive: None });
         }
@@ -221,22 +221,22 @@ impl Rooted {
             let same = flipped == m.is_negative();
             return same.then_some(Difference { squared, branch: None, flipped, positive: None });
         }
-        // With u = c + k √P, u² - m² Q = L + 2 c k √P where L = c² + k² P - m² Q. It is 0 where L is -2 c k √P, and
-        // there L² - 4 c² k² P has its sign if c k is negative, else the opposite one. Where u has the sign of m,
-        // u - m √Q has the sign of m (u² - m² Q).
+        // With u = c + k √P, u² - m² Q = L + 2 c k √P where L = c² + k² P - m² Q. It is 0 where L is -2 c k
+        // √P. There L² - 4 c² k² P has its sign if c k is negative, else the opposite one. Where u has the
+        // sign of m, u - m √Q has the sign of m (u² - m² Q).
         let square = &beside * &beside;
         let lead = apart.plus(&Polynomial::constantly(&square));
         let squared = lead.times(&lead)?.plus(&a.scaled(&-&(&Number::int(4) * &square)));
         let same = beside.is_negative() == k.is_negative();
         let branch = Some(lead.scaled(&Number::int(if same { -1 } else { 1 })));
-        let first = Rooted::new(Polynomial::constantly(&beside), k.clone(), p.clone());
+        let first = RootForm::new(Polynomial::constantly(&beside), k.clone(), p.clone());
         let positive = Some(first.scaled(&Number::int(if m.is_negative() { -1 } else { 1 })));
         Some(Difference { squared, branch, flipped: same != m.is_negative(), positive })
     }
 
     /// Returns a polynomial as a form.
-    pub(super) fn plainly(polynomial: &Polynomial) -> Rooted {
-        Rooted { plain: polynomial.clone(), root: None }
+    pub(super) fn plainly(polynomial: &Polynomial) -> RootForm {
+        RootForm { plain: polynomial.clone(), root: None }
     }
 
     /// Encloses the form over a box.
@@ -246,7 +246,7 @@ impl Rooted {
         plain.plus(Interval::about(k).times(p.over(cell).sqrt()))
     }
 
-    /// Polynomials in the direction in which the form grows or in the opposite, by each of a monomial's
+    /// Returns polynomials in the direction of the form's gradient or its opposite, for each of a monomial's
     /// four coordinates.
     pub(super) fn course(&self) -> Option<[Polynomial; 4]> {
         let under = match &self.root {
@@ -261,22 +261,24 @@ impl Rooted {
         &self.plain
     }
 
-    /// Returns the root's factor and what is under it.
+    /// Returns the root's factor and its radicand.
     pub(super) fn root(&self) -> Option<(&Number, &Polynomial)> {
         self.root.as_ref().map(|(factor, under)| (factor, under))
     }
 
-    /// The polynomial, if it is no more than that.
+    /// Returns the polynomial, if the form has no root.
     pub(super) fn plain(&self) -> Option<&Polynomial> {
         self.root.is_none().then_some(&self.plain)
     }
 
-    /// Whether this is a root without more: nowhere below 0, and kinked only where it is 0.
+    /// Returns whether this is a root without further terms: nowhere below 0, and smooth except where it is
+    /// 0.
     pub(super) fn is_length(&self) -> bool {
         self.plain.is_nothing() && self.root.as_ref().is_some_and(|(k, _)| !k.is_negative())
     }
 
-    /// Whether this is `c ± |p - centre|` or a linear function with a gradient of 1: a distance.
+    /// Returns whether this is a distance: `c ± |p - centre|`, or a linear function with a gradient of length
+    /// 1.
     pub(super) fn is_distance(&self) -> bool {
         match &self.root {
             None => self.plain.slope_squared().is_some_and(|s| s.agrees(&Number::int(1))),

@@ -1,33 +1,32 @@
-//! How far rounding can take a computed value from the true one, operation by operation: forward
-//! error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, chapter 3) over
-//! boxes.
+//! Bounds of the rounding error of computed values, operation by operation: forward error analysis (Higham,
+//! *Accuracy and Stability of Numerical Algorithms*, 2002, chapter 3) over boxes.
 //!
-//! Let `u` be the unit roundoff, and let operands `a` and `b` err by `e u` and `f u`. Computed operands are at most `|a| + e u`
-//! and at least `|b| - f u`. A value that may be larger than the largest double has no bound. Only underflow is left out,
-//! which adds less than 1e-308 to an operation:
+//! Let `u` be the unit roundoff, and let operands `a` and `b` have errors `e u` and `f u`. Computed operands
+//! are at most `|a| + e u` and at least `|b| - f u`. A value that may exceed the largest double has no bound.
+//! Only underflow is neglected, which adds less than 1e-308 per operation:
 //!
-//! | operation | brings, in `u` | own rounding, in `u` |
+//! | operation | propagated error, in `u` | own rounding, in `u` |
 //! |---|---|---|
-//! | a sum or difference | `e + f` | the size of what is rounded |
+//! | a sum or difference | `e + f` | the size of the rounded value |
 //! | a product | `e |b| + f |a| + e f u` | the same |
 //! | a quotient `q` | `(e + f |q|) / (|b| - f u)` | the same |
 //! | a root | `e / (√a + √(a - e u))` | the same |
-//! | the length of `n` parts: no more than `n` roundings below the root, one of it | the length of their errors | `γ(n/2 + 1)` of what is rounded |
-//! | the lesser, the larger | the larger of `e` and `f` | none |
+//! | the length of `n` parts: at most `n` roundings below the root, one of it | the length of their errors | `γ(n/2 + 1)` of the rounded value |
+//! | the smaller, the larger | the larger of `e` and `f` | none |
 //!
-//! with `γ(m) = m / (1 - m u)`, which is no less than `((1 + u)^m - 1) / u`. What is rounded is as large as the true value
-//! and what was brought.
+//! Here `γ(m) = m / (1 - m u)`, which is at least `((1 + u)^m - 1) / u`. The size of the rounded value
+//! includes the propagated error.
 
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, EVERYTHING, Interval, ZERO};
+use crate::expr::interval::{Cell, ENTIRE, Interval, ZERO};
 use crate::expr::{Coord, Graph, Id, Node};
 use crate::plan::PlannedTool;
 use std::collections::HashMap;
 
 /// The unit roundoff.
 const UNIT: f64 = f64::EPSILON / 2.0;
-/// Covers the rounding of the error bounds themselves. No operation takes more than 16 roundings of positive terms beside those of an
-/// operand each, which lose half of this each at most.
+/// A factor that covers the rounding of the error bounds themselves. An operation rounds positive terms at
+/// most 16 times, besides the roundings of its operands. Each rounding loses at most half of the epsilon.
 const KEPT: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 /// A value over a box, and its error in unit roundoffs.
@@ -37,7 +36,7 @@ struct Rounded {
     error: f64,
 }
 
-/// Returns a bound of the error of any region's computed depth over the whole of a tool's box.
+/// Returns a bound of the error of any region's computed depth over a tool's whole box.
 pub(super) fn over(tool: &PlannedTool) -> f64 {
     let model = &tool.model;
     let depths = || model.regions.iter().map(|region| region.depth);
@@ -46,8 +45,8 @@ pub(super) fn over(tool: &PlannedTool) -> f64 {
     depths().map(|depth| errors.over(depth, &cell)).fold(0.0, f64::max)
 }
 
-/// Errors of chosen nodes of a graph over one box after another. The coordinates x, y and z of a
-/// point are given without error.
+/// Error bounds of chosen nodes of a graph over one box after another. The coordinates x, y and z of a point
+/// have no error.
 pub(super) struct Errors<'g> {
     graph: &'g Graph,
     domain: Domain,
@@ -62,7 +61,7 @@ impl<'g> Errors<'g> {
         roots: impl IntoIterator<Item = Id>,
     ) -> Errors<'g> {
         let needed = roots.into_iter().map(|root| (root, graph.needed([root]))).collect();
-        let unknown = Rounded { value: EVERYTHING, error: f64::INFINITY };
+        let unknown = Rounded { value: ENTIRE, error: f64::INFINITY };
         Errors { graph, domain, needed, values: vec![unknown; graph.nodes().len()] }
     }
 
@@ -81,7 +80,7 @@ impl<'g> Errors<'g> {
     fn node(&self, id: Id, cell: &Cell) -> Rounded {
         let v = |id: &Id| self.values[id.index()];
         let size = |value: Interval| value.abs().high;
-        // An operation's own rounding, on what its operands bring.
+        // The operation's own rounding, on a value that includes the propagated error.
         let rounded = |value: Interval, brought: f64| Rounded {
             value,
             error: brought + (size(value) + brought * UNIT),
@@ -126,10 +125,11 @@ impl<'g> Errors<'g> {
             }
             Node::Sqrt(a) => {
                 if let Some(parts) = self.graph.squares_of(*a) {
-                    // As a length, x² + y² brings what its root would without the root's own rounding.
+                    // As part of a length, x² + y² contributes like its root, but without the root's own
+                    // rounding.
                     let axis = || {
                         let value = cell.radius();
-                        // Two roundings below the root are one of it.
+                        // Two roundings below the root count as one of it.
                         Rounded { value, error: value.abs().high }
                     };
                     let part = |part: &Option<Id>| part.as_ref().map_or_else(axis, v);
@@ -137,7 +137,7 @@ impl<'g> Errors<'g> {
                     let sum =
                         parts.iter().map(|part| part.value.square()).fold(ZERO, Interval::plus);
                     let value = sum.sqrt();
-                    // Squares and their sums are each right to one unit of themselves.
+                    // Squares and their sums are each accurate to one unit roundoff of themselves.
                     let brought = parts.iter().map(|part| part.error * part.error);
                     let brought = brought.sum::<f64>().sqrt();
                     let own = gamma(parts.len() as f64 / 2.0 + 1.0);
@@ -149,7 +149,7 @@ impl<'g> Errors<'g> {
                 let least = a.value.low - a.error * UNIT;
                 let brought = match a.error {
                     0.0 => 0.0,
-                    // What may be computed to be below 0 may have no root.
+                    // A value that may be computed as negative may have no root.
                     _ if least < 0.0 => f64::INFINITY,
                     error => error / (value.low + least.sqrt()),
                 };
@@ -160,7 +160,7 @@ impl<'g> Errors<'g> {
                 match (low.high < high.low, low.low > high.high) {
                     (true, _) => v(then),
                     (_, true) => v(other),
-                    // Rounding may take the other side.
+                    // Rounding may choose the other side.
                     _ => {
                         Rounded { value: v(then).value.hull(v(other).value), error: f64::INFINITY }
                     }
@@ -171,7 +171,7 @@ impl<'g> Errors<'g> {
 
     fn coordinate(&self, coord: Coord, cell: &Cell) -> Rounded {
         let given = |axis: usize| Rounded { value: cell.sides[axis], error: 0.0 };
-        // Of x² + y² every operation rounds once; the root halves their error and adds its own.
+        // Every operation of x² + y² rounds once; the root halves their error and adds its own.
         let twice = |value: Interval| Rounded { value, error: gamma(2.0) * value.abs().high };
         match coord {
             Coord::X if self.domain == Domain::Space => given(0),
@@ -179,22 +179,22 @@ impl<'g> Errors<'g> {
             Coord::Z => given(2),
             Coord::X | Coord::D => twice(cell.radius()),
             Coord::Q => twice(cell.squared_radius()),
-            Coord::Length | Coord::PerLength => Rounded { value: EVERYTHING, error: f64::INFINITY },
+            Coord::Length | Coord::PerLength => Rounded { value: ENTIRE, error: f64::INFINITY },
         }
     }
 }
 
-/// What so many roundings take from 1 or add to it at most, in unit roundoffs.
+/// Returns the largest relative change by a number of roundings, in unit roundoffs.
 fn gamma(count: f64) -> f64 {
     count / (1.0 - count * UNIT)
 }
 
-/// An error times a size, 0 if there is no error.
+/// Returns an error times a size, or 0 if there is no error.
 fn product(error: f64, size: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error * size }
 }
 
-/// Whether a factor is known and only moves the exponent.
+/// Returns whether a factor is known and is a power of two, so that multiplication is exact.
 fn is_power_of_two(factor: Interval) -> bool {
     factor.low == factor.high && factor.low != 0.0 && factor.low.abs().to_bits() << 12 == 0
 }
@@ -204,8 +204,8 @@ mod tests {
     use super::*;
     use crate::number::Number;
 
-    /// On the circle `d = 1` only the product of both factors' errors is left of `(d - 1)²`. A quotient by what may be
-    /// computed to be 0 may be anything, and so may a number larger than all doubles.
+    /// On the circle `d = 1` only the product of both factors' errors remains of `(d - 1)²`. A quotient whose
+    /// divisor may be computed as 0 has no bound, and neither has a value that may exceed all doubles.
     #[test]
     fn products_of_errors_count() {
         let mut graph = Graph::default();
@@ -216,7 +216,7 @@ mod tests {
         let quotient = graph.quotient(one, off);
         let mut errors = Errors::new(&graph, Domain::HalfPlane, [square, quotient]);
         let circle = Cell::half_plane(Interval::new(1.0, 1.0), ZERO);
-        // `d` is computed to two units.
+        // `d` is computed to within two unit roundoffs.
         let most = (2.0 * UNIT) * (2.0 * UNIT);
         let bound = errors.over(square, &circle);
         assert!((most..2.0 * most).contains(&bound), "{bound:e}");

@@ -1,18 +1,18 @@
-//! Enclosures of expressions together with their slopes: how steep a function can be over a box.
+//! Enclosures of expressions together with their slopes, which bound the steepness of a function over a box.
 
 use crate::domain::Domain;
-use crate::expr::interval::{Cell, EVERYTHING, Interval, ONE, ZERO};
+use crate::expr::interval::{Cell, ENTIRE, Interval, ONE, ZERO};
 use crate::expr::{Coord, Graph, Id, Node};
 
-/// A function over a box: its values, its partial derivatives by x (for a tool, by the distance
-/// from the axis), y and z, and the length of its gradient, which is often known better.
+/// A function over a box: its values, its partial derivatives by x (for a tool, by the distance from the
+/// axis), y and z, and the length of its gradient, which is often known more accurately.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slope {
     pub(super) value: Interval,
     pub(super) parts: [Interval; 3],
     pub(super) length: Interval,
-    /// Whether it may have kinks that point down, as lengths and the larger of two have, and kinks
-    /// that point up.
+    /// Flags for points where it may not be smooth: kinks that point down, as lengths and the larger of two
+    /// have, and kinks that point up.
     kinks: [bool; 2],
 }
 
@@ -20,12 +20,12 @@ const SMOOTH: [bool; 2] = [false; 2];
 const DOWN: [bool; 2] = [true, false];
 const UP: [bool; 2] = [false, true];
 
-/// What kinks sums of functions have.
+/// Returns the kinks of a sum of functions.
 fn either(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
     [a[0] || b[0], a[1] || b[1]]
 }
 
-/// What kinks products and the like have.
+/// Returns the kinks of a product or another nonlinear combination.
 fn mixed(a: [bool; 2], b: [bool; 2]) -> [bool; 2] {
     [a.into_iter().chain(b).any(|kinked| kinked); 2]
 }
@@ -41,15 +41,16 @@ impl Slope {
         Slope { value, parts, length: length(parts), kinks }
     }
 
-    /// How steeply it falls at least, from any point of the box, some way.
+    /// Returns a lower bound of the rate at which the function falls in some direction, from any point of the
+    /// box.
     ///
-    /// At a kink that points up every slope beside it leads down. At one that points down it takes a
-    /// mean of the slopes beside it (Clarke 1983), and so one within what encloses them.
+    /// At a kink that points up, every adjacent slope leads down. At one that points down, the relevant slope
+    /// is a mean of the adjacent slopes (Clarke 1983), and therefore lies in their enclosure.
     pub(super) fn fall(&self) -> f64 {
         if self.kinks[0] { length(self.parts).low } else { self.length.low }
     }
 
-    /// The same with what is known otherwise of its gradient's length.
+    /// Tightens the length of the gradient by another enclosure of it.
     fn with(self, known: Interval) -> Slope {
         let length = Interval {
             low: self.length.low.max(known.low),
@@ -146,15 +147,15 @@ impl Slope {
         }
     }
 
-    /// The same with more kinks.
+    /// Adds kinks.
     fn kinked(self, more: [bool; 2]) -> Slope {
         Slope { kinks: either(self.kinks, more), ..self }
     }
 }
 
-/// The length of a vector of these parts.
+/// Returns the length of a vector.
 fn length(parts: [Interval; 3]) -> Interval {
-    // Exact along an axis.
+    // Exact for a vector along an axis.
     if let [part, ZERO, ZERO] | [ZERO, part, ZERO] | [ZERO, ZERO, part] = parts {
         return part.abs();
     }
@@ -162,9 +163,9 @@ fn length(parts: [Interval; 3]) -> Interval {
     squares[0].plus(squares[1]).plus(squares[2]).sqrt()
 }
 
-/// The root of a sum of squares `u² + v² + …` is the length of the vector `(u, v, …)`, and its
-/// gradient that of a unit vector by the slopes of the parts: defined but for where all are 0, and
-/// then no longer than the largest singular value of the slopes.
+/// Encloses the root of a sum of squares `u² + v² + …`, the length of the vector `(u, v, …)`. Its gradient is
+/// a unit vector times the slopes of the components. It is defined except where all components are 0, and is
+/// at most as long as the largest singular value of the slopes.
 fn norm(parts: &[Slope]) -> Slope {
     let squares = parts.iter().map(|part| part.value.square());
     let value = squares.fold(ZERO, Interval::plus).sqrt();
@@ -175,8 +176,8 @@ fn norm(parts: &[Slope]) -> Slope {
     let slope = |k: usize| {
         parts.iter().zip(&way).fold(ZERO, |sum, (part, way)| sum.plus(part.parts[k].times(*way)))
     };
-    // The squares of the singular values lie about the diagonal of J Jᵀ, within its rows
-    // (Gershgorin 1931).
+    // The squares of the singular values lie around the diagonal of J Jᵀ, within its row sums (Gershgorin
+    // 1931).
     let mut singular: Option<Interval> = None;
     for (i, a) in parts.iter().enumerate() {
         let mut circle = a.length.square();
@@ -199,15 +200,15 @@ fn norm(parts: &[Slope]) -> Slope {
     Slope::new(value, [0, 1, 2].map(slope), kinks).with(known)
 }
 
-/// Encloses chosen nodes of a graph with their slopes, over one box after another; what nobody asks
-/// of a box is not computed.
+/// Encloses chosen nodes of a graph with their slopes, over one box after another. For each box only the
+/// requested nodes are computed.
 pub(super) struct Slopes<'g> {
     graph: &'g Graph,
     domain: Domain,
-    /// What each root needs, operands first, constants left out; of other nodes nothing.
+    /// The nodes that each root needs, operands first, without constants; empty for nodes that are not roots.
     needed: Vec<Vec<Id>>,
     values: Vec<Slope>,
-    /// For which box each was computed last.
+    /// The number of the box for which each value was last computed.
     done: Vec<u32>,
     now: u32,
     cell: Cell,
@@ -219,7 +220,7 @@ impl<'g> Slopes<'g> {
         domain: Domain,
         roots: impl IntoIterator<Item = Id>,
     ) -> Slopes<'g> {
-        let unknown = Slope::new(EVERYTHING, [EVERYTHING; 3], [true; 2]);
+        let unknown = Slope::new(ENTIRE, [ENTIRE; 3], [true; 2]);
         let mut values = vec![unknown; graph.nodes().len()];
         let mut needed = vec![Vec::new(); values.len()];
         for root in roots {
@@ -238,13 +239,13 @@ impl<'g> Slopes<'g> {
         Slopes { graph, domain, needed, values, done, now: 0, cell }
     }
 
-    /// Moves to a box.
+    /// Selects a box.
     pub(super) fn set(&mut self, cell: Cell) {
         self.cell = cell;
         self.now += 1;
     }
 
-    /// One of the nodes over the present box.
+    /// Returns the enclosure over the current box of one of the roots.
     pub(super) fn get(&mut self, root: Id) -> Slope {
         for k in 0..self.needed[root.index()].len() {
             let id = self.needed[root.index()][k];
@@ -325,9 +326,7 @@ impl<'g> Slopes<'g> {
                 let d = self.coordinate(Coord::D, cell);
                 Slope { value: cell.squared_radius(), kinks: SMOOTH, ..d.square() }
             }
-            Coord::Length | Coord::PerLength => {
-                Slope { value: EVERYTHING, ..Slope::constant(ZERO) }
-            }
+            Coord::Length | Coord::PerLength => Slope { value: ENTIRE, ..Slope::constant(ZERO) },
         }
     }
 }

@@ -1,6 +1,7 @@
-//! Curves that compare two depths of different roots, which no polynomial is: sums of a polynomial and roots.
+//! Curves that compare two depths with different roots. They are sums of a polynomial and roots, not
+//! polynomials.
 
-use super::root::{Forms, Rooted};
+use super::root::{Forms, RootForm};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::{Graph, Id, Node};
 use crate::number::Number;
@@ -13,7 +14,7 @@ pub(super) struct RootSum {
 }
 
 impl RootSum {
-    /// The sum that a node is, if it is one.
+    /// Returns a node as such a sum, if it is one.
     pub(super) fn of(graph: &Graph, forms: &mut Forms<'_>, id: Id) -> Option<RootSum> {
         if let Some(form) = forms.of(id) {
             return Some(RootSum::from(&form));
@@ -32,13 +33,13 @@ impl RootSum {
         }
     }
 
-    fn from(form: &Rooted) -> RootSum {
+    fn from(form: &RootForm) -> RootSum {
         let roots = form.root().map(|(factor, under)| (factor.clone(), under.clone()));
         RootSum { plain: form.part().clone(), roots: roots.into_iter().collect() }
     }
 
-    /// Returns the factor by which this is the first of two depths less the other.
-    pub(super) fn by_difference(&self, a: &Rooted, b: &Rooted) -> Option<Number> {
+    /// Returns the factor by which this is a multiple of the first depth minus the second.
+    pub(super) fn by_difference(&self, a: &RootForm, b: &RootForm) -> Option<Number> {
         let difference = RootSum::from(a).plus(RootSum::from(b).scaled(&Number::int(-1)));
         let (factor, under) = self.roots.first()?;
         let (other, _) = difference.roots.iter().find(|(_, own)| is_same(own, under))?;
@@ -55,7 +56,7 @@ impl RootSum {
     fn plus(mut self, other: RootSum) -> RootSum {
         for (factor, under) in other.roots {
             match self.roots.iter_mut().find(|(_, own)| is_same(own, &under)) {
-                // What cancels in 256 bits is 0.
+                // A sum that cancels in 256 bits is 0.
                 Some((own, _)) if own.agrees(&-&factor) => *own = Number::int(0),
                 Some((own, _)) => *own = &*own + &factor,
                 None => self.roots.push((factor, under)),

@@ -1,54 +1,56 @@
-//! Depths that agree but for rounding on a straight border, where a profile goes on smoothly: lines and arcs whose ends
-//! were written with the digits of a double are not exactly tangent.
+//! Depths that agree up to rounding on a straight border, where a profile is smooth: lines and arcs whose
+//! ends were written with the digits of a double are not exactly tangent.
 //!
-//! Along a line, the distance from a point is `√(t² + e²)`, with `t` measured from the point's foot and `e` its distance
-//! from the line: within `e` of `|t|`. So the difference of two depths is affine in `t` there, but for that.
+//! Along a line, the distance from a point is `√(t² + e²)`, with `t` measured from the foot of the point and
+//! `e` its distance from the line. It differs from `|t|` by at most `e`. The difference of two depths on the
+//! line is therefore affine in `t`, up to these `e`.
 
-use super::root::Rooted;
+use super::root::RootForm;
 use crate::expr::Coord;
 use crate::expr::interval::{Cell, Interval};
 use crate::expr::polynomial::{Monomial, Polynomial, monomial_of};
 use crate::number::Number;
 
-/// The difference of two depths on a straight line, whose points are told by a coordinate.
+/// The difference of two depths on a straight line, whose points are identified by one coordinate.
 #[derive(Clone, Debug)]
 pub(super) struct Tangency {
-    /// The coordinate's place in a point.
+    /// The coordinate's index in a point.
     axis: usize,
-    /// `slope · t + rest`, without roots.
+    /// The affine part `slope · t + rest`, without roots.
     slope: Number,
     rest: Number,
     roots: Vec<Root>,
-    /// The largest slope of a depth across the line, roots left out.
+    /// The largest slope of a depth across the line, without roots.
     across: f64,
-    /// The polynomials under two roots of the same factor, if the difference is that of these alone.
+    /// The radicands of two roots with the same factor, if the difference consists of these alone.
     under: Option<[Polynomial; 2]>,
 }
 
-/// `factor · √((t - foot)² + (off/scale)²)`, and so within `factor · off/scale` of `factor · |t - foot|`.
+/// `factor · √((t - foot)² + (off/scale)²)`, which differs from `factor · |t - foot|` by at most
+/// `factor · off/scale`.
 #[derive(Clone, Debug)]
 struct Root {
     factor: Number,
     foot: Number,
     /// The distance of the root's point from the line.
     off: f64,
-    /// Lengths along the line per unit of its coordinate.
+    /// The length along the line per unit of its coordinate.
     scale: f64,
 }
 
 /// The difference of two depths on a line in a box.
 #[derive(Clone, Copy)]
 pub(super) struct Off {
-    /// By how much at most.
+    /// An upper bound of the difference.
     pub(super) jump: f64,
     /// The largest slope of one of them across the line.
     pub(super) across: f64,
 }
 
 impl Tangency {
-    /// Returns the difference of two depths on a line; none if they are not linear and distances from points of the half
-    /// plane.
-    pub(super) fn of(a: &Rooted, b: &Rooted, line: &Polynomial) -> Option<Tangency> {
+    /// Returns the difference of two depths on a line; `None` unless both are linear functions or distances
+    /// from points of the half plane.
+    pub(super) fn of(a: &RootForm, b: &RootForm, line: &Polynomial) -> Option<Tangency> {
         if !line.is_linear() {
             return None;
         }
@@ -78,7 +80,13 @@ impl Tangency {
         Some(tangency)
     }
 
-    fn add(&mut self, depth: &Rooted, less: bool, line: &Polynomial, only: Monomial) -> Option<()> {
+    fn add(
+        &mut self,
+        depth: &RootForm,
+        less: bool,
+        line: &Polynomial,
+        only: Monomial,
+    ) -> Option<()> {
         if !depth.is_distance() {
             return None;
         }
@@ -95,8 +103,8 @@ impl Tangency {
                 let by = monomial_of(coord);
                 depth.part().factor(by) * line.factor(by)
             });
-            // With unit roundoff u each product errs by 3u, their sum, the root and the quotient by one each: 6u in all,
-            // of a product of lengths that is the line's.
+            // With unit roundoff u, each product has an error of 3u, and their sum, the root and the quotient
+            // of u each: 6u in total, relative to a product of lengths that is the line's.
             let across = (slopes[0] + slopes[1]).abs() / size + 4.0 * f64::EPSILON;
             self.across = self.across.max(across);
             return Some(());
@@ -114,7 +122,8 @@ impl Tangency {
         Some(())
     }
 
-    /// Returns how the two depths differ on the line in a box; none if a root's foot may be there.
+    /// Returns the difference of the two depths on the line in a box; `None` if a root's foot may be there
+    /// and the radicands give no bound.
     pub(super) fn over(&self, cell: &Cell) -> Option<Off> {
         let [by_feet, by_roots] = [self.by_feet(cell), self.by_roots(cell)];
         match (by_feet, by_roots) {
@@ -144,7 +153,8 @@ impl Tangency {
             let factor = if from_foot.high < 0.0 { -&root.factor } else { root.factor.clone() };
             rest = &rest - &(&factor * &root.foot);
             slope = &slope + &factor;
-            // A root is within its `off` of what is without; twice that holds the rounding of `off` and of the sum.
+            // A root differs from the form without `off` by at most `off`. Twice that also covers the
+            // rounding of `off` and of the sum.
             noise += 2.0 * root.off;
             across = across.max(2.0 * root.off / (root.scale * from_foot.abs().low));
         }
@@ -153,7 +163,7 @@ impl Tangency {
     }
 }
 
-/// The factors of a polynomial of degree 2 in one coordinate, the constant first.
+/// Returns the coefficients of a polynomial of degree 2 in one coordinate, the constant first.
 fn factors(polynomial: &Polynomial, only: Monomial) -> Option<[Number; 3]> {
     let mut factors = [(); 3].map(|()| Number::int(0));
     for (monomial, value) in polynomial.terms() {
@@ -173,8 +183,8 @@ mod tests {
     use super::*;
     use crate::expr::Graph;
 
-    /// Returns the largest difference of an arc's depth and a line's on the arc's normal at the line's end, in a box on
-    /// it, and what it is said to be; the arc's centre is `off` beside the normal.
+    /// Returns the largest difference between an arc's depth and a line's, on the arc's normal at the line's
+    /// end in a box on it, and its proved bound. The arc's centre is `off` beside the normal.
     fn seen(off: f64) -> (f64, Off) {
         let mut graph = Graph::default();
         let number = |value: f64| Number::from_f64(value).expect("finite");
@@ -185,7 +195,7 @@ mod tests {
         let [square_d, square_z] = [graph.mul(from_d, from_d), graph.mul(from_z, from_z)];
         let under = graph.add(square_d, square_z);
         let length = graph.sqrt(under).expect("a root");
-        // Below the centre the arc's lowest point is at z = 3, and so is the line.
+        // The arc's lowest point, below its centre, is at z = 3, and so is the line.
         let arc = graph.sub(radius, length);
         let three = graph.number(number(3.0));
         let line = graph.sub(z, three);
@@ -198,7 +208,7 @@ mod tests {
         let cell = Cell::half_plane(Interval::new(2.9, 3.1), Interval::new(low, high));
         let differences = (0..=100).map(|k| {
             let z = low + (high - low) * f64::from(k) / 100.0;
-            // The distance less the way along the normal, without cancellation.
+            // The distance minus the length along the normal, without cancellation.
             let (t, length) = (5.0 - z, (5.0 - z).hypot(off));
             off * off / (t + length)
         });

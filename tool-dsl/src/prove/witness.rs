@@ -1,7 +1,7 @@
-//! What single points show: jumps, shares, and where a solid ends.
+//! Evidence from single points: jumps, shares, and points where a solid ends.
 
-use super::parting::Pair;
-use super::{Seen, TOLERANCE};
+use super::borders::Pair;
+use super::{JumpPoint, TOLERANCE};
 use crate::bound::spread;
 use crate::domain::Domain;
 use crate::expr::interval::Cell;
@@ -10,13 +10,14 @@ use crate::formula::CurveIndex;
 use crate::geometry::outline::{Segment, stations};
 use crate::plan::PlannedTool;
 
-/// Points at which shares are counted.
+/// The number of points from which shares are estimated.
 const SPREAD: usize = 10_000;
-/// Points on each piece of a profile, and how far beside them it is looked, as a part of the tool's size.
+/// The number of points on each segment of a profile, and the distance at which the test points lie beside
+/// them, relative to the tool's size.
 const STATIONS: usize = 8;
 pub(super) const BESIDE: f64 = 1e-4;
 
-/// Asks of points what is felt there.
+/// Evaluates depths and owners at points.
 pub(super) struct Witness<'t> {
     tool: &'t PlannedTool,
     values: Evaluator<'t>,
@@ -31,7 +32,7 @@ impl<'t> Witness<'t> {
         Witness { tool, values: Evaluator::new(&model.graph, asked), size }
     }
 
-    /// How much of the solid each region has, of evenly spread points.
+    /// Returns each region's share of the solid, estimated from evenly spread points.
     pub(super) fn shares(&mut self) -> Vec<f64> {
         let mut counts = vec![0.0; self.tool.model.regions.len()];
         for point in spread(self.tool.model.domain, &self.tool.extent, SPREAD, 0.0) {
@@ -43,8 +44,9 @@ impl<'t> Witness<'t> {
         counts.iter().map(|count| count / all.max(1.0)).collect()
     }
 
-    /// Where two owners have points side by side in a box and depth jumps between them, of a few.
-    pub(super) fn beside(&mut self, (own, other): Pair, cell: Cell) -> Option<Seen> {
+    /// Returns a point in a box with two owners side by side and a jump of depth between them, if a few test
+    /// points find one.
+    pub(super) fn beside(&mut self, (own, other): Pair, cell: Cell) -> Option<JumpPoint> {
         let steps = 6;
         let at = |axis: usize, k: u32| {
             let side = cell.sides[axis];
@@ -54,7 +56,7 @@ impl<'t> Witness<'t> {
             Domain::HalfPlane => &[0, 2],
             Domain::Space => &[0, 1, 2],
         };
-        // Along diagonals and across, from each of a row of points to the next.
+        // Pairs of consecutive points in each row of a grid.
         let mut before = None;
         for first in 0..=steps {
             for second in 0..=steps {
@@ -78,8 +80,12 @@ impl<'t> Witness<'t> {
         None
     }
 
-    /// Where two points of different owners have their border between them, if depth jumps there.
-    fn jumps(&mut self, [mut a, mut b]: [[f64; 3]; 2], owners: [Option<usize>; 2]) -> Option<Seen> {
+    /// Returns the point of the border between two points of different owners, if depth jumps there.
+    fn jumps(
+        &mut self,
+        [mut a, mut b]: [[f64; 3]; 2],
+        owners: [Option<usize>; 2],
+    ) -> Option<JumpPoint> {
         for _ in 0..60 {
             let middle = [0, 1, 2].map(|k| a[k] / 2.0 + b[k] / 2.0);
             match self.owner(middle) {
@@ -101,15 +107,15 @@ impl<'t> Witness<'t> {
         *self.tool.plan.owner.at(&|curve: CurveIndex| self.values.get(curves[curve].value))
     }
 
-    /// Returns points of a profile beside which the solid does not end, of some on each piece, and whether it ends beside
-    /// any.
+    /// Returns points of a profile beside which the solid does not end, from a few per segment, and whether
+    /// it ends beside any.
     pub(super) fn off_profile(&mut self, outline: &[Segment]) -> (Vec<[f64; 3]>, bool) {
         let near = BESIDE * self.size;
         let (mut off, mut ends) = (Vec::new(), false);
         for (index, segment) in outline.iter().enumerate() {
             for [at, inward] in stations(segment, STATIONS) {
                 let others = || outline.iter().enumerate().filter(|(k, _)| *k != index);
-                // Where another piece is as near, either side may be its.
+                // Where another segment is as near, either side may belong to it.
                 if at[0] < 3.0 * near || others().any(|(_, other)| other.away(at) < 3.0 * near) {
                     continue;
                 }

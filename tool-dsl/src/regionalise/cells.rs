@@ -1,36 +1,35 @@
-//! The partition as polygons, for what wants to see it: the planner and drawings.
+//! The partition as polygons, for the planner and for drawings.
 
-use super::section::{Feature, Section, Stop};
+use super::section::{Feature, Obstacle, Section};
 use super::slices::Slice;
 use crate::geometry::outline::{Point, cross, minus, norm};
 use std::mem::take;
 
-/// A polygon of one owner, convex but for the bulge of its curved edges. Edge `k` runs from vertex
-/// `k` to the next.
+/// A polygon of one owner, convex except for the bulges of its curved edges. Edge `k` runs from vertex `k` to the next.
 #[derive(Clone, Debug)]
 pub(crate) struct Cell {
-    /// The part that owns it.
+    /// Index of the part that owns it.
     pub(crate) part: usize,
     pub(crate) vertices: Vec<Point>,
-    /// Whether each edge is straight, rather than a chord of a curve.
+    /// For each edge, true if it is straight rather than a chord of a curve.
     pub(crate) straight: Vec<bool>,
-    /// Where other cells meet it, as far as it is an end of its slice.
+    /// The points at which other cells meet it, as far as they are ends of its slice.
     pub(crate) corners: Vec<Point>,
-    /// Points inside with the weight of their surroundings.
+    /// Points inside, each with the weight of its surroundings.
     pub(crate) samples: Vec<(Point, f64)>,
-    /// Points beside every border.
+    /// Points next to every border.
     pub(crate) witnesses: Vec<Point>,
 }
 
-/// Depths of samples, as parts of a slice's.
+/// Depths of samples, as fractions of the slice's length along the normal.
 const DEPTHS: [f64; 4] = [0.02, 0.12, 0.45, 0.85];
-/// Places of samples along a slice.
+/// Positions of samples along a slice, as fractions of its width.
 const PLACES: [f64; 3] = [0.1, 0.5, 0.9];
-/// The shell near the surface that counts most, in sizes.
+/// The thickness of the layer near the surface that is weighted most, in sizes.
 const SHELL: f64 = 0.05;
 
 impl Cell {
-    /// Twice its area.
+    /// Returns twice the area.
     pub(crate) fn area(&self) -> f64 {
         let Some(first) = self.vertices.first() else { return 0.0 };
         let fan = self.vertices.windows(2);
@@ -38,7 +37,7 @@ impl Cell {
     }
 }
 
-/// The cells of all slices that have an area. Neighbours share the points of their border.
+/// Returns the cells of all slices that have an area. Neighbours share the points of their common border.
 pub(super) fn cells(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -> Vec<Cell> {
     let all: Vec<&Slice> = slices.iter().flatten().collect();
     let mut rims: Vec<Option<Vec<Point>>> = vec![None; all.len()];
@@ -61,10 +60,10 @@ pub(super) fn cells(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -
         .collect()
 }
 
-/// The layer of all slices that is this thin, in sizes.
+/// The thickness of the layer returned by [`shell`], in sizes.
 const LAYER: f64 = 1e-6;
 
-/// Cells beside the outline.
+/// Returns the cells of a thin layer next to the outline.
 pub(super) fn shell(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -> Vec<Cell> {
     let least = 1e-16 * section.size * section.size * LAYER;
     let layer = |slice: &&Slice| {
@@ -91,23 +90,23 @@ pub(super) fn shell(section: &Section<'_>, slices: &[Vec<Slice>], chords: u32) -
 }
 
 fn rim(section: &Section<'_>, slice: &Slice, chords: u32) -> Vec<Point> {
-    if slice.stop == Stop::Centre {
+    if slice.stop == Obstacle::Centre {
         return vec![slice.rim_at(section, 0.5)];
     }
     slice.rim(section, if is_straight(section, slice) { 1 } else { chords })
 }
 
-/// Whether the end of a slice is a straight line.
+/// Returns whether the far end of a slice is a straight line.
 fn is_straight(section: &Section<'_>, slice: &Slice) -> bool {
     let line = |feature: usize| match section.features[feature] {
         Feature::Piece(piece) => Some(section.outline[piece].circle.is_none()),
         Feature::Corner(_) => None,
     };
     match slice.stop {
-        Stop::Axis => true,
-        Stop::Far => line(slice.feature) == Some(true),
-        Stop::Centre => false,
-        Stop::Feature(other) => match (line(slice.feature), line(other)) {
+        Obstacle::Axis => true,
+        Obstacle::Far => line(slice.feature) == Some(true),
+        Obstacle::Centre => false,
+        Obstacle::Feature(other) => match (line(slice.feature), line(other)) {
             (Some(a), Some(b)) => a && b,
             (None, None) => true,
             _ => false,
@@ -115,21 +114,21 @@ fn is_straight(section: &Section<'_>, slice: &Slice) -> bool {
     }
 }
 
-/// The slice on the other side of a rim.
+/// Returns the slice on the other side of a far end.
 fn twin(section: &Section<'_>, all: &[&Slice], index: usize, rim: &[Point]) -> Option<usize> {
     let slice = all[index];
-    let Stop::Feature(other) = slice.stop else { return None };
+    let Obstacle::Feature(other) = slice.stop else { return None };
     let near = |a: Point, b: Point| norm(minus(a, b)) < 1e-7 * section.size;
     (index + 1..all.len()).find(|k| {
         let twin = all[*k];
         twin.feature == other
-            && twin.stop == Stop::Feature(slice.feature)
+            && twin.stop == Obstacle::Feature(slice.feature)
             && near(twin.rim_at(section, 0.0), rim[rim.len() - 1])
             && near(twin.rim_at(section, 1.0), rim[0])
     })
 }
 
-/// A slice cut along normals, so that no piece of a curve is long.
+/// Divides a slice along normals, so that no part of a curved edge is long.
 fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Vec<Cell> {
     let curved = match section.features[slice.feature] {
         Feature::Piece(piece) => section.outline[piece].circle.is_some(),
@@ -144,7 +143,7 @@ fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Ve
             section.seat(slice.feature, t).foot
         })
         .collect();
-    // A straight rim under a curved foot has two points only.
+    // A straight far end opposite a curved segment has only two points.
     let rim: Vec<Point> = if rim.len() == 2 && steps > 1 {
         slice.rim(section, chords)
     } else {
@@ -169,7 +168,7 @@ fn quads(section: &Section<'_>, slice: &Slice, rim: &[Point], chords: u32) -> Ve
         .collect()
 }
 
-/// Drops edges without length.
+/// Removes edges without length.
 fn tidy(vertices: &[Point], straight: &[bool], least: f64) -> (Vec<Point>, Vec<bool>) {
     let count = vertices.len();
     (0..count)

@@ -1,10 +1,11 @@
-//! What is wrong with a profile, before anything is derived of it.
+//! Checks of a profile before regions are derived from it.
 
 use crate::diagnostic::{Diagnostic, ProfileKind, enough};
 use crate::geometry::crossing::meeting;
 use crate::geometry::outline::{Point, Segment, TANGENT, along, cross, dot, minus, norm, reach};
 
-/// What is wrong with a profile that runs from the axis to the axis: its sense, crossings.
+/// Checks a profile that runs from the axis to the axis: contact with the axis, orientation, turns between neighbours,
+/// self-intersections. Returns the diagnostics.
 pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<Diagnostic> {
     let (Some(first), Some(last)) = (outline.first(), outline.last()) else { return Vec::new() };
     let mut diagnostics = Vec::new();
@@ -12,7 +13,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     let [_, high] = reach(outline);
     for (index, segment) in outline.iter().enumerate() {
         let [_, [to, _]] = segment.ends();
-        // An arc's own points, without its ends where they are the profile's.
+        // The point of an arc's circle nearest to the axis, if it lies strictly between the arc's ends.
         let within = segment.round().filter(|(centre, radius, _)| {
             segment.sector([centre[0] - radius, centre[1]]).iter().all(|side| *side > 0.0)
         });
@@ -49,7 +50,7 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
                 .push(Diagnostic::new(segment.span, ProfileKind::AlongAxis { place: show(at) }));
         }
     }
-    // Segments of which something was said: their neighbours would only repeat it.
+    // Segments that already have a diagnostic. Their neighbours would only repeat it.
     let mut said: Vec<usize> = Vec::new();
     for (index, pair) in outline.windows(2).enumerate() {
         let (before, after) = (pair[0].tangent(true), pair[1].tangent(false));
@@ -97,8 +98,8 @@ pub(crate) fn check(outline: &[Segment], show: impl Fn(Point) -> String) -> Vec<
     diagnostics
 }
 
-/// Whether a line follows another at an angle that is not 0 and yet taken for tangent: what lies between the two would be felt by the
-/// wrong one.
+/// Returns whether a line follows another at an angle that is not 0 and yet small enough to count as tangent. Points
+/// between the normals of the two would be assigned to the wrong line.
 fn hardly_turns(before: &Segment, after: &Segment) -> bool {
     if before.round().is_some() || after.round().is_some() {
         return false;
@@ -106,7 +107,7 @@ fn hardly_turns(before: &Segment, after: &Segment) -> bool {
     let (Some([ad, az]), Some([bd, bz])) = (before.direction(), after.direction()) else {
         return false;
     };
-    // What 256 bits round is far less.
+    // The rounding error in 256 bits is far below the lower limit.
     let sine = (&(&ad * &bz) - &(&az * &bd)).to_f64().abs();
     (1e-60..TANGENT).contains(&sine)
 }

@@ -1,26 +1,26 @@
-//! The borders of cells: what they mean at a point, and the expressions that tell their sides.
+//! The borders of cells: their evaluation at a point, and the expressions whose signs give their sides.
 
-use super::section::{Feature, Seat, Section};
+use super::section::{Feature, FootPoint, Section};
 use crate::expr::{Coord, Graph, Id};
-use crate::geometry::outline::{self, Circle, Place, Point, dot, minus};
+use crate::geometry::outline::{self, Circle, ExactPoint, Point, dot, minus};
 use crate::number::Number;
 
-/// A condition on expressions.
+/// A condition on the signs of expressions.
 #[derive(Clone, Debug)]
 pub(crate) enum Test {
     /// The expression is at most 0.
     AtMost(Id),
-    /// All hold.
+    /// All of these conditions hold.
     All(Vec<Test>),
-    /// One holds.
+    /// At least one of these conditions holds.
     Any(Vec<Test>),
-    /// It holds, and not only just.
+    /// The condition holds with strict inequality.
     Strictly(Box<Test>),
 }
 
 impl Test {
-    /// The conditions of a cell, with other sides in place of its own line's or circle's, which
-    /// comes first.
+    /// Returns the conditions of a cell, with `sides` in place of the condition of its own line or circle, which comes
+    /// first.
     pub(crate) fn without_own(self, sides: Vec<Test>) -> Test {
         match self {
             Test::All(all) => Test::All(all.into_iter().skip(1).chain(sides).collect()),
@@ -29,24 +29,24 @@ impl Test {
     }
 }
 
-/// A side of a border, by its meaning.
+/// One side of a border, by its geometric meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Border {
-    /// On this side of a piece's whole line or circle.
+    /// On the interior side of a segment's whole line or circle.
     Inside { piece: usize },
-    /// Not beyond the normal at an end of a piece (0 its start, 1 its end).
+    /// Not beyond the normal at an end of a segment (0 for its start, 1 for its end).
     Before { piece: usize, end: usize },
-    /// Beyond it.
+    /// Beyond the normal at an end of a segment.
     Past { piece: usize, end: usize },
-    /// No nearer to another feature's line, circle or corner.
+    /// No farther from `this` feature's line, circle or corner than from the other's.
     Nearer { this: usize, other: usize },
     /// Up to the normal of a feature at a parameter.
     UpTo { feature: usize, at: f64 },
-    /// Beyond it.
+    /// Beyond the normal of a feature at a parameter.
     From { feature: usize, at: f64 },
 }
 
-/// An arc is measured from a point of its own when its radius is so many sizes.
+/// The radius, in sizes of the outline, above which an arc's distance is computed from a point on the arc.
 const FLAT: f64 = 2.0;
 
 impl Border {
@@ -63,8 +63,8 @@ impl Border {
         }
     }
 
-    /// How far along a normal a straight border is met; NaN for others.
-    pub(super) fn met(&self, section: &Section<'_>, seat: &Seat) -> f64 {
+    /// Returns the distance along a normal at which a straight border is met; NaN for other borders.
+    pub(super) fn met(&self, section: &Section<'_>, seat: &FootPoint) -> f64 {
         let value = |p: Point| match *self {
             Border::Before { piece, end } | Border::Past { piece, end } => {
                 section.outline[piece].sector(p)[end]
@@ -78,7 +78,7 @@ impl Border {
         section.size * near / (near - far)
     }
 
-    /// Its condition; `None` where a constant has no value.
+    /// Returns the condition of this side; `None` where a constant has no value.
     pub(super) fn test(&self, section: &Section<'_>, graph: &mut Graph) -> Option<Test> {
         let at_most = |id: Id| Some(Test::AtMost(id));
         match *self {
@@ -117,14 +117,14 @@ impl Section<'_> {
         circle.radius.to_f64() > FLAT * self.size
     }
 
-    pub(super) fn corner(&self, behind: Option<usize>) -> &Place {
+    pub(super) fn corner(&self, behind: Option<usize>) -> &ExactPoint {
         match behind {
             Some(piece) => &self.outline[piece].to,
             None => &self.outline[0].from,
         }
     }
 
-    /// The expression of a feature's distance.
+    /// Returns the expression of a feature's distance.
     pub(super) fn depth(&self, graph: &mut Graph, feature: usize) -> Option<Id> {
         match self.features[feature] {
             Feature::Piece(piece) => self.piece_depth(graph, piece),
@@ -132,9 +132,11 @@ impl Section<'_> {
         }
     }
 
-    /// The signed distance to a piece's line or circle. `r - |p - c|` loses the digits that `r` has
-    /// more than the tool is large; a flat arc is measured from its middle `m` instead, with `w`
-    /// from there and `e` the way out from the centre: `-(w² + 2 r e·w) / (r + |p - c|)`.
+    /// Returns the expression of the signed distance from a segment's line or circle.
+    ///
+    /// `r - |p - c|` loses as many digits as `r` exceeds the tool's size by. The distance from a flat arc is therefore
+    /// computed from its middle `m`, with `w` the vector from there and `e` the outward direction from the centre:
+    /// `-(w² + 2 r e·w) / (r + |p - c|)`.
     fn piece_depth(&self, graph: &mut Graph, piece: usize) -> Option<Id> {
         let segment = &self.outline[piece];
         let Some(circle) = segment.circle.as_ref().filter(|circle| self.flat(circle)) else {
@@ -157,20 +159,20 @@ impl Section<'_> {
         Some(if circle.convex { graph.neg(out) } else { out })
     }
 
-    /// How far a point is beyond the normal of a feature at a parameter, in radii.
+    /// Returns the signed distance of a point beyond the normal of a feature at a parameter.
     fn beyond(&self, feature: usize, at: f64, p: Point) -> f64 {
         let (from, way) = self.spoke_line(feature, at);
         dot(way, minus(p, from))
     }
 
-    /// A point of a normal, and the direction across it toward larger parameters.
+    /// Returns a point of a normal, and the direction across it toward larger parameters.
     fn spoke_line(&self, feature: usize, at: f64) -> (Point, Point) {
         let seat = self.seat(feature, at);
         let way = match self.features[feature] {
             Feature::Piece(piece) => match self.outline[piece].round() {
                 None => self.outline[piece].tangent(false),
                 Some((_, _, convex)) => {
-                    // Turning left about a convex arc's centre, right about a concave one's.
+                    // Counter-clockwise about the centre of a convex arc, clockwise about that of a concave one.
                     let out = if convex { [-seat.normal[0], -seat.normal[1]] } else { seat.normal };
                     if convex { [-out[1], out[0]] } else { [out[1], -out[0]] }
                 }
@@ -189,13 +191,13 @@ impl Section<'_> {
     }
 }
 
-/// The direction to a feature's surface, before it is made a unit vector.
+/// Returns the direction to a feature's surface, not normalised.
 pub(crate) fn course(
     graph: &mut Graph,
     outline: &[outline::Segment],
     feature: Feature,
 ) -> Option<[Id; 2]> {
-    let from = |graph: &mut Graph, place: &Place| {
+    let from = |graph: &mut Graph, place: &ExactPoint| {
         let here = [Coord::D, Coord::Z].map(|coord| graph.coord(coord));
         let there = place.clone().map(|part| graph.number(part));
         [graph.sub(here[0], there[0]), graph.sub(here[1], there[1])]

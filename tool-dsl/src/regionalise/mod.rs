@@ -1,10 +1,9 @@
-//! The nearest-feature partition of a profile: regions that nobody had to write.
+//! The nearest-feature partition of a profile: derives the regions of a tool from its outline.
 //!
-//! Features are the pieces of the profile and its reflex corners; the axis is a mirror and not a
-//! feature, and a tangent joint owns nothing. The outside is the inside of the profile walked the
-//! other way. `section` knows the features, `slices` the exact partition, `curve` the expressions of
-//! borders and `nearer` those between two features, `cells` the partition as polygons; here borders
-//! are put together to conditions.
+//! Features are the segments of the profile and its reflex corners. The axis is a mirror and not a feature, and a
+//! tangent joint has no cell of its own. The outside is the inside of the profile traversed in the opposite direction.
+//! `section` has the features, `slices` the exact partition, `curve` the expressions of borders, `nearer` those of
+//! borders between two features, and `cells` the partition as polygons. This module combines borders to conditions.
 
 pub(crate) mod cells;
 pub(crate) mod check;
@@ -20,13 +19,13 @@ use crate::geometry::outline::{Point, Segment, turn};
 use curve::Border;
 pub(crate) use curve::{Test, course};
 pub(crate) use section::Feature;
-use section::{Section, Stop};
+use section::{Obstacle, Section};
 use slices::Slice;
 
-/// The error of depths that are computed from a partition, as a part of its size.
+/// The error of depths computed from a partition, relative to the partition's size.
 pub(crate) const ROUNDING: f64 = 1e-10;
 
-/// The cell of a feature: where its distance is the least.
+/// The cell of a feature, in which its distance is the least: its condition and its distance.
 #[derive(Clone, Debug)]
 pub(crate) struct Derived {
     pub(crate) feature: Feature,
@@ -34,7 +33,7 @@ pub(crate) struct Derived {
     pub(crate) depth: Id,
 }
 
-/// Why a profile could not be divided, with the place where it was noticed.
+/// A profile that could not be divided, with the point at which this was noticed.
 pub(crate) struct Undivided(pub(crate) Point);
 
 /// The exact partition of one side of an outline.
@@ -46,36 +45,41 @@ pub(crate) struct Partition {
 }
 
 impl Partition {
-    /// Of the left side of an outline; `outer` if that is the outside of the solid.
+    /// Divides the left side of an outline. `outer` is true if that is the outside of the solid.
     pub(crate) fn new(outline: Vec<Segment>, outer: bool) -> Partition {
         let slices = slices::slices(&Section::new(&outline, outer));
         Partition { outline, outer, slices }
     }
 
-    /// The conditions and distances of its cells, feature by feature.
+    /// Returns the conditions and distances of the cells, feature by feature.
+    ///
+    /// # Errors
+    ///
+    /// If the derived conditions are wrong at a sampled point, or a constant has no value.
     pub(crate) fn parts(&self, graph: &mut Graph) -> Result<Vec<Derived>, Undivided> {
         let section = Section::new(&self.outline, self.outer);
         let slices = self.slices.iter().enumerate();
         slices.map(|(feature, slices)| section.part(graph, feature, slices)).collect()
     }
 
-    /// The side of a piece's line or circle that is its own.
+    /// Returns the condition of the interior side of a segment's line or circle.
     pub(crate) fn inside(&self, graph: &mut Graph, piece: usize) -> Option<Test> {
         Border::Inside { piece }.test(&Section::new(&self.outline, self.outer), graph)
     }
 
-    /// Returns what the points of each part are nearest to.
+    /// Returns the feature of each part, which is the one nearest to its points.
     pub(crate) fn features(&self) -> Vec<Feature> {
         Section::new(&self.outline, self.outer).features
     }
 
-    /// The part of a piece, by its place in the outline.
+    /// Returns the part of a segment, by the segment's index in the outline.
     pub(crate) fn part_of(&self, piece: usize) -> Option<usize> {
         let section = Section::new(&self.outline, self.outer);
         section.features.iter().position(|feature| *feature == Feature::Piece(piece))
     }
 
-    /// A thin layer of it beside the outline, each cell with the piece that it lies on or behind.
+    /// Returns a thin layer of the partition next to the outline. Each cell has the index of the segment on which it
+    /// lies or which its corner follows.
     pub(crate) fn shell(&self, chords: u32) -> Vec<(usize, cells::Cell)> {
         let section = Section::new(&self.outline, self.outer);
         let piece = |part: usize| match section.features[part] {
@@ -86,13 +90,14 @@ impl Partition {
         shell.into_iter().map(|cell| (piece(cell.part), cell)).collect()
     }
 
-    /// How many pieces the outline has.
+    /// Returns the number of segments of the outline.
     pub(crate) fn pieces(&self) -> usize {
         self.outline.len()
     }
 
-    /// Returns a point whose distance from the outline, by brute force, is not that from the line, circle or corner of
-    /// the part that it is said to be in (`part_at` is given both). Looks along the normals of all cells, most closely near their ends.
+    /// Returns a point whose distance from the outline, computed by brute force, differs from its distance from the
+    /// line, circle or corner of the part assigned to it. `part_at` assigns a part, given the point and its distance.
+    /// The points are taken along the normals of all cells, most densely near the ends.
     pub(crate) fn misplaced(&self, part_at: impl Fn(Point, f64) -> Option<usize>) -> Option<Point> {
         let section = Section::new(&self.outline, self.outer);
         let mut probes = self.slices.iter().flatten().flat_map(|slice| slice.probes(&section));
@@ -105,13 +110,13 @@ impl Partition {
         })
     }
 
-    /// Polygons that cover it as far as is looked, with so many chords to a curved edge.
+    /// Returns polygons that cover the partition up to its outer limit, with `chords` chords per curved edge.
     pub(crate) fn cells(&self, chords: u32) -> Vec<cells::Cell> {
         cells::cells(&Section::new(&self.outline, self.outer), &self.slices, chords)
     }
 }
 
-/// A border that bounds a cell where none of the exceptions holds.
+/// A border that bounds a cell, except where one of the exceptions holds.
 struct Bound {
     border: Border,
     unless: Vec<Border>,
@@ -133,26 +138,27 @@ impl Bound {
         }
         let mut any = vec![border];
         for other in &self.unless {
-            // On its own border an exception is none: there the neighbour's foot is its end.
+            // Exceptions are strict: on an exception's own border the neighbour's foot is its end point, so the border
+            // applies.
             any.push(Test::Strictly(Box::new(other.test(section, graph)?)));
         }
         Some(Test::Any(any))
     }
 }
 
-/// Where along a slice borders are tried.
+/// Positions along a slice at which borders are checked.
 const PARTS: [f64; 17] = [
     0.002, 0.01, 0.04, 0.1, 0.17, 0.25, 0.33, 0.42, 0.5, 0.58, 0.67, 0.75, 0.83, 0.9, 0.96, 0.99,
     0.998,
 ];
 
 impl Section<'_> {
-    /// The conditions of one feature's cell.
+    /// Returns the conditions of one feature's cell.
     ///
-    /// Along a normal, the distance to the own foot grows by 1 and any signed distance by at most 1,
-    /// so a border once crossed is not crossed back: between the normals of its ends, a cell is what
-    /// no neighbour's border cuts off. A neighbour's line or circle reaches farther than the piece of
-    /// it, and where it would cut into the cell it is made an exception of.
+    /// Along a normal, the distance from the feature grows at rate 1, and any signed distance grows at most at rate 1,
+    /// so a border that was crossed is not crossed back. Between the normals at its ends, a cell is therefore the set
+    /// of points that no neighbour's border cuts off. A neighbour's line or circle extends beyond its segment; where
+    /// the extension would cut into the cell, it is made an exception.
     fn part(
         &self,
         graph: &mut Graph,
@@ -182,12 +188,12 @@ impl Section<'_> {
         Ok(Derived { feature: self.features[feature], inside: Test::All(tests), depth })
     }
 
-    /// The borders to neighbours, each once. Exceptions are the neighbour's ends or, with `spokes`,
-    /// the own normals at the slices' ends.
+    /// Returns the borders to neighbours, each once. Exceptions are the normals at the neighbour's ends or, with
+    /// `spokes`, the feature's own normals at the slices' ends.
     fn neighbours(&self, feature: usize, slices: &[Slice], spokes: bool) -> Vec<Bound> {
         let mut bounds: Vec<Bound> = Vec::new();
         for slice in slices {
-            let Stop::Feature(other) = slice.stop else { continue };
+            let Obstacle::Feature(other) = slice.stop else { continue };
             let border = Border::Nearer { this: feature, other };
             if bounds.iter().any(|bound| bound.border == border) {
                 continue;
@@ -227,7 +233,7 @@ impl Section<'_> {
         bounds
     }
 
-    /// A point that the borders to neighbours claim wrongly, or cut off.
+    /// Returns a point that the borders to neighbours assign wrongly to the cell, or wrongly cut off.
     fn wrong(&self, bounds: &[Bound], slices: &[Slice]) -> Option<Point> {
         let holds = |p: Point| bounds.iter().all(|bound| bound.holds(self, p));
         for slice in slices.iter().filter(|slice| !slice.is_thin(self)) {
@@ -238,13 +244,13 @@ impl Section<'_> {
                 if let Some(p) = own.into_iter().find(|p| !holds(*p)) {
                     return Some(p);
                 }
-                if !matches!(slice.stop, Stop::Feature(_)) {
+                if !matches!(slice.stop, Obstacle::Feature(_)) {
                     continue;
                 }
                 let most = self.focus(slice.feature);
                 let reaches =
                     [1.0 + 1e-5, 1.05, 1.2, 1.5, 2.0, 3.0, 6.0].map(|times| times * radius);
-                // Just behind where an exception begins.
+                // The points just before and behind the start of an exception.
                 let edges = bounds.iter().flat_map(|bound| &bound.unless).flat_map(|border| {
                     let r = border.met(self, &seat);
                     [1e-9, 1e-4, -1e-9, -1e-4].map(|step| r + step * self.size)
@@ -265,7 +271,7 @@ impl Section<'_> {
         None
     }
 
-    /// Where the normals of a feature meet, beyond which its distance shrinks again.
+    /// Returns the distance at which the normals of a feature meet, beyond which its distance shrinks again.
     fn focus(&self, feature: usize) -> f64 {
         match self.features[feature] {
             Feature::Piece(piece) => match self.outline[piece].round() {
@@ -276,8 +282,8 @@ impl Section<'_> {
         }
     }
 
-    /// The own line or circle, and the normals at its ends where the neighbours do not imply them:
-    /// between two lines that meet in a corner the bisector does.
+    /// Returns the feature's own line or circle, and the normals at its ends where the neighbours do not imply them.
+    /// Between two lines that meet in a convex corner, the bisector implies them.
     fn ends(&self, feature: usize, neighbours: &[Bound]) -> Vec<Bound> {
         let mut bounds = Vec::new();
         match self.features[feature] {
@@ -303,7 +309,7 @@ impl Section<'_> {
                             });
                             convex && lines && compared
                         }
-                        // At the axis half of the mirrored corner is enough.
+                        // At the axis, half of the mirrored corner suffices.
                         None => {
                             let t = segment.tangent(end == 1);
                             let way = if end == 1 { t } else { [-t[0], -t[1]] };

@@ -1,16 +1,16 @@
-//! Which of two features is nearer, told without square roots as far as may be.
+//! Conditions for one of two features to be nearer, without square roots as far as possible.
 
 use super::curve::Test;
 use super::section::{Feature, Section};
 use crate::expr::polynomial::Polynomial;
 use crate::expr::{Coord, Graph, Id};
-use crate::geometry::outline::{self, Circle, Place, minus};
+use crate::geometry::outline::{self, Circle, ExactPoint, minus};
 use crate::number::Number;
 
-/// What a feature is to a comparison of distances.
+/// The kind of a feature, in a comparison of distances.
 enum Kind<'o> {
     Line(usize),
-    Point(&'o Place),
+    Point(&'o ExactPoint),
     Arc(&'o Circle),
     /// An arc too flat to be compared by squares.
     Flat,
@@ -28,14 +28,18 @@ impl Section<'_> {
         }
     }
 
-    /// Whether one feature is no farther than another, inside: by squares instead of roots, in
-    /// coordinates about the corner or centre, so that nothing large cancels.
+    /// Returns the condition for one feature to be no farther than another, for points inside.
     ///
-    /// With `A = |p - c|²`, `B` the same of the other, `l` the distance to a line, `r` a radius:
-    /// a corner is nearer than a line where `A ≤ l²`, a concave arc where `A ≤ (l + r)²`, a convex
-    /// one where `l ≥ r` or `(r - l)² ≤ A` (measured from where the two meet, if they do:
-    /// [`from_their_corner`]), an arc is nearer than a corner where
-    /// `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`; two arcs as `arcs` says.
+    /// Squares are compared instead of roots, in coordinates about the corner or centre, so that nothing large cancels.
+    /// Let `A = |p - c|²` for the first corner or centre, `B` the same for the other, `l` the distance to a line, and
+    /// `r` a radius.
+    ///
+    /// - A corner is nearer than a line where `A ≤ l²`.
+    /// - A concave arc is nearer than a line where `A ≤ (l + r)²`.
+    /// - A convex arc is nearer than a line where `l ≥ r` or `(r - l)² ≤ A`. If the two are adjacent, this is computed
+    ///   from their common corner ([`from_their_corner`]).
+    /// - An arc is nearer than a corner where `L = r² + A - B ≤ 0` or `L² ≤ 4 r² A`.
+    /// - [`arcs`] has the condition for two arcs.
     pub(super) fn nearer(&self, graph: &mut Graph, this: usize, other: usize) -> Option<Test> {
         Some(match (self.kind(this), self.kind(other)) {
             (Kind::Line(a), Kind::Line(b)) => Test::AtMost(self.bisector(graph, a, b)?),
@@ -73,8 +77,8 @@ impl Section<'_> {
         })
     }
 
-    /// The difference of two lines' distances. Where neither is oblique its terms are exact; else
-    /// it is measured from where they meet, since its constant would be the sum of two offsets.
+    /// Returns the difference of two lines' distances. If neither line is oblique, its terms are exact. Otherwise it is
+    /// computed from the intersection of the lines, since its constant would be the sum of two offsets.
     fn bisector(&self, graph: &mut Graph, a: usize, b: usize) -> Option<Id> {
         let [first, second] = [a, b].map(|piece| &self.outline[piece]);
         let ([ad, az], [bd, bz]) = (first.direction()?, second.direction()?);
@@ -93,8 +97,8 @@ impl Section<'_> {
         Some(outline::anchored(graph, [&bz - &az, &ad - &bd], &meet))
     }
 
-    /// `|p - q|² - l²`. Beside a line along a coordinate one square cancels.
-    fn parabola(&self, graph: &mut Graph, q: &Place, line: usize) -> Option<Id> {
+    /// Returns `|p - q|² - l²`. For a line parallel to an axis of coordinates, one square cancels.
+    fn parabola(&self, graph: &mut Graph, q: &ExactPoint, line: usize) -> Option<Id> {
         let segment = &self.outline[line];
         let [tx, tz] = segment.direction()?;
         let ways = [-&tz, tx];
@@ -120,8 +124,8 @@ impl Section<'_> {
         Some(graph.sub(away, square))
     }
 
-    /// Where the pieces of two features meet, if they follow each other.
-    fn joint(&self, a: usize, b: usize) -> Option<&Place> {
+    /// Returns the common corner of two features' segments, if they are adjacent.
+    fn joint(&self, a: usize, b: usize) -> Option<&ExactPoint> {
         let (Feature::Piece(a), Feature::Piece(b)) = (self.features[a], self.features[b]) else {
             return None;
         };
@@ -133,18 +137,18 @@ impl Section<'_> {
         graph: &mut Graph,
         arc: &Circle,
         line: usize,
-        (joint, nearer): (Option<&Place>, bool),
+        (joint, nearer): (Option<&ExactPoint>, bool),
     ) -> Option<Test> {
         let depth = self.outline[line].depth(graph)?;
         let radius = graph.number(arc.radius.clone());
         let away = outline::squared(graph, &arc.centre);
-        // The radius less the distance to the line, as the arc bends.
+        // The radius minus the signed distance to the line for a convex arc; their sum for a concave one.
         let rest = if arc.convex { graph.sub(radius, depth) } else { graph.add(depth, radius) };
         let square = graph.mul(rest, rest);
         let mut difference = graph.sub(away, square);
         if let Some(joint) = joint {
             let anchored = from_their_corner(graph, arc, self.outline[line].direction()?, joint);
-            graph.also(anchored, difference);
+            graph.add_proof_alias(anchored, difference);
             difference = anchored;
         }
         let opposite = graph.neg(difference);
@@ -157,17 +161,17 @@ impl Section<'_> {
         Some(if nearer { Test::Any(both) } else { Test::All(both) })
     }
 
-    /// Whether squares of an arc's radius round no more than the distance to a corner beside it can
-    /// bear: the error of `L - 2 r √A` is one of `r²`, and of the distances that by their sum.
-    fn fits(&self, arc: &Circle, q: &Place) -> bool {
+    /// Returns whether an arc and a corner can be compared by squares accurately enough. The error of `L - 2 r √A` is a
+    /// rounding error of `r²`; the error of the distances is that divided by their sum.
+    fn fits(&self, arc: &Circle, q: &ExactPoint) -> bool {
         let radius = arc.radius.to_f64();
         let off = minus(outline::doubles(q), outline::doubles(&arc.centre));
         let gap = (outline::norm(off) - radius).abs();
         radius * radius <= 0.25 * self.size * gap
     }
 
-    /// The same of two arcs, of which the smaller radius bounds the sum below if they bend in
-    /// different ways.
+    /// Returns the same for two arcs. If their convexity differs, the smaller radius is a lower bound of the sum of the
+    /// distances.
     fn alike(&self, a: &Circle, b: &Circle) -> bool {
         let [a_radius, b_radius] = [a, b].map(|arc| arc.radius.to_f64());
         let sum = a_radius + b_radius;
@@ -175,8 +179,9 @@ impl Section<'_> {
     }
 }
 
-/// Whether an arc is nearer than a corner: `(r - √A)² ≤ B`, with the root that its depth wants too.
-fn near_arc(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<Test> {
+/// Compares an arc with a corner by `(r - √A)² ≤ B`, with the root that the arc's depth needs anyway. With `nearer`,
+/// the condition is for the arc to be nearer, otherwise for the corner.
+fn near_arc(graph: &mut Graph, arc: &Circle, q: &ExactPoint, nearer: bool) -> Option<Test> {
     let away = outline::distance(graph, &arc.centre)?;
     let radius = graph.number(arc.radius.clone());
     let depth = if arc.convex { graph.sub(radius, away) } else { graph.sub(away, radius) };
@@ -185,10 +190,11 @@ fn near_arc(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<
     Some(Test::AtMost(ordered(graph, square, corner, nearer)))
 }
 
-/// `A - (r ∓ l)²` of an arc, convex or not, and a line along `t` that begins or ends at its end `q`. With
-/// `w = p - q` and the line's normal `n` it is `(t · w)² + 2 (q - c ± r n) · w`: beside the corner next
-/// to nothing rounds, whatever the radius.
-fn from_their_corner(graph: &mut Graph, arc: &Circle, [td, tz]: [Number; 2], q: &Place) -> Id {
+/// Returns `A - (r ∓ l)²` of a convex or concave arc and a line along `t` that begins or ends at the arc's end `q`.
+///
+/// With `w = p - q` and the line's normal `n` it is `(t · w)² + 2 (q - c ± r n) · w`. Near the corner its rounding
+/// error is negligible, whatever the radius.
+fn from_their_corner(graph: &mut Graph, arc: &Circle, [td, tz]: [Number; 2], q: &ExactPoint) -> Id {
     let radius = if arc.convex { arc.radius.clone() } else { -&arc.radius };
     // The normal is the direction turned left.
     let normal = [-&tz, td.clone()];
@@ -199,7 +205,7 @@ fn from_their_corner(graph: &mut Graph, arc: &Circle, [td, tz]: [Number; 2], q: 
     graph.add(square, rise)
 }
 
-/// Expanded, so that squares which cancel are not subtracted at every point.
+/// Returns the difference as an expanded polynomial, so that squares which cancel are not subtracted at every point.
 fn expanded(graph: &mut Graph, difference: Id) -> Id {
     match Polynomial::of(graph, difference) {
         Some(polynomial) => polynomial.expression(graph),
@@ -207,12 +213,12 @@ fn expanded(graph: &mut Graph, difference: Id) -> Id {
     }
 }
 
-/// `a - b` or, the other way round, `b - a`.
+/// Returns `a - b`, or `b - a` if not `forward`.
 fn ordered(graph: &mut Graph, a: Id, b: Id, forward: bool) -> Id {
     if forward { graph.sub(a, b) } else { graph.sub(b, a) }
 }
 
-/// `edge ≤ 0` or `a ≤ b`; the opposite: `edge ≥ 0` and `a ≥ b`.
+/// Returns the condition `edge ≤ 0` or `a ≤ b`; if not `positive`, `edge ≥ 0` and `a ≥ b`.
 fn either(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test {
     let curve = ordered(graph, a, b, positive);
     let edge = if positive { edge } else { graph.neg(edge) };
@@ -220,8 +226,8 @@ fn either(graph: &mut Graph, edge: Id, (a, b): (Id, Id), positive: bool) -> Test
     if positive { Test::Any(both) } else { Test::All(both) }
 }
 
-/// `|p - a|² - |p - b|² + extra` as a linear expression.
-fn lead(graph: &mut Graph, a: &Place, b: &Place, extra: &Number) -> Option<Id> {
+/// Returns `|p - a|² - |p - b|² + extra` as a linear expression.
+fn lead(graph: &mut Graph, a: &ExactPoint, b: &ExactPoint, extra: &Number) -> Option<Id> {
     let two = Number::int(2);
     let way = [0, 1].map(|k| &two * &(&b[k] - &a[k]));
     let apart = &(&way[0] * &way[0]) + &(&way[1] * &way[1]);
@@ -230,33 +236,34 @@ fn lead(graph: &mut Graph, a: &Place, b: &Place, extra: &Number) -> Option<Id> {
     Some(graph.add(rise, constant))
 }
 
-fn arc_point(graph: &mut Graph, arc: &Circle, q: &Place, nearer: bool) -> Option<Test> {
+fn arc_point(graph: &mut Graph, arc: &Circle, q: &ExactPoint, nearer: bool) -> Option<Test> {
     let square = &arc.radius * &arc.radius;
     let lead = lead(graph, &arc.centre, q, &square)?;
     let (left, right) = conic(graph, lead, &arc.radius, &arc.centre);
     Some(either(graph, lead, (left, right), nearer))
 }
 
-/// The two sides of `lead² ≤ 4 t² |p - c|²`.
-fn conic(graph: &mut Graph, lead: Id, t: &Number, centre: &Place) -> (Id, Id) {
+/// Returns the two sides of `lead² ≤ 4 t² |p - c|²`.
+fn conic(graph: &mut Graph, lead: Id, t: &Number, centre: &ExactPoint) -> (Id, Id) {
     let left = graph.mul(lead, lead);
     let factor = graph.number(&(t * t) * &Number::int(4));
     let away = outline::squared(graph, centre);
     (left, graph.mul(factor, away))
 }
 
-/// Whether one arc is no farther than another.
+/// Returns the condition for one arc to be no farther than another.
 ///
-/// Both convex, `D = r₂ - r₁ ≥ 0`, `M = B - A - D²`: the second is nearer where `M ≥ 0` and
-/// `M² ≥ 4 D² A`. Both concave: where `M ≤ 0` or `M² ≤ 4 D² A`. The first convex, the second
-/// concave, `T = r₁ + r₂`, `L = T² + A - B`: where `L ≥ 0` and `L² ≥ 4 T² A`.
+/// - Both convex, with `D = r₂ - r₁ ≥ 0` and `M = B - A - D²`: the second is nearer where `M ≥ 0` and `M² ≥ 4 D² A`.
+/// - Both concave: the second is nearer where `M ≤ 0` or `M² ≤ 4 D² A`.
+/// - The first convex, the second concave, with `T = r₁ + r₂` and `L = T² + A - B`: the second is nearer where `L ≥ 0`
+///   and `L² ≥ 4 T² A`.
 fn arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
     if this.convex != other.convex {
         let (first, second) = if this.convex { (this, other) } else { (other, this) };
         let sum = &first.radius + &second.radius;
         let lead = lead(graph, &first.centre, &second.centre, &(&sum * &sum))?;
         let (left, right) = conic(graph, lead, &sum, &first.centre);
-        // Where the first is nearer: L ≤ 0 or L² ≤ 4 T² A.
+        // The first is nearer where L ≤ 0 or L² ≤ 4 T² A.
         return Some(either(graph, lead, (left, right), this.convex));
     }
     let swapped = this.radius > other.radius;
@@ -264,7 +271,7 @@ fn arcs(graph: &mut Graph, this: &Circle, other: &Circle) -> Option<Test> {
     let difference = &second.radius - &first.radius;
     let square = &difference * &difference;
     let lead = lead(graph, &second.centre, &first.centre, &-&square)?;
-    // Concave: the second is nearer where M ≤ 0; convex: the first is.
+    // Where M ≤ 0, the second is nearer if both are concave, the first if both are convex.
     let positive = swapped != this.convex;
     if difference.is_zero() {
         return Some(Test::AtMost(if positive { lead } else { graph.neg(lead) }));

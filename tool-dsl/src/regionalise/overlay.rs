@@ -1,4 +1,4 @@
-//! A partition divided once more, by conditions.
+//! Divides a partition further, by conditions.
 
 use super::cells::Cell;
 use crate::expr::Graph;
@@ -7,10 +7,15 @@ use crate::formula::Curve;
 use crate::formula::{ANY, Formula, NEGATIVE, POSITIVE, Signs};
 use crate::geometry::cut::{Cut, Cutter, Edge, Piece};
 use crate::geometry::outline::{Point, Segment, minus, norm, reach};
-use crate::geometry::shape::Shape;
+use crate::geometry::shape::CurveFunction;
 
-/// A cell as a piece whose curved edges know their curve.
-pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], size: f64) -> Piece {
+/// Returns a cell as a polygon whose curved edges refer to their curves.
+pub(crate) fn piece(
+    cell: &Cell,
+    owner: Option<usize>,
+    shapes: &[CurveFunction<'_>],
+    size: f64,
+) -> Piece {
     let count = cell.vertices.len();
     let mut edges = vec![Edge::Straight; count];
     let mut run: Vec<usize> = Vec::new();
@@ -18,7 +23,7 @@ pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], siz
         if k < count && !cell.straight[k] {
             run.push(k);
         } else if !run.is_empty() {
-            let on = |shape: &Shape<'_>| {
+            let on = |shape: &CurveFunction<'_>| {
                 run.iter().all(|k| {
                     [*k, (*k + 1) % count].iter().all(|v| shape.side(cell.vertices[*v], size) == 0)
                 })
@@ -30,12 +35,12 @@ pub(crate) fn piece(cell: &Cell, owner: Option<usize>, shapes: &[Shape<'_>], siz
     Piece { owner, origin: 0, vertices: cell.vertices.clone(), edges }
 }
 
-/// A piece cut until each part has conditions that hold all over it, or not at all; with each part
-/// those that hold.
+/// Cuts a polygon until each condition holds everywhere or nowhere in each part. Returns each part with the indices of
+/// the conditions that hold in it.
 pub(crate) fn divided(
     piece: Piece,
     conditions: &[Formula],
-    shapes: &[Shape<'_>],
+    shapes: &[CurveFunction<'_>],
     size: f64,
 ) -> Vec<(Piece, Vec<usize>)> {
     let mut parts = Vec::new();
@@ -43,15 +48,15 @@ pub(crate) fn divided(
     parts
 }
 
-/// The signs of the curves all over a piece, and how many conditions they decide, from the first on. Signs only
-/// become known, so what is decided stays so.
+/// The signs of the curves on a whole polygon, and the number of conditions, from the first on, that they decide. Signs
+/// are only added, so decided conditions stay decided.
 type Known = (Vec<Signs>, usize);
 
 fn divide(
     piece: Piece,
     (mut signs, mut decided): Known,
     conditions: &[Formula],
-    shapes: &[Shape<'_>],
+    shapes: &[CurveFunction<'_>],
     size: f64,
     parts: &mut Vec<(Piece, Vec<usize>)>,
 ) {
@@ -81,26 +86,27 @@ fn divide(
     }
 }
 
-/// Which parts of a partition and which conditions have points in common.
+/// The pairs of parts and conditions that have points in common.
 pub(crate) struct Overlay {
-    /// Part and condition.
+    /// Indices of part and condition.
     pub(crate) pairs: Vec<(usize, usize)>,
-    /// A point that no condition holds at.
+    /// A point at which no condition holds.
     pub(crate) bare: Option<Point>,
-    /// Two conditions and a point where both hold.
+    /// Two conditions, and a point where both hold.
     pub(crate) double: Option<(usize, usize, Point)>,
 }
 
-/// Lays conditions over cells of parts. What may lie between a curve and its chord counts if a point of it is clearly inside.
+/// Intersects conditions with the cells of parts. The area between a curve and its chord counts only if a point of it
+/// is clearly inside.
 pub(crate) fn overlay(
     cells: &[Cell],
     parts: &[&Formula],
     conditions: &[Formula],
-    shapes: &[Shape<'_>],
+    shapes: &[CurveFunction<'_>],
     size: f64,
 ) -> Overlay {
     let mut found = Overlay { pairs: Vec::new(), bare: None, double: None };
-    // On both sides of every curve that a point is as good as on.
+    // A point within rounding of a curve counts as inside only if it is so for both signs of the curve.
     let inside = |formula: &Formula, p: Point| {
         let value = |curve: usize, sign: f64| match shapes[curve].side(p, size) {
             0 => sign,
@@ -138,15 +144,15 @@ pub(crate) fn overlay(
     found
 }
 
-/// Curves as shapes about the middle of an outline's box, and the box's diagonal.
+/// Returns curves as shapes about the centre of the outline's bounding box, and the diagonal of that box.
 pub(crate) fn shapes<'g>(
     graph: &'g Graph,
     curves: &[Curve],
     outline: &[Segment],
-) -> (Vec<Shape<'g>>, f64) {
+) -> (Vec<CurveFunction<'g>>, f64) {
     let [low, high] = reach(outline);
     let middle = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
     let mut polynomials = Polynomials::default();
-    let shape = |curve: &Curve| Shape::new(graph, curve.value, middle, &mut polynomials);
+    let shape = |curve: &Curve| CurveFunction::new(graph, curve.value, middle, &mut polynomials);
     (curves.iter().map(shape).collect(), norm(minus(high, low)))
 }

@@ -1,61 +1,61 @@
-//! One side of an outline, as features that points of it can be nearest to, and how far a ball that
-//! leaves one feature grows before it touches another.
+//! One side of an outline, as features to which points can be nearest, and the radius to which a ball that touches one
+//! feature grows before it touches another.
 
 use crate::geometry::outline::{Point, Segment, cross, dot, minus, norm, reach, turn};
 use std::f64::consts::PI;
 
-/// What a point can be nearest to.
+/// A feature to which a point can be nearest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Feature {
-    /// A piece, by its place in the outline.
+    /// A segment, by its index in the outline.
     Piece(usize),
-    /// The reflex corner behind a piece; before the first for `None`.
+    /// The reflex corner at the end of a segment; for `None`, the one before the first segment.
     Corner(Option<usize>),
 }
 
-/// A point of a feature and the unit normal there, into the section.
+/// A point of a feature, and the unit normal there, which points into the section.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seat {
+pub(super) struct FootPoint {
     pub(super) foot: Point,
     pub(super) normal: Point,
 }
 
-impl Seat {
-    /// The point so far along the normal.
+impl FootPoint {
+    /// Returns the point at distance `r` along the normal.
     pub(super) fn at(&self, r: f64) -> Point {
         [0, 1].map(|k| self.foot[k] + r * self.normal[k])
     }
 }
 
-/// What stops a growing ball.
+/// The obstacle that stops a growing ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stop {
+pub(super) enum Obstacle {
     /// Another feature.
     Feature(usize),
-    /// The axis, behind which the mirror image begins.
+    /// The axis, beyond which the mirror image begins.
     Axis,
     /// The centre of its own arc.
     Centre,
-    /// Nothing within reach, outside the solid.
+    /// Nothing within the outer limit, outside the solid.
     Far,
 }
 
-/// How far outside points are looked at, in sizes of the outline.
+/// The outer limit of the partition of the outside, in sizes of the outline.
 const FAR: f64 = 64.0;
-/// Contacts this close to a piece's end, in sizes, are on the piece.
+/// Tolerance, in sizes, for a contact to count as on a segment near its end.
 const CLOSE: f64 = 1e-13;
-/// This close to a smooth joint, in lengths, rounding decides between its pieces.
+/// Distance from a smooth joint, relative to the segments' chords, within which rounding decides between its segments.
 const JOINT: f64 = 1e-5;
 
-/// An outline whose left side is asked about, with its features there.
+/// An outline whose left side is partitioned, with the features of that side.
 pub(super) struct Section<'o> {
     pub(super) outline: &'o [Segment],
     pub(super) features: Vec<Feature>,
-    /// The sweep of each corner's fan: the angle of its first normal, and the turn to its last.
+    /// The fan of normals of each corner: the angle of the first normal, and the sweep to the last.
     fans: Vec<[f64; 2]>,
-    /// The diagonal of the outline's box.
+    /// The diagonal of the outline's bounding box.
     pub(super) size: f64,
-    /// Whether the left side is the outside, which has no end.
+    /// True if the left side is the outside, which is unbounded.
     outer: bool,
 }
 
@@ -68,8 +68,8 @@ impl<'o> Section<'o> {
         section
     }
 
-    /// The pieces along the outline and the reflex corners between them. At the axis the outline
-    /// meets its own mirror image, and only half of a fan is on this side.
+    /// Collects the segments of the outline and the reflex corners between them. At the axis the outline meets its own
+    /// mirror image, and only half of a corner's fan lies on this side.
     fn find_features(&mut self) {
         let mirrored = |t: Point| [t[0], -t[1]];
         let (Some(first), Some(last)) = (self.outline.first(), self.outline.last()) else { return };
@@ -101,7 +101,7 @@ impl<'o> Section<'o> {
         self.fans.push([from, sweep]);
     }
 
-    /// Where a corner is.
+    /// Returns the position of a corner.
     pub(super) fn corner_at(&self, behind: Option<usize>) -> Point {
         match behind {
             Some(piece) => self.outline[piece].ends()[1],
@@ -109,7 +109,7 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// The pieces that end in a corner, and which end it is.
+    /// Returns the segments that end in a corner, each with the end that does: 0 for its start, 1 for its end.
     pub(super) fn beside(&self, behind: Option<usize>) -> [Option<(usize, usize)>; 2] {
         match behind {
             None => [None, Some((0, 0))],
@@ -120,8 +120,9 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// The point and normal of a feature at a parameter from 0 to 1: along a line, or by the angle.
-    pub(super) fn seat(&self, feature: usize, t: f64) -> Seat {
+    /// Returns the point and normal of a feature at a parameter from 0 to 1, which is linear along a line and in the
+    /// angle of an arc or fan.
+    pub(super) fn seat(&self, feature: usize, t: f64) -> FootPoint {
         match self.features[feature] {
             Feature::Piece(piece) => {
                 let segment = &self.outline[piece];
@@ -130,26 +131,26 @@ impl<'o> Section<'o> {
                     None => {
                         let along = segment.tangent(false);
                         let foot = [0, 1].map(|k| from[k] + t * (to[k] - from[k]));
-                        Seat { foot, normal: [-along[1], along[0]] }
+                        FootPoint { foot, normal: [-along[1], along[0]] }
                     }
                     Some((centre, radius, convex)) => {
                         let [start, sweep] = segment.angles();
                         let (sin, cos) = (start + t * sweep).sin_cos();
                         let foot = [centre[0] + radius * cos, centre[1] + radius * sin];
                         let inward = if convex { -1.0 } else { 1.0 };
-                        Seat { foot, normal: [inward * cos, inward * sin] }
+                        FootPoint { foot, normal: [inward * cos, inward * sin] }
                     }
                 }
             }
             Feature::Corner(behind) => {
                 let [from, sweep] = self.fans[feature];
                 let (sin, cos) = (from + t * sweep).sin_cos();
-                Seat { foot: self.corner_at(behind), normal: [cos, sin] }
+                FootPoint { foot: self.corner_at(behind), normal: [cos, sin] }
             }
         }
     }
 
-    /// The parameter of the seat that a point is on the normal of, if there is one.
+    /// Returns the parameter of the normal on which a point lies; outside [0, 1] if the feature has no such normal.
     pub(super) fn parameter(&self, feature: usize, p: Point) -> f64 {
         let turned = |from: f64, sweep: f64, way: Point| {
             let angle = way[1].atan2(way[0]) - from;
@@ -178,7 +179,7 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// A point's signed distance to a feature's whole line or circle, or to a corner.
+    /// Returns a point's signed distance from a feature's whole line or circle, or its distance from a corner.
     pub(super) fn depth_at(&self, feature: usize, p: Point) -> f64 {
         match self.features[feature] {
             Feature::Piece(piece) => self.outline[piece].signed(p),
@@ -186,12 +187,12 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// How far a ball that touches a feature in a seat grows, and what stops it.
-    pub(super) fn growth(&self, feature: usize, seat: &Seat) -> (f64, Stop) {
-        let (mut most, mut stop) = (f64::INFINITY, Stop::Far);
-        for other in [Stop::Far, Stop::Axis, Stop::Centre] {
+    /// Returns the radius to which a ball that touches a feature at `seat` grows, and the obstacle that stops it.
+    pub(super) fn growth(&self, feature: usize, seat: &FootPoint) -> (f64, Obstacle) {
+        let (mut most, mut stop) = (f64::INFINITY, Obstacle::Far);
+        for other in [Obstacle::Far, Obstacle::Axis, Obstacle::Centre] {
             let grown = self.grown(feature, seat, other);
-            if grown < most || (other == Stop::Centre && grown <= most && grown.is_finite()) {
+            if grown < most || (other == Obstacle::Centre && grown <= most && grown.is_finite()) {
                 (most, stop) = (grown, other);
             }
         }
@@ -199,27 +200,27 @@ impl<'o> Section<'o> {
             if other != feature {
                 let grown = self.reach(seat, other);
                 if grown < most && self.touches(feature, seat, other, grown) {
-                    (most, stop) = (grown, Stop::Feature(other));
+                    (most, stop) = (grown, Obstacle::Feature(other));
                 }
             }
         }
         (most, stop)
     }
 
-    /// How far the ball grows until something stops it; infinite if that never does.
-    pub(super) fn grown(&self, feature: usize, seat: &Seat, stop: Stop) -> f64 {
+    /// Returns the radius at which a given obstacle stops the ball; infinite if it never does.
+    pub(super) fn grown(&self, feature: usize, seat: &FootPoint, stop: Obstacle) -> f64 {
         match stop {
-            Stop::Far if self.outer => FAR * self.size,
-            Stop::Axis if seat.normal[0] < 0.0 => -seat.foot[0] / seat.normal[0],
-            Stop::Centre => match self.features[feature] {
+            Obstacle::Far if self.outer => FAR * self.size,
+            Obstacle::Axis if seat.normal[0] < 0.0 => -seat.foot[0] / seat.normal[0],
+            Obstacle::Centre => match self.features[feature] {
                 Feature::Piece(piece) => match self.outline[piece].round() {
                     Some((_, radius, true)) => radius,
                     _ => f64::INFINITY,
                 },
                 Feature::Corner(_) => f64::INFINITY,
             },
-            Stop::Far | Stop::Axis => f64::INFINITY,
-            Stop::Feature(other) => {
+            Obstacle::Far | Obstacle::Axis => f64::INFINITY,
+            Obstacle::Feature(other) => {
                 let grown = self.reach(seat, other);
                 let stops = grown.is_finite() && self.touches(feature, seat, other, grown);
                 if stops { grown } else { f64::INFINITY }
@@ -227,8 +228,9 @@ impl<'o> Section<'o> {
         }
     }
 
-    /// How far the ball grows until it touches the whole line or circle of another feature.
-    fn reach(&self, seat: &Seat, other: usize) -> f64 {
+    /// Returns the radius at which the ball touches the whole line or circle of another feature, or a corner; infinite
+    /// if it never does.
+    fn reach(&self, seat: &FootPoint, other: usize) -> f64 {
         let (p, n) = (seat.foot, seat.normal);
         let grown = match self.features[other] {
             Feature::Corner(behind) => {
@@ -258,9 +260,9 @@ impl<'o> Section<'o> {
         if grown >= 0.0 { grown } else { f64::INFINITY }
     }
 
-    /// Whether the ball that has grown so far touches a feature itself, and not only beyond its ends
-    /// or where the two join.
-    fn touches(&self, feature: usize, seat: &Seat, other: usize, grown: f64) -> bool {
+    /// Returns whether the ball of radius `grown` touches the other feature itself, and not only its extension beyond
+    /// its ends or the joint of the two features.
+    fn touches(&self, feature: usize, seat: &FootPoint, other: usize, grown: f64) -> bool {
         let middle = seat.at(grown);
         let within = match self.features[other] {
             Feature::Corner(behind) => self.in_fan(behind, middle),
@@ -282,8 +284,8 @@ impl<'o> Section<'o> {
         within && !self.shares_end(feature, seat, other)
     }
 
-    /// Whether a point is between the normals of a corner's pieces. A corner and its pieces are as
-    /// near as one another all about their border, which only the feet tell.
+    /// Returns whether a point lies between the end normals of the segments at a corner. Near these normals a corner
+    /// and its segments are equally near, so only the foot points decide.
     fn in_fan(&self, behind: Option<usize>, p: Point) -> bool {
         let off = minus(p, self.corner_at(behind));
         self.beside(behind).into_iter().flatten().all(|(piece, end)| {
@@ -293,8 +295,8 @@ impl<'o> Section<'o> {
         })
     }
 
-    /// Whether two features only touch where they join, as far as a ball in this seat can tell.
-    fn shares_end(&self, feature: usize, seat: &Seat, other: usize) -> bool {
+    /// Returns whether two features touch only where they join, as far as a ball at `seat` can tell.
+    fn shares_end(&self, feature: usize, seat: &FootPoint, other: usize) -> bool {
         let joins = |piece: usize, behind: Option<usize>| {
             self.beside(behind).into_iter().flatten().any(|(beside, _)| beside == piece)
         };
@@ -306,7 +308,7 @@ impl<'o> Section<'o> {
                 if turn(low.tangent(true), high.tangent(false)) != 0.0 {
                     return false;
                 }
-                // Of two pieces without a turn between them only a rounder one can stop a ball.
+                // Across a tangent joint, only a segment of smaller radius can stop a ball.
                 match (self.outline[a].round(), self.outline[b].round()) {
                     (Some((_, own, true)), Some((_, radius, true))) if radius < own => {
                         let joint = norm(minus(seat.foot, low.ends()[1]));

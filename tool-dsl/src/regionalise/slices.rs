@@ -1,35 +1,35 @@
 //! The nearest-feature partition of one side of an outline, feature by feature.
 //!
-//! A point belongs to the feature whose ball, grown from the point's foot along the normal, reaches
-//! it before it touches anything else. So a feature's cell is the set of points between its seats
-//! and the lower envelope of the radii at which other features stop the ball, each of which has a
-//! closed form. The envelope is followed along the feature; where the stop changes lies a vertex of
-//! the partition, and between two vertices a slice of the cell.
+//! A point belongs to the feature whose ball, grown along the normal from the point's foot, reaches the point before it
+//! touches anything else. A feature's cell is therefore the set of points between the feature and the lower envelope of
+//! the radii at which other features stop the ball. Each of these radii has a closed form. The envelope is followed
+//! along the feature. A change of the stopping feature is a vertex of the partition, and between two vertices lies a
+//! slice of the cell.
 
-use super::section::{Section, Stop};
+use super::section::{Obstacle, Section};
 use crate::geometry::outline::{Point, minus, norm};
 
-/// A part of a cell: the seats between two parameters, and what ends their normals.
+/// A slice of a cell: the normals between two parameters, and the obstacle that ends them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slice {
     pub(super) feature: usize,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) stop: Stop,
+    pub(super) stop: Obstacle,
 }
 
-/// Parameters at which every feature is asked at least.
+/// Number of uniform intervals at whose ends every feature is sampled.
 const EVEN: u32 = 16;
-/// Parameters near the ends.
+/// Sample parameters near the ends of a feature.
 const ENDS: [f64; 4] = [1e-12, 1e-6, 1e-3, 0.02];
-/// Halvings until a vertex is known to the last bit.
+/// Bisections until a vertex is known to the last bit.
 const HALVINGS: u32 = 60;
-/// Parts of a feature below this are rounding.
+/// Slices narrower than this, as a fraction of the feature, are rounding errors.
 const SLIVER: f64 = 1e-11;
-/// How often vertices found on one feature are looked for on the others.
+/// Maximum number of rounds in which vertices found on one feature are sampled on the others.
 const ROUNDS: usize = 4;
 
-/// All slices, feature by feature, in the order of the parameter.
+/// Returns all slices, feature by feature, in the order of the parameter.
 pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
     let count = section.features.len();
     let mut samples: Vec<Vec<f64>> = (0..count)
@@ -38,7 +38,7 @@ pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
             ENDS.into_iter().chain(even).chain(ENDS.map(|t| 1.0 - t)).collect()
         })
         .collect();
-    // Where the feet of corners fall, small neighbours are found.
+    // The projections of corners onto a feature help to find small neighbours.
     for (feature, own) in samples.iter_mut().enumerate() {
         for segment in section.outline {
             let [from, to] = segment.ends();
@@ -50,7 +50,7 @@ pub(super) fn slices(section: &Section<'_>) -> Vec<Vec<Slice>> {
     for _ in 0..ROUNDS {
         let before: usize = found.iter().map(Vec::len).sum();
         for slice in found.iter().flatten() {
-            let Stop::Feature(other) = slice.stop else { continue };
+            let Obstacle::Feature(other) = slice.stop else { continue };
             for t in [slice.from, slice.to, slice.from / 2.0 + slice.to / 2.0] {
                 let seat = section.seat(slice.feature, t);
                 let at = section.parameter(other, seat.at(section.growth(slice.feature, &seat).0));
@@ -88,7 +88,7 @@ fn envelope(section: &Section<'_>, samples: &mut [Vec<f64>]) -> Vec<Vec<Slice>> 
         .collect()
 }
 
-/// Without the slivers that rounding makes where one stop takes over from another.
+/// Merges slivers that rounding produces where the obstacle changes.
 fn merged(slices: Vec<Slice>) -> Vec<Slice> {
     let wide = slices.iter().any(|slice| slice.to - slice.from >= SLIVER);
     let mut merged: Vec<Slice> = Vec::new();
@@ -113,19 +113,19 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn stop(&self, t: f64) -> Stop {
+    fn stop(&self, t: f64) -> Obstacle {
         self.section.growth(self.feature, &self.section.seat(self.feature, t)).1
     }
 
-    fn put(&mut self, from: f64, to: f64, stop: Stop) {
+    fn put(&mut self, from: f64, to: f64, stop: Obstacle) {
         match self.slices.last_mut() {
             Some(last) if last.stop == stop => last.to = to,
             _ => self.slices.push(Slice { feature: self.feature, from, to, stop }),
         }
     }
 
-    /// Where one stop takes over from another, if no third is between them.
-    fn taken_over(&self, a: f64, b: f64, [first, last]: [Stop; 2]) -> Option<f64> {
+    /// Returns the parameter at which one obstacle takes over from another, if no third one lies between them.
+    fn taken_over(&self, a: f64, b: f64, [first, last]: [Obstacle; 2]) -> Option<f64> {
         let (mut low, mut high) = (a, b);
         for _ in 0..HALVINGS {
             let middle = low / 2.0 + high / 2.0;
@@ -143,8 +143,8 @@ impl Walk<'_> {
         (self.stop(low) == first && self.stop(high) == last).then_some(high)
     }
 
-    /// The slices between two parameters whose stops are known.
-    fn divide(&mut self, (a, first): (f64, Stop), (b, last): (f64, Stop), halvings: u32) {
+    /// Appends the slices between two parameters whose obstacles are known.
+    fn divide(&mut self, (a, first): (f64, Obstacle), (b, last): (f64, Obstacle), halvings: u32) {
         if first == last {
             return self.put(a, b, first);
         }
@@ -175,12 +175,12 @@ impl Walk<'_> {
 }
 
 impl Slice {
-    /// Points of its end, from the first parameter to the last.
+    /// Returns points along the far end of the slice, from the first parameter to the last.
     pub(super) fn rim(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
         (0..=steps).map(|k| self.rim_at(section, f64::from(k) / f64::from(steps))).collect()
     }
 
-    /// Points along its normals.
+    /// Returns points along the slice's normals.
     pub(super) fn rays(&self, section: &Section<'_>, steps: u32) -> Vec<Point> {
         let ray = |k: u32| {
             let part = f64::from(k) / f64::from(steps);
@@ -191,7 +191,7 @@ impl Slice {
         (0..=steps).flat_map(ray).collect()
     }
 
-    /// Points along its normals, the more the nearer to its ends.
+    /// Returns points along the slice's normals, most densely near its ends.
     pub(super) fn probes(&self, section: &Section<'_>) -> Vec<Point> {
         const EVEN: u32 = 12;
         let near = (2..10).map(|k| 0.25f64.powi(k));
@@ -205,25 +205,26 @@ impl Slice {
         parts.flat_map(along).filter(|p| p[0] >= 0.0).collect()
     }
 
-    /// The point of its end at a part of its width.
+    /// Returns the point of the far end at a fraction of the slice's width.
     pub(super) fn rim_at(&self, section: &Section<'_>, part: f64) -> Point {
         let seat = section.seat(self.feature, self.from + part * (self.to - self.from));
         seat.at(self.radius(section, part))
     }
 
-    /// How far its normals run at a part of its width: by its own stop, whoever else is as near.
+    /// Returns the length of the normal at a fraction of the slice's width, by the slice's own obstacle even if another
+    /// one is as near.
     pub(super) fn radius(&self, section: &Section<'_>, part: f64) -> f64 {
         // At the very ends of a feature the growth of the ball is a limit.
         let t = (self.from + part * (self.to - self.from)).clamp(ENDS[0], 1.0 - ENDS[0]);
         let seat = section.seat(self.feature, t);
         let own = match self.stop {
-            Stop::Feature(_) => section.grown(self.feature, &seat, self.stop),
+            Obstacle::Feature(_) => section.grown(self.feature, &seat, self.stop),
             _ => f64::INFINITY,
         };
         if own.is_finite() { own } else { section.growth(self.feature, &seat).0 }
     }
 
-    /// Whether it has no width to speak of.
+    /// Returns whether the slice has negligible width.
     pub(super) fn is_thin(&self, section: &Section<'_>) -> bool {
         let [a, b] = [0.0, 1.0].map(|part| {
             let seat = section.seat(self.feature, self.from + part * (self.to - self.from));

@@ -1,42 +1,43 @@
-//! An outline whose corners are rounded, of which directions are taken.
+//! Rounds the corners of an outline. Directions are taken from the rounded outline.
 //!
-//! A corner is rounded by the largest arc that touches both of its segments no more than a length `w` from it, measured along
-//! them: its normals are the fan. Between lines it touches both at `w`, and its radius is `w / tan(θ/2)`, θ being the turn. Where
-//! an arc ends it touches one segment at `w` and the other nearer to the corner. Normals of the rounded outline turn
-//! steadily, so a direction that follows them does not jump along the surface.
+//! A corner is rounded by the largest arc that touches both of its segments within a length `w` of it, measured along
+//! them. The normals of the arc are the corner's fan. Between lines the arc touches both at `w`, and its radius is
+//! `w / tan(θ/2)`, where θ is the turn. Next to an arc it touches one segment at `w` and the other nearer to the
+//! corner. The normals of the rounded outline turn continuously, so a direction that follows them does not jump along
+//! the surface.
 
-use crate::diagnostic::figure;
-use crate::geometry::outline::{Circle, Place, Segment, cross, dot, doubles, minus, turn};
+use crate::diagnostic::format_number;
+use crate::geometry::outline::{Circle, ExactPoint, Segment, cross, dot, doubles, minus, turn};
 use crate::number::Number;
 use std::f64::consts::PI;
 
-/// Lengths may differ by this part of theirs and count as equal.
+/// The relative difference below which two lengths count as equal.
 const ROUNDING: f64 = 1e-12;
 
-/// Where a piece of the rounded outline comes from.
+/// The origin of a segment of the rounded outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
-    /// A piece of the outline, by its place.
+    /// A segment of the outline, by its index.
     Piece(usize),
-    /// The corner behind a piece; before the first for `None`.
+    /// The corner at the end of a segment; for `None`, the one before the first segment.
     Fan(Option<usize>),
 }
 
-/// Why an outline cannot be rounded.
+/// The reason why an outline cannot be rounded.
 pub(crate) enum Rough {
-    /// No arc so near to the corner behind a piece touches both of its segments.
+    /// No arc near enough to the corner at the end of a segment touches both of its segments.
     Untouched(Option<usize>),
-    /// A piece is too short for its corners: its length, and how many there are.
+    /// A segment is too short for its corners: its index, its length, and the number of its corners.
     Short(usize, f64, usize),
 }
 
-/// The rounded outline with the origin of each piece.
+/// Returns the rounded outline with the origin of each segment.
 pub(crate) fn rounded(
     outline: &[Segment],
     length: &Number,
 ) -> Result<Vec<(Segment, Origin)>, Rough> {
     let count = outline.len();
-    // Corner k lies before piece k; the last behind all.
+    // Corner `k` precedes segment `k`; the last corner follows all segments.
     let corners: Vec<Option<Corner>> =
         (0..=count).map(|k| corner(outline, k, length)).collect::<Result<_, _>>()?;
     let taken = |k: usize| {
@@ -74,7 +75,8 @@ pub(crate) fn rounded(
     Ok(pieces)
 }
 
-/// Returns a length below `length` over which an outline can be rounded, most often nearly the largest of six digits.
+/// Returns a length below `length` for which the outline can be rounded, usually close to the largest such number of
+/// six digits.
 pub(crate) fn fitting(outline: &[Segment], length: &Number) -> Option<String> {
     let fits = |length: f64| Number::from_f64(length).is_some_and(|w| rounded(outline, &w).is_ok());
     let halves = (1..64).map(|k| length.to_f64() / f64::from(k).exp2());
@@ -84,11 +86,11 @@ pub(crate) fn fitting(outline: &[Segment], length: &Number) -> Option<String> {
         let middle = f64::midpoint(low, high);
         if fits(middle) { low = middle } else { high = middle }
     }
-    let shown = [low, low * (1.0 - 1e-5)].map(figure);
+    let shown = [low, low * (1.0 - 1e-5)].map(format_number);
     shown.into_iter().find(|text| text.parse().is_ok_and(fits))
 }
 
-/// The length of a segment, along it.
+/// Returns the length along a segment.
 fn size(segment: &Segment) -> f64 {
     match segment.round() {
         None => segment.chord(),
@@ -96,12 +98,12 @@ fn size(segment: &Segment) -> f64 {
     }
 }
 
-/// A corner's arc.
+/// The arc of a corner.
 struct Corner {
-    from: Place,
-    to: Place,
+    from: ExactPoint,
+    to: ExactPoint,
     circle: Circle,
-    /// The lengths that it takes of the segments before and behind the corner.
+    /// The lengths that it takes from the segments before and after the corner.
     taken: [f64; 2],
 }
 
@@ -150,7 +152,7 @@ impl Corner {
     }
 }
 
-/// A segment that ends in a corner, and whether the material is inside the corner's arc.
+/// A segment that ends in a corner. `convex` is true if the material lies inside the corner's arc.
 struct Arm<'o> {
     segment: &'o Segment,
     at_end: bool,
@@ -158,18 +160,18 @@ struct Arm<'o> {
 }
 
 impl Arm<'_> {
-    fn corner(&self) -> &Place {
+    fn corner(&self) -> &ExactPoint {
         if self.at_end { &self.segment.to } else { &self.segment.from }
     }
 
-    /// The unit direction of a line, away from the corner.
-    fn away(&self) -> Option<Place> {
+    /// Returns the unit direction of a line, away from the corner.
+    fn away(&self) -> Option<ExactPoint> {
         let way = self.segment.direction()?;
         Some(if self.at_end { way.map(|part| -&part) } else { way })
     }
 
-    /// The unit normal in a point, toward the centre of the corner's arc.
-    fn normal(&self, at: &Place) -> Option<Place> {
+    /// Returns the unit normal at a point, toward the centre of the corner's arc.
+    fn normal(&self, at: &ExactPoint) -> Option<ExactPoint> {
         let (normal, inward) = match &self.segment.circle {
             None => {
                 let [d, z] = self.segment.direction()?;
@@ -184,13 +186,14 @@ impl Arm<'_> {
         Some(if inward == self.convex { normal } else { normal.map(|part| -&part) })
     }
 
-    /// Whether a circle is bent as the corner's arc is.
+    /// Returns whether a circle has the same convexity as the corner's arc.
     fn is_alike(&self, circle: &Circle) -> bool {
         circle.convex == self.convex
     }
 
-    /// The point so far from the corner along the segment, if its line or circle goes on for so long.
-    fn at(&self, length: &Number) -> Option<Place> {
+    /// Returns the point at a length from the corner along the segment's whole line or circle; `None` if that is half a
+    /// circle or more.
+    fn at(&self, length: &Number) -> Option<ExactPoint> {
         let corner = self.corner();
         let Some(circle) = &self.segment.circle else {
             return Some(along(corner, &self.away()?, length));
@@ -199,7 +202,7 @@ impl Arm<'_> {
         if angle.to_f64() >= PI {
             return None;
         }
-        // Away from the end of a convex arc is clockwise.
+        // From the end of a convex arc, away from the corner is clockwise.
         let (cos, sin) = (angle.cos(), angle.sin());
         let sin = if circle.convex == self.at_end { -&sin } else { sin };
         let [d, z] = off(corner, &circle.centre);
@@ -207,8 +210,9 @@ impl Arm<'_> {
         Some([0, 1].map(|k| &circle.centre[k] + &turned[k]))
     }
 
-    /// How far from the corner, along the segment, a point of its line or circle is; less than 0 on the other side.
-    fn distance(&self, at: &Place) -> Option<f64> {
+    /// Returns the distance of a point of the segment's line or circle from the corner, along it; negative on the other
+    /// side.
+    fn distance(&self, at: &ExactPoint) -> Option<f64> {
         let way = doubles(&off(at, self.corner()));
         Some(match self.segment.round() {
             None => dot(way, doubles(&self.away()?)),
@@ -220,8 +224,9 @@ impl Arm<'_> {
         })
     }
 
-    /// The radius of the circle that touches another segment in a point with this normal, and this one too.
-    fn radius(&self, at: &Place, normal: &Place) -> Option<Number> {
+    /// Returns the radius of the circle that touches another segment at a point with this normal, and also touches this
+    /// segment.
+    fn radius(&self, at: &ExactPoint, normal: &ExactPoint) -> Option<Number> {
         match &self.segment.circle {
             None => {
                 let own = self.normal(self.corner())?;
@@ -242,8 +247,8 @@ impl Arm<'_> {
         }
     }
 
-    /// Where a circle that touches the segment does so.
-    fn touched(&self, centre: &Place, radius: &Number) -> Option<Place> {
+    /// Returns the point at which a circle that touches the segment does so.
+    fn touched(&self, centre: &ExactPoint, radius: &Number) -> Option<ExactPoint> {
         let Some(circle) = &self.segment.circle else {
             let (corner, way) = (self.corner(), self.away()?);
             return Some(along(corner, &way, &product(&off(centre, corner), &way)));
@@ -253,13 +258,13 @@ impl Arm<'_> {
         Some(along(&circle.centre, &off(centre, &circle.centre), &share))
     }
 
-    /// Whether a circle that touches the segment from within is the smaller.
+    /// Returns whether a circle that touches the segment from the inside is smaller than the segment's own circle.
     fn holds(&self, radius: &Number) -> bool {
         let circle = self.segment.circle.as_ref();
         circle.is_none_or(|circle| !self.is_alike(circle) || *radius < circle.radius)
     }
 
-    /// The half of a corner's arc on the axis, from there to where it touches the segment.
+    /// Returns half the arc of a corner on the axis, from the axis to the point at which it touches the segment.
     fn to_axis(&self, length: &Number) -> Option<Corner> {
         let to = self.at(length)?;
         let normal = self.normal(&to)?;
@@ -276,7 +281,7 @@ impl Arm<'_> {
     }
 }
 
-/// The arc that touches one segment of a corner at a length from it, and the other no farther.
+/// Returns the arc that touches the first segment of a corner at `length` from it, and the second one no farther away.
 fn fan(first: &Arm<'_>, second: &Arm<'_>, length: &Number) -> Option<Corner> {
     let from = first.at(length)?;
     let normal = first.normal(&from)?;
@@ -292,14 +297,14 @@ fn fan(first: &Arm<'_>, second: &Arm<'_>, length: &Number) -> Option<Corner> {
     near.then_some(Corner { from, to, circle, taken: [most, other] })
 }
 
-fn off(to: &Place, from: &Place) -> Place {
+fn off(to: &ExactPoint, from: &ExactPoint) -> ExactPoint {
     [0, 1].map(|k| &to[k] - &from[k])
 }
 
-fn along(from: &Place, way: &Place, by: &Number) -> Place {
+fn along(from: &ExactPoint, way: &ExactPoint, by: &Number) -> ExactPoint {
     [0, 1].map(|k| &from[k] + &(&way[k] * by))
 }
 
-fn product(a: &Place, b: &Place) -> Number {
+fn product(a: &ExactPoint, b: &ExactPoint) -> Number {
     &(&a[0] * &b[0]) + &(&a[1] * &b[1])
 }

@@ -1,4 +1,4 @@
-//! Functions: what they take, and what comes of it.
+//! Lowers function calls: their arguments, dimensions and results.
 
 use super::lower::{Lowered, Lowering, May};
 use crate::diagnostic::{Diagnostic, ValueKind, nearest};

@@ -1,4 +1,4 @@
-//! Conditions to formulas over splitting curves.
+//! Converts conditions to formulas over splitting curves.
 
 use crate::expr::polynomial::Polynomials;
 use crate::expr::{Graph, Id, Node};
@@ -6,10 +6,10 @@ use crate::formula::Curve;
 use crate::formula::{CurveIndex, Formula};
 use std::collections::BTreeMap;
 
-/// How many times one condition may be taken apart at `min`, `max` and `abs`.
+/// The maximum number of times that one condition may be split at `min`, `max` and `abs`.
 const PARTS: usize = 64;
 
-/// The curves seen so far.
+/// The curves found so far.
 #[derive(Default)]
 pub(super) struct Curves {
     pub(super) list: Vec<Curve>,
@@ -19,12 +19,12 @@ pub(super) struct Curves {
 }
 
 impl Curves {
-    /// Remembers the file's name for a curve.
+    /// Records the file's name for a curve.
     pub(super) fn name(&mut self, name: &str, value: Id) {
         self.names.entry(value).or_insert_with(|| name.to_owned());
     }
 
-    /// The curve that an expression is zero on, and whether it has the curve's sign.
+    /// Returns the known curve on which an expression is zero, and whether the expression has the curve's sign.
     pub(super) fn find(&mut self, graph: &mut Graph, value: Id) -> Option<(CurveIndex, bool)> {
         if let Some(found) = self.found.get(&value) {
             return Some(*found);
@@ -46,13 +46,13 @@ impl Curves {
         Some(found)
     }
 
-    /// `value ≤ 0` or, if not `below`, `value ≥ 0`.
+    /// Returns the formula of `value ≤ 0` or, if not `below`, of `value ≥ 0`.
     fn atom(&mut self, graph: &mut Graph, value: Id, below: bool) -> Formula {
         if let Some(polynomial) = self.polynomials.of(graph, value) {
             if let Some(constant) = polynomial.constant() {
                 return Formula::Const(constant.is_zero() || constant.is_negative() == below);
             }
-            // No point is nearer to the axis than 0.
+            // The distance from the axis is never negative.
             let factor = polynomial.multiple_of_d();
             if factor.is_some_and(|factor| factor.is_negative() == below) {
                 return Formula::Const(true);
@@ -67,7 +67,7 @@ impl Curves {
         Formula::Atom { curve, below: below == same, strict: false }
     }
 
-    /// `low ≤ high` as a formula.
+    /// Returns the formula of `low ≤ high`.
     pub(super) fn at_most(&mut self, graph: &mut Graph, low: Id, high: Id) -> Formula {
         let value = graph.sub(low, high);
         self.side(graph, value, true, &mut PARTS.clone())
@@ -80,12 +80,12 @@ impl Curves {
         };
         *parts -= 1;
         let sides = vec![self.side(graph, a, below, parts), self.side(graph, b, below, parts)];
-        // max(a, b) ≤ 0 wants both, max(a, b) ≥ 0 one of them.
+        // max(a, b) ≤ 0 requires both sides, max(a, b) ≥ 0 one of them.
         if largest == below { Formula::All(sides) } else { Formula::Any(sides) }
     }
 }
 
-/// Whether a sum has a `min`, `max` or `abs` among its terms.
+/// Returns whether a sum has a `min`, `max` or `abs` among its terms.
 fn has_corner(graph: &Graph, value: Id) -> bool {
     let mut corner = std::collections::BTreeSet::new();
     for id in graph.needed([value]) {
@@ -103,7 +103,7 @@ fn has_corner(graph: &Graph, value: Id) -> bool {
     corner.contains(&value)
 }
 
-/// A sum with a `min`, `max` or `abs` in it as the larger (`true`) or smaller of two sums.
+/// Rewrites a sum that has a `min`, `max` or `abs` term as the larger (`true`) or smaller of two sums.
 fn lift(graph: &mut Graph, value: Id) -> Option<(bool, Id, Id)> {
     match *graph.node(value) {
         Node::Max(a, b) => Some((true, a, b)),

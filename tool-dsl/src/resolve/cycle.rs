@@ -1,15 +1,15 @@
-//! Names that are defined by themselves.
+//! Cycles of definitions.
 
 use crate::diagnostic::{Diagnostic, Links, Reported, ValueKind};
 use crate::source::Span;
 use crate::syntax::tree::{Definition, Expr, ExprKind};
 use std::collections::BTreeMap;
 
-/// The most links of a cycle that a message lists.
+/// The maximum number of links of a cycle that a message lists.
 const LISTED: usize = 64;
 
-/// Reports each cycle of definitions once, with its links, and returns the names on them. Of two
-/// definitions of one name the first counts.
+/// Reports each cycle of definitions once, with its links, and returns the names on the cycles. If a name is defined
+/// twice, the first definition counts.
 pub(super) fn refused<'t>(
     definitions: impl Iterator<Item = &'t Definition>,
     diagnostics: &mut Vec<Diagnostic>,
@@ -27,8 +27,8 @@ pub(super) fn refused<'t>(
         if done.contains_key(root.name.word.as_str()) {
             continue;
         }
-        // The path from the root, each with the names that are still to follow. No recursion: a
-        // chain of definitions may be as long as a file.
+        // The path from the root; each step has the names still to be followed. It is iterative rather than recursive,
+        // since a chain of definitions may be as long as a file.
         done.insert(&root.name.word, false);
         let mut path = vec![Step::new(root, root.name.span)];
         while let Some(step) = path.last_mut() {
@@ -59,7 +59,7 @@ pub(super) fn refused<'t>(
     refused
 }
 
-/// A definition on the path, where the one before mentions it, and what it mentions itself.
+/// A definition on the path, the span at which the previous one mentions it, and the names that it mentions itself.
 struct Step<'t> {
     definition: &'t Definition,
     place: Span,
@@ -78,7 +78,7 @@ impl<'t> Step<'t> {
     }
 }
 
-/// The names that an expression mentions, in the order of the text.
+/// Returns the names that an expression mentions, in the order of the text.
 fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
     let mut names = Vec::new();
     let mut open = vec![expr];
@@ -94,7 +94,7 @@ fn mentioned(expr: &Expr) -> Vec<(&str, Span)> {
     names
 }
 
-/// Returns the error for a cycle; its last definition mentions the first one at `place`.
+/// Returns the error for a cycle. `place` is the span at which its last definition mentions the first one.
 fn circular(cycle: &[Step<'_>], place: Span) -> Diagnostic {
     let word = cycle[0].word().to_owned();
     let [_, second, ..] = cycle else {

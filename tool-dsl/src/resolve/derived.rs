@@ -1,11 +1,11 @@
-//! The regions of a profile: derived, named, and given their laws.
+//! Derives the regions of a profile, names them, and applies their laws.
 
 use super::condition::Curves;
 use super::direction::Course;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::over::{Conditions, Divider};
-use super::region::{Bare, Felt, noted};
+use super::region::{Bare, RegionResolver, noted};
 use crate::diagnostic::{Diagnostic, ProfileKind};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
@@ -15,7 +15,7 @@ use crate::model::{DirectionSource, Outside, Over, Region, Section, Surface};
 use crate::regionalise::{self, Derived, Feature, Partition, Test, Undivided};
 use crate::source::Span;
 
-/// What a profile makes of a tool.
+/// The surfaces, regions and section that result from a profile.
 #[derive(Default)]
 pub(super) struct FromProfile {
     pub(super) surfaces: Vec<Surface>,
@@ -23,26 +23,26 @@ pub(super) struct FromProfile {
     pub(super) section: Option<Section>,
 }
 
-/// A part of the inside: where one feature is nearest.
+/// A part of the inside, in which one feature is nearest.
 pub(super) struct Part {
     pub(super) feature: Feature,
     pub(super) inside: Formula,
     pub(super) depth: Id,
     pub(super) course: [Id; 3],
     pub(super) name: String,
-    /// The surface it belongs to.
+    /// Index of its surface.
     pub(super) owner: usize,
     pub(super) span: Span,
 }
 
 impl Part {
-    /// The shortest way to the feature.
+    /// Returns the shortest direction to the feature.
     pub(super) fn own_course(&self) -> Course {
         Course { parts: self.course, span: self.span, source: DirectionSource::Derived }
     }
 }
 
-/// The regions of an outline, derived, and its surfaces.
+/// Derives the regions of an outline.
 pub(super) fn derived(
     (outline, surfaces, span): (Vec<Segment>, Vec<Surface>, Span),
     divider: &Divider<'_>,
@@ -80,10 +80,10 @@ pub(super) fn derived(
     match conditions {
         None => {
             for part in &parts {
-                let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
+                let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
                 let said = (part.name.clone(), part.span, part.owner, part.inside.clone());
                 let course = part.own_course();
-                regions.extend(noted(felt.of_part(part, said, course), diagnostics));
+                regions.extend(noted(evaluation.of_part(part, said, course), diagnostics));
             }
         }
         Some(conditions) if diagnostics.len() == before => {
@@ -110,7 +110,7 @@ pub(super) fn derived(
     FromProfile { surfaces, regions, section: Some(section) }
 }
 
-/// The parts of the inside with their names and directions.
+/// Returns the parts of the inside with their names and directions.
 fn parts(
     derived: &[Derived],
     outline: &[Segment],
@@ -133,7 +133,7 @@ fn parts(
         .collect()
 }
 
-/// A test as a formula over curves.
+/// Converts a test to a formula over curves.
 pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Formula {
     let zero = graph.int(0);
     match test {
@@ -142,15 +142,15 @@ pub(super) fn formula(test: &Test, curves: &mut Curves, graph: &mut Graph) -> Fo
         Test::Any(any) => Formula::Any(any.iter().map(|t| formula(t, curves, graph)).collect()),
         Test::Strictly(test) => match formula(test, curves, graph) {
             Formula::Atom { curve, below, .. } => Formula::Atom { curve, below, strict: true },
-            // A side that is always or never so has no border.
+            // A side that always or never holds has no border.
             other => other,
         },
     }
 }
 
-/// The name, surface and place of each derived region: `nut.2` for the second piece of a surface
-/// of several, `shank/nut.1` for the fan of a reflex corner, which belongs to the neighbour that
-/// does not cut, else to the first.
+/// Returns the name, surface and span of each derived region. `nut.2` is the second segment of a surface that has
+/// several. `shank/nut.1` is the fan of a reflex corner, which belongs to the adjacent surface that does not cut,
+/// otherwise to the first one.
 fn names(
     outline: &[Segment],
     surfaces: &[Surface],
@@ -183,8 +183,8 @@ fn names(
         .collect()
 }
 
-impl Felt<'_> {
-    /// A region of a part, with the laws for its surface.
+impl RegionResolver<'_> {
+    /// Returns the region of a part, with the laws for its surface.
     pub(super) fn of_part(
         mut self,
         part: &Part,

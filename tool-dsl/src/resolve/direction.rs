@@ -1,7 +1,7 @@
-//! Points and directions as a file writes them, two numbers in a tool and three in a solid.
+//! Points and directions as tuples: two components in a tool, three in a solid.
 
 use super::lower::May;
-use super::region::Felt;
+use super::region::RegionResolver;
 use crate::diagnostic::{Diagnostic, RegionKind, Role};
 use crate::dimension::Dimension;
 use crate::domain::Domain;
@@ -10,7 +10,7 @@ use crate::model::DirectionSource;
 use crate::source::Span;
 use crate::syntax::tree::{Direction, Expr, Region, Tuple};
 
-/// A direction that is no unit vector yet, where it is said and where it comes from.
+/// A direction that is not yet normalised, with its span and its source.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
     pub(super) parts: [Id; 3],
@@ -18,8 +18,8 @@ pub(super) struct Course {
     pub(super) source: DirectionSource,
 }
 
-impl Felt<'_> {
-    /// The direction that a region writes, if it does.
+impl RegionResolver<'_> {
+    /// Returns the direction that a region writes, if it does.
     pub(super) fn course(&mut self, written: &Region) -> Result<Option<Course>, Diagnostic> {
         match written.direction.as_slice() {
             [] => Ok(None),
@@ -36,7 +36,7 @@ impl Felt<'_> {
         }
     }
 
-    /// The vector that a region writes, not yet a unit vector.
+    /// Returns the vector of a direction, not normalised.
     fn direction(&mut self, direction: &Direction) -> Result<[Id; 3], Diagnostic> {
         match direction {
             Direction::Along(tuple) => self.along(tuple),
@@ -68,7 +68,7 @@ impl Felt<'_> {
         Ok([x, y, if down { graph.neg(z) } else { z }])
     }
 
-    /// The vector from a point to where one feels.
+    /// Returns the vector from a fixed point to the evaluated point.
     fn away_from(&mut self, tuple: &Tuple) -> Result<[Id; 3], Diagnostic> {
         let domain = self.lowering.domain;
         let mut parts = Vec::new();
@@ -88,18 +88,18 @@ impl Felt<'_> {
     }
 }
 
-/// The parts of a tuple, as many as the domain has coordinates.
+/// Returns the components of a tuple, which has to have as many as the domain has coordinates.
 fn components(tuple: &Tuple, domain: Domain, role: Role) -> Result<Vec<&Expr>, Diagnostic> {
     let (count, wanted) = (tuple.parts.len(), domain.coordinates().len());
     if count == wanted {
         return Ok(tuple.parts.iter().collect());
     }
-    let (file, shown) = (domain.word(), domain.tuple());
+    let (file, shown) = (domain.keyword(), domain.tuple());
     let kind = RegionKind::WrongParts { role, file, wanted, count, tuple: shown };
     Err(Diagnostic::new(tuple.span, kind))
 }
 
-/// The two parts of a point of a tool.
+/// Returns the two components of a point of a tool.
 pub(super) fn pair(tuple: &Tuple, role: Role) -> Result<[&Expr; 2], Diagnostic> {
     components(tuple, Domain::HalfPlane, role).map(|_| [&tuple.parts[0], &tuple.parts[1]])
 }

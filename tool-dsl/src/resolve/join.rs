@@ -1,35 +1,35 @@
-//! One outline put on another: what is left of each, and the ring between them.
+//! Joins one outline onto another at a plane, with the ring between them.
 
-use crate::geometry::outline::{Circle, Place, Segment, doubles};
+use crate::geometry::outline::{Circle, ExactPoint, Segment, doubles};
 use crate::number::Number;
 
-/// Lengths below this part of the tool's size are rounding.
+/// Lengths below this fraction of the tool's size are rounding errors.
 const ROUNDING: f64 = 1e-12;
-/// How far a tool's end may be from the tip that it says, in sizes of the tool.
+/// The largest distance of a tool's end from its stated tip, in sizes of the tool.
 pub(super) const OFF_TIP: f64 = 1e-6;
 
-/// Why two outlines cannot be joined at a plane.
+/// The reason why two outlines cannot be joined at a plane.
 #[derive(Debug)]
 pub(super) enum Unjoined {
-    /// The lower one ends below it.
+    /// The lower outline ends below the plane.
     Short,
-    /// The lower one comes to a point on it.
+    /// The lower outline meets the axis at the plane.
     Point,
-    /// The lower one comes back to it, with this segment.
+    /// The lower outline crosses the plane again, with this segment.
     Back(Box<Segment>),
-    /// The upper one does not begin with a flat face, but with this segment.
+    /// The upper outline begins not with a flat face but with this segment.
     NoFace(Box<Segment>),
 }
 
-/// The same outline with its lengths multiplied, then farther along the axis, on surfaces that are
-/// counted from `first` on.
+/// Returns an outline with its lengths multiplied by `scale`, then moved along the axis by `by`. Surface indices are
+/// increased by `first`.
 pub(super) fn moved(
     outline: &[Segment],
     scale: &Number,
     by: &Number,
     first: usize,
 ) -> Vec<Segment> {
-    let place = |[d, z]: &Place| [d * scale, &(z * scale) + by];
+    let place = |[d, z]: &ExactPoint| [d * scale, &(z * scale) + by];
     let moved = |segment: &Segment| {
         let circle = segment.circle.as_ref().map(|circle| Circle {
             centre: place(&circle.centre),
@@ -42,8 +42,12 @@ pub(super) fn moved(
     outline.iter().map(moved).collect()
 }
 
-/// The solid of `lower` below a plane across the axis, with that of `upper`, which begins there,
-/// above. The ring that is left between their radii belongs to the wider one.
+/// Returns the outline of the solid `lower` below a plane across the axis and of the solid `upper` above it. `upper`
+/// has to begin at the plane. The ring between their radii at the plane belongs to the wider solid.
+///
+/// # Errors
+///
+/// If `lower` does not cross the plane exactly once away from the axis, or if `upper` has no flat face there.
 pub(super) fn join(
     lower: &[Segment],
     upper: &[Segment],
@@ -91,7 +95,7 @@ fn size(outline: &[Segment]) -> f64 {
     ends.flatten().fold(0.0, |size, part| size.max(part.abs()))
 }
 
-/// The walk of an outline up to a plane, which it must cross once.
+/// Returns the part of an outline up to a plane, which it has to cross exactly once.
 fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>, Unjoined> {
     let height = plane.to_f64();
     let side = |z: f64| match z - height {
@@ -111,7 +115,7 @@ fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>
         }
         match stops.iter().position(|z| side(*z) >= 0) {
             None => walked.push(segment.clone()),
-            // The plane goes through the corner where the walk begins: there is nothing below.
+            // The plane goes through the first corner of the outline, so nothing lies below it.
             Some(0) => return Err(Unjoined::Point),
             Some(stop) => {
                 if stops[stop..].iter().any(|z| side(*z) < 0) {
@@ -129,7 +133,7 @@ fn below(outline: &[Segment], plane: &Number, slack: f64) -> Result<Vec<Segment>
     if reached { Ok(walked) } else { Err(Unjoined::Short) }
 }
 
-/// The z of a segment's ends, and between them of where an arc turns back along the axis.
+/// Returns the z of a segment's ends and, between them, the z at which an arc reverses along the axis.
 fn stops(segment: &Segment) -> Vec<f64> {
     let [from, to] = segment.ends().map(|end| end[1]);
     let turns = segment.circle.as_ref().and_then(|circle| {
@@ -143,7 +147,7 @@ fn stops(segment: &Segment) -> Vec<f64> {
     [Some(from), turns, Some(to)].into_iter().flatten().collect()
 }
 
-/// The distance from the axis at which a segment rises through a plane.
+/// Returns the distance from the axis at which a segment rises through a plane.
 fn crossing(segment: &Segment, plane: &Number) -> Number {
     let [[d, z], [to_d, to_z]] = [&segment.from, &segment.to];
     match &segment.circle {
@@ -155,7 +159,7 @@ fn crossing(segment: &Segment, plane: &Number) -> Number {
             let up = plane - &circle.centre[1];
             let square = &(&circle.radius * &circle.radius) - &(&up * &up);
             let off = square.sqrt().unwrap_or_else(|| Number::int(0));
-            // The material is on the left, which is toward the axis for a walk that rises.
+            // The material is on the left, which is toward the axis where the outline rises.
             let off = if circle.convex { off } else { -&off };
             &circle.centre[0] + &off
         }

@@ -1,6 +1,6 @@
-//! Laws: what is said of surfaces, wherever these are.
+//! Laws: magnitude and niceness stated for surfaces instead of regions.
 
-use super::mount::Along;
+use super::mount::MountedNiceness;
 use crate::diagnostic::{Diagnostic, Names, RegionKind, SurfaceRemedy, enough, nearest};
 use crate::model::Surface;
 use crate::source::Span;
@@ -10,16 +10,17 @@ use std::collections::BTreeMap;
 /// A tool's laws.
 pub(super) struct Laws<'t> {
     own: &'t [&'t Law],
-    /// The niceness that comes along with the surfaces of mounted files.
-    pub(super) along: BTreeMap<String, Along>,
+    /// The niceness laws that come with the surfaces of mounted files, by surface.
+    pub(super) along: BTreeMap<String, MountedNiceness>,
 }
 
 impl<'t> Laws<'t> {
-    pub(super) fn new(own: &'t [&'t Law], along: BTreeMap<String, Along>) -> Laws<'t> {
+    pub(super) fn new(own: &'t [&'t Law], along: BTreeMap<String, MountedNiceness>) -> Laws<'t> {
         Laws { own, along }
     }
 
-    /// The law for a surface: for the surface itself, for `cutting`, for all.
+    /// Returns the law for a surface: one for the surface itself, otherwise one for `cutting`, otherwise one for all
+    /// surfaces.
     pub(super) fn find(&self, quantity: Quantity, surface: &Surface) -> Option<&'t Law> {
         let for_word = |word: &str| {
             self.own
@@ -33,14 +34,14 @@ impl<'t> Laws<'t> {
             .copied()
     }
 
-    /// What is wrong with the laws themselves.
+    /// Reports errors in the laws themselves.
     pub(super) fn check(&self, surfaces: &[Surface], diagnostics: &mut Vec<Diagnostic>) {
         let mut seen: Vec<(Quantity, &str, Span)> = Vec::new();
         for law in self.own {
             if enough(diagnostics) {
                 return;
             }
-            let what = law.quantity.word();
+            let what = law.quantity.keyword();
             if law.quantity == Quantity::Niceness && law.surfaces.is_empty() {
                 diagnostics.push(Diagnostic::new(law.span, RegionKind::NicenessOfAll));
             }
@@ -67,7 +68,7 @@ impl<'t> Laws<'t> {
                 match surface {
                     None => {
                         let known = surfaces.iter().map(|s| s.name.as_str());
-                        // Of a part's surface the part may have been forgotten.
+                        // The part may have been omitted from the name of a part's surface.
                         let of_part = format!(".{word}");
                         let whole = known.clone().find(|name| name.ends_with(&of_part));
                         let remedy = match whole.or(nearest(word, known)) {
@@ -87,7 +88,7 @@ impl<'t> Laws<'t> {
     }
 }
 
-/// Lists the surfaces: those of a mounted part, if it is named.
+/// Lists the surfaces of the mounted part with this name, or some of all surfaces if there is no such part.
 fn named(word: &str, surfaces: &[Surface]) -> SurfaceRemedy {
     let of = format!("{word}.");
     let names = || surfaces.iter().map(|surface| surface.name.as_str());
@@ -103,7 +104,7 @@ pub(super) fn idle_niceness(span: Span, surface: &Surface) -> Diagnostic {
         .and(surface.span, "not `cutting` here")
 }
 
-/// Which rule a law is of.
+/// Returns a filter of laws by quantity.
 fn is(quantity: Quantity) -> impl Fn(&&&Law) -> bool {
     move |law| law.quantity == quantity
 }

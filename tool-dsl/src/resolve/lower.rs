@@ -1,4 +1,4 @@
-//! Expressions of the syntax tree to nodes of the graph, with their dimension.
+//! Lowers expressions of the syntax tree to nodes of the graph, with their dimensions.
 
 use super::call::FUNCTIONS;
 use crate::diagnostic::{
@@ -14,7 +14,7 @@ use crate::syntax::TALLEST;
 use crate::syntax::tree::{Binary, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 
-/// Names that belong to the language, whatever the file's own coordinates.
+/// Names reserved by the language, whatever the file's own coordinates.
 const COORDINATES: [&str; 4] = ["d", "z", "x", "y"];
 const UNITS: [&str; 5] = ["mm", "inch", "m", "deg", "rad"];
 
@@ -27,40 +27,44 @@ pub(super) struct Value {
     pub(super) used: bool,
 }
 
-/// What an expression may mention where it stands.
+/// The names that an expression may mention, by its context.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum May {
-    /// Constants only, for this.
+    /// Constants only, in this role.
     Constants(Role),
     /// Coordinates too.
     Coordinates,
-    /// And `depth`, which is this here.
+    /// Coordinates and `depth`, which is this expression.
     Depth(Id),
 }
 
-/// Everything that lowering needs and fills.
+/// The state of lowering a file.
 #[derive(Clone)]
 pub(super) struct Lowering {
     pub(super) domain: Domain,
     pub(super) graph: Graph,
     pub(super) unit: Unit,
     pub(super) frame: Frame,
-    /// How many of the file's unit are one of the tool's: 1 but for a mounted file.
+    /// The number of the file's units of length per unit of the tool: 1 except in a mounted file.
     pub(super) scale: Number,
     pub(super) values: BTreeMap<String, Value>,
-    /// Where each name is defined, above or below.
+    /// The span at which each name is defined, above or below its use.
     pub(super) declared: BTreeMap<String, Span>,
-    /// The names without a value, each with the evidence that its definition was refused.
+    /// The names without a value, each with the evidence that its definition was rejected.
     pub(super) broken: BTreeMap<String, Reported>,
 }
 
-/// The largest constant on the way to a length, 2^1000: powers of lengths fit.
+/// The largest intermediate constant, 2^1000, large enough for powers of lengths.
 const LARGEST: f64 = 1.071508607186267e301;
 
 pub(super) type Lowered = Result<(Id, Dimension), Diagnostic>;
 
 impl Lowering {
-    /// Gives a value its name.
+    /// Defines a name.
+    ///
+    /// # Errors
+    ///
+    /// If the name is reserved or already defined.
     pub(super) fn define(
         &mut self,
         name: &Name,
@@ -91,7 +95,7 @@ impl Lowering {
         Ok(())
     }
 
-    /// Reports a definition that was refused, and remembers its name.
+    /// Reports a rejected definition, and records its name.
     pub(super) fn note(
         &mut self,
         name: &Name,
@@ -104,7 +108,7 @@ impl Lowering {
         }
     }
 
-    /// An expression that must come out constant, for this.
+    /// Lowers an expression that has to be constant, in this role.
     pub(super) fn constant(
         &mut self,
         expr: &Expr,
@@ -117,7 +121,7 @@ impl Lowering {
         }
     }
 
-    /// A constant length.
+    /// Lowers a constant length.
     pub(super) fn length(&mut self, expr: &Expr, role: Role) -> Result<Number, Diagnostic> {
         let (value, dimension) = self.constant(expr, role)?;
         if !dimension.is_length() {
@@ -127,10 +131,10 @@ impl Lowering {
         Ok(value)
     }
 
-    /// Any expression.
+    /// Lowers any expression.
     pub(super) fn lower(&mut self, expr: &Expr, may: May) -> Lowered {
         let (id, dimension) = self.node(expr, may)?;
-        // Constants are checked as they grow, before anything overflows.
+        // Constants are checked at every step, before anything overflows.
         let size = self.graph.constant(id).map_or(0.0, |value| value.to_f64().abs());
         if size > LARGEST {
             return Err(Diagnostic::new(expr.span, ValueKind::ConstantOutOfRange));
@@ -165,7 +169,7 @@ impl Lowering {
     fn measured(&mut self, value: &Number, unit: &Name, span: Span) -> Lowered {
         let word = unit.word.as_str();
         if let Some(from) = Unit::from_word(word) {
-            let value = value * &from.to(self.unit);
+            let value = value * &from.factor_to(self.unit);
             return Ok((self.graph.number(value), LENGTH));
         }
         match word {
@@ -221,7 +225,7 @@ impl Lowering {
                 return Err(without_value(span, word, *reported));
             }
             if let Some(definition) = self.declared.get(word) {
-                // Constants are settled before curves, wherever these stand.
+                // Constants are evaluated before curves, wherever they are written.
                 if definition.start < span.start
                     && let May::Constants(role) = may
                 {
@@ -308,7 +312,7 @@ impl Lowering {
     }
 }
 
-/// Whether a constant has a size that the compiler can work with.
+/// Checks that the compiler can work with the size of a constant.
 pub(super) fn in_range(value: &Number, span: Span) -> Result<(), Diagnostic> {
     if value.is_in_range() {
         return Ok(());
@@ -320,7 +324,7 @@ fn not_constant(span: Span, word: Option<&str>, role: Role) -> Diagnostic {
     Diagnostic::new(span, ValueKind::NotConstant { word: word.map(str::to_owned), role })
 }
 
-/// The use of a name whose definition is refused.
+/// Returns the error for the use of a name whose definition was rejected.
 pub(super) fn without_value(span: Span, word: &str, refused: Reported) -> Diagnostic {
     let kind = ValueKind::NameWithoutValue { word: word.to_owned() };
     Diagnostic::new(span, kind).caused_by(refused)

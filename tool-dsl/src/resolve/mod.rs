@@ -1,11 +1,11 @@
-//! The syntax tree to the model: names, dimensions, the frame, each region's rules.
+//! Resolves the syntax tree to the model: names, dimensions, the coordinate frame, the laws of each region.
 
+mod arguments;
 mod call;
 mod condition;
 mod cycle;
 mod derived;
 mod direction;
-mod given;
 mod join;
 mod law;
 mod lower;
@@ -27,17 +27,20 @@ use crate::geometry::outline::Segment;
 use crate::model::{Model, Surface, Unit};
 use crate::source::{Sources, Span};
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Name, Profile, Region, Tool};
+use arguments::Given;
 use condition::Curves;
 use derived::FromProfile;
-use given::Given;
 use law::Laws;
 use lower::{Lowering, in_range};
-use mount::Along;
+use mount::MountedNiceness;
 use over::Divider;
 use std::collections::BTreeMap;
 
-/// Resolves a tool with what its params are given; the files that it mounts are read on the way.
-/// Fails only with an error among the diagnostics, and never succeeds with one that it adds.
+/// Resolves a tool with the arguments of its parameters. The files that it mounts are read on the way.
+///
+/// # Errors
+///
+/// Fails only with an error among the diagnostics, and never succeeds if it adds an error.
 pub fn resolve(
     tool: &Tool,
     given: &[Definition],
@@ -46,8 +49,8 @@ pub fn resolve(
 ) -> Result<Model, Reported> {
     let unit = unit(tool).map_err(|diagnostic| Reported::push(diagnostics, diagnostic))?;
     let mut lowering = Lowering::of(tool, unit);
-    let given = given::from_outside(given, (tool.domain, unit), diagnostics);
-    given::untaken(tool, &given, diagnostics);
+    let given = arguments::from_outside(given, (tool.domain, unit), diagnostics);
+    arguments::untaken(tool, &given, diagnostics);
     constants(tool, &given, &mut lowering, diagnostics);
     let misplaced = match tool.domain {
         Domain::Space => without_axis(tool, diagnostics),
@@ -134,7 +137,7 @@ pub fn resolve(
     })
 }
 
-/// Refuses what only a tool has, in a solid.
+/// Reports items that only a tool may have, in a solid. Returns evidence if there are any.
 fn without_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Reported> {
     let mut refused = None;
     for item in &tool.items {
@@ -152,7 +155,7 @@ fn without_axis(tool: &Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Report
     refused
 }
 
-/// What divides a profile's inside: `regions smooth`, or regions by hand.
+/// Returns the division of a profile's inside: `regions smooth`, regions by hand, or neither.
 fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t> {
     let by_hand: Vec<&Region> = tool
         .items
@@ -184,23 +187,23 @@ fn divider<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Divider<'t>
     }
 }
 
-/// What a tool's outline is made of.
+/// The source of a tool's outline.
 enum Shape<'t> {
     Profile(&'t Profile),
     Mounts(Vec<&'t Mount>),
 }
 
-/// A tool's outline in its frame and unit.
+/// A tool's outline, in its frame and unit.
 struct Outlined {
     outline: Vec<Segment>,
     surfaces: Vec<Surface>,
-    /// The niceness that comes along with the surfaces of mounted files.
-    along: BTreeMap<String, Along>,
-    /// Where it is said.
+    /// The niceness laws that come with the surfaces of mounted files, by surface.
+    along: BTreeMap<String, MountedNiceness>,
+    /// The span of the profile or, for mounts, of the tool's name.
     span: Span,
 }
 
-/// The profile or the mounts, if there are any, and what does not go with them.
+/// Returns the profile or the mounts, if there are any, and reports items that conflict with them.
 fn shape<'t>(tool: &'t Tool, diagnostics: &mut Vec<Diagnostic>) -> Option<Shape<'t>> {
     let mut profiles = tool.items.iter().filter_map(|item| match item {
         Item::Profile(profile) => Some(profile),
@@ -249,7 +252,7 @@ fn definitions(tool: &Tool, wanted: impl Fn(&Item) -> bool) -> impl Iterator<Ite
     })
 }
 
-/// The file's unit: the first item, exactly once.
+/// Returns the file's unit, which has to be the first item and stated exactly once.
 fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
     let missing = |span: Span| Diagnostic::new(span, ValueKind::NoUnit);
     let Some(Item::Units(name)) = tool.items.first() else {
@@ -278,8 +281,8 @@ fn unit(tool: &Tool) -> Result<Unit, Diagnostic> {
     })
 }
 
-/// `let` and `param`, in order. Names that are defined by themselves are reported first, those of
-/// curves too, and stay without a value.
+/// Evaluates `let` and `param` items, in order. Names of constants and curves that are defined by themselves are
+/// reported first, and stay without a value.
 fn constants(
     tool: &Tool,
     given: &[Given<'_>],
@@ -298,7 +301,7 @@ fn constants(
         }
         let value = lowering.constant(&definition.value, Role::Let);
         let value = value.and_then(|value| match is_param {
-            true => given::value_of(definition, value, given, lowering.unit),
+            true => arguments::value_of(definition, value, given, lowering.unit),
             false => Ok(value),
         });
         let defined = value.and_then(|(value, dimension)| {
@@ -313,7 +316,7 @@ fn constants(
     }
 }
 
-/// `tip` and `spindle`, each at most once.
+/// Evaluates `tip` and `spindle`, each stated at most once.
 fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>) {
     let (mut tip, mut spindle): (Option<Span>, Option<Span>) = (None, None);
     for item in &tool.items {
@@ -343,7 +346,7 @@ fn frame(tool: &Tool, lowering: &mut Lowering, diagnostics: &mut Vec<Diagnostic>
     }
 }
 
-/// The curves that `bsp` lists.
+/// Returns the curves that `bsp` lists.
 fn first_curves(
     tool: &Tool,
     lowering: &mut Lowering,

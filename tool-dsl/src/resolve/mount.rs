@@ -1,12 +1,12 @@
-//! Several files joined into one profile.
+//! Joins several files into one profile.
 
-use super::given::{self, Given};
+use super::arguments::{self, Given};
 use super::join::{OFF_TIP, Unjoined, join, moved};
 use super::law::Laws;
 use super::lower::{Lowering, May};
 use super::region::{Niceness, quantity};
 use super::{Outlined, Shape, constants, definitions, frame, profile, shape, unit};
-use crate::diagnostic::{Chain, CheckKind, Diagnostic, Figure, MountKind, Reported, Role};
+use crate::diagnostic::{Chain, CheckKind, Diagnostic, FormattedNumber, MountKind, Reported, Role};
 use crate::domain::Domain;
 use crate::expr::{Graph, Id};
 use crate::geometry::outline::{Segment, reach};
@@ -18,14 +18,15 @@ use crate::syntax;
 use crate::syntax::tree::{Definition, Expr, Item, Law, Mount, Quantity, Tool};
 use std::collections::BTreeMap;
 
-/// The most files that a tool mounts, those of mounted files among them.
+/// The maximum number of files that a tool mounts, including those that mounted files mount.
 const MOST: usize = 64;
 
-/// A file's solid in its tool's frame and its unit, and the niceness that comes along.
+/// A file's solid in its tool's frame and unit, with its niceness laws.
 pub(super) struct Part {
     pub(super) outline: Vec<Segment>,
     pub(super) surfaces: Vec<Surface>,
-    /// The law of each surface, whether it may rise with depth, and in which of the scopes it is written.
+    /// The law of each surface: the index of the scope in which it is written, its expression, and whether it may rise
+    /// with depth.
     niceness: Vec<Option<(usize, Expr, bool)>>,
     scopes: Vec<Scope>,
 }
@@ -37,14 +38,14 @@ struct Scope {
 }
 
 /// A niceness law of a mounted file, in that file's own names, unit and frame.
-pub(super) struct Along {
+pub(super) struct MountedNiceness {
     lowering: Lowering,
     value: Expr,
     rising: bool,
 }
 
-impl Along {
-    /// The law at a point of the whole tool, of which this is the depth.
+impl MountedNiceness {
+    /// Lowers the law at a point of the whole tool with the given depth.
     pub(super) fn lower(&self, graph: &mut Graph, depth: Id) -> Result<Niceness, Diagnostic> {
         self.lowering.clone().on(graph, |lowering| {
             let depth = lowering.length_here(depth);
@@ -54,7 +55,7 @@ impl Along {
     }
 }
 
-/// The one profile of mounted files, and the niceness that comes along with its surfaces.
+/// Returns the profile of the joined files, and the niceness laws that come with its surfaces.
 pub(super) fn assembled(
     mounts: &[&Mount],
     span: Span,
@@ -76,17 +77,20 @@ pub(super) fn assembled(
     }
     let along = part.surfaces.iter().zip(part.niceness).filter_map(|(surface, law)| {
         let (scope, value, rising) = law?;
-        Some((surface.name.clone(), Along { lowering: scopes[scope].clone(), value, rising }))
+        Some((
+            surface.name.clone(),
+            MountedNiceness { lowering: scopes[scope].clone(), value, rising },
+        ))
     });
     let along = along.collect();
     Ok(Outlined { outline: part.outline, surfaces: part.surfaces, along, span })
 }
 
-/// What goes on while files are mounted.
+/// The state of mounting files.
 struct Mounting<'a> {
     sources: &'a mut Sources,
     diagnostics: &'a mut Vec<Diagnostic>,
-    /// The files that are being mounted, each by the one before, by where their texts begin.
+    /// The files being mounted, each by the one before, identified by the offsets of their texts.
     chain: Vec<usize>,
     mounted: usize,
     /// Evidence that too many files are mounted.
@@ -94,7 +98,7 @@ struct Mounting<'a> {
 }
 
 impl Mounting<'_> {
-    /// The parts of a tool joined into one, in the unit of the file that mounts them.
+    /// Joins the parts of a tool into one, in the unit of the file that mounts them.
     fn assemble(&mut self, mounts: &[&Mount], lowering: &mut Lowering) -> Result<Part, Reported> {
         let before = self.diagnostics.len();
         let mut parts = Vec::new();
@@ -110,11 +114,11 @@ impl Mounting<'_> {
                 );
             }
             let at = self.place(mount, index, lowering);
-            let given = given::from_mount(&mount.with, lowering, self.diagnostics);
+            let given = arguments::from_mount(&mount.with, lowering, self.diagnostics);
             let part = self.open(mount, &given, &mut lowering.graph);
             match (at, part) {
                 (Ok(at), Ok((part, unit))) => {
-                    parts.push((*mount, at, part.placed(mount, &unit.to(lowering.unit))));
+                    parts.push((*mount, at, part.placed(mount, &unit.factor_to(lowering.unit))));
                 }
                 (Err(reported), _) | (_, Err(reported)) => refused = Some(reported),
             }
@@ -134,12 +138,12 @@ impl Mounting<'_> {
             (last, height) = (mount, at);
         }
         whole.drop_what_is_gone();
-        let shown = |[d, z]: [f64; 2]| format!("({}, {})", Figure(d), Figure(z));
+        let shown = |[d, z]: [f64; 2]| format!("({}, {})", FormattedNumber(d), FormattedNumber(z));
         self.diagnostics.extend(check(&whole.outline, shown));
         Reported::among(&self.diagnostics[before..]).map_or(Ok(whole), Err)
     }
 
-    /// Where a mount puts its tip.
+    /// Returns the z at which a mount places its part's tip.
     fn place(
         &mut self,
         mount: &Mount,
@@ -166,7 +170,7 @@ impl Mounting<'_> {
         Err(Reported::push(self.diagnostics, wrong))
     }
 
-    /// Reads and resolves a mounted file as far as its profile, and says its unit.
+    /// Reads a mounted file and resolves it up to its profile. Returns its part and its unit.
     fn open(
         &mut self,
         mount: &Mount,
@@ -189,7 +193,7 @@ impl Mounting<'_> {
         Ok((part, unit))
     }
 
-    /// The tree of a mounted file, and where its text begins.
+    /// Returns the syntax tree of a mounted file, and the offset of its text.
     fn read(&mut self, mount: &Mount) -> Result<(usize, Tool), Reported> {
         let source = self
             .source(mount)
@@ -197,7 +201,7 @@ impl Mounting<'_> {
         self.mounted += 1;
         if self.mounted > MOST {
             let by = mount.file.span;
-            // Once is enough, however many follow.
+            // Reported only once, however many mounts follow.
             let diagnostic = Diagnostic::new(by, MountKind::TooManyMounts { most: MOST });
             let diagnostic = match self.full {
                 Some(reported) => diagnostic.caused_by(reported),
@@ -208,7 +212,7 @@ impl Mounting<'_> {
             return Err(reported);
         }
         if !syntax::begins_a_tool(&source.text) {
-            // Nothing of its text is shown: it may be any file.
+            // The message shows none of the file's text, since it may be any file.
             let diagnostic = Diagnostic::new(
                 mount.file.span,
                 MountKind::NotTool { file: mount.file.word.clone() },
@@ -220,7 +224,7 @@ impl Mounting<'_> {
         Reported::among(&self.diagnostics[before..]).map_or(Ok((source.base, tree)), Err)
     }
 
-    /// The text of a mounted file.
+    /// Returns the text of a mounted file.
     fn source(&mut self, mount: &Mount) -> Result<Source, Diagnostic> {
         let (written, by) = (mount.file.word.as_str(), mount.file.span);
         let place = self
@@ -251,7 +255,7 @@ impl Mounting<'_> {
         ))
     }
 
-    /// A mounted file's solid and its niceness.
+    /// Returns a mounted file's solid with its niceness laws.
     fn part(
         &mut self,
         mount: &Mount,
@@ -268,7 +272,7 @@ impl Mounting<'_> {
             );
             return Err(Reported::push(self.diagnostics, diagnostic));
         }
-        given::untaken(tree, given, self.diagnostics);
+        arguments::untaken(tree, given, self.diagnostics);
         constants(tree, given, lowering, self.diagnostics);
         frame(tree, lowering, self.diagnostics);
         if let Some(reported) = Reported::among(&self.diagnostics[before..]) {
@@ -310,12 +314,12 @@ impl Mounting<'_> {
     }
 }
 
-/// The curves of a file, of which its laws may speak.
+/// Returns the curves of a file, which its laws may mention.
 fn curves(tree: &Tool) -> Vec<Definition> {
     definitions(tree, |item| matches!(item, Item::Curve(_))).cloned().collect()
 }
 
-/// A solid that does not end at its tip.
+/// Returns an error if a solid does not end at its tip.
 fn not_at_tip(outline: &[Segment], frame: &Frame) -> Option<Diagnostic> {
     let [[_, end], [radius, high]] = reach(outline);
     let off = end.abs() > OFF_TIP * radius.max(high - end);
@@ -323,7 +327,7 @@ fn not_at_tip(outline: &[Segment], frame: &Frame) -> Option<Diagnostic> {
 }
 
 impl Part {
-    /// The part under its name and in the unit of the file that mounts it.
+    /// Returns the part under the mount's name and in the unit of the mounting file.
     fn placed(mut self, mount: &Mount, scale: &Number) -> Part {
         let zero = Number::int(0);
         self.outline = moved(&self.outline, scale, &zero, 0);
@@ -334,14 +338,14 @@ impl Part {
         self
     }
 
-    /// Lets the laws know where their part has gone.
+    /// Updates the laws' frames after their part was scaled and moved.
     fn raised(&mut self, scale: &Number, by: &Number) {
         for scope in &mut self.scopes {
             scope.lowering.placed(scale, by);
         }
     }
 
-    /// Puts another part on this one, from a plane on.
+    /// Joins another part onto this one at a plane.
     fn carry(
         &mut self,
         (last, height): (&Mount, &Number),
@@ -349,7 +353,7 @@ impl Part {
         mut part: Part,
     ) -> Result<(), Diagnostic> {
         let span = mount.at.as_ref().map_or(mount.span, |at| at.span);
-        let (below, z) = (last.name.word.clone(), Figure(at.to_f64()));
+        let (below, z) = (last.name.word.clone(), FormattedNumber(at.to_f64()));
         if at <= height {
             return Err(Diagnostic::new(
                 span,
@@ -357,7 +361,7 @@ impl Part {
                     name: mount.name.word.clone(),
                     z,
                     below,
-                    height: Figure(height.to_f64()),
+                    height: FormattedNumber(height.to_f64()),
                 },
             ));
         }
@@ -366,7 +370,7 @@ impl Part {
         self.outline = join(&self.outline, &upper, at).map_err(|why| match why {
             Unjoined::Short => {
                 let [_, [_, top]] = reach(&self.outline);
-                let (length, top) = (Figure(top - height.to_f64()), Figure(top));
+                let (length, top) = (FormattedNumber(top - height.to_f64()), FormattedNumber(top));
                 Diagnostic::new(
                     span,
                     MountKind::TooShort { below, z, top, length, first: height.is_zero() },
@@ -396,7 +400,7 @@ impl Part {
         Ok(())
     }
 
-    /// Forgets the surfaces of which nothing is left.
+    /// Removes surfaces of which no segment is left.
     fn drop_what_is_gone(&mut self) {
         let mut left = vec![None; self.surfaces.len()];
         let mut count = 0;
@@ -416,14 +420,14 @@ impl Part {
     }
 }
 
-/// A tool that ends at a z which is not its tip; its other end may be.
+/// Returns the error for a tool whose end is at a z other than its tip; the opposite end may be at the tip.
 pub(crate) fn off_tip(frame: &Frame, [end, other]: [f64; 2]) -> Diagnostic {
     let size = other - end;
-    let tip = Figure(frame.tip.to_f64());
+    let tip = FormattedNumber(frame.tip.to_f64());
     let turned = other.abs() <= 1e-6 * size;
     let spindle = turned.then_some(if frame.down { '+' } else { '-' });
     Diagnostic::new(
         frame.tip_span,
-        CheckKind::OffTip { end: Figure(frame.to_file(end)), tip, spindle },
+        CheckKind::OffTip { end: FormattedNumber(frame.to_file(end)), tip, spindle },
     )
 }

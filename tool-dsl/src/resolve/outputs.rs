@@ -1,13 +1,13 @@
-//! What the evaluators compute, from what a region says.
+//! Builds the expressions of a region's outputs.
 
 use crate::domain::Domain;
 use crate::expr::derive::derivative;
 use crate::expr::{Coord, Graph, Id, Node};
-use crate::model::Outputs;
+use crate::model::RegionOutputs;
 use crate::number::Number;
 
-/// Makes a vector a unit vector. One shorter than 2^-480, whose square would lose digits, becomes the
-/// unit vector along `axis`, as one of no length does.
+/// Returns the unit vector of a vector. A vector shorter than 2^-480, whose square would lose digits, becomes the unit
+/// vector along `axis`. `None` for a constant vector of zero length.
 pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[Id; 3]> {
     let constants = vector.map(|part| graph.constant(part).cloned());
     if let [Some(x), Some(y), Some(z)] = constants {
@@ -29,31 +29,30 @@ pub(super) fn unit(graph: &mut Graph, vector: [Id; 3], axis: usize) -> Option<[I
     Some(unit)
 }
 
-/// The gradient in a domain.
+/// Returns the gradient of an expression in a domain.
 pub(super) fn gradient(graph: &mut Graph, domain: Domain, of: Id) -> [Id; 3] {
     let parts: Vec<Id> =
         domain.coordinates().iter().map(|(by, ..)| derivative(graph, of, *by)).collect();
     domain.vector(graph, &parts)
 }
 
-/// A vector of the domain turned to where the point is in space. On a tool's axis the radial part
-/// is that of +x.
+/// Rotates a vector of the domain to the point's position in space. On a tool's axis the radial direction is +x.
 fn in_space(graph: &mut Graph, domain: Domain, vector: [Id; 3]) -> [Id; 3] {
     if domain == Domain::Space {
         return vector;
     }
     let [radial, _, axial] = vector;
     let across = [graph.coord(Coord::X), graph.coord(Coord::Y), graph.int(0)];
-    // Coordinates are no constants, so the unit vector exists.
+    // The coordinates are not constant, so the unit vector exists.
     let unit = unit(graph, across, 0).unwrap_or(across);
     let [x, y] = [0, 1]
         .map(|k| turned(graph, radial, across[k]).unwrap_or_else(|| graph.mul(radial, unit[k])));
     [x, y, axial]
 }
 
-/// A radial part that is the distance from the axis times something, turned: the coordinate times
-/// that. Nothing is divided by the distance first, which costs most of a direction's time, and on the
-/// axis nothing is left to choose.
+/// Returns a rotated radial component that is a multiple of the distance from the axis: the coordinate times the other
+/// factor. This avoids a division by the distance, which takes most of a direction's time, and it has a unique value on
+/// the axis.
 fn turned(graph: &mut Graph, radial: Id, coordinate: Id) -> Option<Id> {
     match *graph.node(radial) {
         Node::Coord(Coord::D) => Some(coordinate),
@@ -73,8 +72,8 @@ fn turned(graph: &mut Graph, radial: Id, coordinate: Id) -> Option<Id> {
     }
 }
 
-/// What a region's evaluators compute. A magnitude that is the depth is a length, and changes with
-/// the unit; another is the file's own number.
+/// Builds the outputs of a region. A magnitude that is the depth is a length and changes with the unit; any other is
+/// the file's own number.
 pub(super) fn outputs(
     graph: &mut Graph,
     domain: Domain,
@@ -82,7 +81,7 @@ pub(super) fn outputs(
     (magnitude, is_depth): (Id, bool),
     direction: [Id; 3],
     niceness: Id,
-) -> Outputs {
+) -> RegionOutputs {
     let zero = graph.int(0);
     let slope = gradient(graph, domain, magnitude);
     let slope = in_space(graph, domain, slope);
@@ -94,7 +93,7 @@ pub(super) fn outputs(
         let per = graph.coord(Coord::PerLength);
         (magnitude, slope.map(|part| graph.mul(part, per)))
     };
-    Outputs {
+    RegionOutputs {
         depth,
         magnitude,
         gradient,

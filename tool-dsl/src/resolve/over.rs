@@ -1,4 +1,4 @@
-//! A profile divided once more: by regions that are written, or by the fans of smoothed corners.
+//! Divides a profile further: by regions that are written, or by the fans of smoothed corners.
 
 use super::condition::Curves;
 use super::derived::{Part, formula};
@@ -6,9 +6,10 @@ use super::direction::Course;
 use super::law::Laws;
 use super::lower::Lowering;
 use super::outputs;
-use super::region::{Bare, Felt, inside, mention, noted};
+use super::region::{Bare, RegionResolver, inside, mention, noted};
 use crate::diagnostic::{
-    CheckKind, Diagnostic, Figure, RegionKind, Role, SurfaceRemedy, any_error, enough, nearest,
+    CheckKind, Diagnostic, FormattedNumber, RegionKind, Role, SurfaceRemedy, any_error, enough,
+    nearest,
 };
 use crate::domain::Domain;
 use crate::expr::Id;
@@ -21,20 +22,20 @@ use crate::regionalise::{self, Feature, Partition, Undivided};
 use crate::source::Span;
 use crate::syntax::tree::{self, Expr, Quantity};
 
-/// What divides a profile's inside beside its nearest features.
+/// The further division of a profile's inside, in addition to its nearest features.
 pub(super) enum Divider<'t> {
-    /// Nothing.
+    /// No further division.
     Features,
-    /// Regions that are written.
+    /// Regions written by hand.
     Hand(Vec<&'t tree::Region>),
     /// Directions of the outline with its corners rounded over this tangent length.
     Smooth(&'t Expr),
 }
 
-/// Conditions over the parts of a partition, and what they change.
+/// Conditions over the parts of a partition, and their effects.
 pub(super) struct Conditions<'t> {
     pub(super) conditions: Vec<Formula>,
-    /// The distances from the pieces of the rounded outline.
+    /// The distances from the segments of the rounded outline.
     pub(super) distances: Vec<Id>,
     kinds: Vec<Kind<'t>>,
 }
@@ -46,12 +47,12 @@ impl Conditions<'_> {
 
 enum Kind<'t> {
     Hand(&'t tree::Region, Option<usize>),
-    /// The way to the rounded outline, and where that comes from.
+    /// The direction to the rounded outline, not normalised, and the origin of its segment.
     Smooth([Id; 3], Origin),
 }
 
 impl Divider<'_> {
-    /// Refuses an outline that would take minutes to divide.
+    /// Rejects an outline that would take minutes to divide.
     pub(super) fn in_limits(&self, outline: &[Segment]) -> Result<(), Diagnostic> {
         match self {
             Divider::Smooth(length) if outline.len() > MOST_SMOOTH => {
@@ -61,7 +62,7 @@ impl Divider<'_> {
         }
     }
 
-    /// The conditions, if there are any.
+    /// Returns the conditions, if there is a further division.
     pub(super) fn conditions(
         &self,
         (outline, inner): (&[Segment], &Partition),
@@ -98,7 +99,7 @@ impl Divider<'_> {
     }
 }
 
-/// The surface of a written region.
+/// Returns the surface that a written region names, if any.
 fn written(
     region: &tree::Region,
     all: &[&tree::Region],
@@ -135,11 +136,11 @@ fn written(
     }
 }
 
-/// The most segments of a profile with `regions smooth`: the cells of each corner are laid over those of each
-/// segment.
+/// The maximum number of segments of a profile with `regions smooth`: the cells of each corner are intersected with
+/// those of each segment.
 const MOST_SMOOTH: usize = 128;
 
-/// The cells of the outline with rounded corners, of which directions are taken.
+/// Returns the cells of the outline with rounded corners, from which directions are taken.
 fn fans<'t>(
     length: &Expr,
     outline: &[Segment],
@@ -170,8 +171,11 @@ fn fans<'t>(
                 let [from, to] =
                     [piece.checked_sub(1), Some(piece)].map(|behind| shown(behind, lowering));
                 let corners = (count == 2).then_some([from, to]);
-                Diagnostic::new(span, RegionKind::FansTooWide { corners, edge: Figure(size), most })
-                    .and(outline[piece].span, "this edge")
+                Diagnostic::new(
+                    span,
+                    RegionKind::FansTooWide { corners, edge: FormattedNumber(size), most },
+                )
+                .and(outline[piece].span, "this edge")
             }
         }
     })?;
@@ -191,7 +195,7 @@ fn fans<'t>(
         if let Origin::Fan(behind) = origins[piece]
             && rounded[piece].round().is_some_and(|(_, _, convex)| convex)
         {
-            // A convex corner stands out from its arc: its edges bound the fan there.
+            // A convex corner protrudes beyond its arc; there the corner's edges bound the fan.
             let beside = [behind, Some(behind.map_or(0, |k| k + 1))];
             let edges = beside.into_iter().flatten().filter(|k| *k < outline.len());
             let edges = edges.filter_map(|k| inner.inside(graph, k)).collect();
@@ -208,7 +212,7 @@ fn fans<'t>(
 }
 
 impl Conditions<'_> {
-    /// The parts and conditions that have points in common.
+    /// Returns the pairs of parts and conditions that have points in common.
     pub(super) fn pairs(
         &self,
         (outline, inner, parts): (&[Segment], &Partition, &[Part]),
@@ -249,7 +253,7 @@ impl Conditions<'_> {
         pairs
     }
 
-    /// The region of a part where a condition holds.
+    /// Returns the region of a part in which a condition holds.
     pub(super) fn region(
         &self,
         (part, index): (&Part, usize),
@@ -270,24 +274,25 @@ impl Conditions<'_> {
                         format!("{} by fan {}", part.name, behind.map_or(0, |k| k + 1))
                     }
                 };
-                let felt = Felt { laws, lowering, surface: &surfaces[part.owner] };
+                let evaluation = RegionResolver { laws, lowering, surface: &surfaces[part.owner] };
                 let said = (name, part.span, part.owner, inside);
                 let source = DirectionSource::Oblique;
                 let course = Course { parts: *course, span: part.span, source };
-                noted(felt.of_part(part, said, course), diagnostics)
+                noted(evaluation.of_part(part, said, course), diagnostics)
             }
             Kind::Hand(region, surface) => {
                 let owner = surface.unwrap_or(part.owner);
-                let mut felt = Felt { laws, lowering, surface: &surfaces[owner] };
-                let (magnitude, niceness) = felt.rules(region, depth, diagnostics);
-                let written = noted(felt.course(region), diagnostics)?;
+                let mut evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
+                let (magnitude, niceness) = evaluation.rules(region, depth, diagnostics);
+                let written = noted(evaluation.course(region), diagnostics)?;
                 let (magnitude, niceness) = (magnitude?, niceness?);
-                let own = noted(felt.said(region, Quantity::Magnitude), diagnostics)?;
-                let free = own.filter(|own| mention(&own.value, Quantity::Depth.word()).is_none());
+                let own = noted(evaluation.said(region, Quantity::Magnitude), diagnostics)?;
+                let free =
+                    own.filter(|own| mention(&own.value, Quantity::Depth.keyword()).is_none());
                 let course = match (written, free, magnitude) {
                     (Some(course), ..) => course,
                     (None, Some(own), Some((magnitude, _))) => {
-                        let graph = &mut felt.lowering.graph;
+                        let graph = &mut evaluation.lowering.graph;
                         let slope = outputs::gradient(graph, Domain::HalfPlane, magnitude);
                         let parts = slope.map(|slope| graph.neg(slope));
                         let (span, source) = (own.value.span, DirectionSource::Written);
@@ -297,13 +302,16 @@ impl Conditions<'_> {
                 };
                 let (name, span) = (region.name.word.clone(), region.name.span);
                 let bare = Bare { name, span, owner, inside };
-                noted(felt.finish(bare, (depth, span), (magnitude, niceness), course), diagnostics)
+                noted(
+                    evaluation.finish(bare, (depth, span), (magnitude, niceness), course),
+                    diagnostics,
+                )
             }
         }
     }
 }
 
-/// A region of which nothing is left by one listed before it, or several.
+/// Returns the warning or error for a region that is entirely covered by one or more regions listed before it.
 pub(crate) fn never_wins(
     name: &str,
     span: Span,
@@ -317,7 +325,7 @@ pub(crate) fn never_wins(
     .and(at, "this one")
 }
 
-/// Two regions that have points in common, for instance at `place`. The first is at `at`.
+/// Returns the error for two regions that have points in common, for instance at `place`. The first region is at `at`.
 pub(crate) fn overlapping(
     first: &str,
     (second, span): (&str, Span),

@@ -1,24 +1,24 @@
-//! A `profile` to its outline: points, circles and surfaces, in the tool's frame.
+//! Resolves a `profile` to its outline: points, circles and surfaces, in the tool's frame.
 
 use super::lower::Lowering;
 use crate::diagnostic::{
-    Diagnostic, Figure, ProfileKind, Reported, Role, enough, figure, without_error,
+    Diagnostic, FormattedNumber, ProfileKind, Reported, Role, enough, format_number, without_error,
 };
-use crate::geometry::outline::{Circle, Place, Segment, doubles, minus, norm};
+use crate::geometry::outline::{Circle, ExactPoint, Segment, doubles, minus, norm};
 use crate::model::Surface;
 use crate::number::Number;
 use crate::regionalise::check::check;
 use crate::source::Span;
-use crate::syntax::tree::{Arc, Expr, Piece, Profile, Round, Tuple};
+use crate::syntax::tree::{Arc, Expr, PathSegment, Profile, Round, Tuple};
 
-/// The most segments of a profile: more take minutes to divide.
+/// The maximum number of segments of a profile. Dividing more would take minutes.
 const MOST: usize = 256;
-/// The flattest arc, in chords.
+/// The largest radius of an arc, in chords.
 const FLATTEST: f64 = 1e6;
-/// How far an arc's ends may be off its circle, in radii.
+/// The largest distance of an arc's ends from its circle, in radii.
 const OFF_CIRCLE: f64 = 1e-9;
 
-/// The outline of a profile, counter-clockwise in the tool's frame, and its surfaces.
+/// Returns the outline of a profile, counter-clockwise in the tool's frame, and its surfaces.
 pub(super) fn outline(
     profile: &Profile,
     lowering: &mut Lowering,
@@ -52,8 +52,8 @@ pub(super) fn outline(
     let frame = lowering.frame.clone();
     diagnostics.extend(check(&segments, shown));
     without_error(&diagnostics[before..])?;
-    // The turn into the tool's frame may turn the sense over; then the walk is turned too.
-    let to_tool = |place: &Place| [place[0].clone(), frame.to_tool(&place[1])];
+    // The map to the tool's frame may reverse the orientation; the order of the segments is then reversed too.
+    let to_tool = |place: &ExactPoint| [place[0].clone(), frame.to_tool(&place[1])];
     let mut outline: Vec<Segment> = segments
         .into_iter()
         .map(|segment| {
@@ -71,11 +71,11 @@ pub(super) fn outline(
 }
 
 fn shown([d, z]: [f64; 2]) -> String {
-    let tidy = |v: f64| if v.abs() < 1e-12 { "0".to_owned() } else { figure(v) };
+    let tidy = |v: f64| if v.abs() < 1e-12 { "0".to_owned() } else { format_number(v) };
     format!("({}, {})", tidy(d), tidy(z))
 }
 
-/// A profile that does not begin or not end on the axis.
+/// Reports a profile that does not begin or does not end on the axis.
 fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagnostic>) {
     let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return };
     let [begin, end] = [first.ends()[0], last.ends()[1]];
@@ -94,21 +94,25 @@ fn off_axis(profile: &Profile, segments: &[Segment], diagnostics: &mut Vec<Diagn
     }
 }
 
-fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<Place, Diagnostic> {
+fn place(tuple: &Tuple, lowering: &mut Lowering) -> Result<ExactPoint, Diagnostic> {
     let [d, z] = super::direction::pair(tuple, Role::Point)?;
     let mut length = |expr: &Expr| lowering.length(expr, Role::Point);
     Ok([length(d)?, length(z)?])
 }
 
-fn surface(piece: &Piece, surfaces: &mut Vec<Surface>, diagnostics: &mut Vec<Diagnostic>) -> usize {
+fn surface(
+    piece: &PathSegment,
+    surfaces: &mut Vec<Surface>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> usize {
     let cutting = piece.cutting.is_some();
     super::region::named_surface(&piece.surface, cutting, surfaces, diagnostics)
 }
 
 fn segment(
-    piece: &Piece,
-    from: Place,
-    to: Place,
+    piece: &PathSegment,
+    from: ExactPoint,
+    to: ExactPoint,
     surface: usize,
     lowering: &mut Lowering,
 ) -> Result<Segment, Diagnostic> {
@@ -125,7 +129,7 @@ fn segment(
 
 fn circle(
     arc: &Arc,
-    ends: [&Place; 2],
+    ends: [&ExactPoint; 2],
     span: Span,
     lowering: &mut Lowering,
 ) -> Result<Circle, Diagnostic> {
@@ -135,7 +139,7 @@ fn circle(
             let [a, b] = ends.map(|end| distance(end, &centre));
             let (a_size, b_size) = (a.to_f64(), b.to_f64());
             if (a_size - b_size).abs() > OFF_CIRCLE * a_size.max(b_size) {
-                let (mut near, mut far) = (figure(a_size), figure(b_size));
+                let (mut near, mut far) = (format_number(a_size), format_number(b_size));
                 if near == far {
                     (near, far) = (a_size.to_string(), b_size.to_string());
                 }
@@ -153,7 +157,7 @@ fn circle(
     };
     let (r, chord) = (radius.to_f64(), norm(minus(doubles(ends[1]), doubles(ends[0]))));
     if r > FLATTEST * chord {
-        return Err(Diagnostic::new(span, ProfileKind::FlatArc { radius: Figure(r) }));
+        return Err(Diagnostic::new(span, ProfileKind::FlatArc { radius: FormattedNumber(r) }));
     }
     let [a, b] = ends.map(|end| [0, 1].map(|k| &end[k] - &centre[k]));
     let turn = (&(&a[0] * &b[1]) - &(&a[1] * &b[0])).to_f64();
@@ -168,16 +172,16 @@ fn circle(
     }
 }
 
-fn distance(a: &Place, b: &Place) -> Number {
+fn distance(a: &ExactPoint, b: &ExactPoint) -> Number {
     let [d, z] = [0, 1].map(|k| &a[k] - &b[k]);
     (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0))
 }
 
-/// Returns the centre and radius of a circle through both ends, so that borders of regions meet in them exactly: of those
-/// the one whose centre is nearest to a given centre, or, of one on the axis, nearest to it there.
-fn midway([from, to]: [&Place; 2], centre: &Place) -> (Place, Number) {
+/// Returns the centre and radius of a circle through both ends, so that borders of regions meet exactly at them. Its
+/// centre is the nearest one to the given centre; if that is on the axis, the nearest one on the axis.
+fn midway([from, to]: [&ExactPoint; 2], centre: &ExactPoint) -> (ExactPoint, Number) {
     let chord = [0, 1].map(|k| &to[k] - &from[k]);
-    let dot = |a: &Place, b: &Place| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
+    let dot = |a: &ExactPoint, b: &ExactPoint| &(&a[0] * &b[0]) + &(&a[1] * &b[1]);
     let middle = [0, 1].map(|k| &(&from[k] + &to[k]) / &Number::int(2));
     let off = dot(&chord, &[0, 1].map(|k| &middle[k] - &centre[k]));
     let rises = chord[1].to_f64().abs() > 1e-6 * norm(doubles(&chord));
@@ -189,28 +193,28 @@ fn midway([from, to]: [&Place; 2], centre: &Place) -> (Place, Number) {
     (centre, radius)
 }
 
-/// The centre of the arc of less than 180° that bulges out of the material, or into it.
+/// Returns the centre of the arc of less than 180° that bulges out of the material, or into it if `concave`.
 fn by_radius(
-    [from, to]: [&Place; 2],
+    [from, to]: [&ExactPoint; 2],
     radius: &Number,
     concave: bool,
     span: Span,
-) -> Result<Place, Diagnostic> {
+) -> Result<ExactPoint, Diagnostic> {
     let half = |a: &Number, b: &Number| &(a + b) / &Number::int(2);
     let middle = [0, 1].map(|k| half(&from[k], &to[k]));
     let [d, z] = [0, 1].map(|k| &to[k] - &from[k]);
     let chord = (&(&d * &d) + &(&z * &z)).sqrt().unwrap_or_else(|| Number::int(0));
     let short = &(radius * radius) - &(&(&chord * &chord) / &Number::int(4));
     let (r, c) = (radius.to_f64(), norm(minus(doubles(to), doubles(from))));
-    // A half circle's centre is on its chord, as far as its ends are on the circle.
+    // The centre of a half circle is on its chord, within the tolerance of its ends.
     let rounding = if short.is_negative() { OFF_CIRCLE } else { 1e-18 };
     let near = short.to_f64().abs() <= rounding * c * c;
     let off = if near { Some(Number::int(0)) } else { short.sqrt() };
     let (Some(off), true) = (off, r > 0.0) else {
-        let [radius, chord, least] = [r, c, c / 2.0].map(Figure);
+        let [radius, chord, least] = [r, c, c / 2.0].map(FormattedNumber);
         return Err(Diagnostic::new(span, ProfileKind::RadiusTooSmall { radius, chord, least }));
     };
-    // The material is on the left: a bulge out of it has its centre there.
+    // The material is on the left: an arc that bulges out of it has its centre there.
     let off = if concave { -&off } else { off };
     let left = [-&z, d];
     Ok([0, 1].map(|k| &middle[k] + &(&(&left[k] * &off) / &chord)))

@@ -1,4 +1,4 @@
-//! Regions: what is felt where, as they or the laws say.
+//! Resolves regions: points, depth, direction, magnitude and niceness, from their own properties or the laws.
 
 use super::condition::Curves;
 use super::direction::Course;
@@ -9,14 +9,14 @@ use crate::diagnostic::{Diagnostic, RegionKind, enough};
 use crate::dimension::Dimension;
 use crate::expr::Id;
 use crate::formula::Formula;
-use crate::model::{DirectionSource, Region, Said, Surface};
+use crate::model::{DirectionSource, LawSpans, Region, Surface};
 use crate::source::Span;
 use crate::syntax::tree::{self, Compare, Expr, Item, Quantity, Scalar, Tool};
 
-/// The most regions that a tool may have: more take the planner minutes.
+/// The maximum number of regions of a tool. Planning more would take minutes.
 const MOST: usize = 256;
 
-/// All surfaces and regions.
+/// Resolves all surfaces and regions that are written by hand.
 pub(super) fn regions(
     tool: &Tool,
     laws: &Laws<'_>,
@@ -55,8 +55,8 @@ pub(super) fn regions(
                 .and(earlier.span, "the first"),
             );
         }
-        let felt = Felt { laws, lowering, surface: &surfaces[owner] };
-        regions.extend(felt.region(written, owner, curves, diagnostics));
+        let evaluation = RegionResolver { laws, lowering, surface: &surfaces[owner] };
+        regions.extend(evaluation.region(written, owner, curves, diagnostics));
         if enough(diagnostics) {
             break;
         }
@@ -64,7 +64,7 @@ pub(super) fn regions(
     (surfaces, regions)
 }
 
-/// The surface of a region: the one it names, or one of its own name.
+/// Returns the surface of a region: the one it names, or one of the region's own name.
 fn surface(
     region: &tree::Region,
     surfaces: &mut Vec<Surface>,
@@ -74,7 +74,7 @@ fn surface(
     named_surface(name, region.cutting.is_some(), surfaces, diagnostics)
 }
 
-/// The surface of a name, known or new.
+/// Returns the index of the surface with a name, adding it if it is new.
 pub(super) fn named_surface(
     name: &tree::Name,
     cutting: bool,
@@ -105,7 +105,7 @@ pub(super) fn named_surface(
     }
 }
 
-/// What a region is, but for what is felt in it.
+/// A region without its depth, direction, magnitude and niceness.
 pub(super) struct Bare {
     pub(super) name: String,
     pub(super) span: Span,
@@ -113,10 +113,10 @@ pub(super) struct Bare {
     pub(super) inside: Formula,
 }
 
-/// A value, and where it is said.
+/// A value and its span.
 pub(super) type Placed = (Id, Span);
 
-/// A niceness, where it is said, and whether it may rise with depth.
+/// A niceness, its span, and whether it may rise with depth.
 #[derive(Clone, Copy)]
 pub(super) struct Niceness {
     pub(super) value: Id,
@@ -124,7 +124,7 @@ pub(super) struct Niceness {
     pub(super) rising: bool,
 }
 
-/// What a result is worth; what is wrong is noted.
+/// Returns the value of a result, and reports its error.
 pub(super) fn noted<T>(
     result: Result<T, Diagnostic>,
     diagnostics: &mut Vec<Diagnostic>,
@@ -132,7 +132,7 @@ pub(super) fn noted<T>(
     result.map_err(|diagnostic| diagnostics.push(diagnostic)).ok()
 }
 
-/// A magnitude or a niceness.
+/// Lowers a magnitude or a niceness.
 pub(super) fn quantity(lowering: &mut Lowering, value: &Expr, may: May) -> Result<Id, Diagnostic> {
     let (id, dimension) = lowering.lower(value, may)?;
     if dimension == Dimension::Angle {
@@ -141,17 +141,17 @@ pub(super) fn quantity(lowering: &mut Lowering, value: &Expr, may: May) -> Resul
     Ok(id)
 }
 
-/// Settles what one region's evaluators compute.
-pub(super) struct Felt<'a> {
+/// Resolves the outputs of one region.
+pub(super) struct RegionResolver<'a> {
     pub(super) laws: &'a Laws<'a>,
     pub(super) lowering: &'a mut Lowering,
     pub(super) surface: &'a Surface,
 }
 
-impl Felt<'_> {
-    /// The magnitude that a region or else the law for its surface writes; `None` if nobody does,
-    /// or if it is written as `depth`. Any other is a number of its own, though depth be taken
-    /// from it.
+impl RegionResolver<'_> {
+    /// Returns the magnitude written by the region, otherwise by the law for its surface. Returns `None` if there is
+    /// neither, or if it is written as `depth`. Any other magnitude is a number of its own, even if it is computed from
+    /// the depth.
     pub(super) fn magnitude(
         &mut self,
         own: Option<&Expr>,
@@ -160,11 +160,11 @@ impl Felt<'_> {
         let law = self.laws.find(Quantity::Magnitude, self.surface).map(|law| &law.value);
         let Some(value) = own.or(law) else { return Ok(None) };
         let id = quantity(self.lowering, value, May::Depth(depth))?;
-        let is_depth = id == depth && mention(value, Quantity::Depth.word()).is_some();
+        let is_depth = id == depth && mention(value, Quantity::Depth.keyword()).is_some();
         Ok((!is_depth).then_some((id, value.span)))
     }
 
-    /// Makes the evaluators' expressions.
+    /// Builds the expressions of the region's outputs.
     pub(super) fn finish(
         self,
         bare: Bare,
@@ -180,17 +180,18 @@ impl Felt<'_> {
         let (magnitude, magnitude_span) = magnitude.unwrap_or((depth, depth_span));
         let magnitudes = (magnitude, is_depth);
         let outputs = outputs::outputs(graph, domain, depth, magnitudes, direction, niceness.value);
-        let said = Said { depth: depth_span, magnitude: magnitude_span, niceness: niceness.span };
+        let said =
+            LawSpans { depth: depth_span, magnitude: magnitude_span, niceness: niceness.span };
         Ok(Region {
             name: bare.name,
             span: bare.span,
             surface: bare.owner,
             inside: bare.inside,
             depth,
-            said,
+            law_spans: said,
             magnitude,
             direction,
-            course: (course.parts, course.span),
+            raw_direction: (course.parts, course.span),
             source: course.source,
             niceness: niceness.value,
             rising: niceness.rising,
@@ -198,7 +199,7 @@ impl Felt<'_> {
         })
     }
 
-    /// A region that says its own depth. Whatever is wrong with it is noted.
+    /// Resolves a region that states its own depth, and reports all of its errors.
     fn region(
         mut self,
         written: &tree::Region,
@@ -208,7 +209,7 @@ impl Felt<'_> {
     ) -> Option<Region> {
         let inside = inside(written, self.lowering, curves, diagnostics);
         let known = noted(self.depth(written), diagnostics);
-        // What is said of a depth that is not known is looked at all the same.
+        // Without a depth, the other properties are still checked, with a stand-in for it.
         let any = self.lowering.domain.coordinates()[0].0;
         let depth = known.unwrap_or_else(|| (self.lowering.graph.coord(any), written.name.span));
         let (magnitude, niceness) = self.rules(written, depth.0, diagnostics);
@@ -224,7 +225,7 @@ impl Felt<'_> {
         noted(self.finish(bare, depth, (magnitude?, niceness?), course), diagnostics)
     }
 
-    /// The magnitude and the niceness of a written region.
+    /// Returns the magnitude and the niceness of a written region.
     pub(super) fn rules(
         &mut self,
         written: &tree::Region,
@@ -238,7 +239,7 @@ impl Felt<'_> {
         (noted(magnitude, diagnostics), noted(niceness, diagnostics))
     }
 
-    /// The region's own word on a quantity.
+    /// Returns the region's own property for a quantity.
     pub(super) fn said<'w>(
         &self,
         written: &'w tree::Region,
@@ -249,14 +250,14 @@ impl Felt<'_> {
         if let (Some(first), Some(second)) = (first, all.next()) {
             return Err(Diagnostic::new(
                 second.span,
-                RegionKind::SaidTwice { word: quantity.word().to_owned() },
+                RegionKind::SaidTwice { word: quantity.keyword().to_owned() },
             )
             .and(first.span, "first here"));
         }
         Ok(first)
     }
 
-    /// The depth: what the region says, else its magnitude.
+    /// Returns the depth: the region's own, otherwise its magnitude.
     fn depth(&mut self, written: &tree::Region) -> Result<(Id, Span), Diagnostic> {
         let (value, by) = match self.said(written, Quantity::Depth)? {
             Some(own) => (&own.value, Quantity::Depth),
@@ -291,8 +292,8 @@ impl Felt<'_> {
         Ok((id, value.span))
     }
 
-    /// The niceness that a region or else the law for its surface writes, or else its mounted file;
-    /// else 1, or 0 where nothing cuts.
+    /// Returns the niceness written by the region, otherwise by the law for its surface, otherwise by its mounted file.
+    /// Without any of them it is 1 on a cutting surface, and 0 on others.
     pub(super) fn niceness(
         &mut self,
         own: Option<&Scalar>,
@@ -319,14 +320,14 @@ impl Felt<'_> {
         }
     }
 
-    /// −∇ of the depth.
+    /// Returns −∇ of the depth.
     fn downhill(&mut self, depth: Id) -> [Id; 3] {
         let (graph, domain) = (&mut self.lowering.graph, self.lowering.domain);
         outputs::gradient(graph, domain, depth).map(|part| graph.neg(part))
     }
 }
 
-/// The points that a region's conditions name. Each wrong condition is noted.
+/// Returns the points that satisfy all of a region's conditions, and reports each invalid condition.
 pub(super) fn inside(
     written: &tree::Region,
     lowering: &mut Lowering,
@@ -345,7 +346,7 @@ pub(super) fn inside(
     Some(Formula::All(sides?.into_iter().flatten().collect()))
 }
 
-/// The sides of one condition: one, or two of a chain.
+/// Returns the sides of one condition: one, or two for a chain.
 fn condition(
     condition: &tree::Condition,
     lowering: &mut Lowering,
@@ -371,7 +372,7 @@ fn condition(
     Ok(sides)
 }
 
-/// Where an expression mentions a name.
+/// Returns the span at which an expression mentions a name.
 pub(super) fn mention(expr: &Expr, word: &str) -> Option<Span> {
     match &expr.kind {
         tree::ExprKind::Name(name) => (name == word).then_some(expr.span),

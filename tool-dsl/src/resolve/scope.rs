@@ -1,4 +1,4 @@
-//! What names mean in a file, and where its coordinates lie in the whole tool.
+//! The names of a file, and the transform from the tool's coordinates to the file's.
 
 use super::definitions;
 use super::lower::{Lowering, May};
@@ -13,7 +13,7 @@ use crate::syntax::tree::{Definition, Tool};
 use std::collections::BTreeMap;
 
 impl Lowering {
-    /// Of a text without names.
+    /// Returns the state for a text without names.
     pub(super) fn new(domain: Domain, unit: Unit) -> Lowering {
         Lowering {
             domain,
@@ -27,7 +27,7 @@ impl Lowering {
         }
     }
 
-    /// Of a tool of which nothing is lowered yet.
+    /// Returns the state for a tool of which nothing is lowered yet.
     pub(super) fn of(tool: &Tool, unit: Unit) -> Lowering {
         let declared = definitions(tool, |_| true)
             .map(|definition| (definition.name.word.clone(), definition.name.span))
@@ -37,7 +37,7 @@ impl Lowering {
         lowering
     }
 
-    /// Works on a graph that is shared with other files.
+    /// Runs `work` on a graph that is shared with other files.
     pub(super) fn on<T>(&mut self, graph: &mut Graph, work: impl FnOnce(&mut Lowering) -> T) -> T {
         std::mem::swap(graph, &mut self.graph);
         let done = work(self);
@@ -45,7 +45,7 @@ impl Lowering {
         done
     }
 
-    /// Puts the file's tool somewhere else: its lengths multiplied, its tip moved along the axis.
+    /// Moves the file's tool: its lengths are multiplied by `scale`, then its tip is moved along the axis by `by`.
     pub(super) fn placed(&mut self, scale: &Number, by: &Number) {
         self.scale = &self.scale / scale;
         let by = &self.scale * by;
@@ -53,7 +53,7 @@ impl Lowering {
             if self.frame.down { &self.frame.tip + &by } else { &self.frame.tip - &by };
     }
 
-    /// A length of the tool in the file's unit.
+    /// Converts a length of the tool to the file's unit.
     pub(super) fn length_here(&mut self, length: Id) -> Id {
         if self.scale == Number::int(1) {
             return length;
@@ -62,14 +62,14 @@ impl Lowering {
         self.graph.mul(scale, length)
     }
 
-    /// A coordinate of the tool's in the file's unit and frame.
+    /// Converts a coordinate of the tool to the file's unit and frame.
     pub(super) fn coordinate_here(&mut self, coordinate: Coord) -> Id {
         let id = self.graph.coord(coordinate);
         let id = self.length_here(id);
         if coordinate == Coord::Z { self.frame.file_z(&mut self.graph, id) } else { id }
     }
 
-    /// Gives a name to a function of the coordinates, or reports why it has none.
+    /// Defines a curve, a function of the coordinates, or reports its error.
     pub(super) fn curve(&mut self, definition: &Definition, diagnostics: &mut Vec<Diagnostic>) {
         if !self.broken.contains_key(&definition.name.word) {
             let defined = self.curve_value(definition);

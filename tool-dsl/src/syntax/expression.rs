@@ -1,4 +1,4 @@
-//! Expressions: pairs of pest to sums, products and what they are made of.
+//! Parses expressions: converts pairs of pest to sums, products and their operands.
 
 use super::Rule;
 use super::limits::TALLEST;
@@ -10,14 +10,14 @@ use crate::source::Span;
 use pest::iterators::{Pair, Pairs};
 use std::str::FromStr;
 
-/// The most operands of one sum or product.
+/// The maximum number of operands of one sum or product.
 const OPERANDS: usize = 64;
 
-/// An expression, and how many operations it has upon each other.
+/// An expression and its height in operations.
 type Tall = (Expr, u32);
 
 impl Reader<'_> {
-    /// Reads an expression. One with too many operations upon each other is cut short, and reported.
+    /// Parses an expression. If it is higher than the limit it is truncated and reported.
     pub(super) fn expr(&mut self, pair: Pair<'_, Rule>) -> Expr {
         let mut beyond = None;
         let (expr, _) = self.tree(pair, &mut beyond);
@@ -28,8 +28,8 @@ impl Reader<'_> {
         expr
     }
 
-    /// As deep as brackets are nested, which is limited; the place where the expression was cut short goes to
-    /// `beyond`.
+    /// Parses an expression recursively. The depth is that of nested brackets, which is limited. `beyond` receives the
+    /// span at which the expression was truncated.
     fn tree(&mut self, pair: Pair<'_, Rule>, beyond: &mut Option<Span>) -> Tall {
         let span = self.span(&pair);
         let nothing = || (ExprKind::Name(String::new()), 0);
@@ -98,7 +98,7 @@ impl Reader<'_> {
         (Expr { kind, span }, height.min(TALLEST))
     }
 
-    /// `a + b - c` and `a * b / c`, both from the left.
+    /// Parses `a + b - c` or `a * b / c`, both left-associative.
     fn chain(&mut self, mut inner: Pairs<'_, Rule>, beyond: &mut Option<Span>) -> Tall {
         let mut left = match inner.next() {
             Some(first) => self.tree(first, beyond),
@@ -130,7 +130,7 @@ impl Reader<'_> {
 
     fn number(&mut self, text: &str, span: Span) -> ExprKind {
         let digits = digits(text);
-        // Longer ones, and exponents that are out of all range, would take their time.
+        // Longer numbers and exponents far out of range would take too long to convert.
         let exponent = text[..digits].rsplit_once(['e', 'E']).map_or("0", |(_, exponent)| exponent);
         let sane = digits <= 400 && exponent.parse::<i32>().is_ok_and(|e| e.abs() <= 400);
         let value = match sane.then(|| Number::decimal(&text[..digits])).flatten() {
@@ -148,7 +148,7 @@ impl Reader<'_> {
     }
 }
 
-/// Two operands, or the first alone where the limit is reached.
+/// Returns the operation on two operands, or the first operand alone if the limit is reached.
 fn binary(
     operator: Binary,
     left: Tall,
@@ -165,7 +165,7 @@ fn binary(
     (Expr { kind, span }, tallest + 1)
 }
 
-/// How much of a number token is the number; the rest is its unit.
+/// Returns the length of the number in a number token; the rest is its unit.
 fn digits(text: &str) -> usize {
     let bytes = text.as_bytes();
     let run = |mut at: usize| {

@@ -1,9 +1,9 @@
-//! The text in the pieces that the grammar's tokens have: what is a comment or a text, and what is not.
+//! Splits text into lexemes at the boundaries of the grammar's tokens, to tell comments and texts from the rest.
 
 use super::limits::DEEPEST;
 use super::refuse::{FILES, in_name};
 
-/// One piece of a text, from its start to its end in bytes.
+/// A lexeme, as a range of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Lexeme {
     pub(super) start: usize,
@@ -11,16 +11,16 @@ pub(super) struct Lexeme {
     pub(super) kind: Kind,
 }
 
-/// The kinds of pieces.
+/// The kinds of lexemes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A blank or a comment, which the grammar skips.
     Skipped,
-    /// A block comment that does not end, as far as the end of the text.
+    /// A block comment that does not end, up to the end of the text.
     Unended,
-    /// A block comment with more comments in each other than the limit, as far as the first of those.
+    /// A block comment nested deeper than the limit, up to the start of the first comment beyond it.
     TooDeep,
-    /// A text between quotes.
+    /// A quoted text.
     Text,
     /// A name, a number, or both glued together.
     Word,
@@ -28,15 +28,15 @@ pub(super) enum Kind {
     Mark(char),
 }
 
-/// Returns whether the first word of a text is that of a tool's or a solid's file, with a name behind it.
+/// Returns whether a text begins with the keyword of a tool or a solid, followed by a name.
 pub(crate) fn begins_a_tool(text: &str) -> bool {
     let mut words = lexemes(text).filter(|lexeme| lexeme.kind != Kind::Skipped);
     let first = words.next().map_or("", |first| &text[first.start..first.end]);
     FILES.contains(&first) && words.next().is_some_and(|name| name.kind == Kind::Word)
 }
 
-/// The pieces of a text in order, without gaps. A quote that no other one ends on its line is a mark, as it is
-/// for the grammar.
+/// Returns the lexemes of a text in order, without gaps. A quote without a closing quote on its line is a mark, as it
+/// is for the grammar.
 pub(super) fn lexemes(text: &str) -> impl Iterator<Item = Lexeme> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -56,7 +56,7 @@ pub(super) fn lexemes(text: &str) -> impl Iterator<Item = Lexeme> {
     })
 }
 
-/// A block comment, which may hold others.
+/// Returns the length and kind of a block comment, which may contain others.
 fn block_comment(bytes: &[u8]) -> (usize, Kind) {
     let (mut depth, mut at) = (0, 0);
     while let Some(pair) = bytes.get(at..at + 2) {
@@ -78,7 +78,8 @@ fn block_comment(bytes: &[u8]) -> (usize, Kind) {
     (bytes.len(), Kind::Unended)
 }
 
-/// The length of the text that begins here, if it ends on its line and no name is glued to it.
+/// Returns the length of the quoted text at the beginning of `rest`, if it ends on its line and no name follows
+/// directly.
 fn text_length(rest: &str) -> Option<usize> {
     let end = 1 + rest[1..].find(['"', '\\', '\n', '\r'])?;
     let closed = rest.as_bytes()[end] == b'"' && !rest[end + 1..].starts_with(in_name);

@@ -1,5 +1,5 @@
-//! How much of everything a text may hold. Nesting is counted before pest runs, which goes as deep: in the pieces
-//! that pest's own tokens have, so that no bracket of a comment or a text counts.
+//! Size limits of a text. Nesting is checked before pest runs, because pest recurses as deep as the text is nested. The
+//! check uses the lexemes of pest's own tokens, so brackets in comments and texts do not count.
 
 use super::Rule;
 use super::lexeme::{Kind, Lexeme, lexemes};
@@ -7,17 +7,17 @@ use crate::diagnostic::{Diagnostic, SyntaxKind};
 use crate::source::{LONGEST, Span};
 use pest::iterators::{Pair, Pairs};
 
-/// The longest name.
+/// The maximum length of a name, in bytes.
 const LONGEST_NAME: usize = 100;
-/// The most items of a file.
+/// The maximum number of items in a file.
 const MOST: usize = 4096;
-/// The deepest nesting of brackets, and that of comments.
+/// The maximum depth of nested brackets, and of nested comments.
 pub(super) const DEEPEST: usize = 64;
-/// The most operations upon each other: in an expression as it is written, and between a value and a coordinate.
-/// Whatever walks an expression goes as deep.
+/// The maximum height of an expression, in operations, both as written and between a value and a coordinate. Functions
+/// that walk an expression recurse as deep.
 pub(crate) const TALLEST: u32 = 300;
 
-/// A name, or a list of items, that is longer than any that people write.
+/// Returns an error for a name or a list of items above the limits, which no person would write.
 pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
     let place = |pair: &Pair<'_, Rule>, length: usize| {
         let start = pair.as_span().start();
@@ -37,8 +37,8 @@ pub(super) fn too_much(pairs: Pairs<'_, Rule>) -> Option<Diagnostic> {
     Some(Diagnostic::new(place(&beyond, 1), SyntaxKind::TooManyItems { most: MOST }))
 }
 
-/// The text's length, its comments and its brackets. A comment that does not end is refused here: pest would
-/// try the comments within it in all combinations.
+/// Checks the text's length, its comments and its brackets. A comment that does not end is rejected here: pest would
+/// try the comments inside it in all combinations.
 pub(super) fn within_limits(text: &str) -> Result<(), Diagnostic> {
     if text.len() > LONGEST {
         let end = Span { start: 0, end: 1 };

@@ -1,8 +1,7 @@
-//! Text to syntax tree.
+//! Parses text to the syntax tree.
 //!
-//! The grammar accepts a little more than the language; what it accepts too much is refused by
-//! name, with a remedy (`refuse`). Items are parsed each for itself, so that one mistake does
-//! not hide the next.
+//! The grammar accepts slightly more than the language. The excess is rejected with a specific error and a remedy
+//! (`refuse`). Items are parsed independently, so that one mistake does not hide the next.
 
 mod expression;
 mod lexeme;
@@ -14,11 +13,11 @@ pub mod tree;
 
 pub(crate) use lexeme::begins_a_tool;
 pub(crate) use limits::TALLEST;
-pub use mount::given;
+pub use mount::parse_argument;
 pub(crate) use parse::tokens;
 pub use parse::{is_type_name, parse};
 
-/// pest's generated parser, in a module of its own because it documents nothing.
+/// The parser that pest generates. It has a module of its own because its items have no documentation.
 mod grammar {
     #![allow(missing_docs)]
     #[derive(pest_derive::Parser)]

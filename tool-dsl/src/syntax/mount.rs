@@ -1,4 +1,4 @@
-//! Mounts, and what a tool's params are given.
+//! Parses mounts, and arguments of a tool's parameters.
 
 use super::limits::within_limits;
 use super::parse::{Reader, is_word};
@@ -9,9 +9,9 @@ use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::Pair;
 
-/// Reads what a tool's params are given from outside its file: `D = 0.25inch, flute = 18`. What is
-/// wrong is added to the diagnostics.
-pub fn given(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Vec<Definition> {
+/// Parses the arguments of a tool's parameters given from outside its file: `D = 0.25inch, flute = 18`. Errors are
+/// added to the diagnostics.
+pub fn parse_argument(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Vec<Definition> {
     pest::set_error_detail(true);
     let text = &source.text;
     let pairs = within_limits(text).and_then(|()| {
@@ -54,7 +54,7 @@ impl Reader<'_> {
         Some(mount)
     }
 
-    /// `cutter.ball`, which inline comes with spaces.
+    /// Parses a path such as `cutter.ball`, whose tokens are separated by blanks in an inline tool.
     pub(super) fn path(&self, pair: Pair<'_, Rule>) -> Name {
         let span = self.span(&pair);
         let names: Vec<&str> = pair.into_inner().map(|part| part.as_str()).collect();

@@ -1,4 +1,4 @@
-//! Pairs of pest to the syntax tree.
+//! Converts pairs of pest to the syntax tree.
 
 use super::limits::{too_much, within_limits};
 use super::refuse::{self, OBLIQUE, RISING, in_name};
@@ -10,28 +10,39 @@ use crate::source::{Source, Span};
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 
-/// Names that generated code, or Rust itself, has already given away.
-const TAKEN: [&str; 14] = [
+/// Names that generated code or Rust itself uses.
+const TAKEN: [&str; 21] = [
     "Box",
-    "Card",
+    "Circle",
+    "DepthBounds",
+    "EnvelopeSlab",
     "Err",
+    "EvaluationEnclosure",
     "Evaluators",
     "Lane",
+    "LaneEvaluation",
     "None",
     "Ok",
     "Option",
+    "Outputs",
+    "ProfileSegment",
     "Region",
     "Result",
     "Self",
-    "Slab",
     "Some",
     "Surface",
+    "Symmetry",
+    "ToolInfo",
 ];
 
-/// Reads a tool. What could be read comes back even beside errors, so that later steps can report
-/// theirs; without a tool's name nothing can, which fails with an error among the diagnostics.
+/// Parses a tool. Returns the items that could be read even if others have errors, so that later passes can report
+/// theirs.
+///
+/// # Errors
+///
+/// If the text has no tool, or exceeds a limit; the error is among the diagnostics.
 pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool, Reported> {
-    // With the tokens that would have fitted, not the rules alone.
+    // Requests the tokens that would have matched too, not only the rules.
     pest::set_error_detail(true);
     let text = &source.text;
     let pairs = within_limits(text)
@@ -50,7 +61,7 @@ pub fn parse(source: &Source, diagnostics: &mut Vec<Diagnostic>) -> Result<Tool,
 }
 
 pub(super) struct Reader<'a> {
-    /// Where the parsed text begins among all sources.
+    /// The offset of the parsed text among all sources.
     pub(super) offset: usize,
     pub(super) diagnostics: &'a mut Vec<Diagnostic>,
     /// The first words of items that could not be read, and the names that they define.
@@ -98,7 +109,7 @@ impl Reader<'_> {
         Tool { domain, name, title, items, broken: Vec::new() }
     }
 
-    /// An item that the grammar could not read is read again alone, for its own error.
+    /// Parses again an item that the grammar could not read, alone, to find its specific error.
     fn stray(&mut self, pair: &Pair<'_, Rule>) -> Option<Item> {
         let text = pair.as_str();
         let offset = self.offset + pair.as_span().start();
@@ -109,7 +120,7 @@ impl Reader<'_> {
             }
             Err(error) => {
                 self.diagnostics.push(refuse::syntax(text, offset, &error));
-                // What it would have defined, and what it swallowed for want of a `;`.
+                // The names that it would have defined, and those in text it includes because of a missing `;`.
                 let words: Vec<&str> =
                     text.split(|c| !in_name(c)).filter(|w| !w.is_empty()).collect();
                 self.broken.extend(words.first().map(|word| (*word).to_owned()));
@@ -207,7 +218,7 @@ impl Reader<'_> {
                         _ => Direction::Along(self.tuple(part)),
                     };
                     let oblique = self.allows(parts.next(), OBLIQUE, true);
-                    region.direction.push(Course { direction, oblique, span });
+                    region.direction.push(DirectionProperty { direction, oblique, span });
                 }
                 _ => {}
             }
@@ -215,7 +226,8 @@ impl Reader<'_> {
         Some(region)
     }
 
-    /// Returns whether a property says that it allows `word`; it may say so only where that `fits`, and nothing else.
+    /// Returns whether a property allows `word`. Reports any other word, and `word` itself unless it `fits` the
+    /// property.
     fn allows(&mut self, pair: Option<Pair<'_, Rule>>, word: &str, fits: bool) -> bool {
         let Some(pair) = pair else { return false };
         let span = self.span(&pair);
@@ -228,7 +240,7 @@ impl Reader<'_> {
         meant
     }
 
-    /// `as NAME cutting`
+    /// Parses `as NAME cutting`.
     pub(super) fn surface(&self, pair: Pair<'_, Rule>) -> (Option<Name>, Option<Span>) {
         let (mut name, mut cutting) = (None, None);
         for part in pair.into_inner() {
@@ -257,7 +269,7 @@ impl Reader<'_> {
         Some(Profile { start: start?, pieces, span })
     }
 
-    fn pieces(&mut self, pair: Pair<'_, Rule>, pieces: &mut Vec<Piece>) {
+    fn pieces(&mut self, pair: Pair<'_, Rule>, pieces: &mut Vec<PathSegment>) {
         let whole = self.span(&pair);
         let (mut points, mut round, mut concave) = (Vec::new(), None, None);
         let (mut surface, mut cutting) = (None, None);
@@ -279,7 +291,7 @@ impl Reader<'_> {
         for to in points {
             let span = if one { whole } else { to.span };
             let arc = round.clone().map(|round| Arc { round, concave });
-            pieces.push(Piece { to, arc, surface: surface.clone(), cutting, span });
+            pieces.push(PathSegment { to, arc, surface: surface.clone(), cutting, span });
         }
     }
 
@@ -314,7 +326,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether a word will do as a Rust type.
+/// Returns whether a word is usable as the name of a Rust type.
 pub fn is_type_name(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase())
         && !word.contains('_')
@@ -329,7 +341,7 @@ fn quantity(pair: &Pair<'_, Rule>) -> Quantity {
     }
 }
 
-/// The text as it stands: its tokens and comments in order.
+/// Returns the tokens and comments of a text in order.
 pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Diagnostic> {
     match Grammar::parse(Rule::tokens, text) {
         Ok(mut pairs) => Ok(pairs.next().map_or(pairs, Pair::into_inner)),
@@ -337,7 +349,7 @@ pub(crate) fn tokens(text: &str) -> Result<Pairs<'_, Rule>, Diagnostic> {
     }
 }
 
-/// Whether a rule is a word of the language that carries nothing.
+/// Returns whether a rule is a keyword that carries no information.
 pub(super) fn is_word(rule: Rule) -> bool {
     matches!(
         rule,

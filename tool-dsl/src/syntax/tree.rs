@@ -1,31 +1,31 @@
-//! The syntax tree: what was written, each piece with its place.
+//! The syntax tree: the text as written, each node with its span.
 
 use crate::domain::Domain;
 use crate::number::Number;
 use crate::source::Span;
 
-/// A name and where it stands.
+/// A name and its span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// The word.
     pub word: String,
-    /// Its place.
+    /// Its span.
     pub span: Span,
 }
 
 /// A whole file: one tool, or one solid.
 #[derive(Clone, Debug)]
 pub struct Tool {
-    /// Which of the two.
+    /// The domain of the coordinates, which tells a tool from a solid.
     pub domain: Domain,
-    /// The type's name.
+    /// The name of the generated type.
     pub name: Name,
-    /// What it is, for people.
+    /// The description for people.
     pub title: Option<String>,
-    /// The items in order.
+    /// The items, in order.
     pub items: Vec<Item>,
-    /// The first words of items that could not be read, and the names that they define: what they
-    /// would have said is missing.
+    /// The first words of items that could not be read, and the names that they define. Their definitions are missing
+    /// from `items`.
     pub broken: Vec<String>,
 }
 
@@ -44,9 +44,9 @@ pub enum Item {
     Tip(Expr),
     /// `spindle -z;`
     Spindle {
-        /// Whether the spindle lies toward smaller z.
+        /// True if the spindle lies toward smaller z.
         down: bool,
-        /// The whole item.
+        /// The span of the whole item.
         span: Span,
     },
     /// `profile { … }`
@@ -55,9 +55,9 @@ pub enum Item {
     Mount(Mount),
     /// `regions nearest;` or `regions smooth w;`
     Regions {
-        /// The whole item.
+        /// The span of the whole item.
         span: Span,
-        /// The tangent length.
+        /// The tangent length of rounded corners, for `smooth`.
         smooth: Option<Expr>,
     },
     /// `region … { … }`
@@ -80,26 +80,26 @@ pub struct Definition {
 /// The outline of the solid's section, from the axis to the axis.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    /// Where it begins.
+    /// The start point.
     pub start: Tuple,
-    /// Its pieces in order.
-    pub pieces: Vec<Piece>,
-    /// The whole item.
+    /// The segments, in order.
+    pub pieces: Vec<PathSegment>,
+    /// The span of the item's keyword.
     pub span: Span,
 }
 
 /// One segment of a profile.
 #[derive(Clone, Debug)]
-pub struct Piece {
-    /// Where it ends.
+pub struct PathSegment {
+    /// The end point.
     pub to: Tuple,
-    /// How it gets there, if not straight.
+    /// The arc, if the segment is not straight.
     pub arc: Option<Arc>,
-    /// The surface that it belongs to.
+    /// The surface to which it belongs.
     pub surface: Name,
     /// `cutting`, if given.
     pub cutting: Option<Span>,
-    /// The segment; of a list of points, its own point.
+    /// The span of the segment; in a list of points, the span of its own point.
     pub span: Span,
 }
 
@@ -112,7 +112,7 @@ pub struct Arc {
     pub concave: Option<Span>,
 }
 
-/// What is said of an arc's circle.
+/// The definition of an arc's circle.
 #[derive(Clone, Debug)]
 pub enum Round {
     /// Its centre.
@@ -121,20 +121,20 @@ pub enum Round {
     Radius(Expr),
 }
 
-/// Another file's tool, as a part of this one.
+/// Another file's tool, mounted as a part of this one.
 #[derive(Clone, Debug)]
 pub struct Mount {
-    /// The file, as it is written.
+    /// The file, as written.
     pub file: Name,
-    /// What the part is called.
+    /// The name of the part.
     pub name: Name,
     /// `cutting`, if given.
     pub cutting: Option<Span>,
-    /// What its params are given.
+    /// The arguments of the mounted tool's parameters.
     pub with: Vec<Definition>,
-    /// Where its tip is, if not at the tool's.
+    /// The z of its tip, if not at the tool's tip.
     pub at: Option<Expr>,
-    /// The whole item.
+    /// The span of the whole item.
     pub span: Span,
 }
 
@@ -147,12 +147,12 @@ pub struct Region {
     pub surface: Option<Name>,
     /// `cutting`, if given.
     pub cutting: Option<Span>,
-    /// The conditions, all of which hold.
+    /// The conditions, all of which have to hold.
     pub conditions: Vec<Condition>,
     /// `depth:`, `magnitude:`, `niceness:`.
     pub scalars: Vec<Scalar>,
     /// `direction:`.
-    pub direction: Vec<Course>,
+    pub direction: Vec<DirectionProperty>,
 }
 
 /// `a <= b <= c`
@@ -160,9 +160,9 @@ pub struct Region {
 pub struct Condition {
     /// The first expression.
     pub first: Expr,
-    /// Each comparison and what follows it.
+    /// Each comparison, and the expression after it.
     pub rest: Vec<(Compare, Expr)>,
-    /// The whole condition.
+    /// The span of the whole condition.
     pub span: Span,
 }
 
@@ -175,20 +175,20 @@ pub enum Compare {
     AtLeast,
 }
 
-/// What is felt, as a number.
+/// A scalar output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// How deep a point lies.
+    /// The penetration depth.
     Depth,
-    /// How hard it is pushed.
+    /// The magnitude of the contact.
     Magnitude,
-    /// How good a contact there is.
+    /// The quality of the contact.
     Niceness,
 }
 
 impl Quantity {
-    /// The word for it in a file.
-    pub fn word(self) -> &'static str {
+    /// Returns its keyword.
+    pub fn keyword(self) -> &'static str {
         match self {
             Quantity::Depth => "depth",
             Quantity::Magnitude => "magnitude",
@@ -200,31 +200,31 @@ impl Quantity {
 /// `depth: 1 - d;`, `niceness: depth allow rising;`
 #[derive(Clone, Debug)]
 pub struct Scalar {
-    /// Which.
+    /// The quantity.
     pub quantity: Quantity,
     /// Its value.
     pub value: Expr,
     /// `allow rising`, of a niceness.
     pub rising: bool,
-    /// The whole property.
+    /// The span of the whole property.
     pub span: Span,
 }
 
 /// `direction: (1, 0) allow oblique;`
 #[derive(Clone, Debug)]
-pub struct Course {
-    /// Where it leads.
+pub struct DirectionProperty {
+    /// The direction.
     pub direction: Direction,
     /// `allow oblique`.
     pub oblique: bool,
-    /// The whole property.
+    /// The span of the whole property.
     pub span: Span,
 }
 
-/// Where a direction leads.
+/// A direction.
 #[derive(Clone, Debug)]
 pub enum Direction {
-    /// `(1, 0)`, made a unit vector.
+    /// The vector `(1, 0)`, to be normalised.
     Along(Tuple),
     /// `away from P`
     AwayFrom(Tuple),
@@ -237,7 +237,7 @@ pub enum Direction {
 pub struct Tuple {
     /// The components.
     pub parts: Vec<Expr>,
-    /// With its parentheses.
+    /// Its span, including the parentheses.
     pub span: Span,
 }
 
@@ -246,22 +246,22 @@ pub struct Tuple {
 pub struct Law {
     /// Magnitude or niceness.
     pub quantity: Quantity,
-    /// The surfaces it is for, those of a part as `part.surface`; none means all.
+    /// The surfaces to which it applies, those of a part as `part.surface`; empty for all surfaces.
     pub surfaces: Vec<Name>,
     /// Its value.
     pub value: Expr,
     /// `allow rising`, of a niceness.
     pub rising: bool,
-    /// The whole law.
+    /// The span of the whole law.
     pub span: Span,
 }
 
 /// An expression.
 #[derive(Clone, Debug)]
 pub struct Expr {
-    /// What it is.
+    /// The kind of expression.
     pub kind: ExprKind,
-    /// Where it stands.
+    /// Its span.
     pub span: Span,
 }
 
@@ -272,11 +272,11 @@ pub enum ExprKind {
     Number(Number, Option<Name>),
     /// A name.
     Name(String),
-    /// A function.
+    /// A function call.
     Call(Name, Vec<Expr>),
-    /// A minus sign.
+    /// A negation.
     Neg(Box<Expr>),
-    /// Two operands.
+    /// An operation on two operands.
     Binary(Binary, Box<Expr>, Box<Expr>),
 }
 

@@ -1,6 +1,8 @@
-//! Every code of a diagnostic: unique, explained, with a text that causes it, and as `docs/errors.md` says.
+//! Tests of every code of a diagnostic: it is unique, explained, caused by an example text, and listed in
+//! `docs/errors.md`.
 //!
-//! After a change: `UPDATE_ERRORS=1 cargo test -p tool-dsl --test texts errors`, and read the difference.
+//! After a change: run `UPDATE_ERRORS=1 cargo test -p tool-dsl --test texts errors`, and review the
+//! difference.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -78,7 +80,7 @@ fn each_file_is_an_example() {
     }
 }
 
-/// Few codes have no example, each for a reason that the table states.
+/// Few codes have no example, each for a reason stated in the table.
 #[test]
 fn few_codes_have_no_example() {
     let without: BTreeSet<&str> = entries()
@@ -133,7 +135,7 @@ fn section(page: &mut String, entry: &Entry) -> std::fmt::Result {
     }
 }
 
-/// A text with an escape in place of each character that could not be seen.
+/// Replaces each invisible character of a text with an escape.
 fn visible(text: &str) -> String {
     let lines = text.lines().map(|line| tool_dsl::diagnostic::escaped(line).into_owned());
     lines.collect::<Vec<_>>().join("\n")

@@ -1,4 +1,4 @@
-//! Texts that the compiler refuses, warns of or proves something about, and the list of its codes.
+//! Texts that the compiler refuses, accepts with warnings or proves facts about, and the list of its codes.
 
 mod errors;
 mod proved;

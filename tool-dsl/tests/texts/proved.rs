@@ -1,4 +1,4 @@
-//! Tools whose depth is proved to be the distance to the surface, and some that only look like them.
+//! Tools whose depth is proved to be the distance to the surface, and some similar ones whose depth is not.
 
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
@@ -16,7 +16,7 @@ fn is_proved(text: &str) {
     assert!(proved.slack < 1e-9 * tool.extent.scale(), "{text}\n{:e}", proved.slack);
 }
 
-/// A ring of teeth about a bore that a web closes, with this bore and these edges.
+/// Returns a ring of teeth around a bore that a web closes, with the given bore and edges.
 fn annular(start: &str, bore: &str, edges: &str, regions: &str) -> String {
     format!(
         "tool Annular {{ units mm; tip z = 0;
@@ -41,7 +41,7 @@ fn annular_cutters_are_proved() {
     }
 }
 
-/// A border of two flat arcs is no polynomial.
+/// A tool with a border between two flat arcs, which is not a polynomial.
 const HOLLOW: &str = "tool Hollow { units mm; tip z = 0;
     profile { start (0, 1); arc to (2, 0) radius 5 as tip; arc to (3, 4) radius 6 concave as tip;
       arc to (5, 5) radius 2.5 concave as tip; line to (5, 9), (0, 9) as nut; } regions nearest; }";
@@ -84,14 +84,14 @@ const HALF_BALL: &str = "solid HalfBall { units mm;
     region stem where x >= 0, 0 <= side <= end { depth: side; }
     region end where x >= 0, 0 <= end <= side { depth: end; } }";
 
-/// The same along another axis.
+/// Returns the same solid along another axis.
 fn along(axis: char) -> String {
     let turned = |c: char| match (axis, c) {
         ('y', 'x' | 'y' | 'z') => char::from(b'x' + (c as u8 - b'x' + 1) % 3),
         ('z', 'x' | 'y' | 'z') => char::from(b'x' + (c as u8 - b'x' + 2) % 3),
         _ => c,
     };
-    // Single letters only: `away` is no coordinate.
+    // Only single letters are coordinates; `away` is not one.
     let letters: Vec<char> = HALF_BALL.chars().collect();
     let alone = |k: usize| {
         [k.checked_sub(1), Some(k + 1)]
@@ -109,7 +109,7 @@ fn solids_of_revolution_are_proved() {
     }
 }
 
-/// What is proved in a half plane is said of space: extents, shares, directions, and what is wrong.
+/// Facts proved in a half plane are stated for space: extents, shares, directions and errors.
 #[test]
 fn solids_of_revolution_are_judged_in_space() {
     let solid = tool(HALF_BALL).expect("a solid");
@@ -118,10 +118,10 @@ fn solids_of_revolution_are_judged_in_space() {
         let named = solid.model.regions.iter().zip(&proved.regions);
         named.filter(|(region, _)| region.name == name).map(|(_, facts)| facts.share).sum::<f64>()
     };
-    // Of a volume of 16 π/3 + 6 π, the end has a cone's π/3.
+    // The volume is 16 π/3 + 6 π, of which the end has a cone's π/3.
     let part = 1.0 / (16.0 + 18.0);
     assert!((share("end") - part).abs() < 0.01, "{} {part}", share("end"));
-    // A direction that does not turn with the point is looked at all about the axis.
+    // A direction that does not turn with the point is examined all around the axis.
     let aslant = HALF_BALL.replace(
         "<= end { depth: side; }",
         "<= end { depth: side; direction: (0, 1, 0) allow oblique; }",
@@ -129,9 +129,10 @@ fn solids_of_revolution_are_judged_in_space() {
     let solid = tool(&aslant).expect("a solid");
     let proved = Certificate::of(&solid);
     let stem = solid.model.regions.iter().position(|region| region.name == "stem").expect("it");
-    let aside = proved.regions[stem].aside.expect("known");
+    let aside = proved.regions[stem].direction_error.expect("known");
     assert!(aside.high > 3.1, "{aside:?}");
-    // A depth that jumps is not proved to go on, be it all about the axis or on one side only.
+    // A depth that jumps is not proved to be continuous, whether it jumps all around the axis or on one side
+    // only.
     for wrong in ["0.9*edge", "edge + 0.01*max(y, 0)"] {
         let text = HALF_BALL.replace("depth: edge", &format!("depth: {wrong}"));
         let proved = tool(&text).map(|tool| Certificate::of(&tool));

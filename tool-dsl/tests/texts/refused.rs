@@ -1,4 +1,4 @@
-//! Texts for which there is no tool: each gives an error that says why, on a small stack and at once.
+//! Texts that the compiler refuses: each gives an error with the reason, on a small stack and without delay.
 
 use std::path::PathBuf;
 use tool_dsl::source::Source;
@@ -10,7 +10,7 @@ fn tool(items: &str) -> String {
     format!("tool T {{ units mm; {items} {BALL} }}")
 }
 
-/// The first error of a tool that is refused.
+/// Returns the first error of a tool that is refused.
 #[track_caller]
 fn error(compiled: &Compiled) -> String {
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
@@ -25,16 +25,16 @@ fn refused(items: &str) -> String {
     error(&compile(&Source::new("t.tool", tool(items))))
 }
 
-/// Runs on the stack of a thread that is smaller than any default.
+/// Runs on a thread whose stack is smaller than any default.
 fn on_small_stack<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let thread = std::thread::Builder::new().stack_size(SMALL);
     thread.spawn(work).expect("a thread").join().expect("no panic")
 }
 
-/// Bytes; threads have 2 MiB by default, a process's first one mostly 8 MiB.
+/// The size of that stack in bytes. Threads have 2 MiB by default, a process's main thread mostly 8 MiB.
 const SMALL: usize = 1 << 20;
 
-/// Everything that reads a text, on a small stack.
+/// Runs everything that reads a text, on a small stack.
 fn read(text: String) -> Result<(), String> {
     on_small_stack(move || {
         let source = Source::new("t.tool", text);
@@ -93,7 +93,7 @@ fn a_cycle_as_long_as_a_file_is_said_too() {
     assert!(said.ends_with("and 3936 links more lead back to `a0`"), "{said}");
 }
 
-/// Constants are settled before curves, so that a curve has no value in one, wherever it stands.
+/// Constants are evaluated before curves, so a constant cannot use a curve, wherever the curve is defined.
 #[test]
 fn a_curve_is_no_constant() {
     for items in ["curve c = d; let a = c;", "curve c = 3; param a = c;", "curve c = 3; tip z = c;"]
@@ -116,7 +116,7 @@ fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
         let part = format!("tool Part {{ units mm; {items} {profile} }}");
         std::fs::write(folder.join(format!("{name}.tool")), part).expect("a writable folder");
         let text = format!("tool T {{ units mm; mount \"{name}.tool\" as a; }}");
-        let compiled = compile(&Source::new("t.tool", text).held_by(folder.join("t.tool")));
+        let compiled = compile(&Source::new("t.tool", text).with_path(folder.join("t.tool")));
         assert_eq!(error(&compiled), "`a` is defined by itself");
         let Err(refusal) = &compiled.outcome else { panic!("taken") };
         let place = refusal.diagnostics()[0].span;
@@ -124,7 +124,7 @@ fn a_cycle_in_a_mounted_file_is_said_of_that_file() {
     }
 }
 
-/// Each of these once hid its nesting from the limit, or is as deep as the limit lets it be.
+/// Each of these once hid its nesting from the limit, or is nested exactly to the limit.
 #[test]
 fn nesting_is_limited_on_a_small_stack() {
     let limit = "brackets are nested more than 64 deep";
@@ -137,7 +137,7 @@ fn nesting_is_limited_on_a_small_stack() {
     }
     let braces = format!("tool T {{ x {}", "{ \"}\"".repeat(5000));
     assert_eq!(read(braces), Err(limit.to_owned()));
-    // A quote that no other ends hides nothing.
+    // A quote without a closing one hides nothing.
     let quotes = format!("tool T {{ x \"a\\\n{}", "{ \"\\".repeat(5000));
     assert_eq!(read(quotes), Err(limit.to_owned()));
     let deepest = format!("let a = {}1{};", "(".repeat(62), ")".repeat(62));
@@ -167,7 +167,8 @@ fn comments_that_do_not_end_are_refused_at_once() {
 
 #[test]
 fn expressions_are_limited_on_a_small_stack() {
-    // As many operands as a sum has, in as many brackets as there may be, leftmost and rightmost.
+    // The largest number of operands in a sum, in the largest number of brackets, nested on the left and on
+    // the right.
     let left = (0..62).fold("a".to_owned(), |inner, _| format!("({inner}){}", " + a".repeat(60)));
     let right = (0..62).fold("a".to_owned(), |inner, _| format!("{}({inner})", "a*".repeat(60)));
     let powers =
@@ -189,7 +190,7 @@ fn expressions_are_limited_on_a_small_stack() {
     }
 }
 
-/// As high as an expression may be, through everything that follows it.
+/// Expressions of the largest allowed height pass through all later stages.
 #[test]
 fn the_tallest_expressions_compile_on_a_small_stack() {
     let steps: String =
@@ -207,7 +208,7 @@ fn the_tallest_expressions_compile_on_a_small_stack() {
     assert_eq!(read(text), Ok(()));
 }
 
-/// The files of a chain are as deep as there may be files.
+/// The chain of files is as deep as the number of files allows.
 #[test]
 fn mounts_in_mounts_need_no_more_stack() {
     let folder = folder("chain");
@@ -217,12 +218,12 @@ fn mounts_in_mounts_need_no_more_stack() {
     }
     let said = on_small_stack(move || {
         let text = "tool T { units mm; mount \"deep0.tool\" as a; }";
-        error(&compile(&Source::new("t.tool", text).held_by(folder.join("t.tool"))))
+        error(&compile(&Source::new("t.tool", text).with_path(folder.join("t.tool"))))
     });
     assert_eq!(said, "more than 64 mounted files");
 }
 
-/// Errors of syntax in texts of a line, in which every bracket once looked for the line's beginning.
+/// Syntax errors in texts of one line, where every bracket once searched for the beginning of the line.
 #[test]
 fn long_lines_are_refused_at_once() {
     for braces in ["{}", "({)}", "}"] {
@@ -230,7 +231,7 @@ fn long_lines_are_refused_at_once() {
     }
 }
 
-/// A folder with tools, and one beside it that they may not mount from.
+/// Makes a folder with tools, and one beside it from which they may not mount.
 fn two_folders(name: &str) -> (PathBuf, PathBuf) {
     let both = folder(name);
     let (own, other) = (both.join("own"), both.join("other"));
@@ -250,7 +251,7 @@ fn mounting(file: &str) -> Source {
 #[test]
 fn mounts_stay_below_the_tools_folder() {
     let (own, other) = two_folders("mounts");
-    let held = |file: &str| mounting(file).held_by(own.join("t.tool"));
+    let held = |file: &str| mounting(file).with_path(own.join("t.tool"));
     assert!(compile(&held("part.tool")).tool().is_some());
     assert!(compile(&held("../own/part.tool")).tool().is_some());
     let whole = other.join("part.tool").display().to_string();
@@ -258,10 +259,10 @@ fn mounts_stay_below_the_tools_folder() {
         let said = error(&compile(&held(file)));
         assert_eq!(said, format!("`{file}` does not lie below the tool's folder"));
     }
-    // A folder above both, said from outside.
+    // A folder above both, set by the caller.
     let above = own.parent().expect("a folder above");
-    assert!(compile(&held("../other/part.tool").within(above)).tool().is_some());
-    let said = error(&compile(&held("/etc/passwd").within(above)));
+    assert!(compile(&held("../other/part.tool").with_root(above)).tool().is_some());
+    let said = error(&compile(&held("/etc/passwd").with_root(above)));
     assert_eq!(said, format!("`/etc/passwd` does not lie below `{}`", above.display()));
     assert!(error(&compile(&held("none.tool"))).starts_with("cannot read"));
 }
@@ -273,16 +274,16 @@ fn links_lead_nowhere_else() {
     let link = own.join("link.tool");
     let _ = std::fs::remove_file(&link);
     std::os::unix::fs::symlink(other.join("part.tool"), &link).expect("a link");
-    let said = error(&compile(&mounting("link.tool").held_by(own.join("t.tool"))));
+    let said = error(&compile(&mounting("link.tool").with_path(own.join("t.tool"))));
     assert!(said.contains("does not lie below"), "{said}");
 }
 
-/// No line of a file that is no tool's.
+/// No line of a file that is not a tool is shown.
 #[test]
 fn the_text_of_other_files_is_not_shown() {
     let (own, _) = two_folders("secrets");
     std::fs::write(own.join("key"), "secret = 1234\n").expect("a writable folder");
-    let compiled = compile(&mounting("key").held_by(own.join("t.tool")));
+    let compiled = compile(&mounting("key").with_path(own.join("t.tool")));
     assert_eq!(error(&compiled), "`key` is not a `.tool` file");
     for report in compiled.diagnostics() {
         assert!(!report.render(&compiled.sources, false).contains("secret"));
@@ -300,7 +301,7 @@ fn devices_and_pipes_are_no_tools() {
     assert!(!error.is_empty());
 }
 
-/// Names and texts from files come onto a screen.
+/// Names and texts from files are shown on a terminal.
 #[test]
 fn what_cannot_be_seen_is_refused_or_escaped() {
     for hidden in ["\u{1b}[31m", "\u{7f}", "\u{9b}31m", "\u{202e}", "\u{2066}", "\u{200f}"] {
@@ -308,7 +309,7 @@ fn what_cannot_be_seen_is_refused_or_escaped() {
         assert!(read(titled).expect_err("refused").contains("which cannot be seen"), "{hidden:?}");
         let mounted = format!("tool T {{ units mm; mount \"{hidden}.tool\" as a; }}");
         assert!(read(mounted).expect_err("refused").contains("which cannot be seen"));
-        // In a comment it may stand; where its line is shown it is replaced, and so in a file's name.
+        // A comment may contain it. It is replaced where the line or the name of the file is shown.
         let source =
             Source::new(format!("t{hidden}.tool"), tool(&format!("/*{hidden}*/ let a = b;")));
         let compiled = compile(&source);
@@ -329,7 +330,7 @@ fn values_that_break_a_profile_are_named() {
     let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=-1")]);
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
     assert!(refusal.errors().all(|report| { report.help().ends_with("given: `D=-1`") }));
-    // An error of the value itself shows it already.
+    // An error in the argument itself shows the argument anyway.
     let compiled = compile_with(&Source::new("t.tool", text), &[Source::new("--set", "D=x")]);
     let Err(refusal) = &compiled.outcome else { panic!("taken") };
     assert!(refusal.errors().all(|r| !r.help().contains("given: ")));
@@ -350,7 +351,7 @@ fn profiles_that_would_take_minutes_are_refused_at_once() {
     assert_eq!(smooth(24), Ok(()));
 }
 
-/// A proof that ends at its budget does not deny what compiling proves.
+/// A proof that ends at its budget does not contradict the bounds of the compiler.
 #[test]
 fn a_proof_that_ends_early_takes_nothing_back() {
     let points: String =

@@ -1,5 +1,5 @@
-//! Directions that are not the steepest way out and niceness that rises with depth: warned of where that is certain and
-//! nobody says that it is meant.
+//! Directions that are not those of steepest descent, and niceness that rises with depth. Both cause a
+//! warning where they are certain, unless the file states that they are intended.
 
 use std::path::PathBuf;
 use tool_dsl::diagnostic::Severity;
@@ -7,7 +7,7 @@ use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, Compiled, compile};
 
-/// A pin of 3 mm radius: its side is nearest everywhere, but for its ends.
+/// Returns a pin of 3 mm radius; its side is the nearest surface everywhere except at its ends.
 fn pin(side: &str) -> String {
     format!(
         "tool Pin {{ units mm; curve side = 3 - d; curve low = z; curve high = 40 - z;
@@ -35,7 +35,7 @@ fn tool(text: &str) -> Box<CheckedTool> {
     compiled.into_tool().unwrap_or_else(|| panic!("{text}\n{reports}"))
 }
 
-/// The warnings of the proof, each with the text that it points at.
+/// Returns the warnings of the proof, each with the text of its location.
 #[track_caller]
 fn warned(text: &str) -> Vec<(String, String)> {
     let tool = tool(text);
@@ -64,12 +64,12 @@ fn a_direction_that_is_not_the_steepest_way_out_is_warned_of() {
 
 #[test]
 fn the_largest_angle_is_given_with_its_place() {
-    // Straight where z is small, and ever more oblique above.
+    // The direction is exact where z is small, and increasingly oblique above.
     let tool = tool(&pin("direction: (40, z);"));
     let facts = &Certificate::of(&tool).regions[2];
     let (angle, [_, _, z]) = facts.oblique.expect("the direction is oblique");
     assert!((angle.tan() - z / 40.0).abs() < 1e-12 && z > 38.0, "{angle} at {z}");
-    assert!(facts.aside.is_some_and(|aside| aside.high >= angle));
+    assert!(facts.direction_error.is_some_and(|aside| aside.high >= angle));
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn an_oblique_direction_that_is_meant_is_not_warned_of_and_certified_all_the_sam
     let text = pin("direction: (1, 1) allow oblique;");
     assert_eq!(warned(&text), []);
     let facts = Certificate::of(&tool(&text)).regions.remove(2);
-    let aside = facts.aside.expect("the direction is known").high.to_degrees();
+    let aside = facts.direction_error.expect("the direction is known").high.to_degrees();
     assert!((aside - 45.0).abs() < 1e-9, "{aside}");
 }
 
@@ -108,7 +108,7 @@ fn regions_of_a_profile_are_held_to_its_depth() {
     assert_eq!(place, "direction: (0, -1);");
     assert_eq!(compiled(&split("direction: (0, -1);")).diagnostics().len(), 1);
     assert_eq!(warned(&split("direction: (0, -1) allow oblique;")), []);
-    // A magnitude's slope is a direction too.
+    // The gradient of a magnitude is a direction too.
     let said = warned(&split("magnitude: 3 - d;"));
     assert_eq!(said[0].1, "3 - d");
     assert_eq!(warned(&split("magnitude: depth^2;")), []);
@@ -121,9 +121,9 @@ fn niceness_that_rises_with_depth_is_warned_of() {
     assert!(message.starts_with("`niceness` of side rises with depth at ("), "{message}");
     assert!(message.ends_with("), by 0.2 per mm"), "{message}");
     assert_eq!(place, "1 - (3 - 2*depth)/10");
-    // A law is warned of once, though two surfaces have it.
+    // One law gives one warning, even for two surfaces.
     assert_eq!(warned(&profile("niceness cutting: depth;")).len(), 1);
-    // Up to half a millimetre only.
+    // It rises only up to half a millimetre.
     assert_eq!(warned(&profile("niceness side: depth*(1 - depth);")).len(), 1);
 }
 
@@ -151,7 +151,8 @@ fn niceness_that_may_rise_comes_along_with_a_mounted_file() {
         let part = profile(&format!("niceness side: {law};"));
         std::fs::write(folder.join(format!("{name}.tool")), part).expect("a writable folder");
         let text = format!("tool Whole {{ units mm; mount \"{name}.tool\" as pin; }}");
-        let compiled = compile(&Source::new("whole.tool", text).held_by(folder.join("whole.tool")));
+        let compiled =
+            compile(&Source::new("whole.tool", text).with_path(folder.join("whole.tool")));
         let tool = compiled.into_tool().expect("a tool");
         assert_eq!(Certificate::of(&tool).diagnostics(&tool).len(), warnings, "{name}");
     }

@@ -1,4 +1,4 @@
-//! The page `certified.md`: certified depths beside brute force, beside samples that zoom in, and beside 256 bits.
+//! The page `certified.md`: certified depths compared with brute force, zooming samples and a 256-bit reference.
 
 mod pairs;
 mod rounding;
@@ -9,28 +9,29 @@ use std::error::Error;
 use std::path::PathBuf;
 use touchoff_bench::page::Page;
 
-/// Compares certified depths with brute force, with samples that zoom in, and with 256 bits where rounding does the most.
+/// Compares certified depths with brute force, with zooming samples, and with 256 bits where rounding errors are
+/// largest.
 #[derive(Args)]
 pub(crate) struct Certified {
-    /// Poses beside brute force, of all parts and tools together.
+    /// Number of poses compared with brute force, over all parts and tools together.
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     poses: usize,
-    /// Folder of more parts, of which those are taken that are there [default: `../shared/data/parts`, beside the repository].
+    /// Folder of further parts; missing ones are skipped [default: `../shared/data/parts`, beside the repository].
     #[arg(long, value_name = "FOLDER")]
     parts: Option<PathBuf>,
-    /// Poses beside samples that zoom in, of all parts and tools together.
+    /// Number of poses compared with zooming samples, over all parts and tools together.
     #[arg(long, value_name = "N", default_value_t = 1_040)]
     zoomed: usize,
-    /// Samples of each of these poses at which a triangle is near.
+    /// Number of samples per pose of these at which a triangle is near.
     #[arg(long, value_name = "M", default_value_t = 1_000_000)]
     samples: u64,
-    /// Cases beside 256 bits.
+    /// Number of cases compared with 256 bits.
     #[arg(long, value_name = "N", default_value_t = 1_000_000)]
     cases: u64,
-    /// Seed of poses, samples and cases.
+    /// Seed for poses, samples and cases.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Prints this case alone, by its number, and makes no page.
+    /// Prints only the case with this number, and makes no page.
     #[arg(long, value_name = "CASE")]
     case: Option<u64>,
 }

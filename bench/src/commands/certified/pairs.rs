@@ -1,8 +1,8 @@
-//! Certified depths beside brute force.
+//! The section of `certified.md` on brute force.
 
 use std::error::Error;
 use std::path::Path;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Unit};
 use touchoff_bench::certified::{Pair, Row, poses, table};
 use touchoff_bench::page::Section;
@@ -11,7 +11,7 @@ use touchoff_tests::oracle::Nearest;
 
 const TOOLS: [&str; 6] = ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"];
 
-/// Real parts, where there is a folder of them, and their units.
+/// Files of real parts and their units; missing files are skipped.
 const FILES: [(&str, Unit); 4] = [
     ("impeller.stl", Unit::Millimetre),
     ("featuretype_inch.stl", Unit::Inch),
@@ -19,7 +19,7 @@ const FILES: [(&str, Unit); 4] = [
     ("kiri_pocket_test.stl", Unit::Millimetre),
 ];
 
-/// Returns the section of so many poses, and the violations; `folder` has real parts, of which those are taken that are there.
+/// Returns the section about `count` poses, with the violations. `folder` has the real parts; missing ones are skipped.
 pub(super) fn section(count: usize, seed: u64, folder: &Path) -> Result<Section, Box<dyn Error>> {
     let mut parts = poses::parts()?;
     for (name, unit) in FILES {
@@ -48,14 +48,14 @@ the witness, which does not zoom, falls short of the lower bound, *reached* at h
     })
 }
 
-/// Returns a row for each part and tool.
+/// Returns one row per part and tool.
 fn rows(parts: &[(&str, Mesh)], each: usize, seed: u64) -> Vec<Row> {
-    let facets: Vec<Facets> = parts.iter().map(|(_, mesh)| Facets::new(mesh)).collect();
+    let bvh: Vec<TriangleBvh> = parts.iter().map(|(_, mesh)| TriangleBvh::new(mesh)).collect();
     parallel::rows(parts.len() * TOOLS.len(), |k| {
         let ((part, mesh), name) = (&parts[k / TOOLS.len()], TOOLS[k % TOOLS.len()]);
         let tool = tools_library::find(name).expect("a tool of the library");
         let oracle = Nearest::of(name);
-        let pair = Pair { part, mesh, facets: &facets[k / TOOLS.len()], tool, oracle: &oracle };
+        let pair = Pair { part, mesh, bvh: &bvh[k / TOOLS.len()], tool, oracle: &oracle };
         let row = pair.measure(each, seed + k as u64);
         eprintln!("{} in {}: {} violations", row.tool, part, row.violations.len());
         row

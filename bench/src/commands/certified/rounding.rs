@@ -1,4 +1,4 @@
-//! Certified depths beside 256 bits, where rounding does the most.
+//! The section of `certified.md` on the 256-bit reference, where rounding errors are largest.
 
 use std::error::Error;
 use touchoff_bench::page::Section;
@@ -6,10 +6,10 @@ use touchoff_bench::parallel;
 use touchoff_bench::rounding::cases::Family;
 use touchoff_bench::rounding::{Rounding as Cases, Row, table};
 
-/// Cases that a thread takes at once.
+/// Number of cases that a thread takes at once.
 const CHUNK: u64 = 2000;
 
-/// Returns the section of so many cases of all families together.
+/// Returns the section about `count` cases of all families together.
 pub(super) fn section(count: u64, seed: u64) -> Result<Section, Box<dyn Error>> {
     let rows = rows(&Cases::new(seed), count)?;
     let about = "\
@@ -36,7 +36,7 @@ composed rotations are corrected. *Drift* has some composed of up to 24 others.
     })
 }
 
-/// Prints a case alone, by its number.
+/// Prints the case with this number.
 pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
     let cases = Cases::new(seed);
     let mut rows = Family::ALL.map(Row::new).to_vec();
@@ -46,7 +46,7 @@ pub(super) fn show(number: u64, seed: u64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the violations of a family, in words.
+/// Returns a description of the violations of a family.
 fn broken(row: &Row) -> String {
     let Row { family, exceeded, off, shallow, .. } = row;
     format!(
@@ -54,7 +54,7 @@ fn broken(row: &Row) -> String {
     )
 }
 
-/// Returns the rows of all families.
+/// Returns one row per family.
 fn rows(cases: &Cases, count: u64) -> Result<Vec<Row>, std::num::TryFromIntError> {
     let chunks = usize::try_from(count.div_ceil(CHUNK))?;
     let own = parallel::rows(chunks, |k| {

@@ -1,24 +1,24 @@
-//! Certified depths beside samples that zoom in, and tools inside the material.
+//! The section of `certified.md` on zooming samples, and on tools inside the material.
 
 use std::error::Error;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff_bench::certified::subject::{FIELDS, PROFILES, Subject};
 use touchoff_bench::certified::{buried, poses, zoomed};
 use touchoff_bench::page::Section;
 use touchoff_bench::parallel;
 
-/// Returns the section of at least so many poses, with so many samples each where a triangle is near.
+/// Returns the section about at least `count` poses, with this number of samples at each pose where a triangle is near.
 pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, Box<dyn Error>> {
     let parts = poses::parts()?;
     let names: Vec<&str> = PROFILES.iter().chain(&FIELDS).copied().collect();
     let each = count.div_ceil(parts.len() * names.len());
-    let facets: Vec<Facets> = parts.iter().map(|(_, mesh)| Facets::new(mesh)).collect();
+    let bvh: Vec<TriangleBvh> = parts.iter().map(|(_, mesh)| TriangleBvh::new(mesh)).collect();
     let rows = parallel::rows(parts.len() * names.len(), |k| {
         let ((part, mesh), name) = (&parts[k / names.len()], names[k % names.len()]);
         let tool = tools_library::find(name).expect("a tool of the library");
         let subject = Subject::of(name);
-        let facets = &facets[k / names.len()];
-        let row = zoomed::Zoomed { part, mesh, facets, tool, subject: &subject }.measure(
+        let bvh = &bvh[k / names.len()];
+        let row = zoomed::Zoomed { part, mesh, bvh, tool, subject: &subject }.measure(
             each,
             samples,
             seed + k as u64,
@@ -26,7 +26,7 @@ pub(super) fn section(count: usize, samples: u64, seed: u64) -> Result<Section, 
         eprintln!("{name} in {part}: {} violations", row.violations.len());
         row
     });
-    // A solid's extents are no distances from an axis.
+    // The extents of a solid are not distances from an axis.
     let round: Vec<&str> =
         names.into_iter().filter(|name| !["Block", "LBracket"].contains(name)).collect();
     let blocks = parallel::rows(round.len(), |k| {

@@ -8,16 +8,16 @@ use touchoff_tests::oracle::restated::Restated;
 
 const NAMES: [&str; 9] = ["I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
 
-/// The truth of `Fig73`: its magnitude inside, and the distance from its solid outside.
+/// The true values of `Fig73`: its magnitude inside, and the distance from its solid outside.
 pub(super) struct Magnitudes {
     solid: Reference,
-    /// Of each region of the card, its place among the thesis's.
+    /// The thesis's index of each region in the tool info.
     places: Vec<Option<usize>>,
 }
 
 impl Magnitudes {
     pub(super) fn new(tool: &dyn Tool, solid: &Restated) -> Magnitudes {
-        let regions = tool.card().regions.iter();
+        let regions = tool.info().regions.iter();
         let place = |name: &str| NAMES.iter().position(|known| *known == name);
         Magnitudes {
             solid: Reference::new(solid),
@@ -26,7 +26,7 @@ impl Magnitudes {
     }
 }
 
-/// A point in the thesis's frame, whose z runs from the housing's back to the tip.
+/// A point in the thesis's frame, whose z runs from the back of the housing to the tip.
 struct Seen {
     d: Big,
     z: Big,
@@ -41,13 +41,13 @@ impl Seen {
         Seen { z: &Big::exactly(20.0) - z, d, radial }
     }
 
-    /// `a + b d + c z`
+    /// Returns `a + b d + c z`.
     fn sum(&self, a: f64, b: f64, c: f64) -> Big {
         let of = |factor: f64, value: &Big| &Big::exactly(factor) * value;
         &(&Big::exactly(a) + &of(b, &self.d)) + &of(c, &self.z)
     }
 
-    /// The distance from the ball's centre, and the way there.
+    /// Returns the distance from the ball's centre, and the vector from there.
     fn arm(&self) -> (Big, [Big; 2]) {
         let up = self.sum(-19.0, 0.0, 1.0);
         ((&(&self.d * &self.d) + &(&up * &up)).sqrt(), [self.d.clone(), up])
@@ -67,7 +67,7 @@ impl Seen {
         }
     }
 
-    /// By how much a point misses a region: what its most violated condition is above 0.
+    /// Returns the largest violation of a region's conditions, or 0 inside the region.
     fn outside(&self, region: usize) -> Big {
         let s = |a, b, c| self.sum(a, b, c);
         let either = |a: Big, b: Big| if a < b { a } else { b };
@@ -93,7 +93,7 @@ impl Seen {
         misses.into_iter().fold(Big::zero(), |most, miss| if miss > most { miss } else { most })
     }
 
-    /// Toward the surface, as the thesis has it, in the tool's frame.
+    /// Returns the direction toward the surface by the thesis, in the tool's frame.
     fn direction(&self, region: usize) -> Place {
         let root = |n: f64| Big::exactly(n).sqrt();
         let one = || Big::exactly(1.0);

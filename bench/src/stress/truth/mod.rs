@@ -1,5 +1,5 @@
-//! What is true at a point, in 256 bits, of every tool of the library: of profiles by their restatements, of the thesis's tool and of
-//! the two solids by their equations written out again.
+//! True values at points in 256 bits, for every library tool. Profiles are computed from their restatements. The
+//! thesis's tool and the two solids are computed from separately written equations.
 
 mod fig73;
 mod profile;
@@ -15,41 +15,41 @@ use touchoff_tests::oracle::{Block, Fig73, LBracket, Nearest, Oracle, restated};
 /// A point of the tool's frame.
 pub type Place = [Big; 3];
 
-/// What a region has at a point, whether it owns it or not.
+/// The values of a region at a point, whether or not the region owns the point.
 pub struct Claim {
-    /// The depth by the region's own formula, or the magnitude of a tool whose depth that is.
+    /// The depth by the region's own formula, or the magnitude if the tool takes that as its depth.
     pub depth: Big,
-    /// How far the point is from being the region's: how much farther its surface is than the nearest, or how far its conditions are
-    /// missed.
+    /// Distance by which the point misses the region: the excess of the distance to the region's surface over that to
+    /// the nearest surface, or the violation of its conditions.
     pub behind: f64,
-    /// The unit vector to its surface.
+    /// The unit vector toward the region's surface.
     pub direction: Place,
-    /// How far the nearest point is at which that does not exist.
+    /// The distance to the nearest point at which the direction is undefined.
     pub singular: f64,
 }
 
-/// A tool's truth.
+/// The true values of a tool.
 pub trait Truth: Send + Sync {
-    /// S, the next power of two above the tool's largest coordinate.
+    /// Returns S, the next power of two above the tool's largest coordinate.
     fn scale(&self) -> f64;
 
-    /// The depth of a point inside, 0 on the surface; outside minus the distance from it.
+    /// Returns the depth of a point inside, 0 on the surface, and minus the distance from the surface outside.
     fn depth(&self, p: &Place) -> Big;
 
-    /// The region, by its place in the card's list, that owns a point; of a border any of its neighbours.
+    /// Returns the index of the region that owns a point, in the tool's list. On a border it is one of the neighbours.
     fn owner(&self, p: &Place) -> Option<usize>;
 
-    /// What a region has at a point. `None` if there is no such region.
+    /// Returns the values of a region at a point, or `None` if there is no such region.
     fn claim(&self, p: &Place, region: usize) -> Option<Claim>;
 }
 
-/// A tool of the library, its truth, and the same in doubles for finding points.
+/// A library tool, its true values, and an oracle in doubles for finding points.
 pub struct Subject {
     /// The compiled tool.
     pub tool: &'static dyn Tool,
-    /// What is true of it.
+    /// The true values.
     pub truth: Box<dyn Truth>,
-    /// The same in doubles.
+    /// The oracle in doubles.
     pub oracle: Box<dyn Oracle + Send + Sync>,
 }
 
@@ -59,26 +59,26 @@ impl Subject {
         self.oracle.name()
     }
 
-    /// S.
+    /// Returns S.
     pub fn scale(&self) -> f64 {
         self.truth.scale()
     }
 
-    /// 1 ulp(S).
+    /// Returns 1 ulp(S).
     pub fn ulp(&self) -> f64 {
         f64::EPSILON * self.scale()
     }
 }
 
-/// A double's point, as it is.
+/// Converts a point exactly.
 pub fn place(p: [f64; 3]) -> Place {
     p.map(Big::exactly)
 }
 
-/// Every tool of the library, by name.
+/// Returns every library tool, sorted by name.
 ///
 /// # Panics
-/// If the library has not all tools that are restated.
+/// If the library lacks a tool that is restated.
 pub fn subjects() -> Vec<Subject> {
     let find = |name: &str| tools_library::find(name).expect("a tool of the library");
     let mut all: Vec<Subject> = accuracy::tools()
@@ -112,9 +112,9 @@ pub fn subjects() -> Vec<Subject> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use touchoff_tests::oracle::draw::Draw;
+    use touchoff_tests::oracle::draw::Rng;
 
-    /// The truths agree with the oracles in doubles, which are written independently of them.
+    /// The true values agree with the oracles in doubles, which are implemented independently.
     #[test]
     fn doubles_say_the_same() {
         let subjects = subjects();
@@ -122,7 +122,7 @@ mod tests {
         for subject in &subjects {
             let (oracle, scale) = (&subject.oracle, subject.scale());
             let [radius, height] = oracle.extent();
-            let mut draw = Draw::new(3);
+            let mut draw = Rng::new(3);
             for _ in 0..400 {
                 let [x, y] = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
                 let p = [x, y, draw.between(-0.1 * height, 1.1 * height)];

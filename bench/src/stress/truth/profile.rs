@@ -1,4 +1,4 @@
-//! Tools that are profiles: depth is the distance to the nearest feature.
+//! Tools defined by profiles: depth is the distance to the nearest feature.
 
 use super::{Claim, Place, Truth};
 use touchoff::Tool;
@@ -7,15 +7,15 @@ use touchoff_tests::oracle::Nearest;
 use touchoff_tests::oracle::reference::{At, Reference};
 use touchoff_tests::oracle::restated::Restated;
 
-/// A profile tool's truth, by its restatement.
+/// The true values of a profile tool, from its restatement.
 pub struct Profiled {
     reference: Reference,
-    /// Of each region of the card, the owners of the reference that it is.
+    /// The owners in the reference that each region in the tool info corresponds to.
     owners: Vec<Vec<usize>>,
 }
 
 impl Profiled {
-    /// The truth of a tool that is restated so.
+    /// Computes the true values of a tool from its restatement.
     pub fn new(tool: &dyn Tool, restated: &Restated) -> Profiled {
         let owners = accuracy::owners(tool, &Nearest::new(restated));
         Profiled { reference: Reference::new(restated), owners }

@@ -1,13 +1,13 @@
-//! The block and the bracket in 256 bits: the distance to each face, and which of them a place of the solid has.
+//! The block and the bracket in 256 bits: the distance to each face, and the faces that are relevant at each point.
 
 use super::{Claim, Place, Truth};
 use touchoff::Tool;
 use touchoff_tests::oracle::big::Big;
 
-/// A solid's truth.
+/// The true values of a solid.
 pub(super) struct Faces {
     shape: Shape,
-    /// Of each region of the card, its place in [`Shape::regions`].
+    /// The index in [`Shape::regions`] of each region in the tool info.
     places: Vec<Option<usize>>,
 }
 
@@ -17,10 +17,11 @@ enum Shape {
     Bracket,
 }
 
-/// What a region is the nearest to.
+/// The nearest feature of a region.
 #[derive(Clone, Copy)]
 enum Face {
-    /// The plane on which a coordinate is so large, and on which side of it the material lies: `sign * (coordinate - at)` is the depth.
+    /// The plane on which a coordinate equals `at`. The depth is `sign * (coordinate - at)`, so `sign` gives the side
+    /// of the material.
     Plane { axis: usize, at: f64, sign: f64 },
     /// Both planes `y = ±half`.
     Sides { half: f64 },
@@ -30,15 +31,15 @@ enum Face {
     Edge,
 }
 
-/// Where in the solid a region may be.
+/// The zone of the solid in which a region may lie.
 #[derive(Clone, Copy, PartialEq)]
 enum Zone {
     Anywhere,
-    /// The lying leg, up to the inner edge.
+    /// The horizontal leg, up to the inner edge.
     Lying,
-    /// Below and behind the inner edge.
+    /// The part below and behind the inner edge.
     Heel,
-    /// The standing leg, from the inner edge up.
+    /// The vertical leg, from the inner edge upward.
     Standing,
 }
 
@@ -87,18 +88,18 @@ fn length(a: &Big, b: &Big) -> Big {
     (&(a * a) + &(b * b)).sqrt()
 }
 
-/// From the hole's axis.
+/// Returns the vector from the hole's axis.
 fn off_axis(p: &Place) -> [Big; 2] {
     [&p[0] - &Big::exactly(10.0), p[1].clone()]
 }
 
-/// From the inner edge.
+/// Returns the vector from the inner edge.
 fn off_edge(p: &Place) -> [Big; 2] {
     [&p[0] - &Big::exactly(WALL), &p[2] - &Big::exactly(LEDGE)]
 }
 
 impl Face {
-    /// How far inside of it a point is; of the edge how far from it.
+    /// Returns the signed distance inside the face; for the edge, the distance from it.
     fn inward(self, p: &Place) -> Big {
         match self {
             Face::Plane { axis, at, sign } => &Big::exactly(sign) * &(&p[axis] - &Big::exactly(at)),
@@ -139,7 +140,8 @@ impl Face {
         }
     }
 
-    /// How far the nearest point is without a direction, or with another one as good.
+    /// Returns the distance to the nearest point at which the direction is undefined, or for which another direction is
+    /// equally good.
     fn singular(self, p: &Place) -> f64 {
         match self {
             Face::Plane { .. } => f64::INFINITY,
@@ -152,7 +154,7 @@ impl Face {
     }
 }
 
-/// How far a point is out of a zone.
+/// Returns the distance by which a point is outside a zone.
 fn out_of(zone: Zone, p: &Place) -> Big {
     let [beyond_wall, above_ledge] = off_edge(p);
     let most = |a: Big, b: Big| if a > b { a } else { b };
@@ -176,12 +178,12 @@ impl Faces {
 
     fn new(tool: &dyn Tool, shape: Shape) -> Faces {
         let place = |name: &str| shape.regions().iter().position(|region| region.0 == name);
-        let places = tool.card().regions.iter().map(|region| place(&region.name)).collect();
+        let places = tool.info().regions.iter().map(|region| place(&region.name)).collect();
         Faces { shape, places }
     }
 
-    /// The nearest face of those that the point's zone has, and how deep the point is there: below 0 outside. Zones meet in planes;
-    /// there the one counts in which the point is deeper.
+    /// Returns the nearest face in the point's zone, and the depth of the point, negative outside. Zones meet in
+    /// planes; there the zone counts in which the point is deeper.
     fn nearest(&self, p: &Place) -> (usize, Big) {
         let zones = [Zone::Anywhere, Zone::Lying, Zone::Heel, Zone::Standing];
         let here = zones.into_iter().filter(|zone| out_of(*zone, p) == Big::zero());
@@ -208,7 +210,7 @@ impl Faces {
         best
     }
 
-    /// The distance from a point outside: to the boxes that the solid is made of, and to the hole where that is nearest.
+    /// Returns the distance from a point outside to the boxes of the solid, or to the hole if that is nearest.
     fn away(&self, p: &Place) -> Big {
         let to_box = |low: [f64; 3], high: [f64; 3]| {
             let squares = (0..3).map(|k| {
@@ -229,7 +231,7 @@ impl Faces {
                 let lying = if bore.is_negative() {
                     lying
                 } else {
-                    // Over the hole its rim is the nearest of the lying leg.
+                    // Over the hole, its rim is the nearest point of the horizontal leg.
                     length(&bore, &lying)
                 };
                 if lying < standing { lying } else { standing }
@@ -258,7 +260,7 @@ impl Truth for Faces {
         let region = (*self.places.get(region)?)?;
         let (_, zone, face) = self.shape.regions()[region];
         let depth = face.inward(p);
-        // Beyond a face of the zone beside it a point is as much farther out.
+        // Beyond the border to a neighbouring zone, the point misses the region by at least its distance from the zone.
         let behind = (&depth - &self.nearest(p).1).abs();
         let out = out_of(zone, p);
         let behind = if out > behind { out } else { behind };

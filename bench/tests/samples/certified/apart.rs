@@ -1,20 +1,20 @@
-//! How far a tool is from a part: against geometry, and against the points of a fine raster.
+//! Clearance of a tool, checked against known geometry and against the points of a fine raster.
 
 use super::{plate, pose, tool};
 use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, Facets};
+use touchoff::certify::{Certifier, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Pose, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Nearest, Oracle};
 
-/// Into how many parts the sides of triangles are cut.
+/// Number of divisions of the triangles' sides.
 const RASTER: u32 = 20;
 
 #[test]
 fn a_ball_above_a_plate_is_as_far_as_it_was_lifted() {
-    let facets = Facets::new(&plate());
-    let mut certifier = Certifier::new(&facets, tool("D2Ball")).expect("a profile");
+    let bvh = TriangleBvh::new(&plate());
+    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
     for gap in [1e-9, 1e-6, 1e-3, 0.5, 20.0, 1e4] {
         let [low, high] =
             certifier.clearance(&pose([0.3, 0.1, gap], [0.0, 0.0, 1.0]), 1e-9).distance;
@@ -30,14 +30,13 @@ fn a_ball_above_a_plate_is_as_far_as_it_was_lifted() {
 fn a_tool_in_material_is_as_far_as_its_surface() {
     let [low, high] = [Point3::new(-90.0, -90.0, -90.0), Point3::new(90.0, 90.0, 90.0)];
     let block = shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid");
-    let facets = Facets::new(&block);
-    let mut certifier = Certifier::new(&facets, tool("D2Ball")).expect("a profile");
+    let bvh = TriangleBvh::new(&block);
+    let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
     let [low, high] = certifier.clearance(&pose([0.0, 0.0, -85.0], [0.0, 0.0, 1.0]), 1e-9).distance;
     assert!(low <= 5.0 && 5.0 <= high && high - low < 2e-9, "{low} to {high}");
 }
 
-/// The distance of a raster of points of a part, no less than that of the part, and how much it can be
-/// more.
+/// Returns the distance of a raster of a part's points, which is at least that of the part, and a bound on the excess.
 fn raster(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
     let back = pose.rotation().transpose();
     let (mut least, mut apart) = (f64::INFINITY, 0f64);
@@ -59,12 +58,12 @@ fn raster(mesh: &Mesh, oracle: &Nearest, pose: &Pose) -> [f64; 2] {
 fn no_point_of_a_part_is_nearer_than_is_said() {
     let sphere = shapes::sphere(8.0, 2, Unit::Millimetre).expect("a sphere");
     let tube = shapes::tube(3.0, 5.0, 13.0, 24, 3, Unit::Millimetre).expect("a tube");
-    let mut draw = Draw::new(7);
+    let mut draw = Rng::new(7);
     for mesh in [&sphere, &tube] {
-        let facets = Facets::new(mesh);
+        let bvh = TriangleBvh::new(mesh);
         for name in ["Fig73Exact", "BullNose", "Lollipop", "TSlot", "BallEr16", "TaperedBall"] {
             let oracle = Nearest::of(name);
-            let mut certifier = Certifier::new(&facets, tool(name)).expect("a profile");
+            let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
             let mut seen = 0;
             while seen < 8 {
                 let axis = Vector3::from_fn(|_, _| draw.between(-1.0, 1.0)).normalize();
@@ -79,7 +78,7 @@ fn no_point_of_a_part_is_nearer_than_is_said() {
                 }
                 seen += 1;
                 assert!(low <= nearest + 1e-9, "{text}");
-                // A point of the raster is no farther from any point than a side of its mesh.
+                // Every point of the mesh is within one raster side of a raster point.
                 assert!(nearest - apart <= high, "{text}");
                 assert!(high - low < 2e-6, "{text}");
             }

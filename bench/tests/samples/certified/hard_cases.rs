@@ -1,22 +1,22 @@
-//! Parts, tolerances and budgets that nobody wants.
+//! Degenerate parts, tolerances and budgets.
 
 use super::{plate, pose, soup, tool};
 use nalgebra::Point3;
-use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::{Level, Mesh, Pose, Unit};
 use touchoff_bench::certified::{brute::Brute, poses};
 use touchoff_tests::oracle::Nearest;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 fn depth(mesh: &Mesh, name: &str, pose: &Pose, tolerance: f64) -> [f64; 2] {
-    let facets = Facets::new(mesh);
-    let mut certifier = Certifier::new(&facets, tool(name)).expect("a profile");
+    let bvh = TriangleBvh::new(mesh);
+    let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
     certifier.deepest(pose, tolerance).depth
 }
 
-/// Every level of this machine.
+/// Returns all SIMD levels of this machine.
 fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = vec![best, Level::baseline()];
@@ -42,12 +42,12 @@ fn a_tolerance_that_is_none_is_taken_as_rounding() {
 
 #[test]
 fn slivers_and_what_has_no_area_are_as_deep_as_their_points() {
-    // A square millimetre, so that the mesh has an area, far from the tool.
+    // Half a square millimetre far from the tool, so that the mesh has an area.
     let far = [[50.0, 50.0, 0.0], [51.0, 50.0, 0.0], [50.0, 51.0, 0.0]];
     for width in [0.0, 5e-324, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3] {
         let sliver = [[-10.0, 0.0, -0.5], [10.0, 0.0, -0.5], [0.0, width, -0.5]];
         let mesh = soup(&[sliver, far]);
-        // From above by half a millimetre into a ball: the line passes the tip's axis.
+        // The line lies half a millimetre deep in the ball and passes through the tool's axis.
         let [low, high] = depth(&mesh, "D2Ball", &pose([0.0, 0.0, -1.0], UP), 1e-9);
         assert!(low <= 0.5 && 0.5 <= high, "{width:e}: {low} to {high}");
         assert!(high - low < 1e-6, "{width:e}: {low} to {high}");
@@ -65,7 +65,7 @@ fn duplicates_and_inversion_change_nothing() {
     twice.extend(once.triangles());
     let twice = Mesh::new(once.vertices().to_vec(), twice, Unit::Millimetre).expect("a mesh");
     let oracle = Nearest::of("Fig73Exact");
-    let mut draw = Draw::new(4);
+    let mut draw = Rng::new(4);
     for _ in 0..200 {
         let pose = poses::pose(&once, &oracle, 1.0, &mut draw);
         let [a, b] = [&once, &twice].map(|mesh| depth(mesh, "Fig73Exact", &pose, 1e-9));
@@ -77,25 +77,28 @@ fn duplicates_and_inversion_change_nothing() {
 #[test]
 fn a_budget_that_is_spent_leaves_an_interval_that_holds_the_truth() {
     for (name, mesh) in poses::parts().expect("parts") {
-        let facets = Facets::new(&mesh);
+        let bvh = TriangleBvh::new(&mesh);
         let oracle = Nearest::of("Fig73Exact");
-        let certifier = || Certifier::new(&facets, tool("Fig73Exact")).expect("a profile");
+        let certifier = || Certifier::new(&bvh, tool("Fig73Exact")).expect("a profile");
         let mut exact = certifier();
-        let mut draw = Draw::new(5);
+        let mut draw = Rng::new(5);
         let mut wide = 0;
         for _ in 0..40 {
             let pose = poses::pose(&mesh, &oracle, 1.0, &mut draw);
             let truth = exact.deepest(&pose, 0.0).depth;
-            let clear = exact.clear(&pose);
+            let clear = exact.check_pose(&pose);
             for budget in [0, 1, 2, 3, 10, 30, 100, 1000] {
-                let mut poor = certifier().budget(budget);
+                let mut poor = certifier().with_budget(budget);
                 let [low, high] = poor.deepest(&pose, 0.0).depth;
                 let text = format!("{name}, {budget}: {truth:?} in {low} to {high} at {pose:?}");
                 assert!(low <= truth[1] && truth[0] <= high, "{text}");
                 wide += usize::from(high - low > 1e-6);
-                let hurried = poor.clear(&pose);
+                let hurried = poor.check_pose(&pose);
                 let same = std::mem::discriminant(&hurried) == std::mem::discriminant(&clear);
-                assert!(same || matches!(hurried, Clear::Undecided(_)), "{text}: {hurried:?}");
+                assert!(
+                    same || matches!(hurried, PoseVerdict::Undecided(_)),
+                    "{text}: {hurried:?}"
+                );
             }
         }
         assert!(wide > 0, "no budget was too small for {name}");
@@ -106,16 +109,16 @@ fn a_budget_that_is_spent_leaves_an_interval_that_holds_the_truth() {
 fn every_level_holds_the_truth() {
     let levels = levels();
     for (name, mesh) in poses::parts().expect("parts") {
-        let facets = Facets::new(&mesh);
+        let bvh = TriangleBvh::new(&mesh);
         for tool_name in ["Fig73Exact", "BallEr16"] {
             let oracle = Nearest::of(tool_name);
             let mut certifiers: Vec<_> = levels
                 .iter()
                 .map(|level| {
-                    Certifier::new(&facets, tool(tool_name)).expect("a profile").level(*level)
+                    Certifier::new(&bvh, tool(tool_name)).expect("a profile").with_level(*level)
                 })
                 .collect();
-            let mut draw = Draw::new(6);
+            let mut draw = Rng::new(6);
             for _ in 0..20 {
                 let pose = poses::pose(&mesh, &oracle, 1.0, &mut draw);
                 let found: Vec<_> = certifiers.iter_mut().map(|c| c.deepest(&pose, 1e-6)).collect();
@@ -136,8 +139,8 @@ fn every_level_holds_the_truth() {
 #[test]
 fn a_level_face_that_is_hardly_pressed_into_a_part_is_not_clear() {
     let mesh = touchoff::mesh::shapes::sphere(8.0, 4, Unit::Millimetre).expect("a sphere");
-    let facets = Facets::new(&mesh);
-    let mut certifier = Certifier::new(&facets, tool("BullNose")).expect("a profile");
+    let bvh = TriangleBvh::new(&mesh);
+    let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
     let mut missed = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
         let normal = mesh.normal(id).expect("it has an area");
@@ -146,8 +149,8 @@ fn a_level_face_that_is_hardly_pressed_into_a_part_is_not_clear() {
             Point3::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
         let pose = Pose::from_axis(middle - 1e-8 * normal, normal).expect("an axis");
         let found = certifier.deepest(&pose, 1e-9);
-        let clear = certifier.clear(&pose);
-        if found.depth[1] < 0.99e-8 || !matches!(clear, Clear::Touching(_)) {
+        let clear = certifier.check_pose(&pose);
+        if found.depth[1] < 0.99e-8 || !matches!(clear, PoseVerdict::Touching(_)) {
             missed.push((pose, found, clear));
         }
     }
@@ -160,7 +163,7 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
     let above = pose([12.5, -19.173505112635194, -0.5], [0.0, 0.0, -1.0]);
     let [_, high] = depth(&mesh, "BullNose", &above, 1e-6);
     let oracle = Nearest::of("BullNose");
-    let (mut draw, mut samples) = (Draw::new(1), 0);
+    let (mut draw, mut samples) = (Rng::new(1), 0);
     let mut deeper = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
         let corners = mesh.triangle(id).map(|p| [p.x, p.y, p.z]);
@@ -176,7 +179,7 @@ fn a_sheet_that_ends_above_a_bull_nose_is_as_deep_as_its_deepest_triangle() {
 
 #[test]
 fn what_f32_cannot_hold_is_not_lost() {
-    // Rounding is some ten times the tool, so little is known; but that is not wrong.
+    // Rounding is about ten times the tool's size, so the interval is wide; it must still be valid.
     for size in [1e14, 1e20, 1e30] {
         let mesh = soup(&[
             [[-size, -size, 0.0], [size, -size, 0.0], [0.0, size, 0.0]],
@@ -185,8 +188,8 @@ fn what_f32_cannot_hold_is_not_lost() {
         let ball = pose([0.0, 0.0, -0.5], [0.0, 0.0, 1.0]);
         let [low, high] = depth(&mesh, "D2Ball", &ball, 1e-6);
         assert!(low <= 0.5 && 0.5 <= high, "{size:e}: {low:e} to {high:e}");
-        let facets = Facets::new(&plate());
-        let mut certifier = Certifier::new(&facets, tool("D2Ball")).expect("a profile");
+        let bvh = TriangleBvh::new(&plate());
+        let mut certifier = Certifier::new(&bvh, tool("D2Ball")).expect("a profile");
         let far = certifier.clearance(&pose([0.0, 0.0, size], [0.0, 0.0, 1.0]), 1e-6);
         let [low, high] = far.distance;
         assert!(low <= size && size <= high, "{size:e}: {low:e} to {high:e}");

@@ -1,6 +1,6 @@
-//! Certified penetrations: against brute force on some hundred poses, and where the answer is known.
+//! Certified penetrations, checked against brute force at some hundred poses and against known results.
 //!
-//! `cargo run --release -p touchoff-bench -- certified` asks about 100,000 poses.
+//! `cargo run --release -p touchoff-bench -- certified` checks 100,000 poses.
 
 mod allowances;
 mod apart;
@@ -17,21 +17,21 @@ mod sweeps;
 mod zoomed;
 
 use nalgebra::{Point3, Vector3};
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff::{Mesh, Pose, Tool, Unit};
 use touchoff_bench::certified::{Pair, poses};
 use touchoff_tests::oracle::Nearest;
 
-/// Poses of each part and tool.
+/// Number of poses per part and tool.
 const POSES: usize = 24;
 const SEED: u64 = 2;
 
-/// A tool of the library, or one of [`overhang`].
+/// Returns a tool of the library, or one of [`overhang`].
 fn tool(name: &str) -> &'static dyn Tool {
     tools_library::find(name).or_else(|| overhang::tool(name)).expect("a tool")
 }
 
-/// The same from its drawing's numbers.
+/// Returns the oracle of the tool, from the dimensions of its drawing.
 fn oracle(name: &str) -> Nearest {
     overhang::oracle(name).unwrap_or_else(|| Nearest::of(name))
 }
@@ -40,13 +40,13 @@ fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::from_axis(Point3::from(tip), Vector3::from(axis)).expect("an axis")
 }
 
-/// A plate 40 by 30 mm whose upper face is z = 0.
+/// Returns a plate of 40 by 30 mm whose upper face is at z = 0.
 fn plate() -> Mesh {
     let [low, high] = [Point3::new(-20.0, -15.0, -10.0), Point3::new(20.0, 15.0, 0.0)];
     touchoff::mesh::shapes::cuboid(low, high, Unit::Millimetre).expect("a cuboid")
 }
 
-/// What a mesh of these triangles is, each with corners of its own.
+/// Returns a mesh of these triangles, which share no vertices.
 fn soup(triangles: &[[[f64; 3]; 3]]) -> Mesh {
     let vertices = triangles.iter().flatten().map(|corner| Point3::from(*corner)).collect();
     let ids = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
@@ -56,11 +56,11 @@ fn soup(triangles: &[[[f64; 3]; 3]]) -> Mesh {
 fn violations(names: &[&str], each: usize, seed: u64) -> Vec<String> {
     let mut violations = Vec::new();
     for (part, mesh) in poses::parts().expect("parts") {
-        let facets = Facets::new(&mesh);
+        let bvh = TriangleBvh::new(&mesh);
         for (k, name) in names.iter().enumerate() {
             let oracle = oracle(name);
-            let (mesh, facets) = (&mesh, &facets);
-            let pair = Pair { part, mesh, facets, tool: tool(name), oracle: &oracle };
+            let (mesh, bvh) = (&mesh, &bvh);
+            let pair = Pair { part, mesh, bvh, tool: tool(name), oracle: &oracle };
             let row = pair.measure(each, seed + k as u64);
             assert!(row.touching > each / 3, "{row:?}");
             violations.extend(row.violations);

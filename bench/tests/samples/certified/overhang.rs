@@ -1,8 +1,8 @@
-//! Tools whose profiles overhang, once more by hand.
+//! Tools with overhanging profiles, and their oracles, written separately.
 
 use super::{pose, soup};
 use nalgebra::Point3;
-use touchoff::certify::{Certifier, Clear, Facets};
+use touchoff::certify::{Certifier, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Tool, Unit};
 use touchoff_tests::oracle::restated::Restated;
@@ -97,16 +97,16 @@ touchoff::tool! {
     }
 }
 
-/// The names of those above.
+/// The names of these tools.
 pub(crate) const ALL: [&str; 6] = ["HoleSaw", "Dished", "Bell", "Skirt", "Torus", "Wheel"];
 
-/// One of those above.
+/// Returns one of these tools.
 pub(crate) fn tool(name: &str) -> Option<&'static dyn Tool> {
     let all: [&dyn Tool; 6] = [&HoleSaw, &Dished, &Bell, &Skirt, &Torus, &Wheel];
-    all.into_iter().find(|tool| tool.card().name == name)
+    all.into_iter().find(|tool| tool.info().name == name)
 }
 
-/// The same from its drawing's numbers.
+/// Returns the oracle of one of these tools, from the dimensions of its drawing.
 pub(crate) fn oracle(name: &str) -> Option<Nearest> {
     let tool = match name {
         "HoleSaw" => Restated::new("HoleSaw", 12.0)
@@ -152,17 +152,18 @@ pub(crate) fn oracle(name: &str) -> Option<Nearest> {
     Some(Nearest::new(&tool))
 }
 
-/// Triangles across the circles on which rims are deepest, cut off before the edges and the meridian come as deep.
+/// The triangle crosses the circles on which the rims are deepest. It is cut off where edges or meridian would be as
+/// deep.
 #[test]
 fn a_rim_is_as_deep_as_its_circle() {
     let corners = [[9.4, 1.0, 1.4], [10.8, -0.6, 1.3], [9.6, -0.13, 3.1]];
     let far = [[90.0, 0.0, 0.0], [91.0, 0.0, 0.0], [90.0, 1.0, 0.0]];
-    let facets = Facets::new(&soup(&[corners, far]));
+    let bvh = TriangleBvh::new(&soup(&[corners, far]));
     let pose = pose([0.0; 3], [0.0, 0.0, 1.0]);
     for name in ["Torus", "Wheel"] {
         let oracle = oracle(name).expect("one of those above");
         let [a, b, c] = corners.map(Point3::from);
-        // Some 30,000 places, each 0.01 from the next.
+        // About 30,000 points, at most 0.01 apart.
         let places = (0..=250).flat_map(|i| (0..=250 - i).map(move |j| (i, j)));
         let depth = |(i, j): (i32, i32)| {
             let p = a + (b - a) * (f64::from(i) / 250.0) + (c - a) * (f64::from(j) / 250.0);
@@ -170,7 +171,7 @@ fn a_rim_is_as_deep_as_its_circle() {
         };
         let sampled = places.map(depth).fold(0.0, f64::max);
         let [low, high] =
-            Certifier::new(&facets, tool(name).expect("it")).expect("it").deepest(&pose, 0.0).depth;
+            Certifier::new(&bvh, tool(name).expect("it")).expect("it").deepest(&pose, 0.0).depth;
         assert!(sampled <= high && low <= sampled + 0.01, "{name}: {sampled} in {low}..{high}");
     }
 }
@@ -188,19 +189,19 @@ touchoff::tool! {
     }
 }
 
-/// Above the tip of the cone points are nearest to that, its corner on the axis.
+/// Points above the tip of the cone are nearest to that tip, a corner on the axis.
 #[test]
 fn a_piece_at_a_corner_on_the_axis_is_found_inside() {
     let half = Point3::from([30.0, 30.0, 40.0]);
     let block = shapes::cuboid(-half, half, Unit::Millimetre).expect("a cuboid");
-    let facets = Facets::new(&block);
+    let bvh = TriangleBvh::new(&block);
     for limit in [0.0, 0.5, 0.8, 0.9] {
-        let mut certifier = Certifier::new(&facets, &Dimple).expect("a profile");
+        let mut certifier = Certifier::new(&bvh, &Dimple).expect("a profile");
         let any = f64::INFINITY;
         for (surface, limit) in [("dimple", limit), ("flute", any), ("top", any)] {
-            certifier = certifier.allow(surface, limit).expect("a surface");
+            certifier = certifier.with_allowance(surface, limit).expect("a surface");
         }
-        let found = certifier.clear(&pose([0.0; 3], [0.0, 0.0, 1.0]));
-        assert_eq!(found, Clear::Inside(0), "{limit}");
+        let found = certifier.check_pose(&pose([0.0; 3], [0.0, 0.0, 1.0]));
+        assert_eq!(found, PoseVerdict::Inside(0), "{limit}");
     }
 }

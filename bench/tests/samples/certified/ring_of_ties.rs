@@ -1,13 +1,14 @@
-//! Where three pieces of a profile are as near, away from the axis, a zone has a corner. Turned about the axis this
-//! is a ring, and a triangle that the ring passes through may be deepest there: neither on an edge nor on its meridian.
+//! Depth on rings of ties. A point off the axis that is equally near to three segments of a profile is a corner of
+//! their zones. Revolved about the axis, it is a ring. A triangle that the ring intersects may be deepest there,
+//! neither on an edge nor on its meridian.
 
 use super::{pose, soup, tool};
 use tool_dsl::source::Source;
-use touchoff::certify::{Certifier, Clear, Facets, Sweep};
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::tool::Interpreted;
 use touchoff::{Mesh, Motion, Pose, Tool};
 
-/// A wall at y = 3 that is larger than the tool.
+/// Returns a wall at y = 3 that is larger than the tool.
 fn wall() -> Mesh {
     soup(&[[[-200.0, 3.0, -150.0], [200.0, 3.0, -150.0], [0.0, 3.0, 400.0]]])
 }
@@ -16,13 +17,13 @@ fn upright() -> Pose {
     pose([0.0; 3], [0.0, 0.0, 1.0])
 }
 
-/// The flute is at 10.5 from 0 to 9, between a face and a back: at (6, 4.5) all are 4.5 away.
+/// The flute has radius 10.5 from z = 0 to 9, between a face and a back. All three are 4.5 away from (6, 4.5).
 const DEEPEST: f64 = 4.5;
 
 #[test]
 fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
-    let facets = Facets::new(&wall());
-    let mut certifier = Certifier::new(&facets, tool("TSlot")).expect("a profile");
+    let bvh = TriangleBvh::new(&wall());
+    let mut certifier = Certifier::new(&bvh, tool("TSlot")).expect("a profile");
     let found = certifier.deepest_on(1, &upright(), 1e-9);
     let [low, high] = found.depth;
     assert!(low <= DEEPEST && DEEPEST <= high, "{found:?}");
@@ -30,23 +31,23 @@ fn a_flute_between_a_face_and_a_back_is_deepest_on_a_ring() {
 
 #[test]
 fn an_allowance_of_such_a_flute_is_not_passed_over() {
-    let facets = Facets::new(&wall());
-    let certifier = Certifier::new(&facets, tool("TSlot")).expect("a profile");
+    let bvh = TriangleBvh::new(&wall());
+    let certifier = Certifier::new(&bvh, tool("TSlot")).expect("a profile");
     let mut certifier = ["face", "back", "neck", "shank"]
         .into_iter()
-        .fold(certifier, |c, other| c.allow(other, f64::INFINITY).expect("a surface"));
-    let found = certifier.clear(&upright());
-    assert!(matches!(found, Clear::Touching(_)), "{found:?}");
+        .fold(certifier, |c, other| c.with_allowance(other, f64::INFINITY).expect("a surface"));
+    let found = certifier.check_pose(&upright());
+    assert!(matches!(found, PoseVerdict::Touching(_)), "{found:?}");
     let still = Motion::new(&upright(), &upright()).expect("one way");
-    let found = certifier.sweep_clear(&still, 0.0);
-    assert!(matches!(found, Sweep::Touching(..)), "{found:?}");
+    let found = certifier.check_motion(&still, 0.0);
+    assert!(matches!(found, MotionVerdict::Touching(..)), "{found:?}");
 }
 
-/// The corner's centre is at (4, 2), 2 from all of it, from the face and from the flute.
+/// The centre of the corner's arc is (4, 2). It is 2 away from all of the arc, from the face and from the flute.
 #[test]
 fn a_corner_is_deepest_at_its_centre() {
-    let facets = Facets::new(&wall());
-    let mut certifier = Certifier::new(&facets, tool("BullNose")).expect("a profile");
+    let bvh = TriangleBvh::new(&wall());
+    let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
     let [low, high] = certifier.deepest_on(1, &upright(), 1e-9).depth;
     assert!(low <= 2.0 && 2.0 <= high, "{low} to {high}");
 }
@@ -58,18 +59,18 @@ fn interpreted(profile: &str) -> Interpreted {
     Interpreted::parse(&Source::new("made.tool", text)).expect("a tool")
 }
 
-/// Beside a wall at y = 2.
+/// Returns the certified depth of a surface beside a wall at y = 2.
 fn deepest_on(tool: &Interpreted, surface: &str) -> [f64; 2] {
     let mesh = soup(&[[[-100.0, 2.0, -50.0], [100.0, 2.0, -50.0], [0.0, 2.0, 150.0]]]);
-    let facets = Facets::new(&mesh);
-    let mut certifier = Certifier::new(&facets, tool).expect("a profile");
-    let known = tool.card().surfaces.iter().position(|known| known.name == surface);
+    let bvh = TriangleBvh::new(&mesh);
+    let mut certifier = Certifier::new(&bvh, tool).expect("a profile");
+    let known = tool.info().surfaces.iter().position(|known| known.name == surface);
     certifier.deepest_on(known.expect("a surface"), &upright(), 1e-9).depth
 }
 
 #[test]
 fn a_seam_between_ties_belongs_to_both_its_sides() {
-    // The wall meets the circle (2, 2) where the flute's upper end is as far as the face.
+    // The wall meets the circle (2, 2), where the flute's upper end is as near as the face.
     let tool = interpreted(
         "line to (5, 0) as face; line to (5, 2) as flute cutting; line to (5, 50), (0, 50) as shank;",
     );
@@ -79,7 +80,7 @@ fn a_seam_between_ties_belongs_to_both_its_sides() {
 
 #[test]
 fn a_reflex_corner_owns_as_far_as_what_it_ties_with() {
-    // Near (3, 2) the back owns by its corner, as far as the face is.
+    // Near (3, 2) the corner of the back owns the point, at the same distance as the face.
     let tool = interpreted(
         "line to (20, 0) as face; line to (20, 2) as rim cutting; line to (5, 2) as back; line to (5, 50), (0, 50) as neck;",
     );

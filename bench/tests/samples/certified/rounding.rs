@@ -1,4 +1,5 @@
-//! Depths of single triangles that rounding hurts, beside the truth in 256 bits: a sample of `docs/measured/certified.md`.
+//! Depths of single triangles that are sensitive to rounding, compared with 256 bits: a sample of a section of the page
+//! `certified.md`.
 
 use touchoff_bench::rounding::cases::Family;
 use touchoff_bench::rounding::{Rounding, Row};
@@ -22,7 +23,7 @@ fn no_upper_bound_is_below_the_truth() {
     }
 }
 
-/// Where the bounds are made tighter by what they add for rounding, the judge objects in each family.
+/// If the bounds lack what is added for rounding, the validation reports violations in each family.
 #[test]
 fn bounds_without_their_widening_are_found_out() {
     for row in rows(1.0, 2_200) {

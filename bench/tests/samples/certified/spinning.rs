@@ -1,11 +1,11 @@
-//! Motions of solids without an axis: their spin is known, and the proof counts it.
+//! Motions of solids without an axis of symmetry, whose spin is known and enters the proof.
 
 use super::pose;
 use nalgebra::{Point3, Quaternion, UnitQuaternion, Vector3};
-use touchoff::certify::{Along, Certifier, Facets, Sweep};
+use touchoff::certify::{Certifier, MotionDepth, MotionVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, Pose, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Block, LBracket, Oracle};
 
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
@@ -16,7 +16,7 @@ fn spun(tip: [f64; 3], turn: UnitQuaternion<f64>) -> Pose {
     Pose::from_quaternion(Point3::from(tip), turn.coords.into()).expect("a quaternion")
 }
 
-/// Turned about its own z by an angle from its x.
+/// Returns a pose rotated about z by an angle.
 fn about_z(tip: [f64; 3], degrees: f64) -> Pose {
     spun(tip, UnitQuaternion::from_axis_angle(&Vector3::z_axis(), degrees.to_radians()))
 }
@@ -25,32 +25,35 @@ fn motion(from: &Pose, to: &Pose) -> Motion {
     Motion::with_spin(from, to).expect("less than half a turn")
 }
 
-/// The block is 40 by 30: its sides are 20 and 15 from its axis, its corners 25. It turns beside a wall that is between.
+/// The block is 40 by 30 mm. Its sides are 20 and 15 mm from its axis, its corners 25 mm. It rotates beside a wall at a
+/// distance between these.
 #[test]
 fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
     let turning = |x: f64| motion(&about_z([x, 0.0, 0.0], 0.0), &about_z([x, 0.0, 0.0], 90.0));
-    let wall = Facets::new(&cuboid([0.0, -60.0, -20.0], [30.0, 60.0, 40.0]));
+    let wall = TriangleBvh::new(&cuboid([0.0, -60.0, -20.0], [30.0, 60.0, 40.0]));
     let mut certifier = Certifier::new(&wall, super::tool("Block")).expect("proved");
-    assert_eq!(certifier.sweep_clear(&turning(-25.003), 1e-6), Sweep::Clear);
+    assert_eq!(certifier.check_motion(&turning(-25.003), 1e-6), MotionVerdict::Clear);
     for reach in [24.9, 24.0, 21.0] {
-        let found = certifier.sweep_clear(&turning(-reach), 1e-6);
-        let Sweep::Touching(at, witness) = found else { panic!("{found:?}") };
-        // The corner at (20, -15) points at the wall after 36.87 degrees, and is in it while its cosine is more.
+        let found = certifier.check_motion(&turning(-reach), 1e-6);
+        let MotionVerdict::Touching(at, witness) = found else { panic!("{found:?}") };
+        // The corner at (20, -15) points at the wall after 36.87 degrees. It is in the wall while 25 mm times the
+        // cosine of the deviation exceeds the wall's distance.
         let (corner, half) = (0.75f64.atan(), (reach / 25.0).acos());
         let angle = at * std::f64::consts::FRAC_PI_2;
         assert!((angle - corner).abs() <= half + 1e-9, "{reach}: {at}");
         assert!(witness.point.x.abs() < 1e-9, "{witness:?}");
     }
-    // On the way the deepest is the wall's place beside the corner; at both ends the block is outside.
+    // During the motion the deepest point is on the wall beside the corner. At both ends the block is outside.
     let most = (0..6)
-        .filter_map(|surface| match certifier.deepest_along(surface, &turning(-24.5), 0.0, 1e-6) {
-            Along::Deeper { depth, most, .. } => Some((depth, most)),
-            Along::Within => None,
+        .filter_map(|surface| match certifier.motion_depth(surface, &turning(-24.5), 0.0, 1e-6) {
+            MotionDepth::Deeper { depth, most, .. } => Some((depth, most)),
+            MotionDepth::Within => None,
             other => panic!("{other:?}"),
         })
         .fold([0.0f64; 2], |[low, high], (depth, most)| [low.max(depth[0]), high.max(most)]);
-    // A wall `h` behind the corner has a place that is as far from both sides, `h / (cos a + sin a)` deep, with the angle
-    // `a` between the wall's normal and a side's: most where the corner points a little past the wall.
+    // With `a` the angle between the wall's normal and a side's, the wall's point equally far from both sides has depth
+    // `h / (cos a + sin a)` if the corner extends `h` beyond the wall. It is largest when the corner points slightly
+    // past the wall's normal.
     let turns = (-1000..=1000).map(|step| 1e-5 * f64::from(step));
     let depths = turns.map(|turn| {
         let (sine, cosine) = (0.75f64.atan() + turn).sin_cos();
@@ -65,20 +68,20 @@ fn a_corner_of_a_block_reaches_a_wall_when_it_points_there() {
 
 #[test]
 fn a_solid_is_not_swept_where_its_spin_is_not_said() {
-    let facets = Facets::new(&super::plate());
-    let mut certifier = Certifier::new(&facets, super::tool("Block")).expect("proved");
+    let bvh = TriangleBvh::new(&super::plate());
+    let mut certifier = Certifier::new(&bvh, super::tool("Block")).expect("proved");
     let still = pose([0.0, 0.0, 50.0], [0.0, 0.0, 1.0]);
     let motion = Motion::new(&still, &still).expect("at rest");
-    assert_eq!(certifier.sweep_clear(&motion, 1e-3), Sweep::Undecided(0.0));
-    assert_eq!(certifier.deepest_along(0, &motion, 0.0, 1e-3), Along::Undecided(0.0));
+    assert_eq!(certifier.check_motion(&motion, 1e-3), MotionVerdict::Undecided(0.0));
+    assert_eq!(certifier.motion_depth(0, &motion, 0.0, 1e-3), MotionDepth::Undecided(0.0));
 }
 
-/// Random motions, short and long, past a ball and a plate. The oracle turns each point by the quaternion's own formula
-/// and has the solid's planes written out.
+/// Random motions, short and long, past a ball and a plate. The oracle rotates each point by the quaternion formula and
+/// has the solid's planes written out.
 #[test]
 fn no_sample_of_a_motion_is_deeper_than_is_proved() {
     const TOLERANCE: f64 = 1e-3;
-    let mut draw = Draw::new(17);
+    let mut draw = Rng::new(17);
     let solids: [(&str, &dyn Oracle); 2] = [("Block", &Block), ("LBracket", &LBracket)];
     let parts = [
         shapes::sphere(9.0, 3, Unit::Millimetre).expect("a sphere"),
@@ -86,10 +89,10 @@ fn no_sample_of_a_motion_is_deeper_than_is_proved() {
     ];
     let (mut clear, mut touching, mut open, mut bounded) = (0, 0, 0, 0);
     for mesh in &parts {
-        let facets = Facets::new(mesh);
+        let bvh = TriangleBvh::new(mesh);
         for (name, oracle) in solids {
             let tool = super::tool(name);
-            let mut certifier = Certifier::new(&facets, tool).expect("proved");
+            let mut certifier = Certifier::new(&bvh, tool).expect("proved");
             for k in 0..24 {
                 let turn =
                     UnitQuaternion::new(Vector3::from(draw.direction()) * draw.between(0.0, 3.0));
@@ -126,28 +129,28 @@ fn no_sample_of_a_motion_is_deeper_than_is_proved() {
                 let times = (0..=60).map(|step| f64::from(step) / 60.0);
                 let brute = times.map(depths).fold(0.0, f64::max);
                 let text = format!("{name} {k} from {from:?} to {to:?}: {brute}");
-                match certifier.sweep_clear(&motion, TOLERANCE) {
-                    Sweep::Clear => {
+                match certifier.check_motion(&motion, TOLERANCE) {
+                    MotionVerdict::Clear => {
                         clear += 1;
                         assert!(brute <= TOLERANCE, "{text}");
                     }
-                    Sweep::Touching(at, witness) => {
+                    MotionVerdict::Touching(at, witness) => {
                         touching += 1;
                         let seen = motion.pose(at);
                         let p = seen.rotation().transpose() * (witness.point - seen.tip());
                         assert!(oracle.sense(p.into()).is_some_and(|s| s.depth > 0.0), "{text}");
                     }
-                    Sweep::Inside(_) => assert_eq!(brute, 0.0, "{text}"),
-                    Sweep::Undecided(_) => open += 1,
-                    Sweep::SurfaceOnly => panic!("{text}"),
+                    MotionVerdict::Inside(_) => assert_eq!(brute, 0.0, "{text}"),
+                    MotionVerdict::Undecided(_) => open += 1,
+                    MotionVerdict::SurfaceOnly => panic!("{text}"),
                 }
                 if k % 3 == 0 {
-                    let surfaces = 0..tool.card().surfaces.len();
+                    let surfaces = 0..tool.info().surfaces.len();
                     let most = surfaces.map(|surface| {
-                        match certifier.deepest_along(surface, &motion, 0.0, TOLERANCE) {
-                            Along::Deeper { most, .. } => most,
-                            Along::Within | Along::Inside => TOLERANCE,
-                            Along::Undecided(_) => f64::INFINITY,
+                        match certifier.motion_depth(surface, &motion, 0.0, TOLERANCE) {
+                            MotionDepth::Deeper { most, .. } => most,
+                            MotionDepth::Within | MotionDepth::Inside => TOLERANCE,
+                            MotionDepth::Undecided(_) => f64::INFINITY,
                         }
                     });
                     let most = most.fold(0.0, f64::max);

@@ -1,8 +1,8 @@
-//! Ways that are proved clear: where geometry says when a tool touches, and against samples of motions.
+//! Verdicts on motions, checked against known geometry and against samples of motions.
 
 use super::{plate, pose, soup, tool};
 use nalgebra::{Point3, Vector3};
-use touchoff::certify::{Certifier, Clear, Facets, Sweep};
+use touchoff::certify::{Certifier, MotionVerdict, PoseVerdict, TriangleBvh};
 use touchoff::mesh::shapes;
 use touchoff::{Mesh, Motion, MotionError, Pose, Unit};
 use touchoff_bench::certified::{Pair, poses};
@@ -18,13 +18,13 @@ fn block(low: [f64; 3], high: [f64; 3]) -> Mesh {
     shapes::cuboid(Point3::from(low), Point3::from(high), Unit::Millimetre).expect("a cuboid")
 }
 
-fn sweep(mesh: &Mesh, name: &str, way: &Motion, tolerance: f64) -> Sweep {
-    let facets = Facets::new(mesh);
-    let mut certifier = Certifier::new(&facets, tool(name)).expect("a profile");
-    certifier.sweep_clear(way, tolerance)
+fn sweep(mesh: &Mesh, name: &str, way: &Motion, tolerance: f64) -> MotionVerdict {
+    let bvh = TriangleBvh::new(mesh);
+    let mut certifier = Certifier::new(&bvh, tool(name)).expect("a profile");
+    certifier.check_motion(way, tolerance)
 }
 
-/// An axis that leans from z toward x.
+/// Returns an axis that leans from z toward x.
 fn leaning(degrees: f64) -> [f64; 3] {
     let (sin, cos) = degrees.to_radians().sin_cos();
     [sin, 0.0, cos]
@@ -35,29 +35,29 @@ fn a_ball_slides_along_a_plate_at_any_height() {
     let slide = |height: f64| {
         motion(&pose([-12.0, 0.3, height], UP), &pose([11.0, -0.2, height], leaning(40.0)))
     };
-    // The ball turns about the tip, so that its lowest point is 1 - cos below that.
+    // The axis rotates about the tip, so the ball's lowest point sinks below the tip by 1 - cos.
     let sinks = 1.0 - 40f64.to_radians().cos();
     let level = |height| motion(&pose([-12.0, 0.3, height], UP), &pose([11.0, -0.2, height], UP));
     for height in [0.5, 1e-3, 1e-6, 1e-9] {
         for tolerance in [0.0, 1e-6, 1e-3, f64::NAN] {
-            assert_eq!(sweep(&plate(), "D2Ball", &level(height), tolerance), Sweep::Clear);
+            assert_eq!(sweep(&plate(), "D2Ball", &level(height), tolerance), MotionVerdict::Clear);
             let swept = sweep(&plate(), "D2Ball", &slide(sinks + height), tolerance);
-            assert_eq!(swept, Sweep::Clear);
+            assert_eq!(swept, MotionVerdict::Clear);
         }
     }
     for depth in [0.5, 1e-3, 1e-6, 1e-9] {
         let found = sweep(&plate(), "D2Ball", &level(-depth), 0.0);
-        let Sweep::Touching(at, witness) = found else { panic!("{depth:e}: {found:?}") };
+        let MotionVerdict::Touching(at, witness) = found else { panic!("{depth:e}: {found:?}") };
         assert!((0.0..=1.0).contains(&at) && witness.point.z.abs() < 1e-12, "{found:?}");
         let found = sweep(&plate(), "D2Ball", &slide(sinks - depth), 0.0);
-        let Sweep::Touching(at, _) = found else { panic!("{depth:e}: {found:?}") };
+        let MotionVerdict::Touching(at, _) = found else { panic!("{depth:e}: {found:?}") };
         let lean = (1.0 - (sinks - depth).max(0.0)).acos().to_degrees();
         assert!(at >= lean / 40.0 - 1e-6, "{found:?}");
     }
-    // What is flush is not deeper than rounding.
-    assert_eq!(sweep(&plate(), "D2Ball", &level(0.0), 1e-6), Sweep::Clear);
-    assert_eq!(sweep(&plate(), "D2Ball", &level(0.0), 0.0), Sweep::Clear);
-    assert_eq!(sweep(&plate(), "Flat", &level(0.0), 1e-6), Sweep::Clear);
+    // Flush contact is no deeper than rounding.
+    assert_eq!(sweep(&plate(), "D2Ball", &level(0.0), 1e-6), MotionVerdict::Clear);
+    assert_eq!(sweep(&plate(), "D2Ball", &level(0.0), 0.0), MotionVerdict::Clear);
+    assert_eq!(sweep(&plate(), "Flat", &level(0.0), 1e-6), MotionVerdict::Clear);
 }
 
 #[test]
@@ -65,8 +65,8 @@ fn a_tolerance_is_what_may_be_missed_and_no_more() {
     let way = |depth: f64| motion(&pose([-9.0, 0.0, 2.0], UP), &pose([3.0, 1.0, -depth], UP));
     for tolerance in [1e-6, 1e-3, 0.1] {
         let found = sweep(&plate(), "BullNose", &way(1.001 * tolerance), tolerance);
-        assert!(matches!(found, Sweep::Touching(..)), "{tolerance:e}: {found:?}");
-        assert_eq!(sweep(&plate(), "BullNose", &way(-1e-9), tolerance), Sweep::Clear);
+        assert!(matches!(found, MotionVerdict::Touching(..)), "{tolerance:e}: {found:?}");
+        assert_eq!(sweep(&plate(), "BullNose", &way(-1e-9), tolerance), MotionVerdict::Clear);
     }
 }
 
@@ -75,33 +75,36 @@ fn a_plunge_touches_when_it_has_come_down() {
     let plunge = |to: f64| motion(&pose([0.3, 0.1, 5.0], UP), &pose([0.3, 0.1, to], UP));
     for name in ["D2Ball", "Flat", "BullNose", "TSlot", "Lollipop"] {
         let found = sweep(&plate(), name, &plunge(-1.0), 0.0);
-        let Sweep::Touching(at, witness) = found else { panic!("{name}: {found:?}") };
+        let MotionVerdict::Touching(at, witness) = found else { panic!("{name}: {found:?}") };
         assert!((5.0 / 6.0..=1.0).contains(&at), "{name}: {found:?}");
         assert!(
             witness.point.z.abs() < 1e-12 && witness.point.xy().coords.norm() < 11.0,
             "{found:?}"
         );
         for gap in [1e-3, 1e-9] {
-            assert_eq!(sweep(&plate(), name, &plunge(gap), 0.0), Sweep::Clear, "{name}");
+            assert_eq!(sweep(&plate(), name, &plunge(gap), 0.0), MotionVerdict::Clear, "{name}");
             let back = motion(&plunge(gap).pose(1.0), &plunge(gap).pose(0.0));
-            assert_eq!(sweep(&plate(), name, &back, 0.0), Sweep::Clear, "{name}");
+            assert_eq!(sweep(&plate(), name, &back, 0.0), MotionVerdict::Clear, "{name}");
         }
         let found = sweep(&plate(), name, &plunge(-1e-9), 0.0);
-        assert!(matches!(found, Sweep::Touching(at, _) if at > 1.0 - 1e-9), "{name}: {found:?}");
+        assert!(
+            matches!(found, MotionVerdict::Touching(at, _) if at > 1.0 - 1e-9),
+            "{name}: {found:?}"
+        );
     }
 }
 
 #[test]
 fn a_long_cylinder_swings_against_a_wall() {
-    // The top's rim, 83 up and 6 out, is the first to come to the wall.
+    // The rim of the top, 83 up and 6 out, reaches the wall first.
     let wall = block([20.0, -50.0, -200.0], [30.0, 50.0, 200.0]);
     let contact = (20.0 / 83f64.hypot(6.0)).asin() - (6f64 / 83.0).atan();
     let contact = contact.to_degrees();
     let swing = |to: f64| motion(&pose([0.0; 3], leaning(-70.0)), &pose([0.0; 3], leaning(to)));
     for short in [1.0, 1e-3, 1e-6] {
-        assert_eq!(sweep(&wall, "Flat", &swing(contact - short), 0.0), Sweep::Clear);
+        assert_eq!(sweep(&wall, "Flat", &swing(contact - short), 0.0), MotionVerdict::Clear);
         let found = sweep(&wall, "Flat", &swing(contact + short), 0.0);
-        let Sweep::Touching(at, witness) = found else { panic!("{short:e}: {found:?}") };
+        let MotionVerdict::Touching(at, witness) = found else { panic!("{short:e}: {found:?}") };
         let first = (70.0 + contact) / (70.0 + contact + short);
         assert!((first - 1e-12..=1.0).contains(&at), "{short:e}: {found:?}");
         assert!((witness.point.x - 20.0).abs() < 1e-12, "{witness:?}");
@@ -110,33 +113,34 @@ fn a_long_cylinder_swings_against_a_wall() {
 
 #[test]
 fn a_long_cylinder_swings_below_a_ceiling() {
-    // In the middle of the way its rim is at the top of a circle.
+    // Midway through the motion the rim is at the top of its circle.
     let top = 83f64.hypot(6.0);
     let swing = motion(&pose([0.0; 3], leaning(-75.0)), &pose([0.0; 3], leaning(75.0)));
     for gap in [1.0, 1e-3] {
         let ceiling = block([-300.0, -300.0, top + gap], [300.0, 300.0, 200.0]);
-        assert_eq!(sweep(&ceiling, "Flat", &swing, 0.0), Sweep::Clear, "{gap:e}");
+        assert_eq!(sweep(&ceiling, "Flat", &swing, 0.0), MotionVerdict::Clear, "{gap:e}");
         let ceiling = block([-300.0, -300.0, top - gap], [300.0, 300.0, 200.0]);
         let found = sweep(&ceiling, "Flat", &swing, 0.0);
-        assert!(matches!(found, Sweep::Touching(..)), "{gap:e}: {found:?}");
-        // It passes over an edge just as high.
+        assert!(matches!(found, MotionVerdict::Touching(..)), "{gap:e}: {found:?}");
+        // The motion also passes over an edge at that height.
         let fence = soup(&[[[0.0, 0.0, top + gap], [-5.0, 100.0, 100.0], [5.0, 100.0, 100.0]]]);
-        assert_eq!(sweep(&fence, "Flat", &swing, 0.0), Sweep::SurfaceOnly, "{gap:e}");
+        assert_eq!(sweep(&fence, "Flat", &swing, 0.0), MotionVerdict::SurfaceOnly, "{gap:e}");
     }
 }
 
 #[test]
 fn what_does_not_move_is_as_clear_as_it_stands() {
-    let facets = Facets::new(&plate());
-    let mut certifier = Certifier::new(&facets, tool("BullNose")).expect("a profile");
+    let bvh = TriangleBvh::new(&plate());
+    let mut certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
     for height in [0.5, 1e-9, -1e-9, -0.5, -3.0] {
         for lean in [0.0, 20.0, 170.0] {
             let here = pose([1.0, 2.0, height], leaning(lean));
             let way = motion(&here, &here);
-            let (still, swept) = (certifier.clear(&here), certifier.sweep_clear(&way, 0.0));
+            let (still, swept) = (certifier.check_pose(&here), certifier.check_motion(&way, 0.0));
             let same = matches!(
                 (still, swept),
-                (Clear::Clear, Sweep::Clear) | (Clear::Touching(_), Sweep::Touching(..))
+                (PoseVerdict::Clear, MotionVerdict::Clear)
+                    | (PoseVerdict::Touching(_), MotionVerdict::Touching(..))
             );
             assert!(same, "{height} {lean}: {still:?} {swept:?}");
         }
@@ -156,12 +160,15 @@ fn opposite_axes_have_no_way_between() {
 
 #[test]
 fn without_a_budget_nothing_is_decided() {
-    let facets = Facets::new(&plate());
+    let bvh = TriangleBvh::new(&plate());
     let way = motion(&pose([-9.0, 0.0, 1e-6], UP), &pose([9.0, 0.0, 1e-6], UP));
     for budget in [0, 1, 3] {
-        let certifier = Certifier::new(&facets, tool("BullNose")).expect("a profile");
-        let found = certifier.budget(budget).sweep_clear(&way, 0.0);
-        assert!(matches!(found, Sweep::Undecided(at) if (0.0..1.0).contains(&at)), "{found:?}");
+        let certifier = Certifier::new(&bvh, tool("BullNose")).expect("a profile");
+        let found = certifier.with_budget(budget).check_motion(&way, 0.0);
+        assert!(
+            matches!(found, MotionVerdict::Undecided(at) if (0.0..1.0).contains(&at)),
+            "{found:?}"
+        );
     }
 }
 
@@ -169,14 +176,14 @@ fn without_a_budget_nothing_is_decided() {
 fn a_tool_may_stay_in_material_or_beside_what_has_no_inside() {
     let large = block([-200.0; 3], [200.0; 3]);
     let inside = motion(&pose([-90.0, 0.0, -90.0], UP), &pose([90.0, 20.0, 0.0], leaning(100.0)));
-    assert!(matches!(sweep(&large, "D2Ball", &inside, 0.0), Sweep::Inside(_)));
+    assert!(matches!(sweep(&large, "D2Ball", &inside, 0.0), MotionVerdict::Inside(_)));
     let out = motion(&pose([-90.0, 0.0, -90.0], UP), &pose([300.0, 20.0, 0.0], UP));
-    assert!(matches!(sweep(&large, "D2Ball", &out, 0.0), Sweep::Touching(..)));
+    assert!(matches!(sweep(&large, "D2Ball", &out, 0.0), MotionVerdict::Touching(..)));
     let sheet = shapes::plane(20.0, 4, Unit::Millimetre).expect("a sheet");
     let above = motion(&pose([-9.0, 0.0, 1e-3], UP), &pose([9.0, 0.0, 1e-3], UP));
-    assert_eq!(sweep(&sheet, "D2Ball", &above, 0.0), Sweep::SurfaceOnly);
+    assert_eq!(sweep(&sheet, "D2Ball", &above, 0.0), MotionVerdict::SurfaceOnly);
     let through = motion(&pose([-9.0, 0.0, 50.0], UP), &pose([9.0, 0.0, -100.0], UP));
-    assert!(matches!(sweep(&sheet, "D2Ball", &through, 0.0), Sweep::Touching(..)));
+    assert!(matches!(sweep(&sheet, "D2Ball", &through, 0.0), MotionVerdict::Touching(..)));
 }
 
 #[test]
@@ -185,31 +192,30 @@ fn it_comes_from_far_away_and_goes_as_far() {
         motion(&pose([-1e6, 0.0, height], UP), &pose([1e6, 0.0, height], to))
     };
     for height in [30.0, 0.5, 1e-3] {
-        assert_eq!(sweep(&plate(), "D2Ball", &far(height, UP), 0.0), Sweep::Clear);
+        assert_eq!(sweep(&plate(), "D2Ball", &far(height, UP), 0.0), MotionVerdict::Clear);
     }
     for depth in [1e-3, 0.5, 5.0] {
         let found = sweep(&plate(), "D2Ball", &far(-depth, UP), 0.0);
-        let Sweep::Touching(at, _) = found else { panic!("{depth}: {found:?}") };
+        let MotionVerdict::Touching(at, _) = found else { panic!("{depth}: {found:?}") };
         assert!((at - 0.5).abs() < 1.1e-5, "{found:?}");
     }
     let turning = sweep(&plate(), "D2Ball", &far(30.0, leaning(150.0)), 0.0);
-    assert_eq!(turning, Sweep::Clear);
+    assert_eq!(turning, MotionVerdict::Clear);
     let aside = motion(
         &Pose::from_axis(Point3::new(1e6, 0.0, 0.0), Vector3::z()).expect("an axis"),
         &pose([0.0, 1e6, 0.0], leaning(150.0)),
     );
-    assert_eq!(sweep(&plate(), "HalfInchBallCat40", &aside, 0.0), Sweep::Clear);
+    assert_eq!(sweep(&plate(), "HalfInchBallCat40", &aside, 0.0), MotionVerdict::Clear);
 }
 
-/// `cargo run --release -p touchoff-bench -- sweeps` asks about 10,000 that are proved.
+/// `cargo run --release -p touchoff-bench -- sweeps` checks about 10,000 motions that are proved clear.
 #[test]
 fn no_sample_of_a_proved_motion_is_deeper() {
     for (part, mesh) in poses::parts().expect("parts") {
-        let facets = Facets::new(&mesh);
+        let bvh = TriangleBvh::new(&mesh);
         for (k, name) in ["BullNose", "TSlot", "Lollipop", "Barrel"].into_iter().enumerate() {
             let oracle = Nearest::of(name);
-            let pair =
-                Pair { part, mesh: &mesh, facets: &facets, tool: tool(name), oracle: &oracle };
+            let pair = Pair { part, mesh: &mesh, bvh: &bvh, tool: tool(name), oracle: &oracle };
             let row = pair.sweeps(4, 11 + k as u64);
             assert!(row.proved == 4 && row.touching > 0, "{row:?}");
             assert!(row.violations.is_empty(), "{:#?}", row.violations);

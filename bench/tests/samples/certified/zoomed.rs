@@ -1,7 +1,7 @@
-//! Depths beside samples that zoom in, and tools inside blocks: a sample of `docs/measured/certified.md`.
+//! Certified depths compared with zooming samples, and tools inside blocks: a sample of `docs/measured/certified.md`.
 
 use super::tool;
-use touchoff::certify::Facets;
+use touchoff::certify::TriangleBvh;
 use touchoff_bench::certified::subject::{PROFILES, Subject};
 use touchoff_bench::certified::zoomed::Zoomed;
 use touchoff_bench::certified::{buried, poses};
@@ -12,13 +12,12 @@ const SAMPLES: u64 = 40_000;
 fn samples_that_zoom_in_are_within_the_interval() {
     let (mut asked, mut reached) = (0, 0);
     let parts = poses::parts().expect("parts");
-    // The tube's thousands of slivers need more samples than a test has.
+    // The thousands of slivers in the tube need more samples than a test can afford.
     for (part, mesh) in parts.iter().filter(|(part, _)| *part != "tube") {
-        let facets = Facets::new(mesh);
+        let bvh = TriangleBvh::new(mesh);
         for name in PROFILES.iter().chain(&["Fig73", "UnitSphere", "Block"]) {
             let subject = Subject::of(name);
-            let zoomed =
-                Zoomed { part, mesh, facets: &facets, tool: tool(name), subject: &subject };
+            let zoomed = Zoomed { part, mesh, bvh: &bvh, tool: tool(name), subject: &subject };
             let row = zoomed.measure(4, SAMPLES, 3);
             assert!(row.violations.is_empty() && row.wider == 0, "{row:?}");
             asked += row.poses;

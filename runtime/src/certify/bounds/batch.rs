@@ -1,33 +1,33 @@
-//! Eight triangles in the tool's frame, side by side in `f64`.
+//! Eight triangles in the tool's frame, in SIMD lanes of `f64`.
 
 use crate::bvh::PoseTransform;
 use crate::certify::bounds::hull::Hull;
-use crate::certify::part::{Face, Facets};
+use crate::certify::part::{Face, TriangleBvh};
 use crate::pose::Pose;
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-/// A coordinate of each.
+/// One coordinate of eight points.
 pub(crate) type Lanes = [f64; LANES];
 
-/// Up to eight triangles: how deep each is at most, and where it may be so.
+/// Up to eight triangles, an upper bound of the depth of each, and the point where it may be reached.
 #[derive(Default)]
 pub(crate) struct Batch {
     pub(crate) indices: Vec<u32>,
-    /// First from the tip in the part's frame and unit, then in the tool's.
+    /// First relative to the tip in the part's frame and unit, then in the tool's frame and unit.
     pub(crate) corners: [[Lanes; 3]; 3],
     pub(crate) bounds: Lanes,
     places: [Lanes; 3],
 }
 
 impl Batch {
-    /// Takes triangles by their places in the tree's order.
-    pub(crate) fn begin(&mut self, facets: &Facets, pose: &Pose, indices: &[u32]) {
+    /// Loads triangles, given by their indices in the tree's order.
+    pub(crate) fn begin(&mut self, bvh: &TriangleBvh, pose: &Pose, indices: &[u32]) {
         self.indices.clear();
         self.indices.extend(indices);
         let tip = pose.tip();
         for (lane, index) in self.indices.iter().enumerate() {
-            for (list, corner) in self.corners.iter_mut().zip(&facets.corners[*index as usize]) {
+            for (list, corner) in self.corners.iter_mut().zip(&bvh.corners[*index as usize]) {
                 for axis in 0..3 {
                     list[axis][lane] = corner[axis] - tip[axis];
                 }
@@ -39,7 +39,7 @@ impl Batch {
         self.indices.clear();
     }
 
-    /// Takes both halves of a face's rectangle besides, by the face's place in the list.
+    /// Appends both halves of a face's rectangle. `index` is the face's index in its list.
     pub(crate) fn rectangle(&mut self, face: &Face, (pose, index): (&Pose, u32)) {
         let [a, b, c, d] = face.corners;
         for half in [[a, b, c], [a, c, d]] {
@@ -73,7 +73,7 @@ impl Batch {
         self.bounds[..self.len()].iter().any(|bound| *bound > depth)
     }
 
-    /// Turns them to the tool's frame.
+    /// Transforms the corners to the tool's frame and unit.
     pub(crate) fn turn(&mut self, view: &PoseTransform) {
         for corner in &mut self.corners {
             let p = *corner;
@@ -86,10 +86,10 @@ impl Batch {
         }
     }
 
-    /// Bounds how deep they are.
+    /// Bounds the depths. A bound of at most `wanted` need not be tight.
     pub(crate) fn bound(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
         on_vectors!(level, simd => self.bound_on(simd, hull, wanted));
-        // Without vectors nothing is known before their edges are looked at.
+        // Without vector instructions nothing is known until the edges are searched.
         self.bounds = [f64::INFINITY; LANES];
         self.places = self.corners[0];
     }
@@ -101,7 +101,7 @@ impl Batch {
         store(&mut self.places, place);
     }
 
-    /// Bounds them again, as seen from where they may be deepest.
+    /// Tightens the bounds, with directions from the points where the depth may be reached.
     pub(crate) fn closer(&mut self, level: Level, hull: &Hull<f64>, wanted: f64) {
         on_vectors!(level, simd => self.closer_on(simd, hull, wanted));
     }

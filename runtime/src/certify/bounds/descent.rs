@@ -1,62 +1,66 @@
-//! The way down a tree of triangles, the deepest first.
+//! The depth-first traversal of the triangle tree, deepest children first.
 
 use crate::bvh::{Boxes, PoseTransform, WIDTH, extent, load, seen};
-use crate::certify::bounds::nearest::Space;
-use crate::certify::part::Ring;
-use crate::certify::part::{Corners, Facets};
+use crate::certify::bounds::nearest::LaneVector;
+use crate::certify::part::NodeRing;
+use crate::certify::part::{Corners, TriangleBvh};
 use crate::tool::{LANES, on_vectors};
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch, f32x16};
 
-/// A node of the tree, a leaf or a triangle, and how deep the tool can be in it.
+/// A node of the tree, a leaf or a triangle, and an upper bound of the tool's depth in it.
 #[derive(Clone, Copy)]
 pub(crate) struct Node {
-    /// That of its children; leaves are those whose children are triangles.
+    /// The level of its children. A leaf is a node whose children are triangles.
     pub(crate) level: u32,
     pub(crate) index: u32,
     pub(crate) bound: f32,
 }
 
 impl Node {
-    /// What it is within, as `f64` knows it.
-    pub(crate) fn ring(&self, facets: &Facets, view: &PoseTransform) -> Option<Ring> {
-        facets.ring(self.level as usize, self.index as usize, view)
+    /// Returns the ring about the tool's axis that contains the node, computed in `f64`.
+    pub(crate) fn ring(&self, bvh: &TriangleBvh, view: &PoseTransform) -> Option<NodeRing> {
+        bvh.ring(self.level as usize, self.index as usize, view)
     }
 
-    /// The flat faces that all its triangles are of, if these are few.
-    pub(crate) fn faces<'a>(&self, facets: &'a Facets) -> Option<&'a [u32]> {
-        facets.flats.of_node(self.level as usize, self.index as usize)
+    /// Returns the flat faces that contain all of its triangles, if these are few.
+    pub(crate) fn faces<'a>(&self, bvh: &'a TriangleBvh) -> Option<&'a [u32]> {
+        bvh.flats.of_node(self.level as usize, self.index as usize)
     }
 
-    /// Half the diagonal of its box, in the tree's unit.
-    pub(crate) fn size(&self, facets: &Facets) -> f64 {
+    /// Returns half the diagonal of its box, in the tree's unit; infinity for the root.
+    pub(crate) fn size(&self, bvh: &TriangleBvh) -> f64 {
         let Some(level) = self.level.checked_sub(1) else { return f64::INFINITY };
         let (node, lane) = (self.index as usize / WIDTH, self.index as usize % WIDTH);
-        let half = &facets.levels[level as usize][node].half;
+        let half = &bvh.levels[level as usize][node].half;
         half.iter().map(|list| f64::from(list[lane]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Those of its children that a bit says.
-    pub(crate) fn children(self, facets: &Facets, hits: u32) -> impl Iterator<Item = Node> + use<> {
-        let children = facets.children(self.level as usize, self.index as usize);
+    /// Returns the children whose bits are set in `hits`.
+    pub(crate) fn children(
+        self,
+        bvh: &TriangleBvh,
+        hits: u32,
+    ) -> impl Iterator<Item = Node> + use<> {
+        let children = bvh.children(self.level as usize, self.index as usize);
         let there = (0..children as u32).filter(move |lane| hits >> lane & 1 == 1);
         let first = self.index * WIDTH as u32;
         there.map(move |lane| Node { level: self.level + 1, index: first + lane, ..self })
     }
 
-    /// The corners of a leaf's triangles in the tool's frame.
+    /// Returns the corners of a leaf's triangles in the tool's frame and unit.
     #[inline(always)]
     pub(crate) fn corners<S: Simd>(
         &self,
         simd: S,
-        facets: &Facets,
+        bvh: &TriangleBvh,
         view: &PoseTransform,
-    ) -> [Space<f32x16<S>>; 3] {
+    ) -> [LaneVector<f32x16<S>>; 3] {
         let index = self.index as usize;
-        let boxes = &facets.levels[self.level as usize - 1][index / WIDTH];
+        let boxes = &bvh.levels[self.level as usize - 1][index / WIDTH];
         let lane = index % WIDTH;
         let centre = [boxes.centre[0][lane], boxes.centre[1][lane], boxes.centre[2][lane]];
         let middle = view.seen(centre);
-        let Corners([a, b, c]) = &facets.leaves[index];
+        let Corners([a, b, c]) = &bvh.leaves[index];
         [
             seen(&load(simd, a), &view.rows, middle),
             seen(&load(simd, b), &view.rows, middle),
@@ -64,28 +68,28 @@ impl Node {
         ]
     }
 
-    /// Whether its children are triangles.
-    pub(crate) fn is_leaf(&self, facets: &Facets) -> bool {
-        self.level as usize == facets.levels.len()
+    /// Returns whether its children are triangles.
+    pub(crate) fn is_leaf(&self, bvh: &TriangleBvh) -> bool {
+        self.level as usize == bvh.levels.len()
     }
 
-    pub(crate) fn is_triangle(&self, facets: &Facets) -> bool {
-        self.level as usize > facets.levels.len()
+    pub(crate) fn is_triangle(&self, bvh: &TriangleBvh) -> bool {
+        self.level as usize > bvh.levels.len()
     }
 }
 
-/// What is yet to be looked at, the deepest of the last opened on top.
+/// The traversal stack. The children of the node opened last are on top, the deepest first.
 #[derive(Default)]
 pub(crate) struct Descent {
     stack: Vec<Node>,
     some: Vec<u32>,
-    /// Whether anything was.
+    /// True once the traversal has begun.
     looked: bool,
 }
 
-/// Something that depth, or a negative distance, is no more than in boxes.
+/// An upper bound of depth, or of a negative distance, in boxes.
 pub(crate) trait BoxBounds {
-    /// In 16 boxes; what is not there has NaN. What is no more than wanted need not be close.
+    /// Returns the bounds of 16 boxes; absent boxes have NaN centres. A bound of at most `wanted` need not be tight.
     fn of_boxes<S: Simd>(
         &self,
         simd: S,
@@ -95,39 +99,42 @@ pub(crate) trait BoxBounds {
     ) -> f32x16<S>;
 }
 
-/// The same in boxes and triangles.
+/// Such a bound in boxes and in triangles.
 pub(crate) trait Bounds: BoxBounds {
-    /// In 16 triangles in the tool's frame. What is no more than wanted need not be close.
+    /// Returns the bounds of 16 triangles in the tool's frame. A bound of at most `wanted` need not be tight.
     fn of_triangles<S: Simd>(
         &self,
         simd: S,
-        corners: &[Space<f32x16<S>>; 3],
+        corners: &[LaneVector<f32x16<S>>; 3],
         wanted: f32,
     ) -> f32x16<S>;
 }
 
-/// What boxes are within, as the axis has it: no place is nearer or farther, or beyond these heights.
-pub(crate) struct Rings<V> {
+/// Rings about the axis that contain boxes: the least and greatest distance from the axis, and the range of
+/// heights.
+pub(crate) struct BoxRings<V> {
     pub(crate) near: V,
     pub(crate) far: V,
     pub(crate) low: V,
     pub(crate) high: V,
 }
 
-/// How far places go, in the tool's frame: straight, and by a turn about an axis through the tip.
+/// A bound on the displacement of points in the tool's frame: a translation, and a rotation about an axis through
+/// the tip.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Shift {
-    /// The axis of the turn.
+pub(crate) struct Displacement {
+    /// The axis of the rotation.
     pub(crate) axis: [f32; 3],
     pub(crate) straight: [f32; 3],
     pub(crate) length: f32,
     pub(crate) turn: f32,
-    /// No place that matters is farther from the axis of the turn.
+    /// The largest relevant distance of a point from the axis of the rotation.
     pub(crate) reach: f32,
 }
 
-impl Shift {
-    /// How far the ways are from straight of places that are so far from the axis of the turn.
+impl Displacement {
+    /// Returns a bound on how far paths are from straight, for points at a distance `far` from the axis of the
+    /// rotation.
     #[inline(always)]
     pub(crate) fn curve<S: Simd>(&self, simd: S, far: f32x16<S>) -> f32x16<S> {
         let reach = f32x16::splat(simd, self.reach).min(far + self.length);
@@ -135,14 +142,14 @@ impl Shift {
     }
 }
 
-/// The rings of boxes, if so on all their way.
+/// Returns the rings that contain boxes, and their whole paths if a displacement is given.
 #[inline(always)]
 pub(crate) fn rings<S: Simd>(
     simd: S,
     boxes: &Boxes,
     view: &PoseTransform,
-    shift: Option<&Shift>,
-) -> Rings<f32x16<S>> {
+    shift: Option<&Displacement>,
+) -> BoxRings<f32x16<S>> {
     let centre = load(simd, &boxes.centre);
     let half = load(simd, &boxes.half);
     let [x, y, z] = seen(&centre, &view.rows, view.origin);
@@ -153,7 +160,7 @@ pub(crate) fn rings<S: Simd>(
     if let Some(shift) = shift {
         let reach = f32x16::splat(simd, shift.reach);
         let far = [x + wide[0], y + wide[1], z.abs() + wide[2]];
-        // No part of `axis × p` is larger than these.
+        // Upper bounds of the components of `axis × p`.
         let [u, v, w] = shift.axis.map(f32::abs);
         let across = [far[2] * v + far[1] * w, far[2] * u + far[0] * w, far[0] * v + far[1] * u];
         let curve = shift.curve(simd, across[0] + across[1] + across[2]);
@@ -164,7 +171,7 @@ pub(crate) fn rings<S: Simd>(
     }
     let (near_x, near_y) = ((x - wide[0]).max(zero), (y - wide[1]).max(zero));
     let (far_x, far_y) = (x + wide[0], y + wide[1]);
-    Rings {
+    BoxRings {
         near: (near_x * near_x + near_y * near_y).sqrt(),
         far: (far_x * far_x + far_y * far_y).sqrt(),
         low: z - wide[2],
@@ -172,8 +179,8 @@ pub(crate) fn rings<S: Simd>(
     }
 }
 
-/// A part as a tool sees it.
-pub(crate) type Seen<'a, B> = (&'a Facets, &'a B, &'a PoseTransform);
+/// The input of a traversal step: the tree, the bound, and the transform to the tool's frame.
+pub(crate) type DescentInput<'a, B> = (&'a TriangleBvh, &'a B, &'a PoseTransform);
 
 impl Descent {
     pub(crate) fn clear(&mut self) {
@@ -181,13 +188,13 @@ impl Descent {
         self.looked = false;
     }
 
-    /// Begins at the root.
+    /// Pushes the root.
     pub(crate) fn begin(&mut self) {
         self.stack.push(Node { level: 0, index: 0, bound: f32::INFINITY });
         self.looked = true;
     }
 
-    /// Whether it began.
+    /// Returns whether the traversal has begun.
     pub(crate) fn looked(&self) -> bool {
         self.looked
     }
@@ -196,12 +203,18 @@ impl Descent {
         self.stack.pop()
     }
 
-    /// A triangle, and those that lie on the stack behind it: up to eight that may be deeper than that.
-    pub(crate) fn triangles(&mut self, facets: &Facets, first: Node, wanted: f32) -> &mut Vec<u32> {
+    /// Returns a triangle and those next to it on the stack: up to eight in all. The others have bounds that exceed
+    /// `wanted`.
+    pub(crate) fn triangles(
+        &mut self,
+        bvh: &TriangleBvh,
+        first: Node,
+        wanted: f32,
+    ) -> &mut Vec<u32> {
         self.some.clear();
         self.some.push(first.index);
         while self.some.len() < LANES
-            && let Some(next) = self.stack.pop_if(|node| node.is_triangle(facets))
+            && let Some(next) = self.stack.pop_if(|node| node.is_triangle(bvh))
         {
             if next.bound > wanted || next.bound.is_nan() {
                 self.some.push(next.index);
@@ -210,31 +223,31 @@ impl Descent {
         &mut self.some
     }
 
-    /// Puts the children of a node on the stack that may be deeper than that.
+    /// Pushes the children of a node whose bounds exceed `wanted`.
     pub(crate) fn open<B: Bounds>(
         &mut self,
         level: Level,
-        seen: Seen<'_, B>,
+        seen: DescentInput<'_, B>,
         node: Node,
         wanted: f32,
     ) {
-        let facets = seen.0;
+        let bvh = seen.0;
         let mut bounds = [node.bound; WIDTH];
-        let hits = if node.is_leaf(facets) {
+        let hits = if node.is_leaf(bvh) {
             of_leaf(level, seen, node, wanted, &mut bounds)
         } else {
             of_children(level, seen, node, wanted, &mut bounds)
         };
-        self.take(facets, node, hits, &bounds);
+        self.take(bvh, node, hits, &bounds);
     }
 
-    /// Puts all children of a node on the stack, where `f32` cannot hold what is known of them.
-    pub(crate) fn open_all(&mut self, facets: &Facets, node: Node) {
-        self.take(facets, node, u32::MAX, &[node.bound; WIDTH]);
+    /// Pushes all children of a node, where `f32` cannot represent their bounds.
+    pub(crate) fn open_all(&mut self, bvh: &TriangleBvh, node: Node) {
+        self.take(bvh, node, u32::MAX, &[node.bound; WIDTH]);
     }
 
-    fn take(&mut self, facets: &Facets, node: Node, hits: u32, bounds: &[f32; WIDTH]) {
-        let children = facets.children(node.level as usize, node.index as usize);
+    fn take(&mut self, bvh: &TriangleBvh, node: Node, hits: u32, bounds: &[f32; WIDTH]) {
+        let children = bvh.children(node.level as usize, node.index as usize);
         let mut hits = hits & (u32::MAX >> (32 - children));
         let first = self.stack.len();
         while hits != 0 {
@@ -254,16 +267,16 @@ impl Descent {
     }
 }
 
-/// Which are more than wanted; what `f32` cannot hold may be.
+/// Returns a bit mask of the bounds that are above `wanted` or NaN.
 #[inline(always)]
 pub(crate) fn above<S: Simd>(bound: f32x16<S>, wanted: f32) -> u32 {
     !bound.simd_le(wanted).to_bitmask() as u32
 }
 
-/// Which children of a node, that are boxes, may be more than wanted.
+/// Returns a bit mask of the children of an inner node whose bounds may exceed `wanted`.
 pub(crate) fn of_children<B: BoxBounds>(
     level: Level,
-    seen: Seen<'_, B>,
+    seen: DescentInput<'_, B>,
     node: Node,
     wanted: f32,
     bounds: &mut [f32; WIDTH],
@@ -274,21 +287,21 @@ pub(crate) fn of_children<B: BoxBounds>(
 #[inline(always)]
 fn of_boxes<S: Simd, B: BoxBounds>(
     simd: S,
-    (facets, bounded, view): Seen<'_, B>,
+    (bvh, bounded, view): DescentInput<'_, B>,
     node: Node,
     wanted: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    let boxes = &facets.levels[node.level as usize][node.index as usize];
+    let boxes = &bvh.levels[node.level as usize][node.index as usize];
     let bound = bounded.of_boxes(simd, boxes, view, wanted);
     bound.store_slice(bounds);
     above(bound, wanted)
 }
 
-/// Without vectors, the triangles of a leaf are as deep as it is.
+/// The same for a leaf. Without vector instructions its triangles keep the leaf's bound.
 fn of_leaf<B: Bounds>(
     level: Level,
-    seen: Seen<'_, B>,
+    seen: DescentInput<'_, B>,
     node: Node,
     wanted: f32,
     bounds: &mut [f32; WIDTH],
@@ -300,12 +313,12 @@ fn of_leaf<B: Bounds>(
 #[inline(always)]
 fn of_leaf_on<S: Simd, B: Bounds>(
     simd: S,
-    (facets, bounded, view): Seen<'_, B>,
+    (bvh, bounded, view): DescentInput<'_, B>,
     node: Node,
     wanted: f32,
     bounds: &mut [f32; WIDTH],
 ) -> u32 {
-    let corners = node.corners(simd, facets, view);
+    let corners = node.corners(simd, bvh, view);
     let bound = bounded.of_triangles(simd, &corners, wanted);
     bound.store_slice(bounds);
     above(bound, wanted)

@@ -1,57 +1,60 @@
-//! How deep a tool is at most in boxes and triangles, side by side.
+//! Upper bounds of the depth of a tool in boxes and triangles, in SIMD lanes.
 
 use crate::bvh::{Boxes, PoseTransform};
-use crate::certify::body::feature::{Feature, Place};
-use crate::certify::body::owners::Owners;
-use crate::certify::body::section::{self, Section};
-use crate::certify::bounds::descent::{Bounds, BoxBounds, Rings, rings};
+use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
 use crate::certify::bounds::nearest::{
-    Clip, Near, Real, Space, across, beyond, choose, direction, distances, from_ring, least, most,
-    under_both,
+    Clip, LaneVector, NearestToAxis, Real, across, beyond, choose, direction, distances, from_ring,
+    least, most, under_both,
 };
-use crate::certify::part::Ring;
-use crate::tool::Card;
+use crate::certify::part::NodeRing;
+use crate::certify::tool_model::feature::{Feature, MeridianPoint};
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::{self, Section};
+use crate::tool::ToolInfo;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 
-/// A tool's slabs, for bounds.
+/// The slabs of a tool, for upper bounds of depth.
 pub(crate) struct Hull<R> {
-    pub(crate) slabs: Vec<Slab<R>>,
+    pub(crate) slabs: Vec<HullSlab<R>>,
 }
 
-/// Between two heights depth is no more than each of these says.
-pub(crate) struct Slab<R> {
+/// A slab between two heights: the depth of a point in it is at most each of these bounds.
+pub(crate) struct HullSlab<R> {
     pub(crate) low: R,
     pub(crate) high: R,
-    /// How far a place is on the tool's side of a plane, `c - n_d d - n_z z`, as `[n_d, n_z, c]`. The first
-    /// is upright.
+    /// The distance of a point on the tool's side of each plane, `c - n_d d - n_z z`, stored as `[n_d, n_z, c]`. The
+    /// first plane is upright.
     pub(crate) planes: Vec<[R; 3]>,
-    /// The radius of the hole about the axis, if there is one: a place is no deeper than it is beyond that.
+    /// The radius of the hole about the axis, if there is one. A point is at most as deep as its distance beyond the
+    /// hole.
     pub(crate) hole: Option<R>,
-    /// How far it is inside a ball about a place of the axis, as `[z, radius]`.
+    /// A ball about a point of the axis, as `[z, radius]`: the bound is the distance inside it.
     pub(crate) ball: Option<[R; 2]>,
-    /// How far it is from a circle about the axis, as `[d, z]`; and whether the level ring beyond the
-    /// circle is the tool's surface too.
+    /// Circles about the axis, as `[d, z]`: the bound is the distance from them. The flag tells if the level ring
+    /// beyond the circle is on the tool's surface too.
     pub(crate) rings: Vec<([R; 2], bool)>,
 }
 
 impl<R: Real> Hull<R> {
-    /// For places inside: none is deeper. Slabs are those between the heights of their zones, and reach
-    /// farther by how far heights are known.
+    /// Creates a hull for points inside the tool. The slabs lie between the heights of their zones, and reach farther
+    /// by the error bound of heights.
     pub(crate) fn new(section: &Section, zones: &[Option<[f64; 2]>], error: f64) -> Hull<R> {
         let slabs =
             section.slabs.iter().enumerate().zip(zones).filter_map(|((index, slab), zone)| {
                 let [from, to] = (*zone)?;
                 let side = &section.features[slab.side];
                 let [[d0, z0], [d1, z1]] = side.ends;
-                let plane = |n: Place, [d, z]: Place| [n[0], n[1], n[0] * d + n[1] * z].map(R::of);
+                let plane = |n: MeridianPoint, [d, z]: MeridianPoint| {
+                    [n[0], n[1], n[0] * d + n[1] * z].map(R::of)
+                };
                 let touching =
                     |line: &Feature| plane([line.along[1], -line.along[0]], line.ends[0]);
-                // How far it is to the surface on the level.
+                // The radial distance to the surface.
                 let mut planes = vec![plane([1.0, 0.0], [slab.radius, 0.0])];
                 let slope = (d1 - d0) / (z1 - z0);
                 let convex = side.circle.is_some_and(|circle| circle.convex);
                 let line = side.tangent();
-                if line.as_ref().is_some_and(|line| section.covers(line, index)) {
+                if line.as_ref().is_some_and(|line| section.tangent_bounds_slab(line, index)) {
                     planes.extend(line.as_ref().map(touching));
                 } else if slope != 0.0 && slope.abs() <= 2.0 && !convex {
                     planes.push(plane([1.0, -slope], side.ends[0]));
@@ -63,23 +66,23 @@ impl<R: Real> Hull<R> {
                 if high - slab.high <= slab.radius {
                     planes.push(plane([0.0, 1.0], [0.0, high]));
                 }
-                // Of an arc that does not come to the axis, feet beside it are not on the surface.
+                // For an arc that does not reach the axis, the feet next to it are not on the surface.
                 let to_axis = d0.min(d1) == 0.0;
                 let ball = side.ball(section.size).filter(|_| to_axis).map(|ball| ball.map(R::of));
                 let rings = section.reflex(slab).map(|(place, level)| (place.map(R::of), level));
                 let [low, high] = [from - error, to + error].map(R::of);
                 let hole = (slab.hole > 0.0).then(|| R::of(slab.hole));
-                Some(Slab { low, high, planes, hole, ball, rings: rings.collect() })
+                Some(HullSlab { low, high, planes, hole, ball, rings: rings.collect() })
             });
         Hull { slabs: slabs.collect() }
     }
 
-    /// Of a tool whose depth changes so fast at most: it is no more than that times the way out of what
-    /// holds the tool.
-    pub(crate) fn about(card: &Card, steep: f64, error: f64) -> Hull<R> {
-        let [bottom, top] = card.reach();
+    /// Creates a hull for a tool whose depth has the Lipschitz constant `steep`: depth is at most `steep` times the
+    /// distance to the boundary of the envelope.
+    pub(crate) fn about(info: &ToolInfo, steep: f64, error: f64) -> Hull<R> {
+        let [bottom, top] = info.reach();
         let plane = |nd: f64, nz: f64, c: f64| [nd, nz, c].map(|part| R::of(steep * part));
-        let slabs = card.envelope.iter().map(|slab| Slab {
+        let slabs = info.envelope.iter().map(|slab| HullSlab {
             low: R::of(slab.low - error),
             high: R::of(slab.high + error),
             planes: vec![
@@ -94,17 +97,19 @@ impl<R: Real> Hull<R> {
         Hull { slabs: slabs.collect() }
     }
 
-    /// For places no farther from some features than it is made to grow: what of the tool these bound.
+    /// Creates a hull of the regions that some features bound, for points no farther from these features than the
+    /// hull is grown.
     pub(crate) fn holding(section: &Section, owners: &Owners, error: f64) -> Hull<R> {
-        let side = |slab: &section::Slab| owners.own(slab.side).then_some([slab.low, slab.high]);
+        let side =
+            |slab: &section::SectionSlab| owners.own(slab.side).then_some([slab.low, slab.high]);
         let zones: Vec<_> = section.slabs.iter().map(side).collect();
         let mut hull = Hull::new(section, &zones, error);
-        // What is level bounds no slab.
+        // A level feature is the side of no slab.
         let sides: Vec<usize> = section.slabs.iter().map(|slab| slab.side).collect();
         for (index, feature) in section.features.iter().enumerate() {
             if owners.own(index) && !sides.contains(&index) {
                 let [[d0, z0], [d1, z1]] = feature.ends;
-                hull.slabs.push(Slab {
+                hull.slabs.push(HullSlab {
                     low: R::of(z0.min(z1) - error),
                     high: R::of(z0.max(z1) + error),
                     planes: vec![[1.0, 0.0, d0.max(d1)].map(R::of)],
@@ -117,21 +122,21 @@ impl<R: Real> Hull<R> {
         hull
     }
 
-    /// No less than the depth of any place of each of some triangles, but for rounding; and where depth
-    /// may be greatest. What is not there has NaN. What is no more than wanted need not be close. Given
-    /// such places, it looks closer from there.
+    /// Returns at least the depth of every point of each triangle, up to rounding, and the point where depth may be
+    /// greatest. Absent triangles have NaN coordinates. A bound of at most `wanted` need not be tight. Given such
+    /// points of an earlier call in `again`, the bounds are taken in their directions.
     #[inline(always)]
     pub(crate) fn triangles<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        corners: &[Space<V>; 3],
+        corners: &[LaneVector<V>; 3],
         wanted: R,
-        again: Option<&Space<V>>,
-    ) -> (V, Space<V>) {
+        again: Option<&LaneVector<V>>,
+    ) -> (V, LaneVector<V>) {
         let [a, b, c] = corners;
         let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
-        let near = Near::to_axis(simd, corners);
-        // No corner is nearer to the axis than it is out in that direction.
+        let near = NearestToAxis::to_axis(simd, corners);
+        // In that direction no corner reaches farther out than its distance from the axis.
         let out = across(corners, &near.way);
         let wanted = V::splat(simd, wanted);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
@@ -139,7 +144,7 @@ impl<R: Real> Hull<R> {
         for slab in &self.slabs {
             let (from, to) = (V::splat(simd, slab.low), V::splat(simd, slab.high));
             let here = low.simd_le(to) & high.simd_ge(from);
-            // Most slabs are out of reach, by how far out triangles are.
+            // The upright plane rules out most slabs.
             let [p, q, r] = under_plane(simd, corners, &out, slab.planes[0]);
             let outside = most(p, q, r);
             if !(here & !outside.simd_le(wanted)).any_true() {
@@ -161,19 +166,19 @@ impl<R: Real> Hull<R> {
     }
 }
 
-/// The most bounds that a slab has for a triangle.
+/// The maximum number of linear bounds of a slab for a triangle.
 const BOUNDS: usize = 8;
 
-/// A part of triangles, if a slab cuts them.
+/// The cut of triangles by a slab, if there is any.
 type Part<V, M> = Option<Clip<V, M>>;
 
-impl<R: Real> Slab<R> {
-    /// The least of the most of what planes say of each triangle.
+impl<R: Real> HullSlab<R> {
+    /// Returns the least, over all planes, of the greatest distance under the plane in each triangle.
     #[inline(always)]
     fn under_planes<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        corners: &[Space<V>; 3],
+        corners: &[LaneVector<V>; 3],
         out: &[V; 3],
         part: &Part<V, V::Mask>,
     ) -> V {
@@ -184,19 +189,19 @@ impl<R: Real> Slab<R> {
         depth
     }
 
-    /// The same of the parts of triangles between a slab's heights, for those that are open.
+    /// Bounds the pieces of triangles between the slab's heights, for the lanes that are open.
     #[inline(always)]
     fn triangles<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        corners: &[Space<V>; 3],
-        near: &Near<V>,
+        corners: &[LaneVector<V>; 3],
+        near: &NearestToAxis<V>,
         open: V::Mask,
-        again: Option<&Space<V>>,
-    ) -> (V, Space<V>) {
+        again: Option<&LaneVector<V>>,
+    ) -> (V, LaneVector<V>) {
         let zero = V::splat(simd, R::of(0.0));
         let (from, to) = (V::splat(simd, self.low), V::splat(simd, self.high));
-        // Where a triangle is nearest beyond a slab, the part of it in the slab is so at that end.
+        // If the point nearest to the axis is beyond the slab, the piece in the slab is nearest at that end.
         let (mut deepest, mut way, mut part) = (near.place, near.way, None);
         let beyond_it = open & (deepest[2].simd_lt(from) | deepest[2].simd_gt(to));
         if beyond_it.any_true() {
@@ -213,12 +218,12 @@ impl<R: Real> Slab<R> {
         }
         let out = across(corners, &way);
         let mut depth = self.under_planes(simd, corners, &out, &part);
-        // Of each bound what it is at the corners; between them it is no more than linear.
+        // Bounds at the corners. Between the corners each is at most linear.
         let mut bounds = [[zero; 3]; BOUNDS];
         let mut count = 0;
         if let Some([z, radius]) = self.ball {
             let (centre, radius) = (V::splat(simd, z), V::splat(simd, radius));
-            let ball = Near::to_place(simd, corners, z);
+            let ball = NearestToAxis::to_place(simd, corners, z);
             let (mut foot, mut way) = (ball.place, ball.way);
             let beyond_it = open & (foot[2].simd_lt(from) | foot[2].simd_gt(to));
             if beyond_it.any_true() {
@@ -284,11 +289,11 @@ impl<R: Real> Slab<R> {
     }
 }
 
-/// How far corners are under a plane, as far out as they are.
+/// Returns the distances of corners under a plane. `out` is how far out they are.
 #[inline(always)]
 fn under_plane<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    [a, b, c]: &[Space<V>; 3],
+    [a, b, c]: &[LaneVector<V>; 3],
     out: &[V; 3],
     [nd, nz, most]: [R; 3],
 ) -> [V; 3] {
@@ -301,8 +306,8 @@ fn under_plane<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
 }
 
 impl Hull<f64> {
-    /// No less than the depth of any place of a ring.
-    pub(crate) fn of_ring(&self, ring: &Ring) -> f64 {
+    /// Returns at least the depth of every point of a ring.
+    pub(crate) fn of_ring(&self, ring: &NodeRing) -> f64 {
         let here = self.slabs.iter().filter(|slab| ring.low <= slab.high && slab.low <= ring.high);
         let depths = here.map(|slab| {
             let (low, high) = (ring.low.max(slab.low), ring.high.min(slab.high));
@@ -320,22 +325,22 @@ impl Hull<f64> {
 }
 
 impl Hull<f32> {
-    /// No less than the depth of any place of rings. What is no more than wanted need not be close.
+    /// Returns at least the depth of every point of the rings. A bound of at most `wanted` need not be tight.
     #[inline(always)]
     pub(crate) fn of_rings<S: Simd>(
         &self,
         simd: S,
-        rings: &Rings<f32x16<S>>,
+        rings: &BoxRings<f32x16<S>>,
         wanted: f32,
     ) -> f32x16<S> {
-        let Rings { near, far, low, high } = *rings;
+        let BoxRings { near, far, low, high } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut bound = f32x16::splat(simd, f32::NEG_INFINITY);
         for slab in &self.slabs {
             let here = low.simd_le(slab.high) & high.simd_ge(slab.low);
             let low = low.max(f32x16::splat(simd, slab.low));
             let high = high.min(f32x16::splat(simd, slab.high));
-            // Most slabs are out of reach of all rings, by how far out they are.
+            // The upright plane rules out most slabs for all rings.
             let [nd, _, most] = slab.planes[0];
             let mut depth = f32x16::splat(simd, most) - near * nd;
             if !(here & !depth.simd_le(wanted)).any_true() {
@@ -369,8 +374,7 @@ impl Hull<f32> {
 }
 
 impl BoxBounds for Hull<f32> {
-    /// No less than the depth of any place in each of 16 boxes, but for rounding; what is not there has
-    /// NaN.
+    /// Returns at least the depth of every point in each of 16 boxes, up to rounding. Absent boxes have NaN centres.
     #[inline(always)]
     fn of_boxes<S: Simd>(
         &self,
@@ -388,7 +392,7 @@ impl Bounds for Hull<f32> {
     fn of_triangles<S: Simd>(
         &self,
         simd: S,
-        corners: &[Space<f32x16<S>>; 3],
+        corners: &[LaneVector<f32x16<S>>; 3],
         wanted: f32,
     ) -> f32x16<S> {
         let (mut bound, place) = self.triangles(simd, corners, wanted, None);
@@ -399,10 +403,10 @@ impl Bounds for Hull<f32> {
     }
 }
 
-/// Of more triangles than these it is worth to look at all more closely.
+/// Above this number of open triangles it pays to bound all of them again.
 const SEVERAL: u32 = 2;
 
-/// The most of what is linear between corners, within a slab if that cuts them.
+/// Returns the maximum of a linear function on a triangle, or on its cut by a slab.
 #[inline(always)]
 fn most_of<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,

@@ -1,24 +1,26 @@
-//! Where triangles are nearest to the axis, and to places on it, side by side in either precision.
+//! The points of triangles nearest to the axis and to points on it, in SIMD lanes of either precision.
 //!
-//! Distances are bounded by directions: how far out the corners of a triangle are in some direction is no
-//! more than how far any of its points is from the axis, whatever was rounded in finding the direction.
+//! Distances are bounded by directions. Along a direction no longer than 1, the least extent of a triangle's
+//! corners is at most the distance of any of its points from the axis, whatever the rounding errors of the
+//! direction.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
-/// Points side by side.
-pub(crate) type Space<V> = [V; 3];
+/// Points in SIMD lanes, coordinate by coordinate.
+pub(crate) type LaneVector<V> = [V; 3];
 
-/// What there are vectors of.
+/// A scalar type that SIMD vectors have as elements.
 pub(crate) trait Real: Copy + PartialOrd {
-    /// A unit vector is made that long, so that rounding makes it no longer than 1: with unit roundoff u its length errs by
-    /// 3u below the root and u of it, the quotient by it and the product with that by u each, 5u in all; this is 1 - 8u.
+    /// The length to which unit vectors are scaled, so that rounding makes none longer than 1. With unit roundoff u,
+    /// the computed length errs by 3u below the root and u by the root. The quotient by it and the product with that
+    /// add u each, 5u in total; this is 1 - 8u.
     const SHORT: Self;
-    /// The least number to divide by.
+    /// The smallest number to divide by.
     const LEAST: Self;
 
     fn of(value: f64) -> Self;
 
-    /// The length of a vector.
+    /// Returns the length of a vector in the plane.
     fn norm(x: Self, y: Self) -> Self;
 }
 
@@ -48,11 +50,11 @@ impl Real for f64 {
     }
 }
 
-/// Where a triangle is nearest to the axis or a place on it.
-pub(crate) struct Near<V> {
-    pub(crate) place: Space<V>,
-    /// A direction away from the axis or the place, no longer than 1; 0 where it is on the triangle.
-    pub(crate) way: Space<V>,
+/// The point of each triangle nearest to the axis or to a point on it.
+pub(crate) struct NearestToAxis<V> {
+    pub(crate) place: LaneVector<V>,
+    /// A direction away from the axis or the point, no longer than 1; 0 where that is on the triangle.
+    pub(crate) way: LaneVector<V>,
 }
 
 #[inline(always)]
@@ -65,40 +67,40 @@ pub(crate) fn most<S: Simd, V: SimdFloat<S>>(a: V, b: V, c: V) -> V {
     a.max(b).max(c)
 }
 
-/// The first where a mask says so.
+/// Selects `a` where the mask is set, and `b` elsewhere.
 #[inline(always)]
 pub(crate) fn choose<S: Simd, V: SimdBase<S>>(
     mask: V::Mask,
-    a: &Space<V>,
-    b: &Space<V>,
-) -> Space<V> {
+    a: &LaneVector<V>,
+    b: &LaneVector<V>,
+) -> LaneVector<V> {
     [mask.select(a[0], b[0]), mask.select(a[1], b[1]), mask.select(a[2], b[2])]
 }
 
 #[inline(always)]
-fn minus<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> Space<V> {
+fn minus<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> LaneVector<V> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-fn dot<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> V {
+fn dot<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// Returns the z component of the cross product.
 #[inline(always)]
-fn cross<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>) -> V {
+fn cross<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>) -> V {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The points of segments that are nearest to the origin, if `level` those nearest to the axis, and the
-/// squares of their distances.
+/// Returns the points of segments nearest to the origin, or to the axis if `level`, and their squared distances.
 #[inline(always)]
 fn on_edge<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    a: &Space<V>,
-    b: &Space<V>,
+    a: &LaneVector<V>,
+    b: &LaneVector<V>,
     level: bool,
-) -> (Space<V>, V) {
+) -> (LaneVector<V>, V) {
     let way = minus(b, a);
     let length = product(&way, &way, level).max(V::splat(simd, R::LEAST));
     let at = (-product(a, &way, level) / length).max(V::splat(simd, R::of(0.0)));
@@ -108,18 +110,18 @@ fn on_edge<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
 }
 
 #[inline(always)]
-fn product<S: Simd, V: SimdBase<S>>(a: &Space<V>, b: &Space<V>, level: bool) -> V {
+fn product<S: Simd, V: SimdBase<S>>(a: &LaneVector<V>, b: &LaneVector<V>, level: bool) -> V {
     let across = a[0] * b[0] + a[1] * b[1];
     if level { across } else { across + a[2] * b[2] }
 }
 
-/// The same of the edges of triangles.
+/// Returns the nearest of these points on the three edges of each triangle.
 #[inline(always)]
 fn on_edges<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    [a, b, c]: [&Space<V>; 3],
+    [a, b, c]: [&LaneVector<V>; 3],
     level: bool,
-) -> (Space<V>, V) {
+) -> (LaneVector<V>, V) {
     let (p, square) = on_edge(simd, a, b, level);
     let (q, other) = on_edge(simd, b, c, level);
     let nearer = other.simd_lt(square);
@@ -129,16 +131,19 @@ fn on_edges<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     (choose(nearer, &q, &p), nearer.select(other, square))
 }
 
-impl<V: Copy> Near<V> {
-    /// Where triangles are nearest to the axis.
+impl<V: Copy> NearestToAxis<V> {
+    /// Computes the points of triangles nearest to the axis.
     #[inline(always)]
-    pub(crate) fn to_axis<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3]) -> Near<V>
+    pub(crate) fn to_axis<S: Simd, R: Real>(
+        simd: S,
+        [a, b, c]: &[LaneVector<V>; 3],
+    ) -> NearestToAxis<V>
     where
         V: SimdFloat<S, Element = R>,
     {
         let zero = V::splat(simd, R::of(0.0));
         let (place, square) = on_edges(simd, [a, b, c], true);
-        // The axis goes through what it has on one side of all edges.
+        // The axis passes through triangles that have it on the same side of all edges.
         let (u, v, w) = (cross(b, c), cross(c, a), cross(a, b));
         let through = (u.simd_gt(zero) & v.simd_gt(zero) & w.simd_gt(zero))
             | (u.simd_lt(zero) & v.simd_lt(zero) & w.simd_lt(zero));
@@ -146,12 +151,16 @@ impl<V: Copy> Near<V> {
         let far = square.sqrt();
         let scale = (through | far.simd_le(zero)).select(zero, V::splat(simd, R::SHORT) / far);
         let way = [place[0] * scale, place[1] * scale, zero];
-        Near { place: choose(through, &[zero, zero, z], &place), way }
+        NearestToAxis { place: choose(through, &[zero, zero, z], &place), way }
     }
 
-    /// Where triangles are nearest to a place on the axis.
+    /// Computes the points of triangles nearest to a point on the axis.
     #[inline(always)]
-    pub(crate) fn to_place<S: Simd, R: Real>(simd: S, [a, b, c]: &[Space<V>; 3], z: R) -> Near<V>
+    pub(crate) fn to_place<S: Simd, R: Real>(
+        simd: S,
+        [a, b, c]: &[LaneVector<V>; 3],
+        z: R,
+    ) -> NearestToAxis<V>
     where
         V: SimdFloat<S, Element = R>,
     {
@@ -177,18 +186,19 @@ impl<V: Copy> Near<V> {
         let place = choose(within, &foot, &edge);
         let far = dot(&place, &place).sqrt();
         let scale = far.simd_gt(zero).select(V::splat(simd, R::SHORT) / far, zero);
-        Near {
+        NearestToAxis {
             place: [place[0], place[1], place[2] + centre],
             way: [place[0] * scale, place[1] * scale, place[2] * scale],
         }
     }
 }
 
-/// What triangles have between two heights: polygons, by which corners they keep and where their sides are
-/// cut. Cut at a height, what is below and what is above share the places of the cut.
+/// The polygons that two heights cut out of triangles, as the corners kept and the cuts of the sides. The
+/// polygons below and above a height share the points of its cut.
 pub(crate) struct Clip<V, M> {
     kept: [M; 3],
-    /// Of each side: where it is cut at the lower and at the upper height, and whether.
+    /// Per side: the parameters of the cuts at the lower and at the upper height, and masks of the lanes that have
+    /// them.
     cuts: [[(V, M); 2]; 3],
 }
 
@@ -196,7 +206,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
     #[inline(always)]
     pub(crate) fn new<S: Simd, R: Real>(
         simd: S,
-        [a, b, c]: &[Space<V>; 3],
+        [a, b, c]: &[LaneVector<V>; 3],
         [low, high]: [R; 2],
     ) -> Clip<V, M>
     where
@@ -218,7 +228,7 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         Clip { kept, cuts }
     }
 
-    /// The most of something that is linear between corners.
+    /// Returns the maximum of a function that is linear on each triangle.
     #[inline(always)]
     pub(crate) fn most<S: Simd, R: Real>(&self, simd: S, values: [V; 3]) -> V
     where
@@ -237,15 +247,14 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         most
     }
 
-    /// The place at the lower height, or at the upper one where a mask says so, that is nearest to the
-    /// axis.
+    /// Returns the point nearest to the axis at the lower height, or at the upper height where the mask is set.
     #[inline(always)]
     pub(crate) fn at_end<S: Simd, R: Real>(
         &self,
         simd: S,
-        corners: &[Space<V>; 3],
+        corners: &[LaneVector<V>; 3],
         upper: M,
-    ) -> Space<V>
+    ) -> LaneVector<V>
     where
         V: SimdFloat<S, Element = R> + SimdBase<S, Mask = M>,
         M: SimdMask<S> + Select<V>,
@@ -254,40 +263,42 @@ impl<V: Copy, M: Copy> Clip<V, M> {
         let (first, is_first) = cut_at(a, b, &self.cuts[0], upper);
         let (second, _) = cut_at(b, c, &self.cuts[1], upper);
         let (third, is_third) = cut_at(c, a, &self.cuts[2], upper);
-        // Of three sides two are cut.
+        // Two of the three sides are cut.
         let from = choose(is_first, &first, &second);
         let to = choose(is_third, &third, &second);
         on_edge(simd, &from, &to, true).0
     }
 }
 
-/// Where a side is cut at the lower height, or at the upper one where a mask says so, and whether.
+/// Returns the cut of a side at the lower height, or at the upper height where the mask is set, and a mask of its
+/// existence.
 #[inline(always)]
 fn cut_at<S: Simd, V: SimdBase<S>>(
-    from: &Space<V>,
-    to: &Space<V>,
+    from: &LaneVector<V>,
+    to: &LaneVector<V>,
     [(low, at_low), (high, at_high)]: &[(V, V::Mask); 2],
     upper: V::Mask,
-) -> (Space<V>, V::Mask) {
+) -> (LaneVector<V>, V::Mask) {
     let (at, way) = (upper.select(*high, *low), minus(to, from));
     let place = [from[0] + at * way[0], from[1] + at * way[1], from[2] + at * way[2]];
     (place, (upper & *at_high) | (!upper & *at_low))
 }
 
-/// Where the side from one height to another is cut at a third, and whether.
+/// Returns the parameter at which the side from one height to another is cut at a third, and a mask of its
+/// existence.
 #[inline(always)]
 fn cut<S: Simd, V: SimdFloat<S>>(zero: V, from: V, to: V, at: V) -> (V, V::Mask) {
     let is = (from.simd_lt(at) & to.simd_gt(at)) | (from.simd_gt(at) & to.simd_lt(at));
     (is.select((at - from) / (to - from), zero), is)
 }
 
-/// The direction of a place from one of the axis, no longer than 1.
+/// Returns the direction of a point from the point of the axis at height `z`, no longer than 1.
 #[inline(always)]
 pub(crate) fn direction<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    place: &Space<V>,
+    place: &LaneVector<V>,
     z: V,
-) -> Space<V> {
+) -> LaneVector<V> {
     let zero = V::splat(simd, R::of(0.0));
     let way = [place[0], place[1], place[2] - z];
     let far = dot(&way, &way).sqrt();
@@ -295,18 +306,21 @@ pub(crate) fn direction<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     [way[0] * scale, way[1] * scale, way[2] * scale]
 }
 
-/// How far out corners are in a direction across the axis.
+/// Returns how far out corners are in a direction across the axis.
 #[inline(always)]
-pub(crate) fn across<S: Simd, V: SimdBase<S>>([a, b, c]: &[Space<V>; 3], way: &Space<V>) -> [V; 3] {
+pub(crate) fn across<S: Simd, V: SimdBase<S>>(
+    [a, b, c]: &[LaneVector<V>; 3],
+    way: &LaneVector<V>,
+) -> [V; 3] {
     [a[0] * way[0] + a[1] * way[1], b[0] * way[0] + b[1] * way[1], c[0] * way[0] + c[1] * way[1]]
 }
 
-/// How far out corners are in a direction from a place of the axis.
+/// Returns how far out corners are in a direction from a point of the axis.
 #[inline(always)]
 pub(crate) fn beyond<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    corners: &[Space<V>; 3],
-    way: &Space<V>,
+    corners: &[LaneVector<V>; 3],
+    way: &LaneVector<V>,
     z: R,
 ) -> [V; 3] {
     let [a, b, c] = corners;
@@ -319,9 +333,9 @@ pub(crate) fn beyond<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     ]
 }
 
-/// How far corners are from the axis.
+/// Returns the distances of corners from the axis.
 #[inline(always)]
-pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> [V; 3] {
+pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[LaneVector<V>; 3]) -> [V; 3] {
     [
         (a[0] * a[0] + a[1] * a[1]).sqrt(),
         (b[0] * b[0] + b[1] * b[1]).sqrt(),
@@ -329,13 +343,13 @@ pub(crate) fn distances<S: Simd, V: SimdFloat<S>>([a, b, c]: &[Space<V>; 3]) -> 
     ]
 }
 
-/// How far corners are from a circle about the axis, or from the level ring beyond it, or more, so that
-/// between them it is no more than linear: `out` is no more, `far` no less than how far they are from the
-/// axis.
+/// Returns upper bounds of the distances of corners from a circle about the axis, or from the level ring beyond
+/// it. Between corners the bound is at most linear. `out` is a lower and `far` an upper bound of the distances
+/// from the axis.
 #[inline(always)]
 pub(crate) fn from_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    [a, b, c]: &[Space<V>; 3],
+    [a, b, c]: &[LaneVector<V>; 3],
     (out, far): (&[V; 3], &[V; 3]),
     ([d, z], level): ([R; 2], bool),
 ) -> [V; 3] {
@@ -347,14 +361,15 @@ pub(crate) fn from_ring<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     ]
 }
 
-/// The most that is under two bounds at once, which are linear between corners, and where.
+/// Returns the maximum of the lesser of two functions that are linear on each triangle, and the point where it
+/// occurs.
 #[inline(always)]
 pub(crate) fn under_both<S: Simd, V: SimdFloat<S>>(
     zero: V,
-    corners: &[Space<V>; 3],
+    corners: &[LaneVector<V>; 3],
     first: &[V; 3],
     second: &[V; 3],
-) -> (V, Space<V>) {
+) -> (V, LaneVector<V>) {
     let mut most = first[0].min(second[0]);
     let mut place = corners[0];
     for k in 1..3 {

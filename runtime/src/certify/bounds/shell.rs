@@ -1,31 +1,32 @@
-//! How near a tool is to boxes and triangles, 16 at a time, in `f32`.
+//! Lower bounds of the distance of a tool from boxes and triangles, 16 at a time, in `f32`.
 
 use crate::bvh::{Boxes, PoseTransform};
-use crate::certify::body::feature::Feature;
-use crate::certify::body::owners::Owners;
-use crate::certify::body::section::Section;
-use crate::certify::bounds::descent::{Bounds, BoxBounds, Rings, rings};
-use crate::certify::bounds::nearest::{Near, Space, across, least, most};
-use crate::tool::Card;
+use crate::certify::bounds::descent::{Bounds, BoxBounds, BoxRings, rings};
+use crate::certify::bounds::nearest::{LaneVector, NearestToAxis, across, least, most};
+use crate::certify::tool_model::feature::Feature;
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::Section;
+use crate::tool::ToolInfo;
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
-/// What holds a tool: for each slab a cylinder, and a ball where its side is one about the axis.
+/// A set of solids that contain a tool: a cylinder per slab, and a ball where the slab's side is an arc about the
+/// axis.
 pub(crate) struct Shell {
-    slabs: Vec<Slab>,
+    slabs: Vec<ShellSlab>,
 }
 
-struct Slab {
+struct ShellSlab {
     low: f32,
     high: f32,
     radius: f32,
-    /// Height of its centre and radius.
+    /// The height of the ball's centre and its radius.
     ball: Option<[f32; 2]>,
 }
 
 impl Shell {
-    /// Of a tool that is known by its field.
-    pub(crate) fn about(card: &Card) -> Shell {
-        let slabs = card.envelope.iter().map(|slab| Slab {
+    /// Creates the shell of a tool that is known by its depth field, from its envelope.
+    pub(crate) fn about(info: &ToolInfo) -> Shell {
+        let slabs = info.envelope.iter().map(|slab| ShellSlab {
             low: slab.low as f32,
             high: slab.high as f32,
             radius: slab.radius as f32,
@@ -34,15 +35,15 @@ impl Shell {
         Shell { slabs: slabs.collect() }
     }
 
-    /// Of the features that are asked about.
+    /// Creates the shell of the owners.
     pub(crate) fn new(section: &Section, owners: &Owners) -> Shell {
         let own = |(index, feature): (usize, &Feature)| {
-            // What is level has no slab, and needs none where all have.
+            // A level feature has no slab of its own. It needs none if all features are owned.
             let level = !section.slabs.iter().any(|slab| slab.side == index);
             (owners.own(index) && !(owners.all() && level)).then(|| {
                 let [[d0, z0], [d1, z1]] = feature.ends;
                 let ball = if level { None } else { feature.ball(section.size) };
-                Slab {
+                ShellSlab {
                     low: z0.min(z1) as f32,
                     high: z0.max(z1) as f32,
                     radius: d0.max(d1) as f32,
@@ -53,10 +54,10 @@ impl Shell {
         Shell { slabs: section.features.iter().enumerate().filter_map(own).collect() }
     }
 
-    /// No less than the negative distance from any place of rings.
+    /// Returns at least the negative distance of every point of the rings.
     #[inline(always)]
-    fn bound<S: Simd>(&self, simd: S, rings: &Rings<f32x16<S>>) -> f32x16<S> {
-        let Rings { near, low, high, .. } = *rings;
+    fn bound<S: Simd>(&self, simd: S, rings: &BoxRings<f32x16<S>>) -> f32x16<S> {
+        let BoxRings { near, low, high, .. } = *rings;
         let zero = f32x16::splat(simd, 0.0);
         let mut nearest = f32x16::splat(simd, f32::INFINITY);
         for slab in &self.slabs {
@@ -91,14 +92,14 @@ impl Bounds for Shell {
     fn of_triangles<S: Simd>(
         &self,
         simd: S,
-        corners: &[Space<f32x16<S>>; 3],
+        corners: &[LaneVector<f32x16<S>>; 3],
         _wanted: f32,
     ) -> f32x16<S> {
         let [a, b, c] = corners;
-        let near = Near::to_axis(simd, corners);
+        let near = NearestToAxis::to_axis(simd, corners);
         let [out_a, out_b, out_c] = across(corners, &near.way);
         let near = least(out_a, out_b, out_c).max(f32x16::splat(simd, 0.0));
         let (low, high) = (least(a[2], b[2], c[2]), most(a[2], b[2], c[2]));
-        self.bound(simd, &Rings { near, far: near, low, high })
+        self.bound(simd, &BoxRings { near, far: near, low, high })
     }
 }

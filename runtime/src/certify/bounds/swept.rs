@@ -1,25 +1,25 @@
-//! How deep a tool is at most in triangles on their way past it, side by side.
+//! Upper bounds of the depth of a tool in moving triangles, in SIMD lanes.
 //!
-//! In the tool's frame a triangle goes from one place to another, nearly straight: between, it is in the
-//! convex hull of both, but for how far its ways are curved.
+//! In the tool's frame a triangle moves nearly straight from one position to another. Between them it stays in
+//! the convex hull of both positions, grown by the deviation of its paths from straight.
 
-use crate::certify::bounds::hull::{Hull, Slab};
+use crate::certify::bounds::hull::{Hull, HullSlab};
 use crate::certify::bounds::nearest::{
-    Clip, Near, Real, Space, across, choose, direction, most, to_ring,
+    Clip, LaneVector, NearestToAxis, Real, across, choose, direction, most, to_ring,
 };
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
-/// The corners of a triangle at both ends of its way.
-pub(crate) type Ends<V> = [Space<V>; 6];
+/// The corners of a triangle at both ends of its motion.
+pub(crate) type Ends<V> = [LaneVector<V>; 6];
 
 impl<R: Real> Hull<R> {
-    /// No less than the depth of any place of the hulls of triangles at both ends of their way, or no
-    /// farther from these than they `grow`; `middle` is where they are between.
+    /// Returns at least the depth of every point no farther than `grow` from the convex hulls of triangles at both
+    /// ends of their motion. `middle` holds the triangles in between. A bound of at most `wanted` need not be tight.
     #[inline(always)]
     pub(crate) fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        (ends, middle): (&Ends<V>, &[Space<V>; 3]),
+        (ends, middle): (&Ends<V>, &[LaneVector<V>; 3]),
         grow: V,
         wanted: R,
     ) -> V {
@@ -28,7 +28,7 @@ impl<R: Real> Hull<R> {
         let high = most(a[2], b[2], c[2]).max(most(d[2], e[2], f[2]));
         let zero = V::splat(simd, R::of(0.0));
         let goes = half_way(simd, ends);
-        let near = slide(simd, &Near::to_axis(simd, middle).place, &goes, None);
+        let near = slide(simd, &NearestToAxis::to_axis(simd, middle).place, &goes, None);
         let out = outward(ends, &direction(simd, &[near[0], near[1], zero], zero));
         let wanted = V::splat(simd, wanted);
         let mut bound = V::splat(simd, R::of(f64::NEG_INFINITY));
@@ -48,8 +48,9 @@ impl<R: Real> Hull<R> {
     }
 }
 
-impl<R: Real> Slab<R> {
-    /// The least of the most of what planes say of corners so far out and so high.
+impl<R: Real> HullSlab<R> {
+    /// Returns the least, over all planes, of the greatest distance under the plane at corners with these radial
+    /// positions and heights.
     #[inline(always)]
     fn under_planes_of<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
@@ -71,13 +72,13 @@ impl<R: Real> Slab<R> {
         depth
     }
 
-    /// The same and more of what is between heights.
+    /// Returns a tighter bound for the portion of the hulls between the slab's heights.
     #[inline(always)]
     fn swept<S: Simd, V: SimdFloat<S, Element = R>>(
         &self,
         simd: S,
-        (ends, middle, goes): (&Ends<V>, &[Space<V>; 3], &Space<V>),
-        near: &Space<V>,
+        (ends, middle, goes): (&Ends<V>, &[LaneVector<V>; 3], &LaneVector<V>),
+        near: &LaneVector<V>,
         (from, to): (V, V),
         grow: V,
     ) -> V {
@@ -87,8 +88,8 @@ impl<R: Real> Slab<R> {
         let way = direction(simd, &[place[0], place[1], zero], zero);
         let out = outward(ends, &way);
         let heights = heights(ends);
-        // Seen along the way the hull is flat; what is left of it between the heights has its corners
-        // there, or where it is cut.
+        // Projected along the direction, the hull is plane. Its portion between the heights has its vertices at
+        // corners between the heights and where it is cut.
         let [at_low, at_high] =
             [least_at(simd, &out, &heights, from), least_at(simd, &out, &heights, to)];
         let far = V::splat(simd, R::of(FAR));
@@ -107,7 +108,8 @@ impl<R: Real> Slab<R> {
         }
         if let Some([z, radius]) = self.ball {
             let centre = V::splat(simd, z);
-            let near = slide(simd, &Near::to_place(simd, middle, z).place, goes, Some(centre));
+            let near =
+                slide(simd, &NearestToAxis::to_place(simd, middle, z).place, goes, Some(centre));
             let foot = within(simd, &clip, middle, (from, to), &near);
             let way = direction(simd, &foot, centre);
             let mut beyond = [zero; 6];
@@ -144,12 +146,12 @@ impl<R: Real> Slab<R> {
     }
 }
 
-/// How far triangles go from the middle to the end of their way.
+/// Returns the displacement of triangles from the middle to the end of their motion.
 #[inline(always)]
 fn half_way<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     [a, b, c, d, e, f]: &Ends<V>,
-) -> Space<V> {
+) -> LaneVector<V> {
     let sixth = V::splat(simd, R::of(1.0 / 6.0));
     [
         (d[0] + e[0] + f[0] - a[0] - b[0] - c[0]) * sixth,
@@ -158,14 +160,15 @@ fn half_way<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     ]
 }
 
-/// Where a place comes nearest to the axis, or to a height of it, if it goes so far either way.
+/// Returns the point nearest to the axis, or to the point of it at `centre`, on the path of a point moved by up
+/// to `goes` either way.
 #[inline(always)]
 fn slide<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
-    place: &Space<V>,
-    goes: &Space<V>,
+    place: &LaneVector<V>,
+    goes: &LaneVector<V>,
     centre: Option<V>,
-) -> Space<V> {
+) -> LaneVector<V> {
     let (mut toward, mut square) =
         (place[0] * goes[0] + place[1] * goes[1], goes[0] * goes[0] + goes[1] * goes[1]);
     if let Some(centre) = centre {
@@ -178,15 +181,15 @@ fn slide<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     [place[0] + at * goes[0], place[1] + at * goes[1], place[2] + at * goes[2]]
 }
 
-/// A place, or if it is beyond two heights the place at that end which is nearest to the axis.
+/// Returns a point, or, if it is beyond two heights, the point at that end which is nearest to the axis.
 #[inline(always)]
 fn within<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,
     clip: &Clip<V, V::Mask>,
-    middle: &[Space<V>; 3],
+    middle: &[LaneVector<V>; 3],
     (from, to): (V, V),
-    place: &Space<V>,
-) -> Space<V> {
+    place: &LaneVector<V>,
+) -> LaneVector<V> {
     let above = place[2].simd_gt(to);
     let end = clip.at_end(simd, middle, above);
     choose(above | place[2].simd_lt(from), &end, place)
@@ -197,18 +200,18 @@ fn heights<S: Simd, V: SimdBase<S>>([a, b, c, d, e, f]: &Ends<V>) -> [V; 6] {
     [a[2], b[2], c[2], d[2], e[2], f[2]]
 }
 
-/// How far out corners are in a direction across the axis.
+/// Returns how far out corners are in a direction across the axis.
 #[inline(always)]
-fn outward<S: Simd, V: SimdBase<S>>(ends: &Ends<V>, way: &Space<V>) -> [V; 6] {
+fn outward<S: Simd, V: SimdBase<S>>(ends: &Ends<V>, way: &LaneVector<V>) -> [V; 6] {
     let [a, b, c, d, e, f] = *ends;
     let [first, last] = [across(&[a, b, c], way), across(&[d, e, f], way)];
     [first[0], first[1], first[2], last[0], last[1], last[2]]
 }
 
-/// Farther than any place that is looked at.
+/// A number larger than the distance of any point examined.
 const FAR: f64 = 1e30;
 
-/// The least of something linear at one height of a hull; `FAR` if it does not come there.
+/// Returns the minimum of a linear function on a hull at one height, or `FAR` if the hull does not reach it.
 #[inline(always)]
 fn least_at<S: Simd, R: Real, V: SimdFloat<S, Element = R>>(
     simd: S,

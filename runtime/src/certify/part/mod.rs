@@ -1,12 +1,12 @@
-//! A part's triangles, and whether a point is inside them.
+//! The triangles of a part, and the location of points relative to it.
 
-mod facets;
-mod flat;
-mod flats;
+mod coplanar_faces;
+mod planarity;
+mod triangle_bvh;
 mod winding;
 
-pub use facets::Facets;
-pub(crate) use facets::{Corners, flat};
-pub(crate) use flat::Ring;
-pub(crate) use flats::Face;
+pub(crate) use coplanar_faces::Face;
+pub(crate) use planarity::NodeRing;
+pub use triangle_bvh::TriangleBvh;
+pub(crate) use triangle_bvh::{Corners, flat};
 pub(crate) use winding::Location;

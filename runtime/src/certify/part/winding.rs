@@ -1,31 +1,32 @@
-//! Where a point is: the winding number of a part's surface about it, by what a ray crosses.
+//! Location of points: the winding number of a part's surface about a point, from the triangles that a ray
+//! crosses.
 
-use super::Facets;
+use super::TriangleBvh;
 use crate::bvh::WIDTH;
 use nalgebra::{Point3, Vector3};
 use robust::{Coord3D, orient3d};
 
-/// Where a point is beside a part.
+/// The location of a point relative to a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Location {
     Inside,
     Outside,
     /// The part has no inside: its mesh is not closed, not consistently oriented, or inside out.
     Unknown,
-    /// The point is on the surface, or all rays that were tried meet an edge.
+    /// The point is on the surface, all rays tried meet an edge, or the winding number is negative.
     Undecided,
 }
 
-/// How many rays are tried. One is nearly always enough: a ray is refused only where it meets an edge
-/// exactly, as predicates are exact.
+/// The maximum number of rays. One is nearly always enough: the predicates are exact, so a ray is rejected only
+/// if it meets an edge exactly.
 const RAYS: u32 = 32;
 
-/// A ray ends this many sizes of the part away from its beginning, and so outside.
+/// The length of a ray in sizes of the part, so that it ends outside.
 const FAR: f64 = 8.0;
 
-/// The direction of a ray: on a spiral, so that all are different and none is along an axis.
+/// Returns the direction of a ray. The directions lie on a spiral, so that all differ and none is along an axis.
 fn direction(ray: u32) -> Vector3<f64> {
-    /// The golden angle.
+    /// The golden angle, in radians.
     const TURN: f64 = 2.399_963_229_728_653;
     let z = 1.0 - (2.0 * f64::from(ray) + 1.0) / f64::from(RAYS);
     let (sin, cos) = (0.5 + TURN * f64::from(ray)).sin_cos();
@@ -33,10 +34,10 @@ fn direction(ray: u32) -> Vector3<f64> {
     Vector3::new(d * cos, d * sin, z)
 }
 
-/// What a ray does at a triangle.
+/// The relation of a ray to a triangle.
 enum Crossing {
     Misses,
-    /// 1 through the outer side, -1 through the inner side.
+    /// It crosses the triangle: 1 through the outer side, -1 through the inner side.
     Through(i32),
     /// It meets an edge or a corner, or lies in the plane.
     Edge,
@@ -44,11 +45,11 @@ enum Crossing {
     Begins,
 }
 
-impl Facets {
-    /// Returns where a point of the world is, in the part's unit.
+impl TriangleBvh {
+    /// Locates a point, given in the part's frame and unit.
     ///
-    /// The answer is exact for the point's doubles and the triangles' corners as they were read, unless
-    /// products of four lengths overflow or underflow.
+    /// The result is exact for the doubles of the point and of the triangles' corners, unless products of four
+    /// lengths overflow or underflow.
     pub(crate) fn locate(&self, point: Point3<f64>) -> Location {
         if !self.solid {
             return Location::Unknown;
@@ -62,7 +63,7 @@ impl Facets {
             match self.winding(point, direction(ray), None) {
                 Ok(winding) if winding > 0 => return Location::Inside,
                 Ok(0) => return Location::Outside,
-                // Material and its opposite: an inside-out lobe of a surface that crosses itself.
+                // Overlap of material and its opposite: an inside-out lobe of a surface that crosses itself.
                 Ok(_) | Err(Crossing::Begins) => return Location::Undecided,
                 Err(_) => {}
             }
@@ -70,10 +71,10 @@ impl Facets {
         Location::Undecided
     }
 
-    /// Returns whether the surface goes around the points just outside a triangle less than 0 times, if a ray tells.
+    /// Returns whether the winding number just outside a triangle is negative, if a ray decides it.
     ///
-    /// The ray begins in the triangle's middle. It counts all other triangles, and this one if it goes to its inner side: no
-    /// distance from it has to be chosen, and another surface may be as near as doubles have it.
+    /// The ray begins in the triangle's middle. It counts all other triangles, and this one if it leaves toward the
+    /// inner side. No offset from the triangle has to be chosen, and another surface may be arbitrarily near.
     pub(super) fn is_negative_beside(&self, own: usize) -> bool {
         let corners = self.corners[own];
         let middle = Point3::from([0, 1, 2].map(|k| {
@@ -94,24 +95,26 @@ impl Facets {
         windings.next().is_some_and(|winding| winding < 0)
     }
 
-    /// Returns where a ray ends.
+    /// Returns the end point of a ray.
     fn end(&self, point: Point3<f64>, way: Vector3<f64>) -> Point3<f64> {
         point + way * (FAR * f64::from(self.frame.size) * self.frame.scale)
     }
 
-    /// Returns by how much a box is to be wider for a ray from a point, in the tree's unit.
+    /// Returns the margin by which boxes are widened for a ray from a point, in the tree's unit.
     ///
-    /// Let `u` be the unit roundoff. In that unit the part's places are no farther than 1 from its origin, and the ray goes
-    /// no farther than 9. A corner, and the point, are taken there within 2u; the ray's end is rounded by u of where it is in
-    /// the world, and by 18u of how far it goes, and no place of the ray is farther beside its direction. The ends of
-    /// the box from the point, 3 at most, and their quotients by the direction have three roundings. All that is less than
-    /// `32u` and `2u` of where the point is.
+    /// Let `u` be the unit roundoff. In the tree's unit no point of the part is farther than 1 from its origin, and
+    /// the ray reaches no farther than 9. The conversion of a corner, and of the point, errs by 2u. The end of the
+    /// ray is rounded by u of its world coordinates and by 18u of its length, and no point of the ray deviates more
+    /// from its direction. The ends of the box relative to the point, at most 3, and their quotients by the direction
+    /// have three roundings. The total is less than `32u` plus `2u` of the point's coordinates.
     fn margin(&self, point: Point3<f64>) -> f64 {
         f64::EPSILON * (16.0 + point.coords.amax() / self.frame.scale)
     }
 
-    /// Returns how often the surface goes around a point, by what a ray crosses, one triangle left out; what it does where
-    /// that does not tell.
+    /// Returns the winding number of the surface about a point, counted along a ray, with one triangle left out.
+    ///
+    /// # Errors
+    /// The crossing that does not decide it.
     fn winding(
         &self,
         point: Point3<f64>,
@@ -150,11 +153,11 @@ impl Facets {
     }
 }
 
-/// Returns what the straight way from a point to another does at a triangle.
+/// Returns the relation of a line segment to a triangle.
 fn crossing(corners: [[f64; 3]; 3], from: Point3<f64>, to: Point3<f64>) -> Crossing {
     let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
     let ([a, b, c], [p, q]) = (corners.map(coord), [from, to].map(|point| coord(point.into())));
-    // On which side of each edge the line passes: on the same of all three if it crosses.
+    // The side of each edge on which the line passes: the same for all three if it crosses.
     let sides = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
     if sides.iter().any(|side| *side > 0.0) && sides.iter().any(|side| *side < 0.0) {
         return Crossing::Misses;
@@ -184,7 +187,8 @@ mod tests {
     #[test]
     fn no_ray_is_lost_to_an_edge() {
         let (low, high) = (Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
-        let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        let block =
+            TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
         let steps = [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0];
         for x in steps {
             for y in steps {
@@ -202,7 +206,7 @@ mod tests {
         }
     }
 
-    /// A piece that is inside out, beside a good one or sticking out of it, leaves no inside; a void does.
+    /// A piece that is inside out, next to a good one or sticking out of it, leaves no inside. A void leaves one.
     #[test]
     fn a_piece_inside_out_leaves_no_inside() {
         let block = |low: f64, high: f64, at: f64| {
@@ -218,19 +222,19 @@ mod tests {
             let triangles = large.triangles().iter().copied().chain(more).collect();
             crate::Mesh::new(vertices, triangles, Unit::Millimetre).expect("a mesh")
         };
-        let has_inside = |small, turned| Facets::new(&with(small, turned)).has_inside();
+        let has_inside = |small, turned| TriangleBvh::new(&with(small, turned)).has_inside();
         assert!(has_inside(block(-2.0, 2.0, 30.0), false));
         assert!(has_inside(block(-2.0, 2.0, 0.0), true));
         assert!(!has_inside(block(-2.0, 2.0, 30.0), true));
         assert!(!has_inside(block(-2.0, 2.0, 10.0), true));
-        // As thin as a part in 10^10 of the whole.
+        // A plate with a thickness of 10^-10 of the whole.
         let plate = |at: f64| {
             let [low, high] = [(-2.0, 0.0), (2.0, 4e-9)].map(|(x, z)| Point3::new(x + at, x, z));
             shapes::cuboid(low, high, Unit::Millimetre).expect("a plate")
         };
         assert!(!has_inside(plate(30.0), true));
         assert!(has_inside(plate(0.0), true));
-        // Beside it in one vertex, which they share.
+        // Next to it in one vertex, which they share.
         let [low, high] = [10.0, 14.0].map(|c| Point3::new(c, c, c));
         let mesh = with(shapes::cuboid(low, high, Unit::Millimetre).expect("a block"), true);
         let first = |k: &u32| {
@@ -239,7 +243,7 @@ mod tests {
         };
         let welded = mesh.triangles().iter().map(|corners| corners.each_ref().map(first)).collect();
         let welded = crate::Mesh::new(mesh.vertices().to_vec(), welded, Unit::Millimetre);
-        assert!(!Facets::new(&welded.expect("a mesh")).has_inside());
+        assert!(!TriangleBvh::new(&welded.expect("a mesh")).has_inside());
     }
 
     /// A prism over a bow tie: material in one lobe, its opposite in the other.
@@ -256,9 +260,9 @@ mod tests {
         let turned = triangles.iter().map(|[a, b, c]| [*b, *a, *c]).collect();
         for triangles in [triangles, turned] {
             let mesh = crate::Mesh::new(vertices.clone(), triangles, Unit::Millimetre);
-            let facets = Facets::new(&mesh.expect("a mesh"));
-            let mut found = [[0.5, 1.5, 1.0], [3.5, 1.5, 1.0]].map(|at| facets.locate(at.into()));
-            if facets.has_inside() {
+            let bvh = TriangleBvh::new(&mesh.expect("a mesh"));
+            let mut found = [[0.5, 1.5, 1.0], [3.5, 1.5, 1.0]].map(|at| bvh.locate(at.into()));
+            if bvh.has_inside() {
                 found.sort_by_key(|location| *location != Location::Inside);
                 assert_eq!(found, [Location::Inside, Location::Undecided]);
             } else {
@@ -267,11 +271,12 @@ mod tests {
         }
     }
 
-    /// An ulp beside a face is still decided.
+    /// A point an ulp off a face is still decided.
     #[test]
     fn an_ulp_beside_the_surface_is_decided() {
         let (low, high) = (Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
-        let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        let block =
+            TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
         let at = |x: f64| block.locate(Point3::new(x, 0.25, 0.125));
         assert_eq!(at(1.0f64.next_down()), Location::Inside);
         assert_eq!(at(1.0), Location::Undecided);
@@ -281,7 +286,8 @@ mod tests {
     #[test]
     fn a_ray_from_the_end_of_the_other_counts_the_same() {
         let (low, high) = (Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0));
-        let block = Facets::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
+        let block =
+            TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre).expect("a block"));
         let inside = Point3::new(0.3, -0.7, 0.9);
         let turns: Vec<i32> =
             (0..RAYS).filter_map(|ray| block.winding(inside, direction(ray), None).ok()).collect();

@@ -1,87 +1,93 @@
-//! Whether a tool stays clear of a part on its way, proved by stretches of time.
+//! Proof that a tool stays clear of a part along a motion, by intervals of time.
 //!
-//! A stretch keeps a list of what may be in the way: nodes and triangles. Bounds hold for all of it, by how
-//! far the part goes in the tool's frame and in which direction. What they rule out is gone; what they leave
-//! goes on to both halves. Nodes are opened when they are larger than the way is long.
+//! An interval keeps a list of candidates: nodes and triangles that may be in the way. Bounds hold for the whole
+//! interval, from the direction and length of the part's displacement in the tool's frame. Candidates that the
+//! bounds rule out are dropped; the others pass to both halves of the interval. A node is opened if it is larger
+//! than a fraction of the displacement.
 
 mod moving;
 pub(crate) mod stretch;
 mod task;
 
 use crate::bvh::{PoseTransform, WIDTH};
-use crate::certify::body::Body;
-use crate::certify::body::field::Scratch;
-use crate::certify::body::owners::Owners;
-use crate::certify::body::section::Section;
 use crate::certify::bounds::descent::{Node, of_children};
-use crate::certify::bounds::swath::Swath;
+use crate::certify::bounds::swept_batch::SweptBatch;
+use crate::certify::search::MARGIN;
 use crate::certify::space::Point;
-use crate::certify::sweep::stretch::Stretch;
-use crate::certify::triangle::course::{Best, Goal, Search};
-use crate::certify::triangle::facet::Facet;
-use crate::certify::triangle::piece::{Part, Piece};
-use crate::certify::work::MARGIN;
+use crate::certify::sweep::stretch::MotionInterval;
+use crate::certify::tool_model::ToolModel;
+use crate::certify::tool_model::field::Scratch;
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::Section;
+use crate::certify::triangle::line_search::{DeepestCandidate, DepthSearch, Goal};
+use crate::certify::triangle::local::LocalTriangle;
+use crate::certify::triangle::subdivision::{SubTriangle, TrianglePiece};
 use crate::tool::LANES;
 use moving::{Moving, of_leaf};
-use task::Place;
-pub(crate) use task::Task;
+use task::DeepPoint;
+pub(crate) use task::SweepTask;
 
-/// How a sweep ends before all of it is proved.
-pub(crate) enum Stop {
-    /// Something is deeper than is allowed at this part of the way.
-    Deeper { at: f64, best: Best },
-    /// The budget was spent there.
+/// The reason a sweep ends before the whole motion is proved clear.
+pub(crate) enum SweepEnd {
+    /// A point exceeds the limit at this fraction of the motion.
+    Deeper { at: f64, best: DeepestCandidate },
+    /// The budget was spent at this fraction of the motion.
     Spent { at: f64 },
 }
 
-impl Stop {
-    /// Whether it says something worse: what is too deep, or what comes first.
-    pub(crate) fn before(&self, other: &Stop) -> bool {
+impl SweepEnd {
+    /// Returns whether this end takes precedence: a point too deep before a spent budget, then the earlier time.
+    pub(crate) fn before(&self, other: &SweepEnd) -> bool {
         match (self, other) {
-            (Stop::Deeper { .. }, Stop::Spent { .. }) => true,
-            (Stop::Spent { .. }, Stop::Deeper { .. }) => false,
-            (Stop::Deeper { at, .. }, Stop::Deeper { at: other, .. })
-            | (Stop::Spent { at }, Stop::Spent { at: other }) => at < other,
+            (SweepEnd::Deeper { .. }, SweepEnd::Spent { .. }) => true,
+            (SweepEnd::Spent { .. }, SweepEnd::Deeper { .. }) => false,
+            (SweepEnd::Deeper { at, .. }, SweepEnd::Deeper { at: other, .. })
+            | (SweepEnd::Spent { at }, SweepEnd::Spent { at: other }) => at < other,
         }
     }
 }
 
-/// Something that may be in the way.
+/// A candidate that may be in the way.
 #[derive(Clone, Copy)]
-enum Left {
+enum Undecided {
     Node(Node),
-    Part(Part),
+    Part(TrianglePiece),
 }
 
-/// The search for what is in the way.
+/// The search along a motion, with its memory.
 #[derive(Default)]
 pub(crate) struct Sweeper {
     view: PoseTransform,
     ends: [PoseTransform; 2],
-    /// What may be in the way, of all stretches that are being looked at.
-    left: Vec<Left>,
+    /// The candidates of all intervals that are being examined, as a stack.
+    left: Vec<Undecided>,
     stack: Vec<Node>,
-    /// Triangles that are yet to be looked at, eight at a time.
-    some: Vec<Part>,
-    swath: Swath,
-    search: Search,
+    /// Triangles waiting for the next batch of eight.
+    some: Vec<TrianglePiece>,
+    swath: SweptBatch,
+    search: DepthSearch,
     scratch: Scratch,
-    pieces: Vec<Piece>,
+    pieces: Vec<SubTriangle>,
     budget: u32,
 }
 
 impl Sweeper {
-    /// Looks at a whole motion; `None` if nothing is deeper on the way.
-    pub(crate) fn run(&mut self, task: &Task<'_>, budget: u32) -> Option<Stop> {
+    /// Examines a whole motion. Returns `None` if the limit is proved to hold.
+    pub(crate) fn run(&mut self, task: &SweepTask<'_>, budget: u32) -> Option<SweepEnd> {
         self.left.clear();
-        self.left.push(Left::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
+        self.left.push(Undecided::Node(Node { level: 0, index: 0, bound: f32::INFINITY }));
         self.budget = budget;
         self.stretch(task, [0.0, 1.0], 0)
     }
 
-    /// Looks at a stretch, of which that is left from that place of the list on.
-    fn stretch(&mut self, task: &Task<'_>, [from, to]: [f64; 2], first: usize) -> Option<Stop> {
-        let stretch = Stretch::new(task.setting, task.motion, [from, to], task.keep());
+    /// Examines an interval, whose candidates start at index `first` of the list.
+    fn stretch(
+        &mut self,
+        task: &SweepTask<'_>,
+        [from, to]: [f64; 2],
+        first: usize,
+    ) -> Option<SweepEnd> {
+        let stretch = MotionInterval::new(task.setting, task.motion, [from, to], task.keep());
         let last = self.left.len();
         if let Some(stop) = self.look(task, &stretch, first..last) {
             return Some(stop);
@@ -91,7 +97,7 @@ impl Sweeper {
         }
         let middle = stretch.middle();
         if middle <= from || middle >= to || to - from < FINEST {
-            return Some(Stop::Spent { at: from });
+            return Some(SweepEnd::Spent { at: from });
         }
         for half in [[from, middle], [middle, to]] {
             if let Some(stop) = self.stretch(task, half, last) {
@@ -102,34 +108,34 @@ impl Sweeper {
         None
     }
 
-    /// Adds to the list what of a part of it is left.
+    /// Appends the candidates that remain of a range of the list.
     fn look(
         &mut self,
-        task: &Task<'_>,
-        stretch: &Stretch,
+        task: &SweepTask<'_>,
+        stretch: &MotionInterval,
         list: std::ops::Range<usize>,
-    ) -> Option<Stop> {
-        let Task { setting, question, .. } = *task;
-        let facets = setting.facets;
-        let frame = &facets.frame;
+    ) -> Option<SweepEnd> {
+        let SweepTask { setting, question, .. } = *task;
+        let bvh = setting.bvh;
+        let frame = &bvh.frame;
         let [first, middle, last] = &stretch.poses;
         setting.setup.set_pose(frame, first, &mut self.ends[0]);
         setting.setup.set_pose(frame, middle, &mut self.view);
         setting.setup.set_pose(frame, last, &mut self.ends[1]);
-        // The tips of poses are rounded where they are in the world.
-        let tip = task.motion.start().coords.norm() + task.motion.way().norm();
+        // The tips of poses are rounded relative to their world coordinates.
+        let tip = task.motion.start().coords.norm() + task.motion.displacement().norm();
         let margin = setting.margin()
-            + (stretch.goes(f64::INFINITY) + task.keep()) / f64::from(1 << 18)
+            + (stretch.displacement_bound(f64::INFINITY) + task.keep()) / f64::from(1 << 18)
             + 2.0 * f64::EPSILON * tip / setting.length;
         let wanted = (task.above() - margin) as f32;
         let (keep, shift) = (task.keep() as f32, stretch.shift(task.keep()));
-        let small = PART * stretch.goes(f64::INFINITY);
+        let small = PART * stretch.displacement_bound(f64::INFINITY);
         self.stack.clear();
         self.some.clear();
         for at in list {
             match self.left[at] {
-                Left::Node(node) => self.stack.push(node),
-                Left::Part(part) => {
+                Undecided::Node(node) => self.stack.push(node),
+                Undecided::Part(part) => {
                     if let Some(stop) = self.add(task, stretch, part) {
                         return Some(stop);
                     }
@@ -137,49 +143,55 @@ impl Sweeper {
             }
             while let Some(node) = self.stack.pop() {
                 if self.budget == 0 {
-                    return Some(Stop::Spent { at: stretch.from });
+                    return Some(SweepEnd::Spent { at: stretch.from });
                 }
                 self.budget -= 1;
-                if node.is_triangle(facets) {
-                    let origin = facets.frame.origin;
-                    let corners = facets.corners[node.index as usize];
-                    let piece = Piece::new(corners.map(|p| [0, 1, 2].map(|k| p[k] - origin[k])));
-                    let part = Part { index: node.index, piece };
+                if node.is_triangle(bvh) {
+                    let origin = bvh.frame.origin;
+                    let corners = bvh.corners[node.index as usize];
+                    let piece =
+                        SubTriangle::new(corners.map(|p| [0, 1, 2].map(|k| p[k] - origin[k])));
+                    let part = TrianglePiece { index: node.index, piece };
                     if let Some(stop) = self.add(task, stretch, part) {
                         return Some(stop);
                     }
-                } else if node.size(facets) * setting.setup.unit < small {
-                    self.left.push(Left::Node(node));
+                } else if node.size(bvh) * setting.setup.unit < small {
+                    self.left.push(Undecided::Node(node));
                 } else {
                     let mut bounds = [node.bound; WIDTH];
                     let moving = Moving { hull: &question.hull, shift, keep, ends: &self.ends };
-                    let seen = (facets, &moving, &self.view);
+                    let seen = (bvh, &moving, &self.view);
                     let hits = if margin > MARGIN {
                         u32::MAX
-                    } else if node.is_leaf(facets) {
+                    } else if node.is_leaf(bvh) {
                         of_leaf(setting.level, seen, node, wanted)
                     } else {
                         of_children(setting.level, seen, node, wanted, &mut bounds)
                     };
-                    self.stack.extend(node.children(facets, hits));
+                    self.stack.extend(node.children(bvh, hits));
                 }
             }
         }
         self.triangles(task, stretch)
     }
 
-    /// Adds a part of a triangle to the batch. Of one that is large beside the tool the way is far from
-    /// straight, so that it is halved.
-    fn add(&mut self, task: &Task<'_>, stretch: &Stretch, part: Part) -> Option<Stop> {
+    /// Adds a triangle or a piece of one to the batch. If the motion turns and the piece is large compared with the
+    /// tool, its path is far from straight, so the piece is halved.
+    fn add(
+        &mut self,
+        task: &SweepTask<'_>,
+        stretch: &MotionInterval,
+        part: TrianglePiece,
+    ) -> Option<SweepEnd> {
         if self.budget == 0 {
-            return Some(Stop::Spent { at: stretch.from });
+            return Some(SweepEnd::Spent { at: stretch.from });
         }
         self.budget -= 1;
         if stretch.turns() && part.piece.longest() > 4.0 * task.setting.size * task.setting.length {
             let mut halves = part.piece.halves().peekable();
             if halves.peek().is_some() {
                 for piece in halves.filter(|piece| stretch.reaches(piece, task.setting.length)) {
-                    if let Some(stop) = self.add(task, stretch, Part { piece, ..part }) {
+                    if let Some(stop) = self.add(task, stretch, TrianglePiece { piece, ..part }) {
                         return Some(stop);
                     }
                 }
@@ -190,9 +202,9 @@ impl Sweeper {
         if self.some.len() == LANES { self.triangles(task, stretch) } else { None }
     }
 
-    /// Adds to the list which triangles of the batch are left.
-    fn triangles(&mut self, task: &Task<'_>, stretch: &Stretch) -> Option<Stop> {
-        let Task { setting, question, .. } = *task;
+    /// Appends the triangles of the batch that remain.
+    fn triangles(&mut self, task: &SweepTask<'_>, stretch: &MotionInterval) -> Option<SweepEnd> {
+        let SweepTask { setting, question, .. } = *task;
         let level = task.setting.level;
         let count = self.some.len();
         self.swath.begin(stretch, task.keep(), &self.some);
@@ -211,52 +223,52 @@ impl Sweeper {
             let corners = self.swath.middle.corners(lane);
             let point = self.swath.middle.place(lane);
             let at = stretch.middle();
-            let stop = |found: Place| Stop::Deeper { at, best: found.best(index) };
+            let stop = |found: DeepPoint| SweepEnd::Deeper { at, best: found.best(index) };
             let here = task.depth(&mut self.scratch, point);
             if task.too_deep(&here) {
                 return Some(stop(here));
             }
-            let goes = stretch.goes(stretch.about(&corners));
-            let steep = setting.body.steep();
+            let goes = stretch.displacement_bound(stretch.about(&corners));
+            let steep = setting.body.lipschitz();
             let left = here.depth + steep * goes > task.wanted()
                 || match self.passes(task, corners, goes) {
-                    Passes::Too(deep) => return Some(stop(deep)),
-                    Passes::Yes => false,
-                    Passes::Open | Passes::Others => true,
+                    TriangleVerdict::Too(deep) => return Some(stop(deep)),
+                    TriangleVerdict::Yes => false,
+                    TriangleVerdict::Open | TriangleVerdict::Others => true,
                 };
             if left {
-                self.left.push(Left::Part(self.some[lane]));
+                self.left.push(Undecided::Part(self.some[lane]));
             }
         }
         self.some.clear();
         None
     }
 
-    /// Whether no place of a triangle is so deep, or so near, that after going so far it may be too deep.
-    fn passes(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
-        let Task { setting, question, .. } = *task;
-        let Body::Profile(section) = &setting.body else {
+    /// Examines a triangle: no point of it may be so deep, or so near, that this displacement could make it too deep.
+    fn passes(&mut self, task: &SweepTask<'_>, corners: [Point; 3], goes: f64) -> TriangleVerdict {
+        let SweepTask { setting, question, .. } = *task;
+        let ToolModel::Profile(section) = &setting.body else {
             return self.halved(task, corners, goes);
         };
-        let facet = Facet::new(corners);
+        let facet = LocalTriangle::new(corners);
         if question.owners.all() || task.limit < 0.0 {
             return self.along(task, (section, &question.owners), &facet, goes);
         }
-        // Where no surface is too deep, none need be told apart.
+        // If no surface at all is too deep, the owners need not be told apart.
         match self.along(task, (section, &Owners::default()), &facet, goes) {
-            Passes::Others => self.halved(task, corners, goes),
+            TriangleVerdict::Others => self.halved(task, corners, goes),
             decided => decided,
         }
     }
 
-    /// The same by the ways of a triangle on which it is deepest, or nearest.
+    /// The same, by searching the lines of a triangle on which the depth is greatest or the distance least.
     fn along(
         &mut self,
-        task: &Task<'_>,
+        task: &SweepTask<'_>,
         asked: (&Section, &Owners),
-        facet: &Facet,
+        facet: &LocalTriangle,
         goes: f64,
-    ) -> Passes {
+    ) -> TriangleVerdict {
         let goes = goes + facet.skew + task.error;
         let least = task.wanted() - goes;
         let (tolerance, enough, budget) = (0.25 * goes, f64::INFINITY, self.budget);
@@ -264,7 +276,7 @@ impl Sweeper {
         let mut found = None;
         let heights = asked.0.circles.iter().chain(&asked.1.peaks);
         let peaks = heights.filter_map(|height| facet.level(*height));
-        for course in facet.courses().chain(peaks) {
+        for course in facet.search_lines().chain(peaks) {
             let deepest = if least < 0.0 {
                 self.search.outside(asked, &course)
             } else {
@@ -274,29 +286,29 @@ impl Sweeper {
         }
         self.budget = self.search.left();
         let Some(point) = found else {
-            return if self.search.open() { Passes::Open } else { Passes::Yes };
+            return if self.search.open() { TriangleVerdict::Open } else { TriangleVerdict::Yes };
         };
         let here = task.depth(&mut self.scratch, point);
         if task.too_deep(&here) {
-            Passes::Too(here)
+            TriangleVerdict::Too(here)
         } else if here.depth > least {
-            Passes::Open
+            TriangleVerdict::Open
         } else {
-            Passes::Others
+            TriangleVerdict::Others
         }
     }
 
-    /// The same by its parts: it is halved until all of it passes, or what does not is small beside the
-    /// way.
-    fn halved(&mut self, task: &Task<'_>, corners: [Point; 3], goes: f64) -> Passes {
+    /// The same, by subdivision: the triangle is halved until all pieces pass, or a piece that does not is small
+    /// compared with the displacement.
+    fn halved(&mut self, task: &SweepTask<'_>, corners: [Point; 3], goes: f64) -> TriangleVerdict {
         let (body, owners) = (&task.setting.body, &task.question.owners);
         self.pieces.clear();
-        self.pieces.push(Piece::new(corners));
+        self.pieces.push(SubTriangle::new(corners));
         let mut looks = 0;
         while let Some(piece) = self.pieces.pop() {
             looks += 1;
             if self.budget == 0 || looks > LOOKS {
-                return Passes::Open;
+                return TriangleVerdict::Open;
             }
             self.budget -= 1;
             let (centre, reach) = piece.ball();
@@ -308,35 +320,35 @@ impl Sweeper {
             }
             let here = task.depth(&mut self.scratch, centre);
             if task.too_deep(&here) {
-                return Passes::Too(here);
+                return TriangleVerdict::Too(here);
             }
             if reach < SMALL * goes {
-                return Passes::Open;
+                return TriangleVerdict::Open;
             }
             self.pieces.extend(piece.halves());
         }
-        Passes::Yes
+        TriangleVerdict::Yes
     }
 }
 
-/// What is said of a triangle.
-enum Passes {
+/// The verdict on a triangle.
+enum TriangleVerdict {
     Yes,
-    /// It is too deep there.
-    Too(Place),
+    /// The triangle is too deep at this point.
+    Too(DeepPoint),
     Open,
-    /// What may be too deep is nearer to others than to the owners there.
+    /// Points that may be too deep are nearer to other features than to the owners.
     Others,
 }
 
-/// How many pieces of a triangle are looked at before time is halved instead.
+/// The number of pieces of a triangle that are examined before the interval is halved instead.
 const LOOKS: u32 = 1 << 12;
 
-/// A piece of a triangle that is smaller than this part of its way is not halved.
+/// Pieces smaller than this fraction of the displacement are not halved.
 const SMALL: f64 = 0.125;
 
-/// A shorter stretch than this part of the motion is not halved.
+/// Intervals shorter than this fraction of the motion are not halved.
 const FINEST: f64 = f64::EPSILON;
 
-/// Nodes are opened that are larger than this part of the way.
+/// Nodes larger than this fraction of the displacement are opened.
 const PART: f64 = 0.3;

@@ -1,18 +1,18 @@
-//! Boxes and triangles on their way past a hull, 16 at a time in `f32`.
+//! Bounds of moving boxes and triangles against a hull, 16 at a time in `f32`.
 
 use crate::bvh::{Boxes, PoseTransform};
-use crate::certify::bounds::descent::{BoxBounds, Node, Seen, Shift, above, rings};
+use crate::certify::bounds::descent::{BoxBounds, DescentInput, Displacement, Node, above, rings};
 use crate::certify::bounds::hull::Hull;
-use crate::certify::bounds::nearest::Space;
+use crate::certify::bounds::nearest::LaneVector;
 use crate::tool::on_vectors;
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, f32x16};
 
-/// A hull past which boxes move.
+/// A hull and the motion of boxes past it.
 pub(super) struct Moving<'a> {
     pub(super) hull: &'a Hull<f32>,
-    pub(super) shift: Shift,
+    pub(super) shift: Displacement,
     pub(super) keep: f32,
-    /// The part at the beginning and at the end.
+    /// The transforms at the beginning and at the end of the interval.
     pub(super) ends: &'a [PoseTransform; 2],
 }
 
@@ -29,8 +29,13 @@ impl BoxBounds for Moving<'_> {
     }
 }
 
-/// Which triangles of a leaf may be more than wanted.
-pub(super) fn of_leaf(level: Level, seen: Seen<'_, Moving<'_>>, node: Node, wanted: f32) -> u32 {
+/// Returns a bit mask of the triangles of a leaf whose bound may exceed `wanted`.
+pub(super) fn of_leaf(
+    level: Level,
+    seen: DescentInput<'_, Moving<'_>>,
+    node: Node,
+    wanted: f32,
+) -> u32 {
     on_vectors!(level, simd => of_leaf_on(simd, seen, node, wanted));
     u32::MAX
 }
@@ -38,15 +43,15 @@ pub(super) fn of_leaf(level: Level, seen: Seen<'_, Moving<'_>>, node: Node, want
 #[inline(always)]
 fn of_leaf_on<S: Simd>(
     simd: S,
-    (facets, moving, view): Seen<'_, Moving<'_>>,
+    (bvh, moving, view): DescentInput<'_, Moving<'_>>,
     node: Node,
     wanted: f32,
 ) -> u32 {
-    let [a, b, c] = node.corners(simd, facets, &moving.ends[0]);
-    let [d, e, f] = node.corners(simd, facets, &moving.ends[1]);
-    let middle = node.corners(simd, facets, view);
+    let [a, b, c] = node.corners(simd, bvh, &moving.ends[0]);
+    let [d, e, f] = node.corners(simd, bvh, &moving.ends[1]);
+    let middle = node.corners(simd, bvh, view);
     let [u, v, w] = moving.shift.axis;
-    let square = |&[x, y, z]: &Space<f32x16<S>>| {
+    let square = |&[x, y, z]: &LaneVector<f32x16<S>>| {
         let [a, b, c] = [y * w - z * v, z * u - x * w, x * v - y * u];
         c * c + b * b + a * a
     };

@@ -1,70 +1,73 @@
-//! A part of a motion: where it takes the part in the tool's frame, and how straight.
+//! An interval of a motion: the part's positions in the tool's frame, and bounds on how far its paths are from
+//! straight.
 
-use crate::certify::bounds::descent::Shift;
+use crate::certify::bounds::descent::Displacement;
+use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
-use crate::certify::triangle::piece::Piece;
-use crate::certify::work::Setting;
+use crate::certify::triangle::subdivision::SubTriangle;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
 
-/// A part of a motion, in the tool's frame and unit.
-pub(crate) struct Stretch {
+/// An interval of a motion, in the tool's frame and unit.
+pub(crate) struct MotionInterval {
     pub(crate) from: f64,
     to: f64,
-    /// The tip's place at the beginning of the motion from the part's middle.
+    /// The tip at the beginning of the motion, relative to the part's origin, in the part's frame and unit.
     start: Vector3<f64>,
     pub(crate) poses: [Pose; 3],
-    /// At both ends and, between these, in the middle: how far the tip has come, and the way from the part's
-    /// frame and unit to the tool's.
+    /// At the start, the middle and the end of the interval: the displacement of the tip, and the rotation and scale
+    /// from the part's frame and unit to the tool's.
     views: [(Vector3<f64>, Matrix3<f64>); 3],
-    /// How far a place goes from where it is in the middle, and how far its way is from straight, at most.
-    pace: Pace,
-    /// The axis of the turn, in the tool's frame.
+    /// Bounds on the displacement of a point from the middle of the interval, and on the deviation of its path from
+    /// straight.
+    pace: MotionBounds,
+    /// The axis of the rotation, in the tool's frame.
     axis: Vector3<f64>,
 }
 
 #[derive(Clone, Copy)]
-struct Pace {
+struct MotionBounds {
     straight: [f64; 3],
     length: f64,
     turn: f64,
-    /// No place that matters is farther from the axis of the turn.
+    /// The largest relevant distance of a point from the axis of the rotation.
     reach: f64,
 }
 
-impl Stretch {
-    /// What comes no nearer to the tool than `keep` does not matter.
+impl MotionInterval {
+    /// Creates the interval `[from, to]`. Points that come no nearer to the tool than `keep` are irrelevant.
     pub(crate) fn new(
-        setting: &Setting<'_>,
+        setting: &QuerySetting<'_>,
         motion: &Motion,
         [from, to]: [f64; 2],
         keep: f64,
-    ) -> Stretch {
+    ) -> MotionInterval {
         let per_length = 1.0 / setting.length;
         let parts = [from, from / 2.0 + to / 2.0, to];
         let poses = parts.map(|part| motion.pose(part));
-        let view =
-            |k: usize| (motion.way() * parts[k], poses[k].rotation().transpose() * per_length);
+        let view = |k: usize| {
+            (motion.displacement() * parts[k], poses[k].rotation().transpose() * per_length)
+        };
         let views = [view(0), view(1), view(2)];
         let half = 0.5 * (to - from);
-        let straight = views[1].1 * motion.way() * half;
+        let straight = views[1].1 * motion.displacement() * half;
         let (length, turn) = (straight.norm(), motion.angle() * half);
-        // A turn leaves the distance from the tip as it is, so that a place that comes that near is never farther on
-        // this stretch. No place of the tool is farther from its tip than √2 of its size.
+        // A rotation preserves the distance from the tip, so a point that comes that near is never farther away in
+        // this interval. No point of the tool is farther from its tip than √2 of its size.
         let reach = 1.5 * setting.size + keep + 2.0 * length;
-        Stretch {
+        MotionInterval {
             from,
             to,
-            start: motion.start() - setting.facets.frame.origin,
+            start: motion.start() - setting.bvh.frame.origin,
             poses,
             views,
-            pace: Pace { straight: straight.abs().into(), length, turn, reach },
-            axis: motion.turns_about(),
+            pace: MotionBounds { straight: straight.abs().into(), length, turn, reach },
+            axis: motion.rotation_axis(),
         }
     }
 
-    /// A corner of the part, given from its middle, at the beginning, in the middle and at the end.
+    /// Returns a corner of the part, given relative to the part's origin, at the start, the middle and the end.
     pub(crate) fn seen(&self, corner: &Point) -> [Point; 3] {
         let from_start = Vector3::from(*corner) - self.start;
         let [first, middle, last] = &self.views;
@@ -72,15 +75,15 @@ impl Stretch {
         [seen(first), seen(middle), seen(last)]
     }
 
-    /// Whether a piece comes so near that it matters.
-    pub(crate) fn reaches(&self, piece: &Piece, length: f64) -> bool {
+    /// Returns whether a piece comes near enough to be relevant.
+    pub(crate) fn reaches(&self, piece: &SubTriangle, length: f64) -> bool {
         let (centre, reach) = piece.ball();
         let [_, (way, _), _] = &self.views;
         let far = (Vector3::from(centre) - self.start - way).norm();
         far - reach <= length * self.pace.reach
     }
 
-    /// Returns how far corners are from the axis of the turn at most.
+    /// Returns the largest distance of the corners from the axis of the rotation.
     pub(crate) fn about(&self, corners: &[Point; 3]) -> f64 {
         let [u, v, w] = [self.axis.x, self.axis.y, self.axis.z];
         let square = |&[x, y, z]: &Point| {
@@ -90,7 +93,7 @@ impl Stretch {
         corners.iter().map(square).fold(0.0, f64::max).sqrt()
     }
 
-    /// Whether the axis turns.
+    /// Returns whether the tool rotates.
     pub(crate) fn turns(&self) -> bool {
         self.pace.turn > 0.0
     }
@@ -99,23 +102,24 @@ impl Stretch {
         self.from / 2.0 + self.to / 2.0
     }
 
-    /// How far the way is from straight, of a place that is in the middle no farther than that from the axis of the
-    /// turn.
-    pub(crate) fn curve(&self, reach: f64) -> f64 {
-        let Pace { length, turn, .. } = self.pace;
+    /// Returns a bound on how far a path is from straight, for a point whose distance from the axis of the rotation
+    /// is at most `reach` in the middle of the interval.
+    pub(crate) fn deviation_bound(&self, reach: f64) -> f64 {
+        let MotionBounds { length, turn, .. } = self.pace;
         turn * (length + 0.5 * turn * self.pace.reach.min(reach + length))
     }
 
-    /// How far such a place goes from the middle.
-    pub(crate) fn goes(&self, reach: f64) -> f64 {
-        let Pace { length, turn, .. } = self.pace;
-        length + turn * reach.min(self.pace.reach) + self.curve(reach)
+    /// Returns a bound on the displacement of such a point from the middle of the interval.
+    pub(crate) fn displacement_bound(&self, reach: f64) -> f64 {
+        let MotionBounds { length, turn, .. } = self.pace;
+        length + turn * reach.min(self.pace.reach) + self.deviation_bound(reach)
     }
 
-    pub(crate) fn shift(&self, keep: f64) -> Shift {
-        let Pace { straight, length, turn, reach } = self.pace;
+    /// Returns the displacement in `f32`, rounded up, with `keep` added to its translation.
+    pub(crate) fn shift(&self, keep: f64) -> Displacement {
+        let MotionBounds { straight, length, turn, reach } = self.pace;
         let up = |value: f64| (value * (1.0 + 1e-6)) as f32;
-        Shift {
+        Displacement {
             axis: self.axis.map(|part| part as f32).into(),
             straight: straight.map(|part| up(part + keep)),
             length: up(length),

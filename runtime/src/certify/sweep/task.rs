@@ -1,45 +1,46 @@
-//! What a sweep is asked, and how deep a place is as it sees it.
+//! The task of a sweep, and the depth of a point in it.
 
-use crate::certify::body::field::Scratch;
-use crate::certify::body::owners::Owners;
-use crate::certify::question::Question;
+use crate::certify::query::DepthQuery;
+use crate::certify::search::QuerySetting;
 use crate::certify::space::Point;
-use crate::certify::triangle::course::Best;
-use crate::certify::work::Setting;
+use crate::certify::tool_model::field::Scratch;
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::triangle::line_search::DeepestCandidate;
 use crate::motion::Motion;
 
-/// What a sweep is about.
-pub(crate) struct Task<'a> {
-    pub(crate) setting: &'a Setting<'a>,
-    pub(crate) question: &'a Question,
+/// The query, motion and limits of a sweep. Lengths are in the tool's unit.
+pub(crate) struct SweepTask<'a> {
+    pub(crate) setting: &'a QuerySetting<'a>,
+    pub(crate) question: &'a DepthQuery,
     pub(crate) motion: &'a Motion,
-    /// How deep the question's owners may be; below 0, how far they have to keep. That is the question's own
-    /// limit, or, where it is not below 0, any that is larger.
+    /// The allowed depth of the query's owners. If negative, its magnitude is the distance that they have to keep. It
+    /// is the query's own limit or, if that is at least 0, any larger value.
     pub(crate) limit: f64,
-    /// How far a place is known on this way.
+    /// The rounding error bound of a point along this motion.
     pub(crate) error: f64,
-    /// How much deeper than its limit is not worth telling.
+    /// The excess over the limit that need not be reported.
     pub(crate) tolerance: f64,
 }
 
-impl Task<'_> {
-    /// What is no deeper need not be looked at.
+impl SweepTask<'_> {
+    /// Returns the depth up to which nothing needs to be examined.
     pub(super) fn wanted(&self) -> f64 {
         self.limit + self.tolerance
     }
 
-    /// The same of what has grown by as much as is to be kept.
+    /// Returns the same threshold for bounds that are raised by the distance to be kept, less the rounding error
+    /// bound.
     pub(super) fn above(&self) -> f64 {
         self.wanted() + self.keep() - self.error
     }
 
-    /// How far the owners have to keep at least.
+    /// Returns the smallest distance that the owners have to keep.
     pub(super) fn keep(&self) -> f64 {
         (-self.wanted()).max(0.0)
     }
 
-    /// How deep a place is, or how near, as depth less than 0.
-    pub(super) fn depth(&self, scratch: &mut Scratch, point: Point) -> Place {
+    /// Returns the depth of a point; negative values are distances.
+    pub(super) fn depth(&self, scratch: &mut Scratch, point: Point) -> DeepPoint {
         let (body, owners) = (&self.setting.body, &self.question.owners);
         let inside = if self.limit < 0.0 {
             Some(body.distance(scratch, owners, point))
@@ -47,25 +48,25 @@ impl Task<'_> {
             body.depth(scratch, owners, point).filter(|depth| depth.value >= 0.0)
         };
         let depth = inside.unwrap_or_else(|| body.distance(scratch, &Owners::default(), point));
-        Place { point, depth: depth.value, feature: depth.feature }
+        DeepPoint { point, depth: depth.value, feature: depth.feature }
     }
 
-    /// Whether a place is deeper than is allowed, whatever was rounded.
-    pub(super) fn too_deep(&self, found: &Place) -> bool {
+    /// Returns whether a point exceeds the limit even after all rounding errors.
+    pub(super) fn too_deep(&self, found: &DeepPoint) -> bool {
         found.depth > self.limit + 2.0 * self.error
     }
 }
 
-/// A place in the tool's frame, and how deep it is.
+/// A point in the tool's frame and its depth.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct DeepPoint {
     pub(super) point: Point,
     pub(super) depth: f64,
     pub(super) feature: usize,
 }
 
-impl Place {
-    pub(super) fn best(&self, index: u32) -> Best {
-        Best { point: self.point, feature: self.feature, index }
+impl DeepPoint {
+    pub(super) fn best(&self, index: u32) -> DeepestCandidate {
+        DeepestCandidate { point: self.point, feature: self.feature, index }
     }
 }

@@ -1,5 +1,5 @@
-//! One triangle by itself: the ways through it along which it is deepest, and its halves.
+//! A single triangle: the lines in it on which depth can be greatest, and its subdivision.
 
-pub(crate) mod course;
-pub(crate) mod facet;
-pub(crate) mod piece;
+pub(crate) mod line_search;
+pub(crate) mod local;
+pub(crate) mod subdivision;

@@ -1,22 +1,22 @@
-//! What a PLY file holds, one element after another.
+//! Reader of a PLY file's body, one element after another.
 
 use super::PlyError;
 use super::header::{self, Element, Encoding, Header, Property, Type};
-use crate::mesh::words::{Place, Words, number, shown};
+use crate::mesh::location::{SourceLocation, Tokens, number, shown};
 
-/// An element as read: the numbers asked for and the items of the list asked for.
+/// One element: the requested numbers and the items of the requested list.
 pub(super) struct Record<'r, const N: usize> {
-    pub(super) place: Place,
+    pub(super) place: SourceLocation,
     pub(super) index: usize,
     pub(super) numbers: [f64; N],
     pub(super) items: &'r [f64],
 }
 
-/// Goes through a file after its header.
+/// A cursor over the file after its header.
 pub(super) struct Body<'a, 'n> {
     name: &'n str,
     encoding: Encoding,
-    words: Words<'a>,
+    words: Tokens<'a>,
     length: usize,
     index: usize,
 }
@@ -28,8 +28,9 @@ impl<'a, 'n> Body<'a, 'n> {
         Ok((header, Body { name, encoding, words, length: bytes.len(), index: 0 }))
     }
 
-    /// Reads all of an element, which must be the next: the properties at `wanted` and the list
-    /// at `list`, none where `None`.
+    /// Reads all elements of one kind, which must be next in the file. `take` receives the numbers of
+    /// the properties at the indices `wanted` and the items of the list property at index `list`; `None`
+    /// requests nothing.
     pub(super) fn read<const N: usize>(
         &mut self,
         element: &Element,
@@ -72,7 +73,7 @@ impl<'a, 'n> Body<'a, 'n> {
         Ok(())
     }
 
-    /// The end of the file, and nothing before it.
+    /// Checks that the file ends here.
     pub(super) fn end(mut self) -> Result<(), PlyError> {
         let place = self.start();
         if self.words.rest.is_empty() {
@@ -86,17 +87,17 @@ impl<'a, 'n> Body<'a, 'n> {
         self.name.to_owned()
     }
 
-    fn start(&mut self) -> Place {
+    fn start(&mut self) -> SourceLocation {
         if self.encoding == Encoding::Ascii {
             self.words.skip_space();
         }
         self.place()
     }
 
-    fn place(&self) -> Place {
+    fn place(&self) -> SourceLocation {
         match self.encoding {
-            Encoding::Ascii => Place::Line(self.words.line),
-            _ => Place::Byte(self.length - self.words.rest.len()),
+            Encoding::Ascii => SourceLocation::Line(self.words.line),
+            _ => SourceLocation::Byte(self.length - self.words.rest.len()),
         }
     }
 
@@ -114,7 +115,7 @@ impl<'a, 'n> Body<'a, 'n> {
         element: &Element,
         property: &Property,
         length: Type,
-        place: Place,
+        place: SourceLocation,
         into: Option<&mut Vec<f64>>,
     ) -> Result<(), PlyError> {
         let value = self.number(element, property, length)?;
@@ -160,7 +161,7 @@ impl<'a, 'n> Body<'a, 'n> {
         })
     }
 
-    /// Skips so many values of a property.
+    /// Skips `count` values of a property.
     fn skip(
         &mut self,
         element: &Element,
@@ -183,7 +184,7 @@ impl<'a, 'n> Body<'a, 'n> {
         }
     }
 
-    /// The next bytes, the lowest first.
+    /// Reads the next `N` bytes and returns them in little-endian order.
     fn bytes<const N: usize>(&mut self, element: &Element) -> Result<[u8; N], PlyError> {
         let Some((bytes, rest)) = self.words.rest.split_first_chunk() else {
             return Err(self.ended(element));
@@ -207,7 +208,7 @@ impl<'a, 'n> Body<'a, 'n> {
 
     fn ended(&self, element: &Element) -> PlyError {
         let place = match self.place() {
-            Place::Byte(_) => Place::Byte(self.length),
+            SourceLocation::Byte(_) => SourceLocation::Byte(self.length),
             line => line,
         };
         PlyError::Ended {
@@ -220,7 +221,7 @@ impl<'a, 'n> Body<'a, 'n> {
     }
 }
 
-/// A number that is whole and fits 32 bits, as such.
+/// Converts a number to `u32`, if it is integral and in range.
 pub(super) fn whole(value: f64) -> Option<u32> {
     let whole = value as u32;
     (f64::from(whole) == value).then_some(whole)

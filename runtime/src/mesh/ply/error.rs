@@ -1,66 +1,66 @@
-//! Why a PLY file is refused.
+//! Errors of the PLY reader.
 
-use crate::mesh::{MeshError, Place, Stray};
+use crate::mesh::{MeshError, Outlier, SourceLocation};
 
-/// Why a PLY file could not be read. Lines count from 1, elements and bytes from 0.
+/// Reasons why a PLY file could not be read. Lines count from 1, elements and bytes from 0.
 #[derive(Debug, thiserror::Error)]
 pub enum PlyError {
-    /// It does not begin as every PLY file does.
+    /// The first line is not `ply`.
     #[error("{file} is no PLY file: its first line is not `ply`: convert the part to PLY")]
     NotPly {
-        /// The file.
+        /// The file name.
         file: String,
     },
-    /// A line of the header, or of an ASCII file, says something else than it must.
+    /// A line of the header, or of an ASCII file, does not match the grammar.
     #[error(
         "{file}, line {line}: expected {expected}, found {found}: mend the line, or export the \
          part again"
     )]
     Expected {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
-        /// What should stand there.
+        /// The expected content.
         expected: String,
-        /// What does.
+        /// The content found instead.
         found: String,
     },
-    /// A part of the surface is written in a form that is not read.
+    /// A part of the surface is written in an unsupported form.
     #[error(
         "{file} has a surface in `{unread}` too, which is not read: export the part as faces alone"
     )]
     Unread {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The element or list.
+        /// The name of the element or list.
         unread: String,
     },
-    /// The header gives one name to two things.
+    /// The header gives the same name to two elements or properties.
     #[error("{file}, line {line}: there is a second `{name}`: give each its own name")]
     Twice {
-        /// The file.
+        /// The file name.
         file: String,
-        /// The line.
+        /// The line number, from 1.
         line: usize,
         /// The name of the element or property.
         name: String,
     },
-    /// The file is shorter than its header promises.
+    /// The file is shorter than its header declares.
     #[error(
         "{file} is cut off, or its header is wrong: {count} of `{element}` take {least} bytes at \
          least, but only {found} follow: export or copy it again"
     )]
     Promised {
-        /// The file.
+        /// The file name.
         file: String,
         /// The element's name.
         element: String,
-        /// How many the header promises.
+        /// The number of elements declared in the header.
         count: usize,
-        /// How many bytes they take at least.
+        /// The minimum number of bytes that the elements take.
         least: u128,
-        /// How many bytes there are.
+        /// The number of bytes found.
         found: usize,
     },
     /// The file ends within an element.
@@ -69,132 +69,132 @@ pub enum PlyError {
          export or copy it again"
     )]
     Ended {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where it ends.
-        place: Place,
+        /// The location at which it ends.
+        place: SourceLocation,
         /// The element's name.
         element: String,
-        /// Which of them.
+        /// The index of the element, from 0.
         index: usize,
-        /// How many the header promises.
+        /// The number of elements declared in the header.
         count: usize,
     },
-    /// The file goes on after its last element.
+    /// The file continues after its last element.
     #[error(
         "{file} goes on at {place}, after all that its header promises, and what follows is \
          unknown: export it again, one part to a file"
     )]
     Trailing {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where it goes on.
-        place: Place,
+        /// The location at which it continues.
+        place: SourceLocation,
     },
-    /// A number is not what its property must be.
+    /// A number is not valid for its property.
     #[error(
         "{file}, {place}: `{property}` of `{element}` {index} (from 0) is {value:?}, but must be \
          {rule}: repair the part where it was made"
     )]
     Value {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the element begins.
-        place: Place,
+        /// The location of the element in the file.
+        place: SourceLocation,
         /// The element's name.
         element: String,
-        /// Which of them.
+        /// The index of the element, from 0.
         index: usize,
         /// The property's name.
         property: String,
-        /// The number.
+        /// The number found.
         value: f64,
-        /// What it must be.
+        /// The condition on the number.
         rule: &'static str,
     },
-    /// A face names a vertex that is not there.
+    /// A face names a vertex that does not exist.
     #[error(
         "{file}, {place}: face {face} (from 0) names vertex {vertex}, but there are {vertices}, \
          counted from 0: export the part again"
     )]
     Index {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the face begins.
-        place: Place,
-        /// The face.
+        /// The location of the face in the file.
+        place: SourceLocation,
+        /// The face's index, from 0.
         face: usize,
-        /// The vertex it names.
+        /// The vertex index in the face.
         vertex: u32,
-        /// How many there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// A face is less than a triangle.
+    /// A face has fewer than three corners.
     #[error(
         "{file}, {place}: face {face} (from 0) has {corners} corners: a face has three at least; \
          repair the mesh where it was made"
     )]
     Corners {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the face begins.
-        place: Place,
-        /// The face.
+        /// The location of the face in the file.
+        place: SourceLocation,
+        /// The face's index, from 0.
         face: usize,
-        /// How many corners it has.
+        /// The number of corners.
         corners: usize,
     },
-    /// A polygon is not filled by triangles from its first corner.
+    /// The fan of triangles from the first corner of a polygon does not fill it.
     #[error(
         "{file}, {place}: the polygon is too hollow or too bent to be cut into triangles from its \
          first corner: export the part in triangles"
     )]
     Folded {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the face begins.
-        place: Place,
+        /// The location of the face in the file.
+        place: SourceLocation,
     },
-    /// A point without a direction out of the material.
+    /// The normal of a point cannot be normalised.
     #[error(
         "{file}, {place}: the normal of point {point} (from 0) is no direction: its norm is \
          {norm:?}; remove the point, or compute the normals anew"
     )]
     Normal {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the point stands.
-        place: Place,
-        /// The point.
+        /// The location of the point in the file.
+        place: SourceLocation,
+        /// The point's index, from 0.
         point: usize,
-        /// The normal's norm; NaN when a component is.
+        /// The normal's norm; NaN if a component is NaN.
         norm: f64,
     },
-    /// There is no vertex that could be placed.
+    /// There are no vertices, or they lack coordinates.
     #[error(
         "{file} has no points: it needs an element `vertex` with the numbers `x`, `y` and `z`: \
          export the part again"
     )]
     NoPoints {
-        /// The file.
+        /// The file name.
         file: String,
     },
-    /// There is no surface.
+    /// The file has no faces.
     #[error(
         "{file} has no faces: it needs an element `face` with the list `vertex_indices`: export \
          the part as a mesh, or read it as points"
     )]
     NoFaces {
-        /// The file.
+        /// The file name.
         file: String,
     },
-    /// Nobody knows which way is out.
+    /// The points have no normals, so the outward direction is unknown.
     #[error(
         "{file} holds points without normals, and which way is out cannot be known: export them \
          with `nx`, `ny` and `nz`, or export the mesh, with its faces"
     )]
     NoNormals {
-        /// The file.
+        /// The file name.
         file: String,
     },
     /// A vertex is far outside the rest of the part.
@@ -202,21 +202,21 @@ pub enum PlyError {
         "{file}, {place}: vertex {vertex} (from 0): {stray}: mend the coordinate, or export or copy the part again"
     )]
     Stray {
-        /// The file.
+        /// The file name.
         file: String,
-        /// Where the vertex stands.
-        place: Place,
-        /// The vertex.
+        /// The location of the vertex in the file.
+        place: SourceLocation,
+        /// The vertex index, from 0.
         vertex: usize,
-        /// What is wrong with it.
-        stray: Stray,
+        /// The outlying coordinate and its statistics.
+        stray: Outlier,
     },
-    /// The file is in order, but what it holds is no mesh.
+    /// The file is well formed, but its content is not a mesh.
     #[error("{file}: {source}")]
     Mesh {
-        /// The file.
+        /// The file name.
         file: String,
-        /// What is wrong with the mesh.
+        /// The defect of the mesh.
         source: MeshError,
     },
 }

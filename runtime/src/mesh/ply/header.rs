@@ -1,7 +1,7 @@
-//! What a PLY file says it holds.
+//! Reader of a PLY file's header.
 
 use super::PlyError;
-use crate::mesh::words::{Words, shown};
+use crate::mesh::location::{Tokens, shown};
 use std::collections::HashSet;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -50,9 +50,9 @@ impl Type {
 
 pub(super) struct Property<'a> {
     pub(super) name: &'a [u8],
-    /// Of a list, the type of its length.
+    /// The type of the length of a list; `None` for a scalar.
     pub(super) length: Option<Type>,
-    /// Of a list, the type of its items.
+    /// The type of the value, or of each item of a list.
     pub(super) value: Type,
 }
 
@@ -63,23 +63,25 @@ pub(super) struct Element<'a> {
 }
 
 impl Element<'_> {
-    /// Where among the properties a number of some name is.
+    /// Returns the index of the scalar property with the given name.
     pub(super) fn number(&self, name: &str) -> Option<usize> {
         let is_it = |p: &Property| p.name == name.as_bytes() && p.length.is_none();
         self.properties.iter().position(is_it)
     }
 
-    /// Where among the properties a list of some name is.
+    /// Returns the index of the list property with the given name.
     pub(super) fn list(&self, name: &str) -> Option<usize> {
         let is_it = |p: &Property| p.name == name.as_bytes() && p.length.is_some();
         self.properties.iter().position(is_it)
     }
 
-    /// The fewest bytes that hold all of these elements: what a count may promise.
+    /// Returns the minimum number of bytes for all of these elements, to check `count` against the file
+    /// length.
     pub(super) fn least_bytes(&self, encoding: Encoding) -> u128 {
         let count = self.count as u128;
         if encoding == Encoding::Ascii {
-            // A digit and what ends it, but for the file's last.
+            // A digit and a separator per value, except that the last value of the file needs no
+            // separator.
             return (2 * count * self.properties.len() as u128).saturating_sub(1);
         }
         let sizes = self.properties.iter().map(|p| p.length.unwrap_or(p.value).bytes() as u128);
@@ -98,18 +100,18 @@ impl<'a> Header<'a> {
     }
 }
 
-/// Whether a file begins as PLY does.
+/// Returns whether a file begins as PLY does.
 pub(in crate::mesh) fn begins(bytes: &[u8]) -> bool {
-    let mut words = Words::new(bytes);
+    let mut words = Tokens::new(bytes);
     words.rest.starts_with(b"ply") && words.next() == Some(b"ply") && words.next_on_line().is_none()
 }
 
-/// The header and what follows it.
-pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words<'a>), PlyError> {
+/// Reads the header and returns it with the tokens that follow it.
+pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Tokens<'a>), PlyError> {
     if !begins(bytes) {
         return Err(PlyError::NotPly { file: name.to_owned() });
     }
-    let mut lines = Lines { words: Words::new(bytes), name };
+    let mut lines = Lines { words: Tokens::new(bytes), name };
     lines.words.skip_line();
     let ends_in_cr = matches!(lines.words.rest, [b'\r', next, ..] if *next != b'\n');
     let mut encoding = None;
@@ -152,7 +154,7 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words
     if encoding == Encoding::Ascii {
         lines.end()?;
     } else {
-        // What follows may look like another end of line.
+        // The first byte of the body may look like part of the line end, so strip exactly one.
         let line_end: &[u8] = if ends_in_cr { b"\r" } else { b"\r\n" };
         let blanks = |byte: &u8| *byte == b' ' || *byte == b'\t';
         let rest = lines.words.rest;
@@ -166,9 +168,9 @@ pub(super) fn read<'a>(bytes: &'a [u8], name: &str) -> Result<(Header<'a>, Words
     Ok((Header { encoding, elements }, lines.words))
 }
 
-/// The grammar of the header's lines, one function for each of its phrases.
+/// A parser for the header's lines, with one function per phrase of the grammar.
 struct Lines<'a, 'n> {
-    words: Words<'a>,
+    words: Tokens<'a>,
     name: &'n str,
 }
 
@@ -187,7 +189,7 @@ impl<'a> Lines<'a, '_> {
         PlyError::Twice { file: self.name.to_owned(), line: self.words.line, name: shown(name) }
     }
 
-    /// A word that means something, or an error that says what should have stood there.
+    /// Reads a word and converts it with `meaning`, or returns an error that names the expected content.
     fn word<T>(
         &mut self,
         expected: &str,

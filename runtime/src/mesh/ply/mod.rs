@@ -1,5 +1,5 @@
-//! Reading PLY, ASCII and binary in both byte orders. The reader is our own because `ply-rs-bw`
-//! takes properties named twice, numbers too many and bytes left over without a word, refuses a
+//! Reading PLY, ASCII and binary in both byte orders. The crate has its own reader because `ply-rs-bw`
+//! silently accepts properties named twice, surplus numbers and trailing bytes. It also refuses a
 //! comment that is not UTF-8 or a coordinate such as `.5`, and names no byte of a binary file.
 
 mod body;
@@ -13,48 +13,48 @@ use nalgebra::{Point3, Vector3};
 use self::body::{Body, Record, whole};
 use self::header::{Element, Header};
 use super::faces::Faces;
-use super::stray::{Stray, stray};
-use super::words::shown;
-use super::{Mesh, coordinate_holds};
+use super::location::shown;
+use super::outlier::{Outlier, find_outlier};
+use super::{Mesh, is_valid_coordinate};
 use crate::unit::Unit;
 
 pub use self::error::PlyError;
 pub(super) use self::header::begins;
 
-/// What writers call the list of a face's corners.
+/// Names that exporters give to the list of a face's corners.
 const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// Elements that are surfaces too, and are not read.
+/// Elements that describe surfaces too, but are not supported.
 const STRIPS: [&[u8]; 3] = [b"tristrips", b"trifans", b"patches"];
 
 const COORDINATE_RULE: &str = "finite and within 1e60";
 
-/// Points of a part's surface, as a file gives them.
+/// Points of a part's surface with normals, as read from a file.
 ///
-/// The lists have the same, non-zero length. Coordinates are finite, normals are unit vectors.
+/// The lists have the same, non-zero length. Coordinates are finite; normals are unit vectors.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Points {
-    /// Where the points are.
+pub struct OrientedPoints {
+    /// The positions of the points.
     pub places: Vec<Point3<f64>>,
-    /// Which way is out of the material, of norm 1.
+    /// The outward directions, away from the material, of norm 1.
     pub normals: Vec<Vector3<f64>>,
-    /// The id of the face that each point lies on, if the file says so.
+    /// The id of the face that each point lies on, if the file contains it.
     pub faces: Option<Vec<u32>>,
-    /// The area for which each point stands, from 0 to 1e60, if the file says so.
+    /// The area that each point represents, from 0 to 1e60, if the file contains it.
     pub areas: Option<Vec<f64>>,
 }
 
-impl Points {
-    /// Reads a PLY file's vertices as points; `name` stands for the file in errors. No bytes make
-    /// it panic.
+impl OrientedPoints {
+    /// Reads a PLY file's vertices as points; errors name the file as `name`. No input makes this
+    /// function panic.
     ///
-    /// Each needs `x y z` and a normal `nx ny nz`, which is normalised: exporters round it. It may
-    /// have a `face`, the id of what it lies on, and an `area`. Whatever else there is, faces as
-    /// well, is skipped.
+    /// Each vertex needs `x y z` and a normal `nx ny nz`, which is normalised because exporters round
+    /// it. It may have a `face`, the id of the face it lies on, and an `area`. Everything else,
+    /// including faces, is skipped.
     ///
     /// # Errors
     /// See [`PlyError`].
-    pub fn from_ply(bytes: &[u8], name: &str) -> Result<Points, PlyError> {
+    pub fn from_ply(bytes: &[u8], name: &str) -> Result<OrientedPoints, PlyError> {
         let (header, mut body) = Body::new(bytes, name)?;
         let file = || name.to_owned();
         let (vertex, [x, y, z]) = vertex(&header, name)?;
@@ -64,10 +64,10 @@ impl Points {
         };
         let [nx, ny, nz] = normal;
         let (face, area) = (vertex.number("face"), vertex.number("area"));
-        let mut points = Points {
+        let mut points = OrientedPoints {
             faces: face.map(|_| Vec::new()),
             areas: area.map(|_| Vec::new()),
-            ..Points::default()
+            ..OrientedPoints::default()
         };
         for element in &header.elements {
             if element.name != vertex.name {
@@ -90,7 +90,7 @@ impl Points {
                     faces.push(whole(face).ok_or_else(odd)?);
                 }
                 if let Some(areas) = &mut points.areas {
-                    if !(coordinate_holds(area) && area >= 0.0) {
+                    if !(is_valid_coordinate(area) && area >= 0.0) {
                         let rule = "a finite area from 0 to 1e60";
                         return Err(value(&record, "vertex", "area", area, rule, name));
                     }
@@ -100,7 +100,7 @@ impl Points {
             })?;
         }
         body.end()?;
-        match stray(&points.places) {
+        match find_outlier(&points.places) {
             None => Ok(points),
             Some((vertex, _, stray)) => Err(stray_vertex(bytes, name, vertex, stray)),
         }
@@ -108,14 +108,14 @@ impl Points {
 }
 
 impl Mesh {
-    /// Reads a PLY file's faces as a mesh, whose numbers are in `unit` (PLY states none); `name`
-    /// stands for the file in errors. No bytes make it panic.
+    /// Reads a PLY file's faces as a mesh, whose numbers are in `unit` (PLY states none); errors name
+    /// the file as `name`. No input makes this function panic.
     ///
-    /// A face of more than three corners is cut into triangles from its first corner, and refused
-    /// where these do not fill it; ids count the resulting triangles. Corners with equal
-    /// coordinates become one vertex, as in [`Mesh::read_stl`]: exporters double the vertices of
-    /// sharp edges. Other elements and properties are skipped, but
-    /// triangle strips and a second list of corners, which are refused.
+    /// A face with more than three corners is divided into a fan of triangles from its first corner, and
+    /// refused if the fan does not fill it; ids count the resulting triangles. Corners with equal
+    /// coordinates become one vertex, as in [`Mesh::read_stl`], because exporters double the vertices of
+    /// sharp edges. Other elements and properties are skipped, except triangle strips and a second list
+    /// of corners, which are refused.
     ///
     /// # Errors
     /// See [`PlyError`].
@@ -164,7 +164,7 @@ impl Mesh {
             return Err(PlyError::Folded { file: file(), place });
         }
         let (used, corners) = faces.used(&vertices);
-        if let Some((at, _, stray)) = stray(&corners) {
+        if let Some((at, _, stray)) = find_outlier(&corners) {
             return Err(stray_vertex(bytes, name, used[at], stray));
         }
         let mesh = faces.weld(&vertices, unit);
@@ -172,8 +172,8 @@ impl Mesh {
     }
 }
 
-/// The error for a vertex far outside the others of a sound file.
-fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Stray) -> PlyError {
+/// Returns the error for a vertex far outside the others in a valid file.
+fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Outlier) -> PlyError {
     let found = |record: Record<0>| match record.index == vertex {
         true => Err(PlyError::Stray { file: name.to_owned(), place: record.place, vertex, stray }),
         false => Ok(()),
@@ -193,13 +193,13 @@ fn stray_vertex(bytes: &[u8], name: &str, vertex: usize, stray: Stray) -> PlyErr
     search().err().unwrap_or(nowhere)
 }
 
-/// Whether a PLY file holds faces, and so a mesh rather than points.
+/// Returns whether a PLY file holds faces; if so it is a mesh, otherwise points.
 pub(super) fn has_faces(bytes: &[u8], name: &str) -> Result<bool, PlyError> {
     let (header, _) = header::read(bytes, name)?;
     Ok(header.element("face").is_some_and(|face| face.count > 0))
 }
 
-/// The element of the points, and which of its properties are the coordinates.
+/// Returns the vertex element and the indices of its coordinate properties.
 fn vertex<'h, 'a>(
     header: &'h Header<'a>,
     name: &str,
@@ -212,11 +212,11 @@ fn vertex<'h, 'a>(
     }
 }
 
-/// The first three numbers of a vertex, its coordinates.
+/// Returns the position of a vertex, from the first three numbers of its record.
 fn place<const N: usize>(record: &Record<N>, name: &str) -> Result<Point3<f64>, PlyError> {
     let axes = ["x", "y", "z"].iter().zip(record.numbers);
     for (axis, coordinate) in axes.clone() {
-        if !coordinate_holds(coordinate) {
+        if !is_valid_coordinate(coordinate) {
             return Err(value(record, "vertex", axis, coordinate, COORDINATE_RULE, name));
         }
     }
@@ -225,7 +225,7 @@ fn place<const N: usize>(record: &Record<N>, name: &str) -> Result<Point3<f64>, 
     Ok(place)
 }
 
-/// The vertices of a face, of which there are `vertices` to choose from.
+/// Collects the vertex indices of a face and checks them against the number of vertices.
 fn corners_of(
     record: &Record<0>,
     list: &str,

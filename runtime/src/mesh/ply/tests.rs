@@ -1,4 +1,4 @@
-//! Reading and refusing PLY.
+//! Tests of reading and refusing PLY.
 
 use super::*;
 use crate::mesh::shapes;
@@ -12,7 +12,7 @@ const CLOUD: &str = "property float x\nproperty float y\nproperty float z\nprope
                      property float ny\nproperty float nz\nproperty int face\n\
                      property double area\n";
 
-/// Writes what a header declares, in any encoding.
+/// A writer of PLY files in any encoding.
 struct Writer {
     encoding: &'static str,
     bytes: Vec<u8>,
@@ -60,7 +60,7 @@ fn cuboid() -> Mesh {
     shapes::cuboid(Point3::origin(), high, UNIT).expect("a cuboid")
 }
 
-/// The cuboid among elements and properties that nobody asked for.
+/// Returns the cuboid among elements and properties that are not requested.
 fn mesh_file(encoding: &'static str) -> Vec<u8> {
     let header = format!(
         "element camera 2\nproperty list uchar short view\nelement vertex 8\n{XYZ}property uchar \
@@ -104,7 +104,7 @@ fn cloud_file(encoding: &'static str, points: &[([f32; 6], i32, f64)]) -> Vec<u8
     file.bytes
 }
 
-/// A triangle in ASCII, its header and body after some change.
+/// Returns a triangle in ASCII with `change` replaced by `into` in its header or body.
 fn ascii(change: &str, into: &str) -> String {
     let file = format!(
         "ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 1\nproperty list uchar int \
@@ -120,7 +120,7 @@ fn refusal(bytes: impl AsRef<[u8]>) -> String {
 }
 
 fn cloud_refusal(bytes: impl AsRef<[u8]>) -> String {
-    let refused = Points::from_ply(bytes.as_ref(), "part.ply");
+    let refused = OrientedPoints::from_ply(bytes.as_ref(), "part.ply");
     refused.expect_err("it should be refused").to_string()
 }
 
@@ -131,7 +131,7 @@ fn reads_meshes_in_every_encoding() {
         let bytes = mesh_file(encoding);
         assert!(has_faces(&bytes, "").expect("a header"));
         let mesh = Mesh::from_ply(&bytes, "", UNIT).expect(encoding);
-        assert!(mesh.survey().solid(), "{encoding}: {}", mesh.survey());
+        assert!(mesh.diagnostics().is_solid(), "{encoding}: {}", mesh.diagnostics());
         assert!(mesh.corners().eq(expected.corners()), "{encoding}");
         let crlf = String::from_utf8_lossy(&bytes).replace('\n', "\r\n").into_bytes();
         if encoding == "ascii" {
@@ -147,8 +147,8 @@ fn reads_points_in_every_encoding() {
     for encoding in ENCODINGS {
         let bytes = cloud_file(encoding, &points);
         assert!(!has_faces(&bytes, "").expect("a header"));
-        let read = Points::from_ply(&bytes, "").expect(encoding);
-        let expected = Points {
+        let read = OrientedPoints::from_ply(&bytes, "").expect(encoding);
+        let expected = OrientedPoints {
             places: vec![Point3::new(1.0, 2.0, 3.0), Point3::new(0.0, 0.0, 10.0)],
             normals: vec![Vector3::z(), Vector3::new(0.6, 0.0, 0.8)],
             faces: Some(vec![7, 0]),
@@ -157,8 +157,9 @@ fn reads_points_in_every_encoding() {
         assert_eq!(read, expected, "{encoding}");
         let text = String::from_utf8_lossy(&bytes).replace(" face\n", " f\n").replace("area", "a");
         if encoding == "ascii" {
-            let bare = Points::from_ply(text.as_bytes(), "").expect("without ids and areas");
-            assert_eq!(bare, Points { faces: None, areas: None, ..expected });
+            let bare =
+                OrientedPoints::from_ply(text.as_bytes(), "").expect("without ids and areas");
+            assert_eq!(bare, OrientedPoints { faces: None, areas: None, ..expected });
         }
     }
 }
@@ -191,7 +192,7 @@ fn binary_begins_after_one_end_of_line() {
         let x = f32::from_le_bytes([b'\n', b'\r', b'\n', 0x41]);
         bytes.extend([x, 0.0, 0.0, 0.0, 0.0, 1.0].iter().flat_map(|n| n.to_le_bytes()));
         bytes.extend([0; 12]);
-        let read = Points::from_ply(&bytes, "").expect("a point");
+        let read = OrientedPoints::from_ply(&bytes, "").expect("a point");
         assert_eq!(read.places, [Point3::new(f64::from(x), 0.0, 0.0)], "{end:?}");
     }
 }
@@ -208,7 +209,7 @@ fn polygons_are_fanned_unless_that_folds_them() {
     let areas: Vec<f64> = (0..3).map(|id| mesh.area(id)).collect();
     assert_eq!(areas, [2.0, 2.0, 1.0]);
     let hollow = Mesh::from_ply(with("5 3 4 0 1 2", 0.5).as_bytes(), "", UNIT);
-    assert_eq!(hollow.expect("seen whole from its first corner").survey().area, 2.5);
+    assert_eq!(hollow.expect("seen whole from its first corner").diagnostics().area, 2.5);
     for corners in ["5 1 2 3 4 0", "4 0 1 4 2"] {
         let message = refusal(with(corners, 0.5));
         assert!(message.starts_with("part.ply, line 10: the polygon is too hollow"), "{message}");
@@ -224,7 +225,7 @@ fn doubled_vertices_are_one() {
     mesh.corners().flatten().for_each(|c| file += &format!("{} {} {}\n", c.x, c.y, c.z));
     (0..12).for_each(|id| file += &format!("3 {} {} {}\n", 3 * id, 3 * id + 1, 3 * id + 2));
     let read = Mesh::from_ply(file.as_bytes(), "", UNIT).expect("a cuboid");
-    assert!(read.vertices().len() == 8 && read.survey().solid());
+    assert!(read.vertices().len() == 8 && read.diagnostics().is_solid());
 }
 
 #[test]
@@ -357,13 +358,13 @@ fn a_file_cut_anywhere_is_refused() {
     for encoding in ENCODINGS {
         let mesh = mesh_file(encoding);
         let cloud = cloud_file(encoding, &[([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 1, 0.5)]);
-        // Of the last word of a text nobody knows how long it should have been.
+        // The expected length of the last word of a text is unknown.
         let last = if encoding == "ascii" { 4 } else { 0 };
         for length in 0..mesh.len() - last {
             assert!(Mesh::from_ply(&mesh[..length], "", UNIT).is_err(), "{encoding} {length}");
         }
         for length in 0..cloud.len() - last {
-            assert!(Points::from_ply(&cloud[..length], "").is_err(), "{encoding} {length}");
+            assert!(OrientedPoints::from_ply(&cloud[..length], "").is_err(), "{encoding} {length}");
         }
         let longer = refusal([&mesh[..], b"!"].concat());
         assert!(longer.contains("goes on at"), "{longer}");
@@ -380,10 +381,10 @@ fn survives_any_bytes() {
             for _ in 0..2000 {
                 let bytes = mangled(&seed, &words, &mut random);
                 if let Ok(mesh) = Mesh::from_ply(&bytes, "", UNIT) {
-                    let survey = mesh.survey();
+                    let survey = mesh.diagnostics();
                     assert!(survey.area > 0.0 && survey.area.is_finite(), "{survey:?}");
                 }
-                if let Ok(points) = Points::from_ply(&bytes, "") {
+                if let Ok(points) = OrientedPoints::from_ply(&bytes, "") {
                     assert!(points.normals.iter().all(|n| (n.norm() - 1.0).abs() < 1e-12));
                     assert_eq!(points.places.len(), points.normals.len());
                 }
@@ -392,7 +393,7 @@ fn survives_any_bytes() {
     }
 }
 
-/// Triangle strips and a second list of corners are surfaces too.
+/// Checks that triangle strips and a second list of corners are refused as unread surfaces.
 #[test]
 fn a_surface_that_is_not_read_is_refused() {
     let vertices = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";

@@ -1,4 +1,4 @@
-//! Where tools touch: what is known of each in closed form, and that no place beside the contact is cut.
+//! Contacts of tools: closed forms, and a check that no point beside the contact is cut.
 
 use super::*;
 use crate::Level;
@@ -7,7 +7,7 @@ use crate::unit::Unit;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::tool::{Ask, Felt, Points};
+use crate::tool::{Evaluations, Outputs, PointBatch};
 
 crate::tool! {
     tool Ball "a ball on a straight shank" {
@@ -101,39 +101,41 @@ fn unit(draw: &mut impl FnMut(f64, f64) -> f64) -> Vector3<f64> {
     }
 }
 
-/// Whether places of the world are in a tool.
+/// Returns per point in the world whether it is inside a tool.
 fn inside(
     tool: &dyn Tool,
     tip: Point3<f64>,
     axis: Vector3<f64>,
     places: &[Point3<f64>],
 ) -> Vec<bool> {
-    let mut points = Points::default();
-    let length = tool.card().unit.to(Unit::Millimetre);
+    let mut points = PointBatch::default();
+    let length = tool.info().unit.factor_to(Unit::Millimetre);
     for place in places {
         let way = (place - tip) / length;
         let z = way.dot(&axis);
         points.push([(way - axis * z).norm(), 0.0, z]);
     }
-    let mut felt = Felt::default();
-    tool.evaluate(Level::new(), Ask::INSIDE, &points, length, &mut felt);
+    let mut evaluations = Evaluations::default();
+    tool.evaluate(Level::new(), Outputs::INSIDE, &points, length, &mut evaluations);
     let mut all = vec![false; places.len()];
-    felt.places().for_each(|place| all[place] = true);
+    evaluations.inside_indices().for_each(|place| all[place] = true);
     all
 }
 
-/// The contacts of a plane through a place with a tool in mm.
+/// Returns the contacts between a tool and the plane through a point, in mm.
 fn contacts(
     tool: &dyn Tool,
     place: Point3<f64>,
     normal: Vector3<f64>,
     axis: Vector3<f64>,
 ) -> Vec<Contact> {
-    let card = tool.card();
-    Sites::new(card, card.unit.to(Unit::Millimetre)).contacts(place, normal, axis).collect()
+    let info = tool.info();
+    ContactSites::new(info, info.unit.factor_to(Unit::Millimetre))
+        .contacts(place, normal, axis)
+        .collect()
 }
 
-/// An axis so far from a normal up.
+/// Returns an axis at an angle in degrees to the normal +z.
 fn leaning(degrees: f64) -> Vector3<f64> {
     let (sine, cosine) = degrees.to_radians().sin_cos();
     Vector3::new(sine, 0.0, cosine)
@@ -144,7 +146,7 @@ fn below_the_place_is_the_tool_and_above_beside_it_the_face() {
     let mut draw = draws();
     let tools: [&dyn Tool; 6] = [&Ball, &Bull, &Flat, &Point, &Lollipop, &Steps];
     for tool in tools {
-        let size = tool.card().size() * tool.card().unit.to(Unit::Millimetre);
+        let size = tool.info().size() * tool.info().unit.factor_to(Unit::Millimetre);
         let mut stood = 0;
         for _ in 0..3_000 {
             let place = Point3::from(unit(&mut draw) * 40.0);
@@ -158,20 +160,20 @@ fn below_the_place_is_the_tool_and_above_beside_it_the_face() {
                     places.push(place + along * (1e-5 * size) - normal * (1e-9 * size));
                 }
                 let inside = inside(tool, contact.tip, axis, &places);
-                let text = format!("{} {normal:?} {axis:?}", tool.card().name);
+                let text = format!("{} {normal:?} {axis:?}", tool.info().name);
                 assert!(inside[0], "not at its place: {text}");
                 assert!(!inside[1..].contains(&true), "beyond the face: {text}");
-                let tool_unit = size / tool.card().size();
-                let mut felt = Felt::default();
-                let mut points = Points::default();
+                let tool_unit = size / tool.info().size();
+                let mut evaluations = Evaluations::default();
+                let mut points = PointBatch::default();
                 for [d, z] in contact.within {
                     points.push([d / tool_unit, 0.0, z / tool_unit]);
                 }
-                tool.evaluate(Level::new(), Ask::INSIDE, &points, 1.0, &mut felt);
-                assert_eq!(felt.places().count(), 2, "a place is outside: {text}");
+                tool.evaluate(Level::new(), Outputs::INSIDE, &points, 1.0, &mut evaluations);
+                assert_eq!(evaluations.inside_indices().count(), 2, "a place is outside: {text}");
             }
         }
-        assert!(stood > 300, "{}: {stood}", tool.card().name);
+        assert!(stood > 300, "{}: {stood}", tool.info().name);
     }
 }
 
@@ -197,11 +199,11 @@ fn a_bull_nose_that_leans_stands_on_its_corners_arc() {
         let axis = leaning(degrees);
         let all = contacts(&Bull, Point3::origin(), Vector3::z(), axis);
         assert_eq!(all.len(), 1, "{degrees}");
-        // The arc's middle is 4 from the axis, where that is lowest, and 2 along it.
+        // The arc's centre is 4 from the axis, on its lowest side, and 2 along it.
         let corner = all[0].tip + Vector3::new(cosine, 0.0, -sine) * 4.0 + axis * 2.0;
         assert!((corner - Point3::new(0.0, 0.0, 2.0)).norm() < 1e-12, "{degrees}: {corner}");
     }
-    // Upright it stands on its face, of which no place is the one that touches.
+    // An upright tool stands on its flat face, which has no single point of contact.
     assert!(contacts(&Bull, Point3::origin(), Vector3::z(), Vector3::z()).is_empty());
 }
 
@@ -224,13 +226,13 @@ fn a_cones_tip_touches_as_far_as_its_side_lets_it() {
         assert_eq!(all.len(), count, "{degrees}");
         assert!(all.iter().all(|contact| contact.tip.coords.norm() < 1e-12));
     }
-    // Then the cone's upper corner would, but the shank above it does not cut.
+    // At this angle the cone's upper corner would touch, but the shank above it does not cut.
     assert!(contacts(&Point, Point3::origin(), Vector3::z(), leaning(60.0)).is_empty());
 }
 
 #[test]
 fn a_lollipop_touches_what_it_is_under() {
-    // The neck begins where the normal is 53 degrees up.
+    // The neck begins where the normal points 53 degrees upward.
     let under =
         |degrees: f64| contacts(&Lollipop, Point3::origin(), -Vector3::z(), leaning(degrees));
     assert!(under(0.0).is_empty() && under(36.0).is_empty());
@@ -247,7 +249,7 @@ fn each_step_touches_and_a_cove_never_does() {
     let axis = leaning(45.0);
     let mut all = contacts(&Steps, Point3::origin(), Vector3::z(), axis);
     all.sort_by(|a, b| b.tip.z.total_cmp(&a.tip.z));
-    // Where the upper touches, the lower is through the face: whether that may be is not asked here.
+    // Where the upper step touches, the lower one passes through the face. Contacts do not exclude that.
     let corners = all.iter().map(|contact| {
         let off = Point3::origin() - contact.tip;
         [(off - axis * off.dot(&axis)).norm(), off.dot(&axis)]

@@ -1,4 +1,4 @@
-//! Stick-out: closed forms, and against places of triangles one by one.
+//! Stick-outs: closed forms, and a comparison with sample points of triangles.
 
 use super::*;
 use crate::mesh::Mesh;
@@ -54,22 +54,22 @@ crate::tool! {
     }
 }
 
-/// The card of a tool whose holder is mounted.
-fn mounted(tool: &dyn Tool) -> Card {
-    let mut card = tool.card().clone();
-    let surfaces = card.surfaces.iter().map(|surface| {
+/// Returns the info of a tool whose holder is named as a mounted component.
+fn mounted(tool: &dyn Tool) -> ToolInfo {
+    let mut info = tool.info().clone();
+    let surfaces = info.surfaces.iter().map(|surface| {
         let mount = if surface.name == "nut" { "nut" } else { "cutter" };
         Surface { name: format!("{mount}.{}", surface.name).into(), ..surface.clone() }
     });
-    card.surfaces = surfaces.collect();
-    card
+    info.surfaces = surfaces.collect();
+    info
 }
 
-/// How far out and how high above its nose the outline of a holder is, in the tool's unit, along it.
-fn outline(card: &Card) -> Vec<[f64; 2]> {
+/// Returns sample points of a holder's outline as `[d, z]`, in the tool's unit.
+fn outline(info: &ToolInfo) -> Vec<[f64; 2]> {
     const PLACES: u32 = 64;
     let own =
-        card.outline.iter().filter(|piece| card.surfaces[piece.surface].name.starts_with("nut"));
+        info.outline.iter().filter(|piece| info.surfaces[piece.surface].name.starts_with("nut"));
     let places = own.flat_map(|piece| {
         (0..=PLACES).map(|k| {
             let part = f64::from(k) / f64::from(PLACES);
@@ -87,20 +87,20 @@ fn outline(card: &Card) -> Vec<[f64; 2]> {
     places.collect()
 }
 
-/// By how much a place, so far from the axis and so high above the tip, needs a tool to stick out: to where
-/// the holder's outline in the file is, and as much farther as is between there and the place. Each place of
-/// the outline goes on upward.
+/// Returns the stick-out that a point requires at a distance `d` from the axis and a height `z` above the tip:
+/// its height less the height of the outline above the nose. Each point of the outline is taken to continue
+/// upward.
 fn needed(outline: &[[f64; 2]], [d, z]: [f64; 2]) -> f64 {
     let nose = outline.iter().map(|place| place[1]).fold(f64::INFINITY, f64::min);
     let above = outline.iter().filter(|place| d <= place[0]);
     above.map(|place| z - (place[1] - nose)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn least(card: &Card, mesh: &Mesh, tip: [f64; 3], axis: Vector3<f64>) -> f64 {
-    let length = card.unit.to(mesh.unit());
-    let holder = Holder::new(card, length).expect("a holder");
-    let facets = Facets::new(mesh);
-    holder.least(&facets, (&Point3::from(tip), &axis.normalize()), None).expect("no limit")
+fn least(info: &ToolInfo, mesh: &Mesh, tip: [f64; 3], axis: Vector3<f64>) -> f64 {
+    let length = info.unit.factor_to(mesh.unit());
+    let holder = Holder::new(info, length).expect("a holder");
+    let bvh = TriangleBvh::new(mesh);
+    holder.least(&bvh, (&Point3::from(tip), &axis.normalize()), None).expect("no limit")
 }
 
 fn cuboid(low: [f64; 3], high: [f64; 3], unit: Unit) -> Mesh {
@@ -109,34 +109,34 @@ fn cuboid(low: [f64; 3], high: [f64; 3], unit: Unit) -> Mesh {
 
 #[test]
 fn a_flat_holder_stays_above_the_highest_that_it_covers() {
-    let card = mounted(&Disc);
-    // The tip is at the foot of a step that is 20 high, so far away.
+    let info = mounted(&Disc);
+    // The tip is at the foot of a step 20 high, at a distance of `away`.
     for (away, wanted) in [(5.0, 20.0), (9.5, 20.0), (10.5, 12.0), (40.0, 12.0)] {
         let step = cuboid([away, -50.0, -5.0], [away + 50.0, 50.0, 20.0], Unit::Millimetre);
-        let found = least(&card, &step, [0.0; 3], Vector3::z());
-        // A piece of a triangle is no larger than a 64th of the holder.
+        let found = least(&info, &step, [0.0; 3], Vector3::z());
+        // A subdivided triangle is no larger than a 64th of the holder.
         let rim = away > 10.0 - 2.0 * 10.0 / 64.0;
         assert!((found - wanted).abs() < 1e-6 || (rim && found == 20.0), "{away}: {found}");
     }
-    // What is lower than what cuts asks for nothing more.
+    // Points below the highest cutting point require no more stick-out.
     let low = cuboid([5.0, -50.0, -5.0], [50.0, 50.0, 8.0], Unit::Millimetre);
-    assert!((least(&card, &low, [0.0; 3], Vector3::z()) - 12.0).abs() < 1e-9);
+    assert!((least(&info, &low, [0.0; 3], Vector3::z()) - 12.0).abs() < 1e-9);
 }
 
 #[test]
 fn a_wall_that_leans_asks_for_more_the_nearer_it_comes() {
-    let card = mounted(&Disc);
+    let info = mounted(&Disc);
     let step = cuboid([6.0, -50.0, -5.0], [56.0, 50.0, 20.0], Unit::Millimetre);
     let mut last = 0.0;
     for degrees in [-40.0, -20.0, 0.0, 20.0, 40.0] {
         let (sine, cosine) = f64::to_radians(degrees).sin_cos();
-        let found = least(&card, &step, [0.0; 3], Vector3::new(sine, 0.0, cosine));
+        let found = least(&info, &step, [0.0; 3], Vector3::new(sine, 0.0, cosine));
         assert!(found >= last - 0.2, "{degrees}: {found} after {last}");
         last = found;
     }
 }
 
-/// Places of a mesh, no triangle's farther from the next than a little.
+/// Returns sample points of a mesh, at most `apart` from each other along the sides of each triangle.
 fn raster(mesh: &Mesh, apart: f64) -> Vec<Point3<f64>> {
     let mut all = Vec::new();
     for id in 0..mesh.triangles().len() as u32 {
@@ -165,24 +165,25 @@ fn no_place_of_a_part_needs_more_and_one_beside_it_as_much() {
     let tools: [&dyn Tool; 3] = [&Disc, &Nut, &Lip];
     let mut more = 0;
     for tool in tools {
-        let card = mounted(tool);
-        let name = &card.name;
-        let outline = outline(&card);
-        let holder = Holder::new(&card, 1.0).expect("a holder");
+        let info = mounted(tool);
+        let name = &info.name;
+        let outline = outline(&info);
+        let holder = Holder::new(&info, 1.0).expect("a holder");
         for mesh in &meshes {
-            let facets = Facets::new(mesh);
+            let bvh = TriangleBvh::new(mesh);
             let places = raster(mesh, 1.0);
             for _ in 0..30 {
                 let tip = Point3::from(Vector3::from_fn(|_, _| draw(-30.0, 30.0)));
                 let axis = Vector3::from_fn(|_, _| draw(-1.0, 1.0)).normalize();
-                let found = holder.least(&facets, (&tip, &axis), None).expect("no limit");
+                let found = holder.least(&bvh, (&tip, &axis), None).expect("no limit");
                 let [mut true_least, mut near] = [holder.cutting; 2];
                 for place in &places {
                     let way = place - tip;
                     let z = way.dot(&axis);
                     let d = (way - axis * z).norm();
                     true_least = true_least.max(needed(&outline, [d, z]));
-                    // A place of the raster is no farther than 1, and a cut triangle's corners 2 64ths.
+                    // A sample point is at most 1 away, and the corners of a subdivided triangle 2/64 of the
+                    // radius 10.
                     let off = 1.0 + 2.0 * 10.0 / 64.0;
                     near = near.max(needed(&outline, [(d - off).max(0.0), z + off]));
                 }
@@ -198,16 +199,16 @@ fn no_place_of_a_part_needs_more_and_one_beside_it_as_much() {
 
 #[test]
 fn the_unit_of_the_part_is_that_of_the_answer() {
-    let card = mounted(&Nut);
+    let info = mounted(&Nut);
     let axis = Vector3::new(0.2, 0.1, 1.0);
     let of = |unit: Unit| {
-        let scale = Unit::Millimetre.to(unit);
+        let scale = Unit::Millimetre.factor_to(unit);
         let step = cuboid(
             [6.0, -50.0, -5.0].map(|part| part * scale),
             [56.0, 50.0, 20.0].map(|part| part * scale),
             unit,
         );
-        least(&card, &step, [0.0; 3], axis) / scale
+        least(&info, &step, [0.0; 3], axis) / scale
     };
     let wanted = of(Unit::Millimetre);
     for unit in [Unit::Inch, Unit::Metre] {
@@ -217,13 +218,13 @@ fn the_unit_of_the_part_is_that_of_the_answer() {
 
 #[test]
 fn what_is_not_less_is_not_told_and_a_tool_alone_has_no_holder() {
-    let card = mounted(&Disc);
-    let holder = Holder::new(&card, 1.0).expect("a holder");
-    let facets = Facets::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 20.0], Unit::Millimetre));
+    let info = mounted(&Disc);
+    let holder = Holder::new(&info, 1.0).expect("a holder");
+    let bvh = TriangleBvh::new(&cuboid([5.0, -50.0, -5.0], [55.0, 50.0, 20.0], Unit::Millimetre));
     let stands = (&Point3::origin(), &Vector3::z());
-    assert_eq!(holder.least(&facets, stands, Some(20.0)), None);
-    let found = holder.least(&facets, stands, Some(20.5)).expect("less");
+    assert_eq!(holder.least(&bvh, stands, Some(20.0)), None);
+    let found = holder.least(&bvh, stands, Some(20.5)).expect("less");
     assert!((found - 20.0).abs() < 1e-6);
-    assert_eq!(holder.least(&facets, stands, Some(12.0)), None);
-    assert!(Holder::new(Disc.card(), 1.0).is_none());
+    assert_eq!(holder.least(&bvh, stands, Some(12.0)), None);
+    assert!(Holder::new(Disc.info(), 1.0).is_none());
 }

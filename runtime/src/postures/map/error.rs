@@ -1,26 +1,26 @@
-//! What can be wrong with a map.
+//! Errors of posture maps.
 
 use super::Difference;
 use std::io;
 
-/// Why a posture map could not be opened, read or written into.
+/// A reason for which a posture map cannot be opened, read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
-    /// The file system would not give it.
+    /// The file cannot be opened or read.
     #[error("cannot open {file}: {source}: check the path and its permissions")]
     Unreadable {
         /// The file.
         file: String,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// It is something else.
+    /// The file is not a posture map.
     #[error("{file} is no posture map: give another path, or remove it if it is not needed")]
     Foreign {
         /// The file.
         file: String,
     },
-    /// It is of a version that came later.
+    /// The map has a newer version than this library reads.
     #[error(
         "{file} is a posture map of version {version}, and versions up to {reads} are read here: update this \
          program, or make the map again at another path"
@@ -28,24 +28,24 @@ pub enum MapError {
     Newer {
         /// The file.
         file: String,
-        /// Its version.
+        /// The map's version.
         version: u32,
         /// The newest version that is read.
         reads: u32,
     },
-    /// Another has it open.
+    /// Another process has the file open.
     #[error("{file} is open in another process: wait until that has ended, or end it")]
     Locked {
         /// The file.
         file: String,
     },
-    /// Another writes into it without a pause long enough to copy it.
+    /// Another process writes to the file without a pause long enough to copy it.
     #[error("{file} is written into too fast to be read: try again, or wait until that has ended")]
     Busy {
         /// The file.
         file: String,
     },
-    /// It was opened to be read.
+    /// The map was opened for reading only.
     #[error(
         "{file} was opened to be read only: open it with `PostureMap::resume` to record into it"
     )]
@@ -53,7 +53,7 @@ pub enum MapError {
         /// The file.
         file: String,
     },
-    /// Its end is missing.
+    /// The end of the file is missing.
     #[error(
         "{file} is truncated: it has {length} of {whole} bytes: take a copy that is whole, or remove it and make it \
          again"
@@ -61,35 +61,35 @@ pub enum MapError {
     Truncated {
         /// The file.
         file: String,
-        /// The bytes that it has.
+        /// Size of the file, in bytes.
         length: u64,
-        /// The bytes that it had at least.
+        /// Least size of the whole file, in bytes.
         whole: u64,
     },
-    /// It has more of something than any map.
+    /// The map exceeds a limit of all maps.
     #[error("{file} is no map that can be used: {what}")]
     Oversized {
         /// The file.
         file: String,
-        /// What there is too much of, and how much there may be.
+        /// The quantity that is too large, and its limit.
         what: String,
     },
-    /// Its bytes are not those that were written.
+    /// The bytes differ from those that were written.
     #[error("{file} is damaged: {what}: take a copy that is whole, or remove it and make it again")]
     Damaged {
         /// The file.
         file: String,
-        /// What was found.
+        /// A description of the damage.
         what: String,
     },
-    /// It belongs to something else.
+    /// The map belongs to another part, or to other tools, rules or directions.
     #[error(
         "{file} cannot go on: {difference}: give another path for a new map, or remove the file"
     )]
     Differs {
         /// The file.
         file: String,
-        /// What is not the same.
+        /// The difference.
         difference: Difference,
     },
     /// There is no room left.
@@ -99,27 +99,27 @@ pub enum MapError {
     Full {
         /// The file.
         file: String,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// The file system would not take it.
+    /// The file cannot be written.
     #[error(
         "cannot write {file}: {source}: what was recorded before is safe in it; mend the cause and open it again"
     )]
     Unwritable {
         /// The file.
         file: String,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// Something was to be recorded that this map has no place for; nothing of its batch was.
+    /// A record does not fit the map; nothing of its batch was stored.
     #[error("triangle {triangle} cannot be recorded in {file}: {what}")]
     Unfit {
         /// The file.
         file: String,
         /// The triangle.
         triangle: u32,
-        /// What does not fit.
+        /// The reason.
         what: &'static str,
     },
     /// An export could not be written.
@@ -127,13 +127,13 @@ pub enum MapError {
     Export {
         /// The map's file.
         file: String,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
 }
 
 impl MapError {
-    /// What the store says, in words.
+    /// Converts an error of the store.
     pub(super) fn of(file: &str, error: impl Into<redb::Error>) -> MapError {
         use redb::Error as Store;
         let file = file.to_owned();
@@ -153,7 +153,7 @@ impl MapError {
         }
     }
 
-    /// What the system said when it was written into.
+    /// Converts an error of the system in writing the file.
     pub(super) fn written(file: String, source: io::Error) -> MapError {
         match source.kind() {
             io::ErrorKind::StorageFull

@@ -1,17 +1,17 @@
-//! Maps as others read them. Every number is written so that it reads back as the same double.
+//! Export of maps. Every number is written so that it reads back as the same double.
 
-use super::{Identity, MapError, PartStamp, PostureMap};
+use super::{MapError, MapIdentity, PartFingerprint, PostureMap};
 use crate::mesh::Mesh;
-use crate::postures::{Access, Record, Row, Rules};
+use crate::postures::{Accessibility, MapRow, PostureRecord, Rules};
 use serde::Serialize;
 use std::io::{self, Write};
 
-/// The columns of a CSV.
+/// The columns of the CSV export.
 const COLUMNS: &str = "triangle,tool,x,y,z,i,j,k,niceness,depth,clearance,directions,stickout";
 
-/// What JSON has before the triangles.
+/// The JSON export's object before the rows.
 #[derive(Serialize)]
-struct Head<'a> {
+struct ExportHeader<'a> {
     digest: String,
     triangles: u32,
     unit: &'static str,
@@ -29,37 +29,38 @@ struct Tool<'a> {
 #[derive(Serialize)]
 struct Triangle<'a> {
     triangle: u32,
-    best: Vec<Best<'a>>,
-    access: Vec<Reach<'a>>,
+    best: Vec<ExportPosture<'a>>,
+    access: Vec<ExportAccess<'a>>,
 }
 
 #[derive(Serialize)]
-struct Best<'a> {
+struct ExportPosture<'a> {
     tool: &'a str,
     tip: [f64; 3],
     axis: [f64; 3],
     niceness: f64,
     depth: f64,
-    /// JSON has no infinity: `null` where nothing of the tool does not cut.
+    /// JSON has no infinity: `null` for a tool with nothing but cutting surfaces.
     clearance: f64,
 }
 
 #[derive(Serialize)]
-struct Reach<'a> {
+struct ExportAccess<'a> {
     tool: &'a str,
     directions: u32,
     stickout: Option<f64>,
 }
 
 impl PostureMap {
-    /// Writes the map as CSV, with a header: a line for each posture on record, the best of a triangle first,
-    /// and one for each tool that a sweep tried there and that has none, with these columns left empty. `x,y,z`
-    /// is the tip, `i,j,k` the axis; `directions` is from how many the tool reaches the triangle and
-    /// `stickout` how far it has to stick out for one of them, both empty where no sweep came by.
-    /// `clearance` is `inf` where nothing of the tool does not cut. Lengths are in the part's unit.
+    /// Writes the map as CSV, with a header. There is one line per posture on record, the best of a triangle
+    /// first. A tool that a sweep tried at a triangle without a posture on record gets a line with the columns
+    /// of postures empty. `x,y,z` is the tip and `i,j,k` the axis. `directions` is the number of directions
+    /// from which the tool reaches the triangle, and `stickout` the least stick-out for one of them; both are
+    /// empty if no sweep has processed the triangle. `clearance` is `inf` for a tool with nothing but cutting
+    /// surfaces. Lengths are in the part's unit.
     ///
     /// # Errors
-    /// If it cannot be written, or the map not be read.
+    /// If the output cannot be written, or the map cannot be read.
     pub fn write_csv(&self, out: &mut impl Write) -> Result<(), MapError> {
         let export = |source| self.export(source);
         writeln!(out, "{COLUMNS}").map_err(export)?;
@@ -76,15 +77,20 @@ impl PostureMap {
         &self,
         out: &mut impl Write,
         triangle: u32,
-        record: Option<&Record>,
-        access: Option<&Access>,
+        record: Option<&PostureRecord>,
+        access: Option<&Accessibility>,
     ) -> io::Result<()> {
         let tool = record.map(|record| record.tool).or(access.map(|access| access.tool));
         let name = tool.map_or("", |tool| self.name(tool));
         write!(out, "{triangle},{}", quoted(name))?;
         match record {
-            Some(Record {
-                tip: [x, y, z], axis: [i, j, k], niceness, depth, clearance, ..
+            Some(PostureRecord {
+                tip: [x, y, z],
+                axis: [i, j, k],
+                niceness,
+                depth,
+                clearance,
+                ..
             }) => {
                 for number in [x, y, z, i, j, k, niceness, depth, clearance] {
                     write!(out, ",{number:?}")?;
@@ -102,21 +108,21 @@ impl PostureMap {
         }
     }
 
-    /// Writes the map as JSON: an object with what the map belongs to under `map`, and under `rows` an object
-    /// for each triangle of which something is known, a line each. Numbers are as in
-    /// [`PostureMap::write_csv`], but `null` stands for infinity.
+    /// Writes the map as JSON: an object with the map's identity under `map`, and an array of one object per
+    /// row under `rows`, one line each. Numbers are as in [`PostureMap::write_csv`], but `null` stands for
+    /// infinity.
     ///
     /// # Errors
-    /// If it cannot be written, or the map not be read.
+    /// If the output cannot be written, or the map cannot be read.
     pub fn write_json(&self, out: &mut impl Write) -> Result<(), MapError> {
         let export = |source| self.export(source);
         let json = |source: serde_json::Error| self.export(source.into());
-        let Identity { part, tools, directions, rules, .. } = &self.identity;
+        let MapIdentity { part, tools, directions, rules, .. } = &self.identity;
         let tools = tools.iter();
-        let head = Head {
+        let head = ExportHeader {
             digest: format!("{:016x}", part.digest),
             triangles: part.triangles,
-            unit: part.unit.word(),
+            unit: part.unit.symbol(),
             tools: tools
                 .map(|tool| Tool { name: &tool.name, digest: format!("{:016x}", tool.digest) })
                 .collect(),
@@ -131,11 +137,17 @@ impl PostureMap {
             let (triangle, row) = entry?;
             write!(out, "{between}").map_err(export)?;
             between = ",\n";
-            let best =
-                row.best.iter().map(|&Record { tool, tip, axis, niceness, depth, clearance }| {
-                    Best { tool: self.name(tool), tip, axis, niceness, depth, clearance }
-                });
-            let access = row.access.iter().map(|access| Reach {
+            let best = row.best.iter().map(
+                |&PostureRecord { tool, tip, axis, niceness, depth, clearance }| ExportPosture {
+                    tool: self.name(tool),
+                    tip,
+                    axis,
+                    niceness,
+                    depth,
+                    clearance,
+                },
+            );
+            let access = row.access.iter().map(|access| ExportAccess {
                 tool: self.name(access.tool),
                 directions: reached(access),
                 stickout: access.stickout,
@@ -146,19 +158,19 @@ impl PostureMap {
         writeln!(out, "\n]}}").and_then(|()| out.flush()).map_err(export)
     }
 
-    /// Writes the map's part as binary PLY whose faces have a colour (`red`, `green`, `blue`) and the
-    /// `niceness` of the best posture on record; where there is none they are grey, and the niceness is not a
-    /// number. Faces are in the order of triangles. [`colour`](crate::postures::colour) is a ramp from 0 to 1.
+    /// Writes the map's part as binary PLY. Each face has a colour (`red`, `green`, `blue`) and the `niceness`
+    /// of its best posture on record; a face without one is grey, and its niceness is NaN. Faces are in the
+    /// order of triangles. [`colormap`](fn@crate::postures::colormap) gives colours for values from 0 to 1.
     ///
     /// # Errors
-    /// If the mesh is not the map's part; if it cannot be written, or the map not be read.
+    /// If the mesh is not the map's part, if the output cannot be written, or if the map cannot be read.
     pub fn write_ply(
         &self,
         out: &mut impl Write,
         mesh: &Mesh,
         colour: impl Fn(f64) -> [u8; 3],
     ) -> Result<(), MapError> {
-        let (has, asked) = (self.identity.part, PartStamp::of(mesh));
+        let (has, asked) = (self.identity.part, PartFingerprint::of(mesh));
         if has != asked {
             let difference = super::Difference::Part { has, asked };
             return Err(MapError::Differs { file: self.file.clone(), difference });
@@ -182,7 +194,7 @@ impl PostureMap {
     }
 }
 
-/// The colour of a face of which no posture is known.
+/// Colour of a face without a posture.
 const GREY: [u8; 3] = [0x80; 3];
 
 fn ply(
@@ -216,20 +228,20 @@ fn ply(
     out.flush()
 }
 
-/// The postures of a row, each beside what its tool reaches, and the tools that have none.
-fn lines(row: &Row) -> impl Iterator<Item = (Option<&Record>, Option<&Access>)> {
-    let of = |record: &Record| row.access.iter().find(|access| access.tool == record.tool);
+/// Returns the postures of a row, each with its tool's accessibility, and then the tools without a posture.
+fn lines(row: &MapRow) -> impl Iterator<Item = (Option<&PostureRecord>, Option<&Accessibility>)> {
+    let of = |record: &PostureRecord| row.access.iter().find(|access| access.tool == record.tool);
     let records = row.best.iter().map(move |record| (Some(record), of(record)));
-    let alone = |access: &&Access| row.best.iter().all(|record| record.tool != access.tool);
+    let alone = |access: &&Accessibility| row.best.iter().all(|record| record.tool != access.tool);
     records.chain(row.access.iter().filter(alone).map(|access| (None, Some(access))))
 }
 
-/// From how many directions a tool reaches a triangle.
-fn reached(access: &Access) -> u32 {
+/// Returns the number of directions from which a tool reaches a triangle.
+fn reached(access: &Accessibility) -> u32 {
     access.directions.iter().map(|word| word.count_ones()).sum()
 }
 
-/// A field of a CSV.
+/// Returns a CSV field, in quotes if needed.
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))

@@ -1,10 +1,10 @@
-//! To what a map belongs.
+//! Identity of a map: the part, the tools and the rules that it belongs to.
 
 use crate::escape::Escaped;
 use crate::mesh::Mesh;
-use crate::postures::{Access, Directions, Record, Rules, RulesError};
-use crate::tool::Card;
+use crate::postures::{Accessibility, Directions, PostureRecord, Rules, RulesError};
 use crate::tool::Tool;
+use crate::tool::ToolInfo;
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use siphasher::sip::SipHasher24;
@@ -13,113 +13,115 @@ use std::fmt;
 use std::hash::Hasher;
 use std::num::NonZeroU16;
 
-/// A part, told by what it is.
+/// Fingerprint of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PartStamp {
-    /// SipHash-2-4, without a key, of its unit's word and its corners' coordinates, triangle by triangle.
+pub struct PartFingerprint {
+    /// SipHash-2-4, without a key, of the unit's symbol and the corners' coordinates, triangle by triangle.
     pub digest: u64,
-    /// How many triangles it has.
+    /// Number of triangles.
     pub triangles: u32,
-    /// Its unit of length.
+    /// Unit of length.
     pub unit: Unit,
 }
 
-impl PartStamp {
-    /// That of a mesh. One corner moved by one bit, or two triangles in another order, make another part.
-    pub fn of(mesh: &Mesh) -> PartStamp {
+impl PartFingerprint {
+    /// Computes the fingerprint of a mesh. It changes if a corner moves by one bit, or if two triangles are
+    /// swapped.
+    pub fn of(mesh: &Mesh) -> PartFingerprint {
         let mut hasher = SipHasher24::new();
-        hasher.write(mesh.unit().word().as_bytes());
+        hasher.write(mesh.unit().symbol().as_bytes());
         let triangles = mesh.triangles().len() as u32;
         for corner in (0..triangles).flat_map(|id| mesh.triangle(id)) {
             for coordinate in corner.coords.iter() {
                 hasher.write(&coordinate.to_bits().to_le_bytes());
             }
         }
-        PartStamp { digest: hasher.finish(), triangles, unit: mesh.unit() }
+        PartFingerprint { digest: hasher.finish(), triangles, unit: mesh.unit() }
     }
 }
 
-impl fmt::Display for PartStamp {
+impl fmt::Display for PartFingerprint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let PartStamp { digest, triangles, unit } = self;
+        let PartFingerprint { digest, triangles, unit } = self;
         write!(f, "{triangles} triangles in {unit} with the digest {digest:016x}")
     }
 }
 
-/// A tool, told by what it answers.
+/// Fingerprint of a tool: its name, and the digest of its results.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ToolStamp {
-    /// Its name.
+pub struct ToolFingerprint {
+    /// The tool's name.
     pub name: String,
-    /// Its [digest](Card::digest).
+    /// The tool's [digest](ToolInfo::digest).
     pub digest: u64,
 }
 
-impl ToolStamp {
-    /// That of a tool's card.
-    pub fn of(card: &Card) -> ToolStamp {
-        ToolStamp { name: card.name.to_string(), digest: card.digest }
+impl ToolFingerprint {
+    /// Returns the fingerprint of a tool.
+    pub fn of(info: &ToolInfo) -> ToolFingerprint {
+        ToolFingerprint { name: info.name.to_string(), digest: info.digest }
     }
 }
 
-/// To what a map belongs: a part, tools and rules. A file has one, and is not opened for another.
+/// The part, the tools and the rules that a map belongs to. A file has one identity, and is not opened for
+/// another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Identity {
+pub struct MapIdentity {
     /// The part.
-    pub part: PartStamp,
-    /// The tools: records and accesses name them by their places here.
-    pub tools: Vec<ToolStamp>,
-    /// The directions that a sweep tries, unit vectors from the tip to the spindle in the part's frame; none
-    /// if the map is only recorded into.
+    pub part: PartFingerprint,
+    /// The tools. Records and accessibility entries refer to them by index.
+    pub tools: Vec<ToolFingerprint>,
+    /// Directions that a sweep tries, as unit vectors from the tip to the spindle in the part's frame; empty if
+    /// the map is only recorded into.
     pub directions: Vec<[f64; 3]>,
-    /// By which rules postures are taken in.
+    /// Rules by which postures are accepted.
     pub rules: Rules,
-    /// How many postures are kept of a triangle.
+    /// Number of postures kept per triangle.
     pub keep: NonZeroU16,
 }
 
-impl Identity {
-    /// That of a map without directions that keeps one posture of each triangle.
+impl MapIdentity {
+    /// Creates the identity of a map without directions that keeps one posture per triangle.
     ///
     /// # Errors
-    /// If rules mean nothing; see [`Rules::check`].
-    pub fn new(mesh: &Mesh, tools: &[&dyn Tool], rules: Rules) -> Result<Identity, RulesError> {
+    /// If the rules are invalid; see [`Rules::check`].
+    pub fn new(mesh: &Mesh, tools: &[&dyn Tool], rules: Rules) -> Result<MapIdentity, RulesError> {
         rules.check(tools)?;
-        Ok(Identity {
-            part: PartStamp::of(mesh),
-            tools: tools.iter().map(|tool| ToolStamp::of(tool.card())).collect(),
+        Ok(MapIdentity {
+            part: PartFingerprint::of(mesh),
+            tools: tools.iter().map(|tool| ToolFingerprint::of(tool.info())).collect(),
             directions: Vec::new(),
             rules,
             keep: NonZeroU16::MIN,
         })
     }
 
-    /// With directions.
+    /// Sets the directions.
     #[must_use]
-    pub fn directions(mut self, directions: Vec<[f64; 3]>) -> Identity {
+    pub fn with_directions(mut self, directions: Vec<[f64; 3]>) -> MapIdentity {
         self.directions = directions;
         self
     }
 
-    /// With so many postures of a triangle.
+    /// Sets the number of postures kept per triangle.
     #[must_use]
-    pub fn keeping(mut self, keep: NonZeroU16) -> Identity {
+    pub fn with_keep(mut self, keep: NonZeroU16) -> MapIdentity {
         self.keep = keep;
         self
     }
 
-    /// A tool's place in the list.
-    pub fn tool(&self, card: &Card) -> Option<u16> {
-        let same = |tool: &ToolStamp| tool.name == card.name && tool.digest == card.digest;
+    /// Returns a tool's index in the list; `None` if no entry has its name and digest.
+    pub fn tool(&self, info: &ToolInfo) -> Option<u16> {
+        let same = |tool: &ToolFingerprint| tool.name == info.name && tool.digest == info.digest;
         self.tools.iter().position(same).map(|place| place as u16)
     }
 
-    /// Why something has no place in a map of this identity, if it has none.
+    /// Returns the reason for which data do not fit a map of this identity; `None` if they fit.
     pub(super) fn refuses(
         &self,
         triangle: u32,
-        best: &[Record],
-        access: &[Access],
+        best: &[PostureRecord],
+        access: &[Accessibility],
     ) -> Option<&'static str> {
         if triangle >= self.part.triangles {
             return Some("the part has no such triangle");
@@ -132,9 +134,9 @@ impl Identity {
         if best.iter().any(|record| record.pose().is_err()) {
             return Some("its tip and axis are no pose");
         }
-        // What has nothing but cutting surfaces clears by infinitely much.
+        // A tool with nothing but cutting surfaces has infinite clearance.
         let numbers =
-            |r: &Record| r.niceness.is_finite() && r.depth.is_finite() && r.clearance >= 0.0;
+            |r: &PostureRecord| r.niceness.is_finite() && r.depth.is_finite() && r.clearance >= 0.0;
         if !best.iter().all(numbers) {
             return Some("its niceness, depth or clearance is no number that they can be");
         }
@@ -144,7 +146,7 @@ impl Identity {
             return Some("a tool has two accesses");
         }
         let count = self.directions.len();
-        let stray = |access: &Access| {
+        let stray = |access: &Accessibility| {
             let last = access.directions.last().copied().unwrap_or(0);
             access.directions.len() != count.div_ceil(64)
                 || (!count.is_multiple_of(64) && last >> (count % 64) != 0)
@@ -152,8 +154,8 @@ impl Identity {
         access.iter().any(stray).then_some("it has other directions than the map")
     }
 
-    /// Returns what a map has no place for so many of, if there are: tools are told by 16 bits, and between directions there
-    /// are tables that grow with the square of their number.
+    /// Returns a message if there are too many tools or directions: tools are numbered by 16 bits, and there
+    /// are tables between directions that grow with the square of their number.
     pub(super) fn oversized(&self) -> Option<String> {
         let (tools, directions) = (self.tools.len(), self.directions.len());
         let (most_tools, most) = (usize::from(u16::MAX) + 1, 2 * Directions::MOST);
@@ -164,12 +166,12 @@ impl Identity {
             .then(|| format!("it has {directions} directions, and there may be {most}"))
     }
 
-    /// In what a file, of which this is the identity, differs from what is asked for.
-    pub(super) fn differs(&self, asked: &Identity) -> Option<Difference> {
+    /// Returns the difference between this identity, which a file has, and the requested one.
+    pub(super) fn differs(&self, asked: &MapIdentity) -> Option<Difference> {
         if self.part != asked.part {
             return Some(Difference::Part { has: self.part, asked: asked.part });
         }
-        let names = |of: &Identity| -> Vec<String> {
+        let names = |of: &MapIdentity| -> Vec<String> {
             of.tools.iter().map(|tool| format!("`{}`", Escaped(&tool.name))).collect()
         };
         let (has, others) = (names(self), names(asked));
@@ -196,50 +198,50 @@ impl Identity {
     }
 }
 
-/// In what a map's file differs from what it is opened for.
+/// A difference between a map's file and the identity that it is opened for.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Difference {
-    /// The part.
+    /// Another part.
     #[error("it is of another part, {has}, and this one has {asked}")]
     Part {
-        /// The file's.
-        has: PartStamp,
-        /// The one that is asked for.
-        asked: PartStamp,
+        /// The file's part.
+        has: PartFingerprint,
+        /// The requested part.
+        asked: PartFingerprint,
     },
-    /// The tools, or their order.
+    /// Other tools, or another order.
     #[error("it was begun with the tools {has}, in this order, and now they are {asked}")]
     Tools {
-        /// The file's.
+        /// The file's tools.
         has: String,
-        /// Those that are asked for.
+        /// The requested tools.
         asked: String,
     },
-    /// What a tool of the same name answers.
+    /// A tool of the same name with another digest.
     #[error("it was begun with another version of `{tool}`")]
     Tool {
-        /// Its name.
+        /// The tool's name.
         tool: String,
     },
-    /// The rules.
+    /// Other rules, or another number of postures kept.
     #[error("it was begun with other rules ({has}) than now ({asked})")]
     Rules {
-        /// The file's.
+        /// The file's rules.
         has: String,
-        /// Those that are asked for.
+        /// The requested rules.
         asked: String,
     },
-    /// The directions.
+    /// Other directions.
     #[error(
         "it was begun with other directions: it has {has}, now there are {asked}, and number {first} \
          from 0 is the first that differs"
     )]
     Directions {
-        /// How many the file has.
+        /// Number of directions in the file.
         has: usize,
-        /// How many are asked for.
+        /// Number of requested directions.
         asked: usize,
-        /// The first that is not the same.
+        /// Index of the first direction that differs.
         first: usize,
     },
 }

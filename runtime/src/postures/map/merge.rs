@@ -1,14 +1,14 @@
-//! Which posture is better.
+//! Ranking of postures.
 
-use crate::postures::Record;
+use crate::postures::PostureRecord;
 use std::cmp::Ordering;
 use std::num::NonZeroU16;
 
-/// The better first: the nicer, of those that are as nice but for rounding the one that clears the part by
-/// more, then the one that is less deep. What is left decides only so that the order in which postures come
-/// does not.
-fn order(one: &Record, other: &Record) -> Ordering {
-    let rest = |record: &Record| {
+/// Orders the better posture first: the nicer one; of two that are equal but for rounding to `f32`, the one
+/// with more clearance; then the less deep. The remaining fields make the result independent of the order of
+/// arrival.
+fn order(one: &PostureRecord, other: &PostureRecord) -> Ordering {
+    let rest = |record: &PostureRecord| {
         let ([x, y, z], [i, j, k]) = (record.tip, record.axis);
         [record.depth, f64::from(record.tool), x, y, z, i, j, k, record.niceness]
     };
@@ -19,8 +19,12 @@ fn order(one: &Record, other: &Record) -> Ordering {
     nicer.then(clearer).then(rest)
 }
 
-/// Takes more postures in; so many stay, each once, the best first.
-pub(in crate::postures) fn merge(best: &mut Vec<Record>, more: &[Record], keep: NonZeroU16) {
+/// Adds postures to a list and keeps the best `keep` of them, each once, the best first.
+pub(in crate::postures) fn merge(
+    best: &mut Vec<PostureRecord>,
+    more: &[PostureRecord],
+    keep: NonZeroU16,
+) {
     best.extend(more);
     best.sort_by(order);
     best.dedup_by(|one, other| order(one, other).is_eq());

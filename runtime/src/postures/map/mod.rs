@@ -1,10 +1,10 @@
-//! Posture maps in files: what is known of each triangle of a part, kept as it is found.
+//! Posture maps in files: the data on record for each triangle of a part, stored as it is found.
 //!
-//! The file is a `redb` store of two tables: facts about the map (its version, its [`Identity`]) and rows by
-//! triangle ([`coding`] has the bytes). A batch is one transaction: it is there whole or not at all, and once
-//! [`PostureMap::record`] or [`PostureMap::offer`] returns it is on the disk.
+//! The file is a `redb` store of two tables: facts about the map (its version, its [`MapIdentity`]) and rows by
+//! triangle ([`coding`] has the bytes). A batch is one transaction, stored whole or not at all. It is on disk
+//! when [`PostureMap::record`] or [`PostureMap::merge`] returns.
 
-mod coding;
+mod codec;
 mod error;
 mod export;
 mod identity;
@@ -15,27 +15,28 @@ mod snapshot;
 mod tests;
 
 pub use error::MapError;
-pub use identity::{Difference, Identity, PartStamp, ToolStamp};
+pub use identity::{Difference, MapIdentity, PartFingerprint, ToolFingerprint};
 
-use super::{Access, Record, Row};
-use coding::{decode, encode};
+use super::{Accessibility, MapRow, PostureRecord};
+use codec::{decode, encode};
 pub(super) use merge::merge;
 use redb::{Database, Range, ReadOnlyTable, ReadableDatabase, ReadableTable, TableDefinition};
 use std::collections::BTreeSet;
 
 const FACTS: TableDefinition<'_, &str, &[u8]> = TableDefinition::new("facts");
 const ROWS: TableDefinition<'_, u32, &[u8]> = TableDefinition::new("rows");
-/// Of the facts: the version, a little-endian `u32` in every version, and the identity.
+/// Key of the version among the facts: a little-endian `u32` in every version.
 const VERSION: &str = "version";
+/// Key of the identity among the facts.
 const IDENTITY: &str = "identity";
 /// The version that is written, and the newest that is read.
 const NEWEST: u32 = 1;
 
-/// Postures at a part, triangle by triangle, in a file.
+/// Postures at a part, per triangle, in a file.
 ///
 /// ```
 /// # use nalgebra::Point3;
-/// # use touchoff::postures::{Identity, PostureMap, Record, Rules};
+/// # use touchoff::postures::{MapIdentity, PostureMap, PostureRecord, Rules};
 /// # use touchoff::{Unit, mesh::shapes};
 /// # touchoff::tool! {
 /// #     tool Ball "a ball of 3 mm radius" {
@@ -49,11 +50,11 @@ const NEWEST: u32 = 1;
 /// # let path = folder.path().join("block.postures");
 /// let block = shapes::cuboid(Point3::origin(), Point3::new(40., 40., 10.), Unit::Millimetre)?;
 /// let rules = Rules { tolerance: 0.01, niceness: 0.5, allowed: Vec::new() };
-/// let identity = Identity::new(&block, &[&Ball], rules)?;
+/// let identity = MapIdentity::new(&block, &[&Ball], rules)?;
 /// let map = PostureMap::open(&path, &identity)?;
 /// let (tip, axis) = ([20.0, 20.0, 9.995], [0.0, 0.0, 1.0]);
-/// let record = Record { tool: 0, tip, axis, niceness: 1.0, depth: 0.005, clearance: 1.0 };
-/// map.offer(&[(3, record)])?;
+/// let record = PostureRecord { tool: 0, tip, axis, niceness: 1.0, depth: 0.005, clearance: 1.0 };
+/// map.merge(&[(3, record)])?;
 /// assert_eq!(map.row(3)?.map(|row| row.best), Some(vec![record]));
 /// assert_eq!(map.coverage()?.covered, 1);
 /// # Ok(()) }
@@ -61,33 +62,33 @@ const NEWEST: u32 = 1;
 #[derive(Debug)]
 pub struct PostureMap {
     database: Database,
-    identity: Identity,
+    identity: MapIdentity,
     file: String,
-    /// Whether this is a copy of the file, made to be read.
+    /// Set if this is a copy of the file, made for reading only.
     is_copy: bool,
 }
 
-/// How much of a part is known.
+/// Coverage of a part by a map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// How many triangles have a posture on record.
+    /// Number of triangles with a posture on record.
     pub covered: u32,
-    /// To how many a sweep came.
+    /// Number of triangles that a sweep has processed.
     pub swept: u32,
-    /// How many there are.
+    /// Number of triangles of the part.
     pub triangles: u32,
 }
 
-/// The rows of a map by triangle, as they were when this was asked for.
-pub struct Rows<'a> {
+/// An iterator over the rows of a map by triangle, as they were when it was created.
+pub struct MapRows<'a> {
     range: Range<'static, u32, &'static [u8]>,
     map: &'a PostureMap,
-    /// The first triangle that may come next.
+    /// The least triangle id that may come next.
     next: u64,
 }
 
-impl Iterator for Rows<'_> {
-    type Item = Result<(u32, Row), MapError>;
+impl Iterator for MapRows<'_> {
+    type Item = Result<(u32, MapRow), MapError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let entry = self.range.next()?;
@@ -103,37 +104,37 @@ impl Iterator for Rows<'_> {
 }
 
 impl PostureMap {
-    /// To what it belongs.
-    pub fn identity(&self) -> &Identity {
+    /// Returns the part, the tools and the rules that the map belongs to.
+    pub fn identity(&self) -> &MapIdentity {
         &self.identity
     }
 
-    /// What is known of a triangle, if anything.
+    /// Returns the row of a triangle, if there is one.
     ///
     /// # Errors
     /// If the file cannot be read, or the row is damaged.
-    pub fn row(&self, triangle: u32) -> Result<Option<Row>, MapError> {
+    pub fn row(&self, triangle: u32) -> Result<Option<MapRow>, MapError> {
         let table = self.table()?;
         let bytes = table.get(triangle).map_err(|error| self.says(error))?;
         bytes.map(|bytes| self.decoded(triangle, bytes.value())).transpose()
     }
 
-    /// All rows that there are, by triangle.
+    /// Returns all rows, by triangle.
     ///
     /// # Errors
-    /// If the file cannot be read; each row by itself, if it is damaged.
-    pub fn rows(&self) -> Result<Rows<'_>, MapError> {
+    /// If the file cannot be read. A damaged row is an error of its own in the iteration.
+    pub fn rows(&self) -> Result<MapRows<'_>, MapError> {
         let range = self.table()?.range::<u32>(..).map_err(|error| self.says(error))?;
-        Ok(Rows { range, map: self, next: 0 })
+        Ok(MapRows { range, map: self, next: 0 })
     }
 
-    /// Takes in what a sweep found of triangles, all of it or nothing: its accesses in place of those that
-    /// were there, its postures beside those on record, of which the best stay. When this returns, it is on
-    /// the disk.
+    /// Stores the rows of a sweep, all of them or none. Accessibility entries replace those on record. Postures
+    /// join those on record, of which the best are kept. When this returns, the rows are on disk.
     ///
     /// # Errors
-    /// If there is no room, or the file cannot be written; if a row does not fit the map.
-    pub fn record(&self, rows: &[(u32, Row)]) -> Result<(), MapError> {
+    /// If the map was opened for reading only, if there is no room, if the file cannot be written, or if a row
+    /// does not fit the map.
+    pub fn record(&self, rows: &[(u32, MapRow)]) -> Result<(), MapError> {
         for (triangle, row) in rows {
             self.fits(*triangle, &row.best, &row.access)?;
         }
@@ -143,13 +144,14 @@ impl PostureMap {
         })
     }
 
-    /// Takes in postures at triangles, all of them or nothing, of which the best stay: the nicest, of those
-    /// the ones that clear the part by most, then the least deep. In whatever order they come, the same
-    /// stay. When this returns, they are on the disk.
+    /// Adds postures to triangles, all of them or none, and keeps the best: the nicest, then those with the
+    /// largest clearance, then the least deep. The result does not depend on the order of arrival. When this
+    /// returns, it is on disk.
     ///
     /// # Errors
-    /// If there is no room, or the file cannot be written; if a record does not fit the map.
-    pub fn offer(&self, records: &[(u32, Record)]) -> Result<(), MapError> {
+    /// If the map was opened for reading only, if there is no room, if the file cannot be written, or if a
+    /// record does not fit the map.
+    pub fn merge(&self, records: &[(u32, PostureRecord)]) -> Result<(), MapError> {
         for (triangle, record) in records {
             self.fits(*triangle, std::slice::from_ref(record), &[])?;
         }
@@ -158,7 +160,7 @@ impl PostureMap {
         })
     }
 
-    /// The triangles that a sweep came to.
+    /// Returns the triangles that a sweep has processed.
     ///
     /// # Errors
     /// If the file cannot be read, or a row is damaged.
@@ -173,7 +175,7 @@ impl PostureMap {
         Ok(swept)
     }
 
-    /// How much of the part is known.
+    /// Returns the coverage of the part.
     ///
     /// # Errors
     /// If the file cannot be read, or a row is damaged.
@@ -189,8 +191,8 @@ impl PostureMap {
         })
     }
 
-    /// Joins what is new to rows, in one transaction.
-    fn change<T>(&self, news: &[(u32, T)], join: impl Fn(&mut Row, &T)) -> Result<(), MapError> {
+    /// Joins new data to rows, in one transaction.
+    fn change<T>(&self, news: &[(u32, T)], join: impl Fn(&mut MapRow, &T)) -> Result<(), MapError> {
         if self.is_copy {
             return Err(MapError::ReadOnly { file: self.file.clone() });
         }
@@ -200,7 +202,7 @@ impl PostureMap {
         for (triangle, new) in news {
             let old = match table.get(triangle).map_err(|error| self.says(error))? {
                 Some(bytes) => self.decoded(*triangle, bytes.value())?,
-                None => Row::default(),
+                None => MapRow::default(),
             };
             let mut row = old.clone();
             join(&mut row, new);
@@ -211,7 +213,7 @@ impl PostureMap {
             }
         }
         drop(table);
-        // If nothing is better than what is on the disk, there is nothing to wait for.
+        // Without a change there is no commit to wait for.
         if changed {
             write.commit().map_err(|error| self.says(error))
         } else {
@@ -224,10 +226,10 @@ impl PostureMap {
         read.open_table(ROWS).map_err(|error| self.says(error))
     }
 
-    /// A row of bytes.
-    fn decoded(&self, triangle: u32, bytes: &[u8]) -> Result<Row, MapError> {
+    /// Decodes a row, and checks that it fits the map.
+    fn decoded(&self, triangle: u32, bytes: &[u8]) -> Result<MapRow, MapError> {
         let identity = &self.identity;
-        let fits = |row: &Row| {
+        let fits = |row: &MapRow| {
             row.best.len() <= usize::from(identity.keep.get())
                 && identity.refuses(triangle, &row.best, &row.access).is_none()
         };
@@ -240,7 +242,12 @@ impl PostureMap {
         MapError::Damaged { file: self.file.clone(), what }
     }
 
-    fn fits(&self, triangle: u32, best: &[Record], access: &[Access]) -> Result<(), MapError> {
+    fn fits(
+        &self,
+        triangle: u32,
+        best: &[PostureRecord],
+        access: &[Accessibility],
+    ) -> Result<(), MapError> {
         match self.identity.refuses(triangle, best, access) {
             Some(what) => Err(MapError::Unfit { file: self.file.clone(), triangle, what }),
             None => Ok(()),
@@ -253,7 +260,7 @@ impl PostureMap {
     }
 }
 
-/// An error of a copy as damage: it asks nothing of the system, so the cause is in the file.
+/// Returns an error of a copy as damage: a copy makes no system calls, so the cause is in the file.
 fn as_damage(error: MapError) -> MapError {
     match error {
         MapError::Unwritable { file, source } | MapError::Full { file, source } => {

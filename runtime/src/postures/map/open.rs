@@ -1,8 +1,8 @@
-//! How maps are opened: to be read, and to be recorded into.
+//! Opening of maps, for reading and for recording.
 
-use super::coding::{decode, encode};
-use super::snapshot::{Draft, Header, copy};
-use super::{FACTS, IDENTITY, Identity, MapError, NEWEST, PostureMap, ROWS, VERSION, as_damage};
+use super::codec::{decode, encode};
+use super::snapshot::{Header, MemoryStore, copy};
+use super::{FACTS, IDENTITY, MapError, MapIdentity, NEWEST, PostureMap, ROWS, VERSION, as_damage};
 use crate::atomic_file::AtomicFile;
 use redb::{Builder, Database, ReadableDatabase, StorageBackend as _};
 use std::fs::{self, File, TryLockError};
@@ -10,22 +10,23 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// How often a map is copied that is written into meanwhile, and how long to wait after the first few.
+/// Number of attempts to copy a map that another process writes to.
 const COPIES: u32 = 200;
+/// Time between attempts, after the first few.
 const PAUSE: Duration = Duration::from_millis(5);
-/// Bytes that the store may keep of a copy: it is in memory already, and its reads are counted.
+/// Bytes that the store may cache of a copy. The copy is in memory already, and its reads are counted.
 const CACHE: usize = 0;
 
 impl PostureMap {
-    /// Opens a map to go on with it, or begins one if there is no such file. A file that was killed over is
+    /// Opens a map to continue it, or creates one if there is no such file. A file whose writer was killed is
     /// as it was after the last batch.
     ///
-    /// All of the file is checked. One process has it open at a time.
+    /// The whole file is checked. One process can have it open at a time.
     ///
     /// # Errors
-    /// A file that belongs to another part, other tools or rules; is no map, damaged, or of a newer version;
-    /// is open in another process; or cannot be read and written.
-    pub fn open(path: impl AsRef<Path>, identity: &Identity) -> Result<PostureMap, MapError> {
+    /// If the file belongs to another part, other tools or other rules; if it is no map, damaged, or of a newer
+    /// version; if it is open in another process; or if it cannot be read and written.
+    pub fn open(path: impl AsRef<Path>, identity: &MapIdentity) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
         if let Some(what) = identity.oversized() {
             return Err(MapError::Oversized { file: path.display().to_string(), what });
@@ -33,7 +34,7 @@ impl PostureMap {
         if matches!(path.try_exists(), Ok(false)) {
             begin(path, identity)?;
         }
-        // A file that is refused is not changed.
+        // Read a copy first, so that a file that is refused is not changed.
         match read_identity(path)?.differs(identity) {
             Some(difference) => {
                 Err(MapError::Differs { file: path.display().to_string(), difference })
@@ -42,24 +43,24 @@ impl PostureMap {
         }
     }
 
-    /// Opens a map for what it is, to go on with it.
+    /// Opens an existing map to continue it, with the identity that it has.
     ///
     /// # Errors
-    /// Those of [`PostureMap::open`] but of belonging; a file that is not there is one that cannot be read.
+    /// Those of [`PostureMap::open`] except for the identity. A missing file is one that cannot be read.
     pub fn resume(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
         read_identity(path)?;
         open_writable(path)
     }
 
-    /// Reads a map as it is at this moment, to look at or to export; it cannot be recorded into.
+    /// Reads a map as it is at this moment, for inspection or export. It cannot be recorded into.
     ///
-    /// The file is copied into memory and not changed, so it needs no permission to be written, and another process,
-    /// such as a sweep, may have it open and go on meanwhile. All of it is checked.
+    /// The file is copied into memory and not changed. It needs no permission to write, and another process,
+    /// such as a sweep, may have it open and go on meanwhile. The whole copy is checked.
     ///
     /// # Errors
-    /// Those of [`PostureMap::open`] but of belonging and of writing; a file that is not there is one that cannot be
-    /// read; one that is written into so fast that no copy has a whole.
+    /// Those of [`PostureMap::open`] except for the identity and for writing. A missing file is one that cannot
+    /// be read. [`MapError::Busy`] if the file is written to so fast that no copy is whole.
     pub fn read(path: impl AsRef<Path>) -> Result<PostureMap, MapError> {
         let path = path.as_ref();
         let file = path.display().to_string();
@@ -86,7 +87,7 @@ impl PostureMap {
                     memory.end_check();
                     return Ok(PostureMap { is_copy: true, ..map });
                 }
-                // A commit comes to the disk page by page: a whole one may be there the next time.
+                // A commit reaches the disk page by page; the next copy may have all of it.
                 Err(MapError::Damaged { .. } | MapError::Truncated { .. })
                     if is_written(&bytes) => {}
                 Err(error) => return Err(error),
@@ -95,24 +96,24 @@ impl PostureMap {
         Err(MapError::Busy { file })
     }
 
-    /// The map in a store.
+    /// Returns the map in a store.
     pub(super) fn of(database: Database, file: String) -> Result<PostureMap, MapError> {
         let identity = read_facts(&database, &file)?;
         Ok(PostureMap { database, identity, file, is_copy: false })
     }
 }
 
-/// The identity of a map that is to be opened to record into it.
-fn read_identity(path: &Path) -> Result<Identity, MapError> {
+/// Reads the identity of a map that is to be opened for recording.
+fn read_identity(path: &Path) -> Result<MapIdentity, MapError> {
     match PostureMap::read(path) {
         Ok(map) => Ok(map.identity),
-        // It is written into, and so it is in use.
+        // A file that is being written is in use.
         Err(MapError::Busy { file }) => Err(MapError::Locked { file }),
         Err(error) => Err(error),
     }
 }
 
-/// Opens a map's file, whose copy was checked, to record into it.
+/// Opens a map's file for recording. A copy of it was checked before.
 fn open_writable(path: &Path) -> Result<PostureMap, MapError> {
     let file = path.display().to_string();
     let store = Builder::new().set_check_integrity_on_open(true).open(path);
@@ -123,8 +124,8 @@ fn open_writable(path: &Path) -> Result<PostureMap, MapError> {
     PostureMap::of(database, file)
 }
 
-/// Writes what a map says of itself into a store that has nothing in it.
-pub(super) fn write_facts(database: &Database, identity: &Identity) -> Result<(), redb::Error> {
+/// Writes the facts of a map into an empty store, and creates the table of rows.
+pub(super) fn write_facts(database: &Database, identity: &MapIdentity) -> Result<(), redb::Error> {
     let write = database.begin_write()?;
     let mut facts = write.open_table(FACTS)?;
     facts.insert(VERSION, NEWEST.to_le_bytes().as_slice())?;
@@ -134,8 +135,8 @@ pub(super) fn write_facts(database: &Database, identity: &Identity) -> Result<()
     Ok(write.commit()?)
 }
 
-/// Returns what a map says of itself.
-fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
+/// Reads the facts of a map, and returns its identity.
+fn read_facts(database: &Database, file: &str) -> Result<MapIdentity, MapError> {
     let says = |error: redb::Error| MapError::of(file, error);
     let read = database.begin_read().map_err(|error| says(error.into()))?;
     let facts = read.open_table(FACTS).map_err(|error| says(error.into()))?;
@@ -150,7 +151,7 @@ fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
     if version > NEWEST {
         return Err(MapError::Newer { file: file.to_owned(), version, reads: NEWEST });
     }
-    let identity: Identity = decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
+    let identity: MapIdentity = decode(&fact(IDENTITY)?).ok_or_else(|| MapError::Damaged {
         file: file.to_owned(),
         what: "what it says of itself is not what was written".to_owned(),
     })?;
@@ -160,11 +161,11 @@ fn read_facts(database: &Database, file: &str) -> Result<Identity, MapError> {
     }
 }
 
-/// Begins a map beside its place, and gives it its name when it is whole: nobody finds half of one.
-fn begin(path: &Path, identity: &Identity) -> Result<(), MapError> {
+/// Writes a new map beside its target and renames it when it is complete, so that no partial map is ever found.
+fn begin(path: &Path, identity: &MapIdentity) -> Result<(), MapError> {
     let file = path.display().to_string();
     let unwritable = |source| MapError::written(file.clone(), source);
-    let draft = Draft::default();
+    let draft = MemoryStore::default();
     let database = Builder::new().create_with_backend(draft.clone());
     let database = database.map_err(|error| MapError::of(&file, error))?;
     write_facts(&database, identity).map_err(|error| MapError::of(&file, error))?;
@@ -173,17 +174,17 @@ fn begin(path: &Path, identity: &Identity) -> Result<(), MapError> {
     let mut new = AtomicFile::create(path).map_err(unwritable)?;
     new.write_all(&bytes).map_err(unwritable)?;
     match new.commit_new() {
-        // Another was faster: it is that one which is opened.
+        // Another process was faster: its file is the one to open.
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
         done => done.map_err(unwritable),
     }
 }
 
-/// A store's file, open to be read, and its header.
+/// Opens a store's file for reading, and reads its header.
 fn start(path: &Path) -> Result<(File, Header), MapError> {
     let file = path.display().to_string();
     let open = || {
-        // Asked first: a pipe would be waited for.
+        // Check before opening: opening a pipe would block.
         if !fs::metadata(path)?.is_file() {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
         }
@@ -198,7 +199,7 @@ fn start(path: &Path) -> Result<(File, Header), MapError> {
     }
 }
 
-/// An error, or rather that the file is too short, where that is the cause.
+/// Returns an error, or [`MapError::Truncated`] instead of damage if the file is too short.
 fn truncated_or(error: MapError, header: &Header, length: u64) -> MapError {
     match error {
         MapError::Damaged { file, .. } if length < header.length() => {
@@ -208,7 +209,7 @@ fn truncated_or(error: MapError, header: &Header, length: u64) -> MapError {
     }
 }
 
-/// Returns whether another handle has a file open to write into it.
+/// Returns whether another handle has a file open for writing.
 fn is_written(file: &File) -> bool {
     let locked = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
     // A failure means that there was nothing to unlock.

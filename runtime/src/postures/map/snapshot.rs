@@ -1,4 +1,4 @@
-//! A map's file in memory: as it was at one moment, to be read, and before it is written for the first time.
+//! A map's file in memory: a copy of one moment, for reading, and a new map before its first write.
 
 use redb::StorageBackend;
 use redb::backends::InMemoryBackend;
@@ -7,10 +7,10 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
-/// What every `redb` store begins with.
+/// The first bytes of every `redb` store.
 pub(super) const MAGIC: &[u8] = b"redb\x1A\x0A\xA9\x0D\x0A";
 
-/// Bytes of a store's header: its layout and two commit slots, of which each commit rewrites one.
+/// Size of a store's header in bytes: its layout and two commit slots, of which each commit rewrites one.
 const HEADER: usize = 320;
 
 /// A store's header (redb's `docs/design.md`, "Database header").
@@ -18,7 +18,7 @@ const HEADER: usize = 320;
 pub(super) struct Header(Vec<u8>);
 
 impl Header {
-    /// That of a file, or as much of it as there is.
+    /// Reads the header of a file, or as much of it as there is.
     pub(super) fn read(file: &mut File) -> io::Result<Header> {
         file.seek(SeekFrom::Start(0))?;
         let mut bytes = Vec::with_capacity(HEADER);
@@ -26,19 +26,19 @@ impl Header {
         Ok(Header(bytes))
     }
 
-    /// Returns whether it is that of a store.
+    /// Returns whether this is the header of a store.
     pub(super) fn is_store(&self) -> bool {
         self.0.starts_with(MAGIC)
     }
 
-    /// Returns whether the last writer closed the file, so that all of the header holds. A killed writer may leave counts of
-    /// regions that are not those of the file; they are counted again when it is opened.
+    /// Returns whether the last writer closed the file, so that the whole header is valid. A killed writer may
+    /// leave counts of regions that are not those of the file; they are counted again when it is opened.
     pub(super) fn is_closed(&self) -> bool {
         const UNCLOSED: u8 = 2;
         self.0.get(MAGIC.len()).is_some_and(|flags| flags & UNCLOSED == 0)
     }
 
-    /// Bytes that the file has at least, by its own account.
+    /// Returns the least size of the file in bytes that its header implies.
     pub(super) fn length(&self) -> u64 {
         let field = |at: usize| {
             let bytes = self.0.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
@@ -46,16 +46,16 @@ impl Header {
         };
         let [page, head, most, full, last] = [12, 16, 20, 24, 28].map(field);
         let last = if last > 0 { head + last } else { 0 };
-        // The header takes a page.
+        // The header takes one page.
         let length = page * (1 + full * (head + most) + last);
         u64::try_from(length).unwrap_or(u64::MAX).max(HEADER as u64)
     }
 }
 
-/// Copies a file that another process may be writing into; `None` if that committed meanwhile.
+/// Copies a file that another process may be writing to. Returns `None` if that process committed meanwhile.
 ///
-/// Pages of the last commit are not written before the next one, and every commit changes the header: a copy with the
-/// same header before and after has all pages of that commit.
+/// Pages of the last commit are not written before the next one, and every commit changes the header. A copy
+/// with the same header before and after therefore has all pages of that commit.
 pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
     /// Bytes that are copied at once.
     const CHUNK: usize = 1 << 20;
@@ -70,7 +70,7 @@ pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
         let size = chunk.len().min(usize::try_from(length - at).unwrap_or(CHUNK));
         match file.read_exact(&mut chunk[..size]) {
             Ok(()) => memory.write(at, &chunk[..size])?,
-            // It was shortened meanwhile.
+            // The file was shortened meanwhile.
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),
             Err(error) => return Err(error),
         }
@@ -80,10 +80,10 @@ pub(super) fn copy(file: &mut File) -> io::Result<Option<(Header, Snapshot)>> {
     Ok(same.then(|| (before, Snapshot::new(memory, length))))
 }
 
-/// A file's copy, of which no more is read while it is checked than a tree of its pages takes.
+/// A copy of a file, with a limit on what the check may read: no more than a tree of its pages takes.
 ///
-/// A crafted file can name a page as the child of another many times over, so that a walk over some pages takes
-/// forever.
+/// A crafted file can name a page as the child of another many times over, so that a traversal of a few pages
+/// takes forever.
 #[derive(Clone, Debug)]
 pub(super) struct Snapshot {
     memory: Arc<InMemoryBackend>,
@@ -93,15 +93,16 @@ pub(super) struct Snapshot {
 
 impl Snapshot {
     fn new(memory: InMemoryBackend, length: u64) -> Snapshot {
-        /// How often each byte may be read, and how many more: a check reads each page fewer than ten times.
+        /// Number of times that each byte may be read; a check reads each page fewer than ten times.
         const TIMES: u64 = 64;
+        /// Bytes that may be read in addition.
         const MORE: i64 = 1 << 24;
         let left = i64::try_from(length.saturating_mul(TIMES)).unwrap_or(i64::MAX);
         let left = Arc::new(AtomicI64::new(left.saturating_add(MORE)));
         Snapshot { memory: Arc::new(memory), left }
     }
 
-    /// Ends the check: from here on as much is read as is asked for.
+    /// Ends the check, and with it the limit on reading.
     pub(super) fn end_check(&self) {
         self.left.store(i64::MAX, Ordering::Relaxed);
     }
@@ -115,7 +116,7 @@ impl StorageBackend for Snapshot {
     fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
         let size = i64::try_from(out.len()).unwrap_or(i64::MAX);
         if self.left.fetch_sub(size, Ordering::Relaxed) < size {
-            // What is read after that fails too.
+            // Make all later reads fail too.
             self.left.store(0, Ordering::Relaxed);
             return Err(io::Error::new(io::ErrorKind::InvalidData, "its pages form no tree"));
         }
@@ -135,12 +136,12 @@ impl StorageBackend for Snapshot {
     }
 }
 
-/// Memory that a store is made in, and whose bytes are then written to a file.
+/// Memory in which a store is created, before its bytes are written to a file.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Draft(Arc<InMemoryBackend>);
+pub(super) struct MemoryStore(Arc<InMemoryBackend>);
 
-impl Draft {
-    /// All bytes, once the store is closed.
+impl MemoryStore {
+    /// Returns all bytes. The store has to be closed.
     pub(super) fn bytes(&self) -> io::Result<Vec<u8>> {
         let length = usize::try_from(self.0.len()?).map_err(io::Error::other)?;
         let mut bytes = vec![0; length];
@@ -149,7 +150,7 @@ impl Draft {
     }
 }
 
-impl StorageBackend for Draft {
+impl StorageBackend for MemoryStore {
     fn len(&self) -> io::Result<u64> {
         self.0.len()
     }

@@ -1,90 +1,91 @@
-//! Which way the axis goes along a line.
+//! Directions of the tool axis along a line.
 
-use super::Leader;
-use super::slice::Place;
+use super::PathPlanner;
+use super::slice::SlicePoint;
 use crate::mesh::Mesh;
 use crate::pose::Pose;
 use crate::postures::Directions;
 use crate::postures::directions::has;
-use crate::postures::touching::Spot;
+use crate::postures::placement::SurfacePoint;
 use nalgebra::Vector3;
 
 /// A posture of a path.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
-    pub(super) spot: Spot,
+pub(super) struct PathPosture {
+    pub(super) spot: SurfacePoint,
     pub(super) pose: Pose,
     pub(super) axis: Vector3<f64>,
 }
 
-/// Postures one behind the other.
-pub(super) struct Run {
-    pub(super) ways: Vec<Way>,
-    /// Of each but the last, over which stops the way to the next is proved, if it is.
+/// Consecutive postures.
+pub(super) struct PostureRun {
+    pub(super) ways: Vec<PathPosture>,
+    /// Per posture but the last, the intermediate cutter locations of the proved motion to the next; `None` if
+    /// no motion is proved.
     pub(super) joined: Vec<Option<Vec<Pose>>>,
-    /// The sum of the squares of the axis's turns, in radians, before they were made even.
+    /// Sum of the squares of the axis turns, in radians, before smoothing.
     pub(super) turned: f64,
 }
 
-impl Run {
+impl PostureRun {
     pub(super) fn reverse(&mut self) {
         self.ways.reverse();
         self.joined.reverse();
         self.joined.iter_mut().flatten().for_each(|stops| stops.reverse());
     }
 
-    /// The sum of the squares of the axis's turns, in radians.
+    /// Returns the sum of the squares of the axis turns, in radians.
     pub(super) fn turns(&self) -> f64 {
         squares(&self.ways)
     }
 }
 
-fn squares(ways: &[Way]) -> f64 {
+fn squares(ways: &[PathPosture]) -> f64 {
     ways.windows(2).map(|pair| pair[0].axis.angle(&pair[1].axis).powi(2)).sum()
 }
 
-/// A place, and the directions from which a sweep reached its triangle.
-struct Reached<'a> {
-    spot: Spot,
+/// A point, and the directions from which a sweep reached its triangle.
+struct ReachableDirections<'a> {
+    spot: SurfacePoint,
     set: &'a [u64],
-    crossed: &'a [Spot],
+    crossed: &'a [SurfacePoint],
 }
 
-/// What it costs to stand at the rim of what is accessible, beside a turn of as many radians, squared.
+/// Cost of a direction at the rim of the accessible ones, relative to squared turns in radians.
 const RIM: f64 = 0.1;
 
-/// How many directions are tried where that which turns least does not do at a place.
+/// Number of directions tried at a point, beginning with the one that turns least.
 const OTHERS: usize = 12;
 
-/// How often the axes of a run are made more even.
+/// Largest number of smoothing passes over a run.
 const EVEN: usize = 24;
 
-/// Turns that are smaller are even, in radians.
+/// Turn in radians below which an axis is left as it is.
 const SMALL: f64 = 1e-3;
 
-/// How often a way from place to place is halved at most.
+/// Largest number of times that a motion between two points is halved.
 const FINEST: u32 = 6;
 
-/// Directions whose mean is shorter point opposite ways.
+/// Length below which the mean of two directions is taken as zero: they are opposite.
 const HALF: f64 = 1e-6;
 
-impl Leader<'_> {
-    /// The postures along a line, in runs: a place that the tool does not reach ends one.
+impl PathPlanner<'_> {
+    /// Returns the postures along a line, in runs. A point that the tool does not reach ends a run.
     pub(super) fn runs(
         &mut self,
         mesh: &Mesh,
         (directions, access): (&Directions, &[Vec<u64>]),
-        line: &[Place],
-    ) -> Vec<Run> {
-        let reached: Vec<Option<Reached<'_>>> = line
+        line: &[SlicePoint],
+    ) -> Vec<PostureRun> {
+        let reached: Vec<Option<ReachableDirections<'_>>> = line
             .iter()
             .map(|place| {
                 let normal = mesh.normal(place.triangle)?;
                 let set = access.get(place.triangle as usize)?;
-                // A set of other directions says nothing.
+                // A set of another length belongs to other directions, and is ignored.
                 let any = set.len() == directions.words() && set.iter().any(|word| *word != 0);
-                any.then_some(Reached {
-                    spot: Spot { point: place.point, normal },
+                any.then_some(ReachableDirections {
+                    spot: SurfacePoint { point: place.point, normal },
                     set,
                     crossed: &place.crossed,
                 })
@@ -92,7 +93,7 @@ impl Leader<'_> {
             .collect();
         let mut runs = Vec::new();
         for stretch in reached.split(Option::is_none) {
-            let stretch: Vec<&Reached> = stretch.iter().flatten().collect();
+            let stretch: Vec<&ReachableDirections> = stretch.iter().flatten().collect();
             let mut run = Vec::new();
             for (at, direction) in stretch.iter().zip(even(directions, &stretch)) {
                 match self.stand_near(directions, at, direction) {
@@ -106,27 +107,34 @@ impl Leader<'_> {
         runs.into_iter().map(|run| self.run(run)).collect()
     }
 
-    /// A run of postures, its turns made even; with each, what the line crossed before it.
-    fn run(&mut self, run: Vec<(Way, &[Spot])>) -> Run {
-        let (ways, crossed): (Vec<Way>, Vec<&[Spot]>) = run.into_iter().unzip();
+    /// Smooths the turns of a run of postures and joins them. Each posture comes with the edges that the line
+    /// crossed before it.
+    fn run(&mut self, run: Vec<(PathPosture, &[SurfacePoint])>) -> PostureRun {
+        let (ways, crossed): (Vec<PathPosture>, Vec<&[SurfacePoint]>) = run.into_iter().unzip();
         let turned = squares(&ways);
         let ways = self.smooth(ways);
         let pairs = ways.windows(2).zip(&crossed[1..]);
         let joined = pairs.map(|(pair, crossed)| self.join(&pair[0], &pair[1], crossed));
         let joined = joined.collect();
-        Run { ways, joined, turned }
+        PostureRun { ways, joined, turned }
     }
 
-    /// The stops of a proved way from place to place, without its ends: none, if it goes straight, and else as many
-    /// as it needs. Over edges that bulge it goes from the one triangle's normal to the other's.
-    pub(super) fn join(&mut self, from: &Way, to: &Way, crossed: &[Spot]) -> Option<Vec<Pose>> {
+    /// Returns the intermediate cutter locations of a proved motion between two postures: none if the straight
+    /// motion is proved, and otherwise as many as needed. Over convex edges the motion goes from one triangle's
+    /// normal to the other's. Returns `None` if no motion is proved.
+    pub(super) fn join(
+        &mut self,
+        from: &PathPosture,
+        to: &PathPosture,
+        crossed: &[SurfacePoint],
+    ) -> Option<Vec<Pose>> {
         let mut stops = Vec::new();
         if !self.sweep(&from.pose, &to.pose)? {
             let mut at = *from;
             for (k, spot) in crossed.iter().enumerate() {
                 let part = (k as f64 + 0.5) / crossed.len() as f64;
                 let axis = from.axis.lerp(&to.axis, part).try_normalize(HALF)?;
-                // Where an edge is hollow the tool does not come to it, and need not.
+                // At a concave edge the tool does not reach the edge, and need not.
                 if let Some(next) = self.stand(spot, axis)
                     && next.pose != at.pose
                 {
@@ -140,10 +148,16 @@ impl Leader<'_> {
         Some(stops)
     }
 
-    /// Adds the stops of a proved way to a place, that with them: what does not go straight is halved, so many
-    /// times at most.
-    fn refine(&mut self, from: &Way, to: &Way, more: u32, stops: &mut Vec<Pose>) -> Option<()> {
-        // What is too much to prove is not less by halves.
+    /// Appends the cutter locations of a proved motion to a posture, that posture included. A motion that is
+    /// deeper than the tolerance is halved, at most `more` times.
+    fn refine(
+        &mut self,
+        from: &PathPosture,
+        to: &PathPosture,
+        more: u32,
+        stops: &mut Vec<Pose>,
+    ) -> Option<()> {
+        // A motion that exceeds the search budget would exceed it in halves too.
         if self.sweep(&from.pose, &to.pose)? {
             stops.push(to.pose);
             return Some(());
@@ -152,25 +166,26 @@ impl Leader<'_> {
         let point = nalgebra::center(&from.spot.point, &to.spot.point);
         let normal = from.spot.normal.lerp(&to.spot.normal, 0.5).try_normalize(HALF)?;
         let axis = from.axis.lerp(&to.axis, 0.5).try_normalize(HALF)?;
-        let middle = self.stand(&Spot { point, normal }, axis)?;
+        let middle = self.stand(&SurfacePoint { point, normal }, axis)?;
         self.refine(from, &middle, more, stops)?;
         self.refine(&middle, to, more, stops)
     }
 
-    /// The tool at a place, in a direction or one near it that the sweep found for the triangle's middle.
+    /// Returns the posture at a point, in a direction or in one near it that the sweep found for the triangle's
+    /// centroid.
     fn stand_near(
         &mut self,
         directions: &Directions,
-        at: &Reached<'_>,
+        at: &ReachableDirections<'_>,
         direction: usize,
-    ) -> Option<Way> {
+    ) -> Option<PathPosture> {
         let others = directions.beside(direction).filter(|other| has(at.set, *other));
         let mut tried = others.take(OTHERS);
         tried.find_map(|other| self.stand(&at.spot, Vector3::from(directions.list()[other])))
     }
 
-    /// The same places with axes that turn more evenly, each as proved as before.
-    fn smooth(&mut self, mut run: Vec<Way>) -> Vec<Way> {
+    /// Moves the axes toward the mean of their neighbours, as far as each posture is proved again.
+    fn smooth(&mut self, mut run: Vec<PathPosture>) -> Vec<PathPosture> {
         for _ in 0..EVEN {
             let mut still = true;
             for k in 1..run.len().saturating_sub(1) {
@@ -192,9 +207,9 @@ impl Leader<'_> {
     }
 }
 
-/// Of each place the direction, such that turns are least, squared, and the rims of what is accessible far:
-/// the shortest way through all (Viterbi).
-fn even(directions: &Directions, stretch: &[&Reached<'_>]) -> Vec<usize> {
+/// Returns one direction per point, so that the sum of squared turns and of the costs of rims is least: a
+/// shortest path (Viterbi).
+fn even(directions: &Directions, stretch: &[&ReachableDirections<'_>]) -> Vec<usize> {
     let list: Vec<Vector3<f64>> = directions.list().iter().map(|way| Vector3::from(*way)).collect();
     let mut steps: Vec<Vec<(u16, u16)>> = Vec::with_capacity(stretch.len());
     let mut costs: Vec<(u16, f64)> = Vec::new();
@@ -205,7 +220,7 @@ fn even(directions: &Directions, stretch: &[&Reached<'_>]) -> Vec<usize> {
         for direction in members {
             let rim = RIM * (1.0 + directions.margin(at.set, direction)).max(0.0);
             let turned = costs.iter().enumerate().map(|(k, (other, cost))| {
-                // Of unit vectors this is the square of the turn, as long as that is small.
+                // For unit vectors this is the square of the turn, as long as it is small.
                 let turn = 2.0 - 2.0 * list[direction].dot(&list[usize::from(*other)]);
                 (cost + turn, k)
             });

@@ -1,145 +1,148 @@
-//! From postures to a path: a 5-axis program that is proved.
+//! Planning of paths through postures: a 5-axis program that is proved.
 //!
 //! ```text
 //! mesh ──slice──▶ lines ──axes──▶ runs of postures ──smooth──▶ even turns ──link──▶ stops
 //!                          ▲                                                  ▲
-//!                     where a sweep reached                              sweep_clear
+//!                     where a sweep reached                              check_motion
 //! ```
 //!
-//! Parallel planes cut the part in lines; along each the tool stands where a sweep found that it can, with
-//! the directions that turn least from place to place. Every posture is proved, and every way between two.
-//! Where going straight is too deep, the tool is led over the edges between two places, with stops as near
-//! as need be. What cannot be joined on the surface is joined over it: a little back along the axis, across,
-//! and in along the next; or else out, around the part, and in.
+//! Parallel planes slice the part into lines. Along each line the tool takes postures that a sweep found
+//! reachable, in the directions that turn least from point to point. Every posture and every motion between two
+//! of them is proved. Where a straight motion is too deep, the tool is led over the edges between the two
+//! points, with as many intermediate cutter locations as needed. Points that cannot be joined on the surface
+//! are joined above it: a little back along the axis, across, and in along the next axis. Where that fails too,
+//! the tool moves out, around the part, and in.
 
 mod axes;
-mod link;
+mod retract;
 mod slice;
 
-use super::touching::{Posture, Spot, Touching};
-use super::{Directions, Judge, JudgeError, Rules};
-use crate::certify::{Facets, Sweep};
-use crate::cores;
+use super::placement::{CandidatePosture, SurfacePoint, ToolPlacement};
+use super::{Directions, Rules, Validator, ValidatorError};
+use crate::certify::{MotionVerdict, TriangleBvh};
 use crate::mesh::Mesh;
 use crate::motion::Motion;
+use crate::parallel;
 use crate::pose::Pose;
 use crate::tool::Tool;
-use axes::{Run, Way};
-use link::{Around, Leg};
+use axes::{PathPosture, PostureRun};
 use nalgebra::Vector3;
-use slice::{Place, length_of_lines, slices};
+use retract::{RetractLeg, RetractSphere};
+use slice::{SlicePoint, length_of_lines, slices};
 
-/// How a surface is gone over.
+/// The pattern of lines that covers a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
-    /// The normal of the planes that cut the part; of any length.
+    /// Normal of the slicing planes, of any length.
     pub normal: [f64; 3],
-    /// How far planes are apart, in the part's unit, or a little less or more so that they are evenly so.
+    /// Distance between planes, in the part's unit. It is adjusted so that the planes are evenly spaced.
     pub stepover: f64,
-    /// How far places on a line are apart at most, in the part's unit.
+    /// Largest distance between points on a line, in the part's unit.
     pub step: f64,
 }
 
-/// Why there is no path.
+/// A reason for which there is no path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
-    /// A pattern that is none.
+    /// A length of the pattern is not finite or not above 0.
     #[error("{what} of {value} is no length above 0: give one in the part's unit, such as 1")]
     Pattern {
-        /// What is none.
+        /// The name of the length.
         what: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
     /// The planes have no normal.
     #[error("the planes' normal is no direction: give three numbers that are not all 0")]
     Normal,
-    /// The planes would be too many.
+    /// The pattern has too many planes.
     #[error("{planes:.0} planes are more than {most}: take a larger stepover")]
     TooMany {
-        /// How many they would be.
+        /// Number of planes of the pattern.
         planes: f64,
-        /// How many may be.
+        /// Largest number allowed.
         most: usize,
     },
-    /// The places on the lines would be too many.
+    /// The pattern has too many points on the lines.
     #[error("{places:.0} places are more than {most}: take a larger step or stepover")]
     TooFine {
-        /// How many they would be at most.
+        /// Estimated number of points.
         places: f64,
-        /// How many may be.
+        /// Largest number allowed.
         most: usize,
     },
-    /// The rules mean nothing, or nothing of the tool can be held to them.
+    /// The rules are invalid, or the tool cannot be validated.
     #[error(transparent)]
-    Judge(#[from] JudgeError),
-    /// There is no posture to go through.
+    Validator(#[from] ValidatorError),
+    /// No posture was found for the path.
     #[error(
         "the tool reaches none of the places where the planes cut the part: sweep with it first, or take \
          planes of another normal"
     )]
-    Nowhere,
+    NoPosture,
 }
 
-/// A path, and what it is made of.
+/// A path and its statistics.
 #[derive(Clone, Debug)]
-pub struct Path {
-    /// Its stops, the first and the last away from the part, each with whether the tool comes there in rapid
-    /// traverse.
-    pub stops: Vec<(Pose, bool)>,
-    /// Places at which the part is touched.
-    pub places: usize,
-    /// Places on the lines that it leaves out: the tool does not reach them, or no way to them was proved.
+pub struct ToolPath {
+    /// Cutter locations, each with a flag that is set if the tool arrives in rapid traverse. The first and the
+    /// last are away from the part.
+    pub locations: Vec<(Pose, bool)>,
+    /// Number of points at which the part is touched.
+    pub contact_points: usize,
+    /// Number of points on the lines that are left out: the tool does not reach them, or no motion to them was
+    /// proved.
     pub left_out: usize,
-    /// How often it leaves the surface.
-    pub lifts: usize,
-    /// The root mean square turn of the axis from place to place along the lines, in radians, before and
-    /// after it was made even.
+    /// Number of times that the tool leaves the surface.
+    pub retracts: usize,
+    /// Root mean square turn of the axis from point to point along the lines, in radians, before and after
+    /// smoothing.
     pub turns: [f64; 2],
 }
 
-/// The most planes.
+/// Largest number of planes.
 const MOST: usize = 100_000;
 
-/// The most places, as far as the lines' length tells: some gigabytes, and weeks of any machine.
+/// Largest number of points, estimated from the length of the lines: some gigabytes, and weeks on any machine.
 const MOST_PLACES: usize = 20_000_000;
 
-/// Of the tolerance this part is for the way between stops.
+/// Fraction of the tolerance reserved for motions between cutter locations.
 const BETWEEN: f64 = 1.0 / 8.0;
 
-/// Lines that are looked at together.
+/// Number of lines per unit of parallel work.
 const TOGETHER: usize = 8;
 
-/// What a question may look at: a way that is harder to prove is another way's to go.
+/// Search budget of a query. A motion that takes more to prove is left to an alternative.
 const BUDGET: u32 = 1 << 18;
 
-/// A tool beside a part, ready to be led over it.
-pub(super) struct Leader<'a> {
-    touching: Touching<'a>,
-    judge: Judge<'a>,
+/// Plans the path of a tool over a part.
+pub(super) struct PathPlanner<'a> {
+    touching: ToolPlacement<'a>,
+    judge: Validator<'a>,
     rules: &'a Rules,
-    postures: Vec<Posture>,
+    postures: Vec<CandidatePosture>,
 }
 
-/// A path of a tool over all that it reaches of a part: no deeper than the rules' tolerance at its stops and
-/// between them, where the tip goes straight and the axis turns evenly; nicer than the rules ask at every
-/// place. `access` has of each triangle, by its id, the directions from which a sweep found that the tool reaches
-/// it, as [`Access`](super::Access) has them; nothing where it does not.
+/// Plans a path of a tool over all that it reaches of a part. The tool is no deeper than the rules' tolerance
+/// at cutter locations and between them, where the tip moves straight and the axis turns evenly. At every point
+/// it is nicer than the rules require. `access` has, per triangle id, the directions from which a sweep found
+/// that the tool reaches it, in the format of [`Accessibility`](super::Accessibility); an empty list where it
+/// does not.
 ///
 /// # Errors
-/// If the pattern or the rules mean nothing, or there is nothing to go over.
-pub fn path<'a>(
-    (mesh, facets): (&Mesh, &'a Facets),
+/// If the pattern or the rules are invalid, or no point can be reached; see [`PathError`].
+pub fn plan_path<'a>(
+    (mesh, bvh): (&Mesh, &'a TriangleBvh),
     (tool, rules): (&'a dyn Tool, &'a Rules),
     (directions, access): (&Directions, &[Vec<u64>]),
     pattern: &Pattern,
-) -> Result<Path, PathError> {
+) -> Result<ToolPath, PathError> {
     for (what, value) in [("a stepover", pattern.stepover), ("a step", pattern.step)] {
         if !(value > 0.0 && value.is_finite()) {
             return Err(PathError::Pattern { what, value });
         }
     }
-    // By its largest part first, so that no square is too large or too small.
+    // Divide by the largest component first, so that no square overflows or underflows.
     let normal = Vector3::from(pattern.normal);
     let normal = (normal / normal.amax()).try_normalize(0.0).filter(|n| n.norm().is_finite());
     let normal = normal.ok_or(PathError::Normal)?;
@@ -152,32 +155,32 @@ pub fn path<'a>(
     if places > MOST_PLACES as f64 {
         return Err(PathError::TooFine { places, most: MOST_PLACES });
     }
-    let mut leader = Leader::new(facets, tool, rules)?;
-    let around = Around::new(mesh, leader.touching.reach());
+    let mut leader = PathPlanner::new(bvh, tool, rules)?;
+    let around = RetractSphere::new(mesh, leader.touching.reach());
     let planes = slices(mesh, &normal, [pattern.stepover, pattern.step]);
-    let lines: Vec<(usize, &Vec<Place>)> = planes
+    let lines: Vec<(usize, &Vec<SlicePoint>)> = planes
         .iter()
         .enumerate()
         .flat_map(|(k, lines)| lines.iter().map(move |line| (k, line)))
         .collect();
-    let runs = cores::ranges(lines.len(), TOGETHER, |range| {
-        // What was refused was refused above.
-        let Ok(mut leader) = Leader::new(facets, tool, rules) else { return Vec::new() };
-        let run = |(plane, line): &(usize, &Vec<Place>)| {
+    let runs = parallel::ranges(lines.len(), TOGETHER, |range| {
+        // Errors were reported for the planner above.
+        let Ok(mut leader) = PathPlanner::new(bvh, tool, rules) else { return Vec::new() };
+        let run = |(plane, line): &(usize, &Vec<SlicePoint>)| {
             leader.judge.certifier.forget();
             (*plane, leader.runs(mesh, (directions, access), line))
         };
         lines[range].iter().map(run).collect()
     });
     let mut path =
-        Drawn { seen: lines.iter().map(|(_, line)| line.len()).sum(), ..Drawn::default() };
+        DrawnPath { seen: lines.iter().map(|(_, line)| line.len()).sum(), ..DrawnPath::default() };
     let mut runs = runs.into_iter().flatten().peekable();
     while let Some((plane, mut here)) = runs.next() {
         while let Some((_, more)) = runs.next_if(|(other, _)| *other == plane) {
             here.extend(more);
         }
         here.iter().for_each(|run| path.count(run));
-        // The nearest end of what is left comes next.
+        // Continue with the remaining run whose end is nearest.
         while let Some((next, reverse)) = path.nearest(&here) {
             let mut run = here.swap_remove(next);
             if reverse {
@@ -189,54 +192,54 @@ pub fn path<'a>(
     path.end(&mut leader, &around)
 }
 
-impl<'a> Leader<'a> {
+impl<'a> PathPlanner<'a> {
     fn new(
-        facets: &'a Facets,
+        bvh: &'a TriangleBvh,
         tool: &'a dyn Tool,
         rules: &'a Rules,
-    ) -> Result<Leader<'a>, JudgeError> {
+    ) -> Result<PathPlanner<'a>, ValidatorError> {
         let at_stops = Rules { tolerance: rules.tolerance * (1.0 - BETWEEN), ..rules.clone() };
-        let mut judge = Judge::new(facets, tool, &at_stops)?;
-        judge.certifier = judge.certifier.budget(BUDGET);
-        let touching = Touching::new(tool, facets.unit());
-        Ok(Leader { touching, judge, rules, postures: Vec::new() })
+        let mut judge = Validator::new(bvh, tool, &at_stops)?;
+        judge.certifier = judge.certifier.with_budget(BUDGET);
+        let touching = ToolPlacement::new(tool, bvh.unit());
+        Ok(PathPlanner { touching, judge, rules, postures: Vec::new() })
     }
 
-    /// The tool at a place, its axis in a direction, if that is proved to be acceptable.
-    fn stand(&mut self, spot: &Spot, axis: Vector3<f64>) -> Option<Way> {
+    /// Returns the posture at a surface point with a given axis, if it is proved acceptable.
+    fn stand(&mut self, spot: &SurfacePoint, axis: Vector3<f64>) -> Option<PathPosture> {
         self.touching.list(*spot, [axis], &mut self.postures);
         let nice = self.postures.iter().filter(|posture| posture.niceness > self.rules.niceness);
         let mut poses = nice.filter_map(|posture| Pose::from_axis(posture.tip, axis).ok());
         let pose = poses.find(|pose| self.judge.accepts(pose))?;
-        Some(Way { spot: *spot, pose, axis })
+        Some(PathPosture { spot: *spot, pose, axis })
     }
 
-    /// Whether the tool is proved to be no deeper than the tolerance on its way, or to be deeper; if neither,
-    /// `None`.
+    /// Returns whether the tool is proved to be no deeper than the tolerance during a motion (`true`), or to be
+    /// deeper (`false`); `None` if neither is proved or the motion is ambiguous.
     fn sweep(&mut self, from: &Pose, to: &Pose) -> Option<bool> {
         let motion = Motion::new(from, to).ok()?;
         let more = BETWEEN * self.rules.tolerance;
-        match self.judge.certifier.sweep_clear(&motion, more) {
-            Sweep::Clear | Sweep::SurfaceOnly => Some(true),
-            Sweep::Touching(..) | Sweep::Inside(_) => Some(false),
-            Sweep::Undecided(_) => None,
+        match self.judge.certifier.check_motion(&motion, more) {
+            MotionVerdict::Clear | MotionVerdict::SurfaceOnly => Some(true),
+            MotionVerdict::Touching(..) | MotionVerdict::Inside(_) => Some(false),
+            MotionVerdict::Undecided(_) => None,
         }
     }
 
-    /// Whether the tool is proved to be no deeper than the tolerance on its way.
+    /// Returns whether the tool is proved to be no deeper than the tolerance during a motion.
     fn goes(&mut self, from: &Pose, to: &Pose) -> bool {
         self.sweep(from, to) == Some(true)
     }
 }
 
-/// What is drawn of a path.
+/// A path under construction.
 #[derive(Default)]
-struct Drawn {
+struct DrawnPath {
     stops: Vec<(Pose, bool)>,
-    /// Where the surface was come to last: the stop, and the way.
-    came: Option<(usize, Leg)>,
-    /// The last place on the surface.
-    last: Option<Way>,
+    /// The last approach from outside: the index of its cutter location on the surface, and its leg.
+    came: Option<(usize, RetractLeg)>,
+    /// The last posture on the surface.
+    last: Option<PathPosture>,
     seen: usize,
     places: usize,
     dropped: usize,
@@ -245,18 +248,18 @@ struct Drawn {
     turned: [f64; 2],
 }
 
-impl Drawn {
-    fn count(&mut self, run: &Run) {
+impl DrawnPath {
+    fn count(&mut self, run: &PostureRun) {
         self.places += run.ways.len();
         self.steps += run.ways.len() - 1;
         self.turned[0] += run.turned;
         self.turned[1] += run.turns();
     }
 
-    /// The run that has the nearest end, and whether that is its last.
-    fn nearest(&self, runs: &[Run]) -> Option<(usize, bool)> {
+    /// Returns the index of the run with the nearest end, and whether that is its last posture.
+    fn nearest(&self, runs: &[PostureRun]) -> Option<(usize, bool)> {
         let from = self.last.as_ref().map(|last| last.pose.tip());
-        let far = |way: &Way| from.map_or(0.0, |from| (way.pose.tip() - from).norm());
+        let far = |way: &PathPosture| from.map_or(0.0, |from| (way.pose.tip() - from).norm());
         let ends = runs.iter().enumerate().filter_map(|(index, run)| {
             let (first, last) = (run.ways.first()?, run.ways.last()?);
             Some([(far(first), index, false), (far(last), index, true)])
@@ -269,11 +272,18 @@ impl Drawn {
         self.stops.push((pose, rapid));
     }
 
-    /// Goes to a run and along it; where two places cannot be joined on the surface, over it or around the part.
-    fn follow(&mut self, leader: &mut Leader<'_>, around: &Around, run: &Run, near: f64) {
+    /// Moves to a run and along it. Two points that cannot be joined on the surface are joined above it or
+    /// around the part; a point that cannot be joined at all is dropped.
+    fn follow(
+        &mut self,
+        leader: &mut PathPlanner<'_>,
+        around: &RetractSphere,
+        run: &PostureRun,
+        near: f64,
+    ) {
         for (index, way) in run.ways.iter().enumerate() {
             let joined = match (index.checked_sub(1), &self.last) {
-                // Whether the way before is the last is known by its place.
+                // The pose tells whether the previous posture of the run was reached or dropped.
                 (Some(before), Some(last)) if run.ways[before].pose == last.pose => {
                     run.joined[before].clone()
                 }
@@ -293,8 +303,14 @@ impl Drawn {
         }
     }
 
-    /// Lifts off the surface a little, and comes to a place of it over another, if that is proved.
-    fn hop(&mut self, leader: &mut Leader<'_>, around: &Around, way: &Way) -> bool {
+    /// Retracts a little from the surface, moves across, and comes down to a posture. Does nothing and returns
+    /// `false` if that is not proved.
+    fn hop(
+        &mut self,
+        leader: &mut PathPlanner<'_>,
+        around: &RetractSphere,
+        way: &PathPosture,
+    ) -> bool {
         let Some(last) = &self.last else { return false };
         let (from, to) = (last.pose, way.pose);
         let (Some(up), Some(over)) = (around.lifted(&from), around.lifted(&to)) else {
@@ -309,8 +325,13 @@ impl Drawn {
         proved
     }
 
-    /// Leaves the surface, and comes to a place of it from outside, if that is proved.
-    fn go_round(&mut self, leader: &mut Leader<'_>, around: &Around, way: &Way) -> bool {
+    /// Leaves the surface, and comes to a posture from outside. Returns `false` if that is not proved.
+    fn go_round(
+        &mut self,
+        leader: &mut PathPlanner<'_>,
+        around: &RetractSphere,
+        way: &PathPosture,
+    ) -> bool {
         let Some(leg) = around.leg(leader, &way.pose) else { return false };
         let left = self.stops.len();
         if let Some(from) = self.leave(leader, around) {
@@ -327,9 +348,10 @@ impl Drawn {
         true
     }
 
-    /// Goes off the surface: where that is not proved from the last place, back along those before it, as
-    /// far as the one that was come to from outside, hops and all. Where it ends; `None` if nothing was touched yet.
-    fn leave(&mut self, leader: &mut Leader<'_>, around: &Around) -> Option<Pose> {
+    /// Leaves the surface and returns the outer pose; `None` if nothing was touched yet. Where the leg from the
+    /// last cutter location is not proved, the tool first goes back along the earlier ones, hops included, at
+    /// most to the last one that was approached from outside.
+    fn leave(&mut self, leader: &mut PathPlanner<'_>, around: &RetractSphere) -> Option<Pose> {
         let (first, came) = self.came?;
         let mut at = self.stops.len() - 1;
         let leg = loop {
@@ -347,16 +369,20 @@ impl Drawn {
         Some(leg.far)
     }
 
-    fn end(mut self, leader: &mut Leader<'_>, around: &Around) -> Result<Path, PathError> {
-        self.leave(leader, around).ok_or(PathError::Nowhere)?;
+    fn end(
+        mut self,
+        leader: &mut PathPlanner<'_>,
+        around: &RetractSphere,
+    ) -> Result<ToolPath, PathError> {
+        self.leave(leader, around).ok_or(PathError::NoPosture)?;
         let steps = self.steps.max(1) as f64;
         let places = self.places - self.dropped;
-        Ok(Path {
-            places,
+        Ok(ToolPath {
+            contact_points: places,
             left_out: self.seen - places,
-            lifts: self.lifts,
+            retracts: self.lifts,
             turns: self.turned.map(|turned| (turned / steps).sqrt()),
-            stops: self.stops,
+            locations: self.stops,
         })
     }
 }

@@ -1,37 +1,38 @@
-//! The lines in which planes cut a mesh, in order.
+//! Slices of a mesh by parallel planes, as ordered lines.
 
 use crate::mesh::Mesh;
-use crate::postures::touching::Spot;
+use crate::postures::placement::SurfacePoint;
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
-/// A part of a line that lies in one triangle.
+/// The segment of a line within one triangle.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct SliceSegment {
     triangle: u32,
     ends: [Point3<f64>; 2],
 }
 
-/// A place of a line, and the triangle it lies in.
+/// A point of a line, and the triangle that contains it.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct SlicePoint {
     pub(super) point: Point3<f64>,
     pub(super) triangle: u32,
-    /// The sides that the line crossed since the place before, in order: on each its last triangle, and its next.
-    pub(super) crossed: Vec<Spot>,
+    /// Points on the edges that the line crossed since the previous point, in order; per edge with the normals
+    /// of the triangle before it and of the one after it.
+    pub(super) crossed: Vec<SurfacePoint>,
 }
 
-/// The lines in which parallel planes cut a mesh, plane by plane, as places about a step apart: at most that
-/// far, and no nearer than half of it, but for the first of a line. Closed lines end where they begin.
+/// Returns the lines in which parallel planes cut a mesh, per plane, as points about a step apart: at most that
+/// far, and at least half of it, except for the first of a line. Closed lines end where they begin.
 pub(super) fn slices(
     mesh: &Mesh,
     normal: &Vector3<f64>,
     [stepover, step]: [f64; 2],
-) -> Vec<Vec<Vec<Place>>> {
+) -> Vec<Vec<Vec<SlicePoint>>> {
     let [low, high] = range(mesh, normal);
     let count = ((high - low) / stepover).round().max(1.0);
     let plane = |k: usize| low + (high - low) * (k as f64 + 0.5) / count;
-    let mut planes: Vec<Vec<Piece>> = vec![Vec::new(); count as usize];
+    let mut planes: Vec<Vec<SliceSegment>> = vec![Vec::new(); count as usize];
     for id in 0..mesh.triangles().len() as u32 {
         let corners = mesh.triangle(id);
         let heights = heights(mesh, normal, id);
@@ -42,7 +43,7 @@ pub(super) fn slices(
         let last = place(most).ceil().max(0.0) as usize;
         for k in first..=last.min(planes.len() - 1) {
             if let Some(ends) = crossed(corners, heights, plane(k)) {
-                planes[k].push(Piece { triangle: id, ends });
+                planes[k].push(SliceSegment { triangle: id, ends });
             }
         }
     }
@@ -52,8 +53,8 @@ pub(super) fn slices(
         .collect()
 }
 
-/// About how long all lines are together, each piece of area as long as it is steep to the planes and as they
-/// are near to each other.
+/// Estimates the total length of all lines: the area of each triangle times the sine of its angle to the
+/// planes, divided by the distance between planes.
 pub(super) fn length_of_lines(mesh: &Mesh, normal: &Vector3<f64>, stepover: f64) -> f64 {
     let [low, high] = range(mesh, normal);
     let steep = (0..mesh.triangles().len() as u32)
@@ -65,7 +66,7 @@ fn heights(mesh: &Mesh, normal: &Vector3<f64>, id: u32) -> [f64; 3] {
     mesh.triangle(id).map(|corner| corner.coords.dot(normal))
 }
 
-/// How low and how high a mesh is along a normal.
+/// Returns the lowest and the highest coordinate of a mesh along a normal.
 fn range(mesh: &Mesh, normal: &Vector3<f64>) -> [f64; 2] {
     let all = (0..mesh.triangles().len() as u32).flat_map(|id| heights(mesh, normal, id));
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
@@ -73,8 +74,8 @@ fn range(mesh: &Mesh, normal: &Vector3<f64>) -> [f64; 2] {
     })
 }
 
-/// Where a plane crosses a triangle's sides: two of them or none, since a corner is on one side or the
-/// other. Both triangles of a side have the same place.
+/// Returns the two points at which a plane crosses a triangle's sides, or `None`. A corner on the plane counts
+/// as above it. Both triangles of a side get the same point.
 fn crossed(corners: [Point3<f64>; 3], heights: [f64; 3], plane: f64) -> Option<[Point3<f64>; 2]> {
     let above = heights.map(|height| height >= plane);
     let mut places = (0..3).filter_map(|k| {
@@ -88,8 +89,8 @@ fn crossed(corners: [Point3<f64>; 3], heights: [f64; 3], plane: f64) -> Option<[
     Some([places.next()?, places.next()?])
 }
 
-/// Pieces as lines: those whose ends are the same place follow each other.
-fn chains(pieces: &[Piece]) -> Vec<Vec<Piece>> {
+/// Joins segments into lines: segments that have an end in common follow each other.
+fn chains(pieces: &[SliceSegment]) -> Vec<Vec<SliceSegment>> {
     let key = |place: Point3<f64>| [place.x, place.y, place.z].map(|part| (part + 0.0).to_bits());
     let mut ends: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
     for (index, piece) in pieces.iter().enumerate() {
@@ -99,17 +100,17 @@ fn chains(pieces: &[Piece]) -> Vec<Vec<Piece>> {
     }
     let mut used = vec![false; pieces.len()];
     let mut lines = Vec::new();
-    // Open lines begin at an end that is nobody else's; what is left is closed.
-    let open = |piece: &Piece| piece.ends.iter().position(|end| ends[&key(*end)].len() == 1);
+    // Open lines begin at an end that no other segment has; the remaining lines are closed.
+    let open = |piece: &SliceSegment| piece.ends.iter().position(|end| ends[&key(*end)].len() == 1);
     let starts = (0..pieces.len()).filter_map(|index| open(&pieces[index]).map(|end| (index, end)));
     for (start, end) in starts.chain((0..pieces.len()).map(|index| (index, 0))) {
         let mut line = Vec::new();
         let (mut at, mut from) = (start, pieces[start].ends[end]);
         while !used[at] {
             used[at] = true;
-            let Piece { triangle, ends: [first, last] } = pieces[at];
+            let SliceSegment { triangle, ends: [first, last] } = pieces[at];
             let to = if key(first) == key(from) { last } else { first };
-            line.push(Piece { triangle, ends: [from, to] });
+            line.push(SliceSegment { triangle, ends: [from, to] });
             from = to;
             match ends[&key(to)].iter().find(|other| !used[**other]) {
                 Some(next) => at = *next,
@@ -123,30 +124,30 @@ fn chains(pieces: &[Piece]) -> Vec<Vec<Piece>> {
     lines
 }
 
-/// Places along a line: the middles of equal parts of its pieces, as far as they are not too near to the
-/// last.
-fn along(mesh: &Mesh, line: &[Piece], step: f64) -> Vec<Place> {
-    let mut places: Vec<Place> = Vec::new();
+/// Returns points along a line: the midpoints of equal divisions of its segments, except those that are too
+/// near to the previous point.
+fn along(mesh: &Mesh, line: &[SliceSegment], step: f64) -> Vec<SlicePoint> {
+    let mut places: Vec<SlicePoint> = Vec::new();
     let mut since = f64::INFINITY;
     let mut crossed = Vec::new();
-    for (index, Piece { triangle, ends: [from, to] }) in line.iter().enumerate() {
+    for (index, SliceSegment { triangle, ends: [from, to] }) in line.iter().enumerate() {
         if let Some(before) = index.checked_sub(1)
             && !places.is_empty()
         {
             let normals = [line[before].triangle, *triangle].map(|side| mesh.normal(side));
-            let spot = |normal| Spot { point: *from, normal };
+            let spot = |normal| SurfacePoint { point: *from, normal };
             crossed.extend(normals.into_iter().flatten().map(spot));
         }
         let way = to - from;
         let parts = (way.norm() / step).ceil().max(1.0);
         let part = way.norm() / parts;
         for k in 0..parts as usize {
-            // Half a part to its middle, half a part on.
+            // Each division adds half its length before its midpoint, and half after it.
             since += 0.5 * part;
             if since >= 0.5 * step {
                 let point = from + way * ((k as f64 + 0.5) / parts);
                 let crossed = std::mem::take(&mut crossed);
-                places.push(Place { point, triangle: *triangle, crossed });
+                places.push(SlicePoint { point, triangle: *triangle, crossed });
                 since = 0.0;
             }
             since += 0.5 * part;

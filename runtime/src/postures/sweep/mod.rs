@@ -1,18 +1,19 @@
-//! Postures without a hand: every triangle, tool and direction.
+//! Automatic search for postures at every triangle, with every tool and direction.
 //!
-//! A tool stands at a triangle so that a surface of it that cuts touches the triangle's middle, its axis in
-//! one of the directions. Whether that is acceptable is proved by the certifier, or something of the part is
-//! shown to be in the way. What is skipped: directions that nothing that cuts faces, contacts that are not
-//! nice enough, and first of all what a neighbour knows: a place that was in the way of the triangle beside, of
-//! the same direction, is most often in the way of this one, which takes one look instead of a search.
+//! A tool is placed so that one of its cutting surfaces touches the triangle's centroid, with its axis in one
+//! of the directions. Either the certifier proves that this is acceptable, or a point of the part is shown to
+//! be in the way. Some postures need no search: directions that no cutting surface faces, contacts that are not
+//! nice enough, and above all obstructions known from a neighbour. A point that was in the way of the
+//! neighbouring triangle, in the same direction, is usually in the way of this one. Testing that point costs
+//! one evaluation.
 
-mod tally;
+mod stats;
 mod worker;
 
-pub use tally::Tally;
+pub use stats::SweepStats;
 
-use super::{Directions, JudgeError, Row, Rules, RulesError};
-use crate::certify::Facets;
+use super::{Directions, MapRow, Rules, RulesError, ValidatorError};
+use crate::certify::TriangleBvh;
 use crate::mesh::Mesh;
 use crate::tool::Tool;
 use std::num::NonZeroU16;
@@ -21,79 +22,80 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use worker::Worker;
 
-/// Triangles that are done together, neighbours: a batch of rows.
-pub const BATCH: usize = 256;
+/// Number of neighbouring triangles in a batch of rows.
+pub const BATCH_TRIANGLES: usize = 256;
 
-/// A part and tools that are to be tried at all of its triangles.
-pub struct Sweep<'a> {
+/// A part, and tools to try at all of its triangles.
+pub struct PostureSweep<'a> {
     mesh: &'a Mesh,
-    facets: &'a Facets,
+    bvh: &'a TriangleBvh,
     tools: Vec<&'a dyn Tool>,
     directions: &'a Directions,
     rules: Rules,
     keep: NonZeroU16,
 }
 
-/// Why a sweep cannot be done.
+/// A reason for which a sweep cannot run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SweepError {
-    /// A tool has no surface that cuts.
+    /// A tool has no cutting surface.
     #[error("nothing of {0} cuts: write `cutting` behind the surface in its file")]
-    Blunt(String),
-    /// The rules mean nothing.
+    NoCuttingSurface(String),
+    /// The rules are invalid.
     #[error(transparent)]
     Rules(#[from] RulesError),
-    /// Nothing of a tool can be held to them.
+    /// A tool's postures cannot be validated.
     #[error(transparent)]
-    Judge(#[from] JudgeError),
+    Validator(#[from] ValidatorError),
 }
 
-/// Rows of neighbours, by the ids of their triangles, and what they took.
+/// Rows of neighbouring triangles, with counters.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    /// The rows.
-    pub rows: Vec<(u32, Row)>,
-    /// How the postures of the batch were decided.
-    pub tally: Tally,
+    /// The rows, each with the id of its triangle.
+    pub rows: Vec<(u32, MapRow)>,
+    /// Counters of the rules that decided the postures of the batch.
+    pub stats: SweepStats,
 }
 
-impl<'a> Sweep<'a> {
-    /// A sweep of a mesh and its triangles, keeping so many of the best postures of each.
+impl<'a> PostureSweep<'a> {
+    /// Creates a sweep over a mesh and its triangles that keeps the best `keep` postures per triangle.
     ///
     /// # Errors
-    /// If the rules or the tools mean nothing; see [`SweepError`].
+    /// If the rules are invalid, or a tool cannot be used; see [`SweepError`].
     pub fn new(
-        (mesh, facets): (&'a Mesh, &'a Facets),
+        (mesh, bvh): (&'a Mesh, &'a TriangleBvh),
         tools: Vec<&'a dyn Tool>,
         directions: &'a Directions,
         rules: Rules,
         keep: NonZeroU16,
-    ) -> Result<Sweep<'a>, SweepError> {
+    ) -> Result<PostureSweep<'a>, SweepError> {
         rules.check(&tools)?;
-        let sweep = Sweep { mesh, facets, tools, directions, rules, keep };
+        let sweep = PostureSweep { mesh, bvh, tools, directions, rules, keep };
         for tool in &sweep.tools {
-            if !tool.card().surfaces.iter().any(|surface| surface.cutting) {
-                return Err(SweepError::Blunt(tool.card().name.to_string()));
+            if !tool.info().surfaces.iter().any(|surface| surface.cutting) {
+                return Err(SweepError::NoCuttingSurface(tool.info().name.to_string()));
             }
         }
-        // What a worker would be refused is refused here.
+        // Report here the errors that workers would meet in their threads.
         Worker::new(&sweep)?;
         Ok(sweep)
     }
 
-    /// How many batches there are.
+    /// Returns the number of batches.
     pub fn batches(&self) -> usize {
-        self.facets.ids.len().div_ceil(BATCH)
+        self.bvh.ids.len().div_ceil(BATCH_TRIANGLES)
     }
 
-    /// The triangles of a batch, by their ids.
+    /// Returns the ids of the triangles in a batch.
     pub fn triangles(&self, batch: usize) -> &[u32] {
-        let ids = &self.facets.ids;
-        &ids[batch * BATCH..((batch + 1) * BATCH).min(ids.len())]
+        let ids = &self.bvh.ids;
+        &ids[batch * BATCH_TRIANGLES..((batch + 1) * BATCH_TRIANGLES).min(ids.len())]
     }
 
-    /// Does those batches on all cores, and hands over each as it is done, in no order, until all are or it
-    /// is told to stop. A batch is the same whoever does it, and whenever.
+    /// Processes the given batches on all cores, and passes each to `each` as it is done, in no particular
+    /// order, until all are done or `each` breaks. The content of a batch depends neither on the thread nor on
+    /// the time.
     pub fn run<B>(
         &self,
         batches: &[usize],

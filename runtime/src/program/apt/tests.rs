@@ -20,9 +20,9 @@ fn reads_a_flank_pass_from_a_file() {
     assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
     assert!(program.check_unit(Unit::Millimetre).is_ok());
     assert!(program.check_unit(Unit::Inch).is_err());
-    assert_eq!(program.stops.len(), stops.len());
+    assert_eq!(program.locations.len(), stops.len());
     let lines: Vec<&str> = text.lines().collect();
-    for (stop, ([x, y, z, i, j, k], rapid)) in program.stops.iter().zip(stops) {
+    for (stop, ([x, y, z, i, j, k], rapid)) in program.locations.iter().zip(stops) {
         assert_eq!((stop.rapid, stop.pose.tip()), (rapid, Point3::new(x, y, z)));
         assert!((stop.pose.axis() - Vector3::new(i, j, k)).norm() < 2e-5);
         assert!(lines[stop.line - 1].starts_with(&format!("GOTO/{x:.5},")));
@@ -37,9 +37,9 @@ fn the_impeller(path: &Path) {
     assert_eq!(program.unit, Some(Unit::Millimetre));
     let ignored: Vec<&str> = program.ignored.iter().map(|(_, word)| word.as_str()).collect();
     assert_eq!(ignored, ["PARTNO", "LOADTL", "SPINDL", "FEDRAT"]);
-    let cutting = program.stops.iter().filter(|stop| !stop.rapid).count();
-    assert_eq!((cutting, program.stops.len()), (1274, 1302));
-    let first = program.stops[0];
+    let cutting = program.locations.iter().filter(|stop| !stop.rapid).count();
+    assert_eq!((cutting, program.locations.len()), (1274, 1302));
+    let first = program.locations[0];
     assert!(first.rapid);
     assert_eq!(first.line, 9);
     assert_eq!(first.pose.tip(), Point3::new(34.73109, 4.67398, 21.56186));
@@ -52,7 +52,7 @@ fn the_impeller(path: &Path) {
 fn keeps_the_last_axis() {
     let text = "GOTO/1,2,3\nGOTO/4,5,6,1,0,0\nGOTO/7,8,9\nMULTAX\nGOTO/1,1,1\nMULTAX/OFF\n\
                 GOTO/2,2,2\nFINI\n";
-    let axes: Vec<_> = program(text).stops.iter().map(|stop| stop.pose.axis()).collect();
+    let axes: Vec<_> = program(text).locations.iter().map(|stop| stop.pose.axis()).collect();
     let [x, z] = [Vector3::x(), Vector3::z()];
     assert_eq!(axes, [z, x, x, x, z]);
 }
@@ -60,7 +60,8 @@ fn keeps_the_last_axis() {
 #[test]
 fn rapid_holds_for_one_goto() {
     let text = "FROM/0,0,9\nRAPID\nGOTO/1,2,3\ngoto / 4 , 5 , 6\nRAPID;GOTO/7,8,9\nFINI";
-    let stops: Vec<_> = program(text).stops.iter().map(|stop| (stop.line, stop.rapid)).collect();
+    let stops: Vec<_> =
+        program(text).locations.iter().map(|stop| (stop.line, stop.rapid)).collect();
     assert_eq!(stops, [(1, true), (3, true), (4, false), (5, true)]);
 }
 
@@ -70,10 +71,10 @@ fn reads_comments_and_continuations() {
                 GOTO/1.5, $\r\n  $$ between\r\n 2.5,-.5$\r\n,0,1,0\r\nFINI\r\nREMARK bye\r\n";
     let program = program(text);
     assert_eq!(program.unit, Some(Unit::Inch));
-    assert_eq!(program.stops.len(), 1);
-    assert_eq!(program.stops[0].line, 4);
-    assert_eq!(program.stops[0].pose.tip(), Point3::new(1.5, 2.5, -0.5));
-    assert_eq!(program.stops[0].pose.axis(), Vector3::y());
+    assert_eq!(program.locations.len(), 1);
+    assert_eq!(program.locations[0].line, 4);
+    assert_eq!(program.locations[0].pose.tip(), Point3::new(1.5, 2.5, -0.5));
+    assert_eq!(program.locations[0].pose.axis(), Vector3::y());
 }
 
 #[test]
@@ -96,7 +97,7 @@ fn lists_what_it_passes_over() {
     assert_eq!(program(text).ignored, expected.map(|(line, word)| (line, word.to_owned())));
 }
 
-/// Words that move the tool, that change what positions mean, and words that nobody knows.
+/// Words that move the tool, words that change the meaning of positions, and unknown words.
 #[test]
 fn what_could_be_a_motion_is_refused() {
     let words = "GOTOX/1,2,3|GOOT/1,2,3|GO TO/1,2,3|GOABS/1,2,3|LINEAR/1,2,3|MOVE/1,2,3|MOVETO/1,2,3|\
@@ -164,8 +165,8 @@ fn what_could_be_a_motion_is_refused() {
 #[test]
 fn the_end_of_a_path_of_nx_ends_a_program() {
     let whole = "TOOL PATH/A,TOOL,B\nGOTO/1,2,3\nGOTO/4,5,6\nEND-OF-PATH";
-    assert_eq!(program(whole).stops.len(), 2);
-    assert_eq!(program(&format!("{whole}\nFINI\n")).stops.len(), 2);
+    assert_eq!(program(whole).locations.len(), 2);
+    assert_eq!(program(&format!("{whole}\nFINI\n")).locations.len(), 2);
     assert_eq!(
         refusal(format!("{whole}\nTOOL PATH/C,TOOL,D\nGOTO/1,2,3\nEND-OF-PATH\n")),
         "part.cl:5: a statement follows END-OF-PATH: give one program per file"
@@ -188,7 +189,7 @@ fn the_cutter_is_compared_with_the_tool() {
     use crate::Tool as _;
     let check = |cutter: &str, unit: Unit| {
         let text = format!("{cutter}\nGOTO/1,2,3\nGOTO/4,5,6\nFINI");
-        program(&text).check_cutter(Ball.card(), unit).map_err(|error| error.to_string())
+        program(&text).check_cutter(Ball.info(), unit).map_err(|error| error.to_string())
     };
     let mm = Unit::Millimetre;
     for same in [
@@ -303,11 +304,11 @@ fn every_refusal_names_its_line_and_remedy() {
     );
 }
 
-/// No file cut short is taken for a whole one.
+/// No truncated file is taken for a whole one.
 #[test]
 fn no_beginning_is_a_program() {
     let whole = "PARTNO/A\nUNITS/MM\nRAPID\nGOTO/1,2,3,0,0,1\nGOTO/4,5,6,$\n0,1,0\nFINI";
-    assert_eq!(program(whole).stops.len(), 2);
+    assert_eq!(program(whole).locations.len(), 2);
     for end in 0..whole.len() {
         assert!(Program::parse(&whole[..end], "part.cl").is_err(), "{:?}", &whole[..end]);
     }

@@ -1,56 +1,65 @@
-//! What a tool feels in a box.
+//! The evaluation of a tool over a box.
 
 use super::Enclosure;
 #[cfg(feature = "interpreter")]
 use super::bit;
-use super::choice::{Choice, Choices, Maybe};
-use crate::tool::compiled::FeltLanes;
-use crate::tool::{Ask, Evaluators};
+use super::ternary::{Choice, Choices, Ternary};
+use crate::tool::compiled::LaneEvaluation;
+use crate::tool::{Evaluators, Outputs};
 
-/// What a tool feels in a box of its frame.
+/// An enclosure of a tool's evaluation over a box of its frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Enclosed {
-    /// Whether places of the box may be inside.
+pub struct EvaluationEnclosure {
+    /// True if points of the box may be inside.
     pub inside: bool,
-    /// Whether places of the box may be outside.
+    /// True if points of the box may be outside.
     pub outside: bool,
-    /// What depth is where it is inside.
+    /// The depth of the points inside.
     pub(super) depth: Enclosure,
-    /// The regions that places of the box may belong to, a bit each; the 64th stands for all larger ones too.
+    /// The regions that points of the box may belong to, one bit each; the 64th bit stands for all larger indices too.
     pub regions: u64,
 }
 
-impl Enclosed {
-    /// Of a compiled tool; a box of one with an axis lies in the half plane `y = 0`, `x ≥ 0`. Slopes are told from
-    /// a point of the box.
-    pub fn of<T: Evaluators>(sides: [[f64; 2]; 3], at: [f64; 3]) -> Enclosed {
-        let present = Maybe { yes: true, no: false, gaps: [None; 2] };
-        let ask = Ask { depth: true, region: true, ..Ask::INSIDE };
+impl EvaluationEnclosure {
+    /// Evaluates a compiled tool over a box. `sides` has both ends of the box along x, y and z; for a tool with an axis
+    /// the box lies in the half plane `y = 0`, `x ≥ 0`. Slopes are taken from the point `at` of the box.
+    pub fn of<T: Evaluators>(sides: [[f64; 2]; 3], at: [f64; 3]) -> EvaluationEnclosure {
+        let present = Ternary { yes: true, no: false, gaps: [None; 2] };
+        let ask = Outputs { depth: true, region: true, ..Outputs::INSIDE };
         let one = Enclosure::constant(1.0);
-        let FeltLanes { inside, depth, region, .. } =
-            T::feel_lanes(Enclosure::of_box(sides, at), one, present, ask);
-        Enclosed { inside: inside.yes, outside: inside.no, depth, regions: region.regions }
+        let LaneEvaluation { inside, depth, region, .. } =
+            T::evaluate_lanes(Enclosure::of_box(sides, at), one, present, ask);
+        EvaluationEnclosure {
+            inside: inside.yes,
+            outside: inside.no,
+            depth,
+            regions: region.regions,
+        }
     }
 
-    /// No less than the depth of any place of the box.
-    pub fn most(&self) -> f64 {
+    /// Returns an upper bound on the depth of all points of the box.
+    pub fn max_depth(&self) -> f64 {
         self.depth.value.high
     }
 
-    /// No less than the depth of any place of the convex hull of some, given how far each is from the point along x,
-    /// y and z: between two ends each. Infinite or NaN where a slope is not known.
+    /// Returns an upper bound on the depth of all points in the convex hull of three corners. Infinite or NaN where a
+    /// slope is not known.
     ///
-    /// The point has to be in the box and in the hull. Where the argument of a root may be below 0 its slope has no
-    /// end, and then the bound of some corner has none. By the mean value theorem a region's formula at a place is that at the point and slopes times the way. A choice `f` where `g ≤ 0` is no more than `f - λ g` there, for any `λ ≥ 0` (Lagrange); the least
-    /// of the most of that at the corners is at 0 or where two corners are as much.
-    pub fn most_between(&self, ways: [[[f64; 2]; 3]; 3]) -> f64 {
+    /// `ways` has the displacement of each corner from the reference point, as an interval along each of x, y and z.
+    /// The reference point has to lie in the box and in the hull.
+    ///
+    /// By the mean value theorem, a region's formula at a point is its value at the reference point plus slopes times
+    /// the displacement. A choice `f` that holds where `g ≤ 0` is at most `f - λ g` there, for any `λ ≥ 0` (Lagrange).
+    /// The minimum over `λ` of the maximum over the corners lies at 0 or where two corners have equal bounds. Where the
+    /// argument of a square root may be negative its slope is unbounded, and so is the bound of some corner.
+    pub fn max_depth_in_hull(&self, ways: [[[f64; 2]; 3]; 3]) -> f64 {
         let Choices::Two(two) = self.depth.choices else {
             let most = ways.map(|way| self.depth.course.values(way).high);
             return most[0].max(most[1]).max(most[2]);
         };
         let bounds = two.map(|Choice { value, gap }| {
             let ends = ways.map(|way| (value.values(way).high, gap.values(way).low));
-            // Not 0 times what may be infinite.
+            // Avoids 0 · ∞, which is NaN.
             let most = |scale: f64| {
                 let less = |gap: f64| if scale > 0.0 { (scale * gap).next_down() } else { 0.0 };
                 let at = ends.map(|(value, gap)| (value - less(gap)).next_up());
@@ -70,14 +79,14 @@ impl Enclosed {
 }
 
 #[cfg(feature = "interpreter")]
-impl Enclosed {
-    /// Where no place was looked at yet.
-    pub(in crate::tool) fn nothing() -> Enclosed {
-        Enclosed { inside: false, outside: false, depth: Enclosure::NOTHING, regions: 0 }
+impl EvaluationEnclosure {
+    /// Returns an enclosure of no points.
+    pub(in crate::tool) fn nothing() -> EvaluationEnclosure {
+        EvaluationEnclosure { inside: false, outside: false, depth: Enclosure::NOTHING, regions: 0 }
     }
 
-    /// Takes places of a region with their depth, or places outside: those where a test that was not decided is
-    /// below 0, or above.
+    /// Adds the points of a region with their depth, or points outside if `owner` is `None`. `test` is the undecided
+    /// comparison with 0 that leads there, and whether the points are those below 0.
     pub(in crate::tool) fn take(
         &mut self,
         owner: Option<(usize, Enclosure)>,

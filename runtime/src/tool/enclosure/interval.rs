@@ -1,6 +1,6 @@
-//! Arithmetic of all numbers between two ends, rounded outward (Moore, *Interval Analysis*, 1966).
+//! Interval arithmetic, rounded outward (Moore, *Interval Analysis*, 1966).
 
-/// All numbers between two ends; none if the first is the larger.
+/// A closed interval; empty if `low` is larger than `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
     pub(super) low: f64,
@@ -16,7 +16,7 @@ impl Interval {
         Interval { low: value, high: value }
     }
 
-    /// Rounds outward; where an end is not a number, nothing is known.
+    /// Rounds outward. Returns all numbers if an end is NaN.
     pub(super) fn out(low: f64, high: f64) -> Interval {
         if low.is_nan() || high.is_nan() {
             return EVERYTHING;
@@ -29,7 +29,7 @@ impl Interval {
     }
 
     pub(super) fn plus(self, other: Interval) -> Interval {
-        // Nothing is rounded.
+        // A sum with 0 is exact.
         match (self, other) {
             (ZERO, sum) | (sum, ZERO) => sum,
             _ => Interval::out(self.low + other.low, self.high + other.high),
@@ -44,7 +44,7 @@ impl Interval {
         if self == ZERO || other == ZERO {
             return ZERO;
         }
-        // 0 · ∞ stands for a product of finite numbers with a factor 0.
+        // An infinite end bounds finite numbers, so its product with 0 is 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let ends = [
             product(self.low, other.low),
@@ -52,7 +52,7 @@ impl Interval {
             product(self.high, other.low),
             product(self.high, other.high),
         ];
-        // A product of ±1 is not rounded, and slopes of that are many.
+        // A product with ±1 is exact, and many slopes are ±1.
         if [self, other].iter().any(|one| one.low == one.high && one.low.abs() == 1.0) {
             return Interval { low: ends[0].min(ends[3]), high: ends[0].max(ends[3]) };
         }
@@ -67,7 +67,7 @@ impl Interval {
         Interval::out(1.0 / self.high, 1.0 / self.low)
     }
 
-    /// Of what is not negative, whatever rounding made of its enclosure.
+    /// Returns the square root. The argument is taken as non-negative, even if rounding made its lower end negative.
     pub(super) fn sqrt(self) -> Interval {
         let root = Interval::out(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
         Interval { low: root.low.max(0.0), ..root }

@@ -1,61 +1,59 @@
-//! Numbers that are known to lie between two ends over a box, with slopes that are known so: what generated
-//! code computes of them encloses what it computes of every point of the box, in real arithmetic.
+//! Numbers that are known to lie in an interval over a box, together with enclosures of their slopes. Generated code
+//! evaluated on them encloses, in real arithmetic, its results at every point of the box.
 //!
-//! A test that the ends do not decide goes both
-//! ways, and what is selected by it lies between the ends of both. Of a choice between two it is remembered
-//! what they are and by what they are told apart: along a ridge, where two depths are as small, neither bounds
-//! the other's side, but the test does.
+//! A comparison that the intervals do not decide takes both branches, and the value selected by it lies in the hull of
+//! both. A choice between two values also records both of them and the comparison that separates them: along a ridge,
+//! where two depths are equal, neither formula bounds the depth on the other's side, but the comparison does.
 
-mod choice;
 mod enclosed;
 mod interval;
+mod ternary;
 
-pub use choice::Maybe;
-pub use enclosed::Enclosed;
+pub use enclosed::EvaluationEnclosure;
+pub use ternary::Ternary;
 
 use super::Lane;
-use choice::{Choice, Choices, Course};
 use interval::{Interval, NOTHING, ZERO};
 use std::ops::{Add, Div, Mul, Neg, Sub};
+use ternary::{Choice, Choices, LinearEnclosure};
 
-/// What an enclosure is beside its ends.
+/// The form of an expression, where it allows a tighter enclosure than its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Form {
     Any,
     /// A coordinate, by its axis.
     Coordinate(usize),
-    /// The square of one that is not negative, with its ends, and what it is at the point: √(x² + 0) is x, with
-    /// its slope, at 0 too.
+    /// The square of a non-negative coordinate: axis, interval, and value at the reference point. Thus √(x² + 0) is x,
+    /// with its slope, at 0 too.
     Square(usize, Interval, Interval),
 }
 
-/// A function over a box.
+/// An enclosure of a function over a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     value: Interval,
-    course: Course,
-    /// If it was chosen by a test that was not decided.
+    course: LinearEnclosure,
+    /// The alternatives, if an undecided comparison selected the value.
     choices: Choices,
-    /// Where it stands for the numbers of regions, those up to 63 that it may be, a bit each; the last stands
-    /// for all larger ones.
+    /// For region indices: the possible regions up to 63, one bit each; the last bit stands for all larger ones.
     regions: u64,
     form: Form,
 }
 
 impl Enclosure {
     const NOTHING: Enclosure = {
-        let course = Course { at: NOTHING, slope: [NOTHING; 3] };
+        let course = LinearEnclosure { at: NOTHING, slope: [NOTHING; 3] };
         let choices = Choices::None;
         Enclosure { value: NOTHING, course, choices, regions: 0, form: Form::Any }
     };
 
-    /// A number that is the same everywhere.
+    /// Returns an enclosure of a constant.
     pub fn constant(value: f64) -> Enclosure {
         let value = Interval::point(value);
-        Enclosure::new(value, Course { at: value, slope: [ZERO; 3] })
+        Enclosure::new(value, LinearEnclosure { at: value, slope: [ZERO; 3] })
     }
 
-    /// The coordinates of a box, each from one end to another, and at one of its points.
+    /// Returns the coordinates of a box, given both ends of each side and a reference point in the box.
     pub fn of_box(sides: [[f64; 2]; 3], at: [f64; 3]) -> [Enclosure; 3] {
         [0, 1, 2].map(|axis| {
             let [low, high] = sides[axis];
@@ -69,29 +67,32 @@ impl Enclosure {
     fn coordinate(axis: usize, value: Interval, at: Interval) -> Enclosure {
         let mut slope = [ZERO; 3];
         slope[axis] = Interval::point(1.0);
-        Enclosure { form: Form::Coordinate(axis), ..Enclosure::new(value, Course { at, slope }) }
+        Enclosure {
+            form: Form::Coordinate(axis),
+            ..Enclosure::new(value, LinearEnclosure { at, slope })
+        }
     }
 
-    fn new(value: Interval, course: Course) -> Enclosure {
+    fn new(value: Interval, course: LinearEnclosure) -> Enclosure {
         Enclosure { value, course, choices: Choices::None, regions: 0, form: Form::Any }
     }
 
-    /// A function of it, by its values, its value at the point, and its derivative.
+    /// Returns a function of `self`, given its values, its value at the reference point, and its derivative.
     fn chain(self, value: Interval, at: Interval, by: Interval) -> Enclosure {
         let slope = self.course.slope.map(|part| part.times(by));
-        Enclosure::new(value, Course { at, slope })
+        Enclosure::new(value, LinearEnclosure { at, slope })
     }
 
-    /// What lies between the ends of both.
+    /// Returns the hull of both enclosures.
     pub fn hull(self, other: Enclosure) -> Enclosure {
         let slope = [0, 1, 2].map(|k| self.course.slope[k].hull(other.course.slope[k]));
-        let course = Course { at: self.course.at.hull(other.course.at), slope };
+        let course = LinearEnclosure { at: self.course.at.hull(other.course.at), slope };
         let regions = self.regions | other.regions;
         Enclosure { regions, ..Enclosure::new(self.value.hull(other.value), course) }
     }
 
-    /// It as a choice where something is not more than 0.
-    fn choices(self, gap: Option<Course>) -> Choices {
+    /// Returns the value as an alternative that holds where `gap` is at most 0.
+    fn choices(self, gap: Option<LinearEnclosure>) -> Choices {
         match (self.choices, gap) {
             _ if self == Enclosure::NOTHING => Choices::None,
             (Choices::None, Some(gap)) => Choices::One(Choice { value: self.course, gap }),
@@ -100,7 +101,7 @@ impl Enclosure {
         }
     }
 
-    /// The smaller of two.
+    /// Returns the smaller of two values.
     fn lesser(a: Enclosure, b: Enclosure) -> Enclosure {
         if a.value.high <= b.value.low {
             return a;
@@ -108,22 +109,22 @@ impl Enclosure {
         if b.value.high <= a.value.low {
             return b;
         }
-        let Course { slope, .. } = a.hull(b).course;
+        let LinearEnclosure { slope, .. } = a.hull(b).course;
         let at = a.course.at.lesser(b.course.at);
-        Enclosure::new(a.value.lesser(b.value), Course { at, slope })
+        Enclosure::new(a.value.lesser(b.value), LinearEnclosure { at, slope })
     }
 }
 
 impl Add for Enclosure {
     type Output = Enclosure;
     fn add(self, other: Enclosure) -> Enclosure {
-        // √(x² + 0) is x.
+        // Keeps the form of a square, so that √(x² + 0) is x.
         if other == Enclosure::constant(0.0) {
             return self;
         }
         let (a, b) = (self.course, other.course);
         let slope = [0, 1, 2].map(|k| a.slope[k].plus(b.slope[k]));
-        Enclosure::new(self.value.plus(other.value), Course { at: a.at.plus(b.at), slope })
+        Enclosure::new(self.value.plus(other.value), LinearEnclosure { at: a.at.plus(b.at), slope })
     }
 }
 
@@ -154,7 +155,7 @@ impl Mul for Enclosure {
         }
         let slope =
             [0, 1, 2].map(|k| a.slope[k].times(other.value).plus(b.slope[k].times(self.value)));
-        Enclosure::new(value, Course { at, slope })
+        Enclosure::new(value, LinearEnclosure { at, slope })
     }
 }
 
@@ -166,7 +167,7 @@ impl Div for Enclosure {
         let value = self.value.times(per);
         let slope =
             [0, 1, 2].map(|k| a.slope[k].plus(value.times(b.slope[k]).negated()).times(per));
-        Enclosure::new(value, Course { at: a.at.times(b.at.reciprocal()), slope })
+        Enclosure::new(value, LinearEnclosure { at: a.at.times(b.at.reciprocal()), slope })
     }
 }
 
@@ -192,7 +193,7 @@ impl Mul<f64> for Enclosure {
 }
 
 impl Lane for Enclosure {
-    type Mask = Maybe;
+    type Mask = Ternary;
 
     fn of(self, value: f64) -> Enclosure {
         Enclosure::constant(value)
@@ -215,25 +216,26 @@ impl Lane for Enclosure {
             Interval { low, .. } if low >= 0.0 => self,
             Interval { high, .. } if high <= 0.0 => -self,
             value => {
-                let course = Course { at: self.course.at.abs(), ..self.hull(-self).course };
+                let course =
+                    LinearEnclosure { at: self.course.at.abs(), ..self.hull(-self).course };
                 Enclosure::new(value.abs(), course)
             }
         }
     }
-    fn le(a: Enclosure, b: Enclosure) -> Maybe {
-        Maybe::of([a.value.low <= b.value.high, a.value.high > b.value.low], &a, &b)
+    fn le(a: Enclosure, b: Enclosure) -> Ternary {
+        Ternary::of([a.value.low <= b.value.high, a.value.high > b.value.low], &a, &b)
     }
-    fn lt(a: Enclosure, b: Enclosure) -> Maybe {
-        Maybe::of([a.value.low < b.value.high, a.value.high >= b.value.low], &a, &b)
+    fn lt(a: Enclosure, b: Enclosure) -> Ternary {
+        Ternary::of([a.value.low < b.value.high, a.value.high >= b.value.low], &a, &b)
     }
-    fn any(mask: Maybe) -> bool {
+    fn any(mask: Ternary) -> bool {
         mask.yes
     }
-    fn select(mask: Maybe, yes: Enclosure, no: Enclosure) -> Enclosure {
+    fn select(mask: Ternary, yes: Enclosure, no: Enclosure) -> Enclosure {
         match mask {
-            Maybe { yes: true, no: false, .. } => yes,
-            Maybe { yes: false, .. } => no,
-            Maybe { yes: true, no: true, gaps } => {
+            Ternary { yes: true, no: false, .. } => yes,
+            Ternary { yes: false, .. } => no,
+            Ternary { yes: true, no: true, gaps } => {
                 let choices = yes.choices(gaps[0]).and(no.choices(gaps[1]));
                 Enclosure { choices, ..yes.hull(no) }
             }
@@ -245,13 +247,13 @@ impl Lane for Enclosure {
     fn max(a: Enclosure, b: Enclosure) -> Enclosure {
         -Enclosure::lesser(-a, -b)
     }
-    fn pick(mask: Maybe, region: Enclosure, before: Enclosure) -> Enclosure {
+    fn pick(mask: Ternary, region: Enclosure, before: Enclosure) -> Enclosure {
         let regions = bit(region.value.low as usize);
         Lane::select(mask, Enclosure { regions, ..region }, before)
     }
 }
 
-/// A region's bit of [`Enclosed::regions`].
+/// Returns a region's bit in [`EvaluationEnclosure::regions`].
 pub(crate) fn bit(region: usize) -> u64 {
     1 << region.min(63)
 }

@@ -7,7 +7,7 @@ pub(super) fn all() -> Vec<Restated> {
     vec![lollipop(), barrel(), lens(), oval(), corner_rounding(), woodruff()]
 }
 
-/// The ball's upper half ends on the neck: 3, 4, 5.
+/// The ball's upper half ends on the neck, by the right triangle 3, 4, 5.
 fn lollipop() -> Restated {
     Restated::new("Lollipop", 0.0)
         .arc("ball", [5.0, 5.0], [0.0, 5.0])

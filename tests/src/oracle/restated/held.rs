@@ -6,7 +6,7 @@ pub(super) fn all() -> Vec<Restated> {
     vec![ball_er16(), bull_nose_hsk63(), drill_bt40(), half_inch_ball_cat40()]
 }
 
-/// The ring under a nut belongs to the nut, what is above to the cutter no more.
+/// The ring under a nut belongs to the nut; nothing above it belongs to the cutter.
 fn ball_er16() -> Restated {
     Restated::new("BallEr16", 0.0)
         .arc("cutter.ball", [3.0, 3.0], [0.0, 3.0])

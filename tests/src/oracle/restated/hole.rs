@@ -62,7 +62,7 @@ fn boring_bar() -> Restated {
         .cuts(&["nose"], |_, depth, _| 1.0 - depth / 0.4)
 }
 
-/// What a flank of 30° climbs over 0.9.
+/// Returns the rise of a flank of 30° over 0.9.
 fn flank() -> Big {
     Big::decimal(0.9) / Big::decimal(3.0).sqrt()
 }

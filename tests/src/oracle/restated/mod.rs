@@ -1,5 +1,5 @@
-//! The library's tools a second time: each profile in the tool's frame and the file's unit, from its drawing's numbers and not from its
-//! file. Points are exact to 256 bits, so that nothing of an error is the restatement's.
+//! The library's tools restated: each profile in the tool's frame and the file's unit, from its drawing's numbers
+//! and not from its file. Points are exact to 256 bits, so that no part of an error comes from the restatement.
 
 mod form;
 mod held;
@@ -26,35 +26,35 @@ pub struct Way {
     pub surface: &'static str,
 }
 
-/// A tool by its profile, from the tip up, the material on the left.
+/// A tool by its profile, from the tip up, with the material on the left.
 #[derive(Clone, Debug)]
 pub struct Restated {
     /// The tool's name.
     pub name: &'static str,
-    /// Where the profile begins.
+    /// The start of the profile.
     pub start: Point,
     /// Its pieces.
     pub ways: Vec<Way>,
     /// Surfaces that cut.
     pub cutting: Vec<&'static str>,
-    /// How good a contact is where the tool cuts.
+    /// Niceness of a contact where the tool cuts.
     pub niceness: Niceness,
 }
 
 impl Restated {
-    /// A tool whose profile begins on the axis at `z`.
+    /// Creates a tool whose profile begins on the axis at `z`.
     pub fn new(name: &'static str, z: f64) -> Restated {
         let start = [Big::zero(), Big::decimal(z)];
         Restated { name, start, ways: Vec::new(), cutting: Vec::new(), niceness: |_, _, _| 1.0 }
     }
 
-    /// A line to a point.
+    /// Adds a line to a point.
     pub fn line(mut self, surface: &'static str, d: impl Into<Big>, z: impl Into<Big>) -> Restated {
         self.ways.push(Way { to: [d.into(), z.into()], centre: None, surface });
         self
     }
 
-    /// Lines to points, one after the other.
+    /// Adds lines to points, one after the other.
     pub fn lines(mut self, surface: &'static str, points: &[[f64; 2]]) -> Restated {
         for [d, z] in points {
             self = self.line(surface, *d, *z);
@@ -62,7 +62,7 @@ impl Restated {
         self
     }
 
-    /// An arc to a point about a centre.
+    /// Adds an arc to a point about a centre.
     pub fn arc(
         mut self,
         surface: &'static str,
@@ -74,7 +74,7 @@ impl Restated {
         self
     }
 
-    /// The surfaces that cut.
+    /// Sets the surfaces that cut, and their niceness.
     pub fn cuts(mut self, surfaces: &[&'static str], niceness: Niceness) -> Restated {
         self.cutting = surfaces.to_vec();
         self.niceness = niceness;
@@ -82,24 +82,24 @@ impl Restated {
     }
 }
 
-/// Every tool of the library but the thesis's own, whose magnitudes are no distances.
+/// Returns every tool of the library but the thesis's own, whose magnitudes are no distances.
 pub fn all() -> Vec<Restated> {
     let mut all = thesis();
     all.extend(catalogue());
     all
 }
 
-/// The thesis's solids.
+/// Returns the thesis's solids.
 pub fn thesis() -> Vec<Restated> {
     thesis::all()
 }
 
-/// Cutters with a catalogue's dimensions.
+/// Returns the cutters with a catalogue's dimensions.
 pub fn catalogue() -> Vec<Restated> {
     [plain::all(), form::all(), hole::all(), held::all()].concat()
 }
 
-/// The restated tool of a name.
+/// Returns the restated tool of a name.
 pub fn of(name: &str) -> Option<Restated> {
     all().into_iter().find(|tool| tool.name == name)
 }

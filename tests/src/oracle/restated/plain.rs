@@ -50,7 +50,7 @@ fn bull_nose() -> Restated {
 /// A ball of radius 1 that touches a cone of 3° from the axis, up to 6 mm.
 fn tapered_ball() -> Restated {
     let (sin, cos) = (Big::sin_deg(3.0), Big::cos_deg(3.0));
-    // Where ball and cone touch, and where the cone ends at a radius of 3.
+    // The point where ball and cone touch, and the height at which the cone ends at a radius of 3.
     let touch = [cos.clone(), -&(sin - 1.0)];
     let end = (-&(cos - 3.0)) / Big::tan_deg(3.0) + touch[1].clone();
     Restated::new("TaperedBall", 0.0)

@@ -1,4 +1,4 @@
-//! Values that a tool's params are given.
+//! Values that are given to a tool's params.
 
 use super::{mounts, said, source, tool};
 use tool_dsl::source::Source;
@@ -74,15 +74,14 @@ fn a_mount_gives_lengths_in_its_own_unit() {
     let thin = tool(&mounts(
         "let thick = 2mm; mount \"inch_flat.tool\" as a with R = thick/2; mount \"er16.tool\" as b at z = 20;",
     ));
-    let felt = tool_dsl::interpret::Interpreter::new(&thin).at([0.75, 0.0, 10.0], 1.0);
-    assert!((felt.expect("inside").depth - 0.25).abs() < 1e-15);
-    // A mere number would be 1 mm or 1 inch.
+    let evaluation = tool_dsl::interpret::Interpreter::new(&thin).at([0.75, 0.0, 10.0], 1.0);
+    assert!((evaluation.expect("inside").depth - 0.25).abs() < 1e-15);
     // A bare number is in the unit of the file that gives it, where the default is a length.
-    let felt = |given: &str| {
+    let evaluation = |given: &str| {
         let text = format!("mount \"inch_flat.tool\" as a with R = {given};");
         tool(&mounts(&text)).extent.radius
     };
-    assert!((felt("1") - 1.0).abs() < 1e-3);
+    assert!((evaluation("1") - 1.0).abs() < 1e-3);
     // Where it is not, 1 would be 1 mm or 1 inch.
     let bare = mounts("mount \"body.tool\" as a with wide = 1;");
     refused(&bare, &[], &["is `wide` 1mm or 1inch?", "write the unit", "`1mm/1mm`"]);

@@ -1,4 +1,4 @@
-//! What mounted files come to, beside the same tool written as one profile.
+//! Mounted files, against the same tool written as one profile.
 
 use super::{mounts, same, tool};
 
@@ -63,7 +63,7 @@ fn an_inch_cutter_in_a_metric_nut() {
             line to (12.9, 38.1), (14, 39.2), (14, 55.6), (0, 55.6)  as nut;
         }",
     ));
-    // The walk is turned over with the frame: surfaces are listed in another order.
+    // The profile is traversed the other way in the turned frame, so surfaces are listed in another order.
     let mut order: Vec<&str> = joined.model.surfaces.iter().map(|s| s.name.as_str()).collect();
     order.sort_unstable();
     assert_eq!(order, ["cutter.face", "cutter.flute", "cutter.shank", "nut.nut"]);
@@ -107,7 +107,7 @@ fn a_wide_part_below_keeps_the_ring() {
     assert_eq!(joined.model.surfaces[1].name, "pin.pin");
 }
 
-/// Of a face of several surfaces, what is in the part below is gone.
+/// A face of several surfaces loses what is in the part below.
 #[test]
 fn a_face_of_two_surfaces_keeps_its_rim() {
     let joined = |below: &str| {
@@ -228,7 +228,7 @@ fn the_plane_cuts_a_concave_arc() {
     std::fs::write(folder.path().join("er16.tool"), nut).expect("a writable folder");
     let text = mounts("mount \"neck.tool\" as neck; mount \"er16.tool\" as nut at z = 2;");
     let source = tool_dsl::source::Source::new("own.tool", text);
-    let compiled = tool_dsl::compile(&source.held_by(folder.path().join("own.tool")));
+    let compiled = tool_dsl::compile(&source.with_path(folder.path().join("own.tool")));
     let joined = compiled.into_tool().expect("a tool without errors");
     let written = tool(&mounts(
         "profile {

@@ -1,32 +1,31 @@
-//! The niceness that comes along with a mounted file.
+//! The niceness that comes with a mounted file.
 
 use super::{mounts, tool};
 use tool_dsl::interpret::Interpreter;
 
-fn felt(text: &str, p: [f64; 3]) -> (f64, f64) {
+fn evaluation(text: &str, p: [f64; 3]) -> (f64, f64) {
     let tool = tool(text);
-    let felt = Interpreter::new(&tool).at(p, 1.0).expect("inside");
-    (felt.magnitude, felt.niceness)
+    let evaluation = Interpreter::new(&tool).at(p, 1.0).expect("inside");
+    (evaluation.magnitude, evaluation.niceness)
 }
 
-/// The file's law speaks of its own radius and z in inches, with z = 2 at the tip and the spindle
-/// toward smaller z.
+/// The file's law uses its own radius and z in inches, with z = 2 at the tip and the spindle toward smaller z.
 #[test]
 fn a_law_keeps_its_unit_and_frame() {
     let text = mounts("mount \"inch_flat.tool\" as cutter; mount \"er16.tool\" as nut at z = 30;");
-    let (magnitude, niceness) = felt(&text, [3.0, 0.0, 12.7]);
+    let (magnitude, niceness) = evaluation(&text, [3.0, 0.0, 12.7]);
     let depth = 0.125 - 3.0 / 25.4;
     assert!((niceness - (1.0 - depth / 0.125 + 0.5 / 8.0)).abs() < 1e-14, "{niceness}");
     // Its magnitude does not come along.
     assert!((magnitude - depth * 25.4).abs() < 1e-14, "{magnitude}");
-    assert_eq!(felt(&text, [0.0, 0.0, 0.25]).1, 0.5);
+    assert_eq!(evaluation(&text, [0.0, 0.0, 0.25]).1, 0.5);
 }
 
-/// Mounted farther up, by files in two units, it still does.
+/// A law also keeps its frame when mounted farther up, by files in two units.
 #[test]
 fn a_law_keeps_its_place() {
     let text = mounts("mount \"pin.tool\" as pin; mount \"inch_flat.tool\" as mill at z = 5;");
-    let (_, niceness) = felt(&text, [3.0, 0.0, 17.7]);
+    let (_, niceness) = evaluation(&text, [3.0, 0.0, 17.7]);
     let depth = 0.125 - 3.0 / 25.4;
     assert!((niceness - (1.0 - depth / 0.125 + 0.5 / 8.0)).abs() < 1e-14, "{niceness}");
 }
@@ -36,7 +35,7 @@ fn a_law_speaks_of_what_its_file_was_given() {
     let text = mounts(
         "let r = 60; mount \"ball.tool\" as cutter with D = 2*r/24; mount \"er16.tool\" as nut at z = 30;",
     );
-    assert_eq!(felt(&text, [2.0, 0.0, 10.0]).1, 0.8);
+    assert_eq!(evaluation(&text, [2.0, 0.0, 10.0]).1, 0.8);
 }
 
 #[test]
@@ -47,9 +46,9 @@ fn a_law_of_the_assembly_comes_first() {
         ))
     };
     let flute = [2.0, 0.0, 10.0];
-    assert!((felt(&with(""), flute).1 - 2.0 / 3.0).abs() < 1e-15);
-    assert_eq!(felt(&with("niceness cutter.flute: 0.5;"), flute).1, 0.5);
-    assert!((felt(&with("niceness cutter.ball: 0.5;"), flute).1 - 2.0 / 3.0).abs() < 1e-15);
-    assert_eq!(felt(&with("niceness cutting: 0.25;"), flute).1, 0.25);
-    assert_eq!(felt(&with("magnitude cutter . flute, nut.nut: 3*depth;"), flute).0, 3.0);
+    assert!((evaluation(&with(""), flute).1 - 2.0 / 3.0).abs() < 1e-15);
+    assert_eq!(evaluation(&with("niceness cutter.flute: 0.5;"), flute).1, 0.5);
+    assert!((evaluation(&with("niceness cutter.ball: 0.5;"), flute).1 - 2.0 / 3.0).abs() < 1e-15);
+    assert_eq!(evaluation(&with("niceness cutting: 0.25;"), flute).1, 0.25);
+    assert_eq!(evaluation(&with("magnitude cutter . flute, nut.nut: 3*depth;"), flute).0, 3.0);
 }

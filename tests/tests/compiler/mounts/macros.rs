@@ -22,7 +22,7 @@ touchoff::tool! {
 }
 
 fn radius(tool: &dyn Tool) -> f64 {
-    tool.card().radius()
+    tool.info().radius()
 }
 
 #[test]
@@ -31,20 +31,20 @@ fn one_file_is_several_tools() {
     near(radius(&BallCutter), 3.0);
     near(radius(&QuarterInchBall), 3.175);
     near(radius(&Thin), 1.0);
-    assert_eq!(QuarterInchBall.card().name, "QuarterInchBall");
-    assert_eq!(ClampedFour.card().surfaces[0].name, "cutter.ball");
+    assert_eq!(QuarterInchBall.info().name, "QuarterInchBall");
+    assert_eq!(ClampedFour.info().surfaces[0].name, "cutter.ball");
 }
 
 #[test]
 fn an_inline_tool_mounts_files_beside_its_own() {
-    let surfaces: Vec<&str> = Inline.card().surfaces.iter().map(|s| s.name.as_ref()).collect();
+    let surfaces: Vec<&str> = Inline.info().surfaces.iter().map(|s| s.name.as_ref()).collect();
     let expected =
         ["cutter.ball", "cutter.flute", "cutter.shank", "holder.nut.nut", "holder.body.body"];
     assert_eq!(surfaces, expected);
     assert!((radius(&Inline) - 25.4).abs() < 1e-2);
 }
 
-/// Cargo builds these tests again when a file changes that is mounted, or mounted by one that is.
+/// Cargo builds these tests again when a mounted file changes, or one that it mounts.
 #[test]
 fn a_mounted_file_is_watched() {
     let own = std::env::current_exe().expect("a test knows its own place");

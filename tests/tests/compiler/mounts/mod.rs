@@ -10,12 +10,12 @@ use std::path::Path;
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, Compiled, compile};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// A text that lies among the tools beside these tests.
+/// Returns a text that lies among the tools beside these tests.
 fn source(text: &str) -> Source {
     let tools = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compiler/mounts/tools");
-    Source::new("own.tool", text).held_by(tools.join("own.tool"))
+    Source::new("own.tool", text).with_path(tools.join("own.tool"))
 }
 
 fn said(compiled: &Compiled) -> String {
@@ -27,7 +27,7 @@ fn said(compiled: &Compiled) -> String {
     all.join("\n")
 }
 
-/// The tool of a text that is good.
+/// Returns the tool of a text that must have no diagnostics.
 fn tool(text: &str) -> Box<CheckedTool> {
     let compiled = compile(&source(text));
     let said = said(&compiled);
@@ -39,7 +39,8 @@ fn mounts(items: &str) -> String {
     format!("tool T {{ units mm; {items} }}")
 }
 
-/// Both are the same solid with the same regions, felt the same to a part of the tool's size.
+/// Asserts that both are the same solid with the same regions, and evaluate alike to a fraction `part` of the
+/// tool's size.
 fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
     let regions = |tool: &CheckedTool| -> Vec<(usize, bool)> {
         let cuts = |surface: usize| tool.model.surfaces[surface].cutting;
@@ -52,15 +53,15 @@ fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
             && (a.extent.low - b.extent.low).abs() <= 1e-3
     );
     let (mut first, mut second) = (Interpreter::new(a), Interpreter::new(b));
-    let mut draw = Draw::new(5);
-    let mut felt = 0;
+    let mut draw = Rng::new(5);
+    let mut evaluation = 0;
     for _ in 0..20_000 {
         let [x, y] = [0, 1].map(|_| draw.between(-1.1 * a.extent.radius, 1.1 * a.extent.radius));
         let p = [x, y, draw.between(-0.05 * a.extent.high, 1.05 * a.extent.high)];
         match (first.at(p, 1.0), second.at(p, 1.0)) {
             (None, None) => {}
             (Some(a), Some(b)) if part == 0.0 => {
-                felt += 1;
+                evaluation += 1;
                 assert_eq!(
                     (a.region, a.depth, a.direction),
                     (b.region, b.depth, b.direction),
@@ -69,17 +70,17 @@ fn same(a: &CheckedTool, b: &CheckedTool, part: f64) {
                 assert_eq!((a.magnitude, a.niceness), (b.magnitude, b.niceness), "{p:?}");
             }
             (Some(a), Some(b)) => {
-                felt += 1;
+                evaluation += 1;
                 let near = |a: f64, b: f64| assert!((a - b).abs() <= slack, "{a}, {b} at {p:?}");
                 near(a.depth, b.depth);
                 near(a.magnitude, b.magnitude);
                 near(a.niceness, b.niceness);
             }
             (a, b) => {
-                let depth = a.or(b).map_or(0.0, |felt| felt.depth);
+                let depth = a.or(b).map_or(0.0, |evaluation| evaluation.depth);
                 assert!(part > 0.0 && depth <= slack, "one is inside at {p:?}");
             }
         }
     }
-    assert!(felt > 1_000, "{felt}");
+    assert!(evaluation > 1_000, "{evaluation}");
 }

@@ -1,11 +1,11 @@
-//! Mounts that are refused, each with its place and its words.
+//! Mounts that are refused, each with its place and its message.
 
 use super::{mounts, said, source};
 use std::path::Path;
 use tool_dsl::compile;
 use tool_dsl::source::Source;
 
-/// One error that says all of `words`.
+/// Asserts that there is one error, with all of `words`.
 #[track_caller]
 fn refused(items: &str, words: &[&str]) {
     let compiled = compile(&source(&mounts(items)));
@@ -46,7 +46,7 @@ fn mistakes_of_mounted_files() {
         &["the tool ends at z = 3 and its tip is said to be at 0", "off_tip.tool:1:6"],
     );
     refused("mount \"bad_law.tool\" as a;", &["adds a length to an area", "bad_law.tool:3:"]);
-    // Once, though it is mounted twice.
+    // Reported once, though the file is mounted twice.
     refused("mount \"broken.tool\" as a; mount \"broken.tool\" as b at z = 2;", &["unknown name"]);
 }
 

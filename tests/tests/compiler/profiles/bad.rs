@@ -6,13 +6,13 @@ use super::{said, tool};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tool_dsl::source::Source;
 use touchoff::tool::{Interpreted, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 fn text(profile: &str) -> String {
     format!("tool T {{ units mm; profile {{ start {profile} }} }}")
 }
 
-/// The words, and where the place begins.
+/// Cases of a profile, the message, and the beginning of its place.
 #[test]
 fn each_mistake_is_shown_at_its_segment() {
     let cases = [
@@ -145,12 +145,12 @@ fn each_mistake_is_shown_at_its_segment() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What is odd but good is exact.
+/// Asserts that a profile which is odd but good is exact.
 fn exact(outline: &Outline) {
     let text = outline.text();
     let tool = tool(&text).unwrap_or_else(|said| panic!("{text}\n{said}"));
     let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
-    let compared = compare(outline, (&tool, &planned), 2_000, &mut Draw::new(41));
+    let compared = compare(outline, (&tool, &planned), 2_000, &mut Rng::new(41));
     compared.unwrap_or_else(|flaw| panic!("{flaw:?}\n{text}"));
 }
 
@@ -271,8 +271,8 @@ fn needles_are_exact_or_refused_at_their_place() {
     assert!(flawed.is_empty(), "{} needles: {}", flawed.len(), flawed.join("\n"));
 }
 
-/// Whether a refusal shows a segment of the profile. What is taken has true distances, and the
-/// right side but beside the surface; for that there is no answer.
+/// Returns whether a refusal shows a segment of the profile; `None` if the profile is accepted. An accepted profile
+/// must have true distances, and the right side except beside the surface.
 fn refused_or_exact(outline: &Outline) -> Option<bool> {
     let text = outline.text();
     let said = said(&text);
@@ -287,26 +287,27 @@ fn refused_or_exact(outline: &Outline) -> Option<bool> {
     let mut reference = tool_dsl::interpret::Interpreter::new(&tool);
     let size = outline.size();
     let near = 1e-8 * size;
-    for p in super::compare::points(outline, 160, &mut Draw::new(42)) {
+    for p in super::compare::points(outline, 160, &mut Rng::new(42)) {
         let [d, z] = outline.turned(p);
         let (_, least) = outline.nearest(p);
-        let (felt, clearance) = (reference.at([d, 0.0, z], 1.0), planned.clearance([d, 0.0, z]));
-        let depth = felt.map_or(0.0, |felt| felt.depth);
+        let (evaluation, clearance) =
+            (reference.at([d, 0.0, z], 1.0), planned.clearance([d, 0.0, z]));
+        let depth = evaluation.map_or(0.0, |evaluation| evaluation.depth);
         assert!(
             ((depth + clearance) - least).abs() < near,
             "{depth}, {clearance}, {least} at {p:?}\n{text}"
         );
         if least > near {
-            assert_eq!(felt.is_some(), outline.contains(p), "at {p:?}\n{text}");
+            assert_eq!(evaluation.is_some(), outline.contains(p), "at {p:?}\n{text}");
         }
     }
     None
 }
 
-/// Corners of a small grid, some moved by next to nothing, joined by lines and arcs.
-fn nearly(draw: &mut Draw) -> Outline {
-    let pick = |draw: &mut Draw, count: u64| draw.bits() % count;
-    let little = |draw: &mut Draw| match pick(draw, 3) {
+/// Returns a profile with corners on a small grid, some moved by next to nothing, joined by lines and arcs.
+fn nearly(draw: &mut Rng) -> Outline {
+    let pick = |draw: &mut Rng, count: u64| draw.bits() % count;
+    let little = |draw: &mut Rng| match pick(draw, 3) {
         0 => draw.between(-1.0, 1.0) * 10f64.powf(draw.between(-16.0, -5.0)),
         _ => 0.0,
     };
@@ -338,12 +339,12 @@ fn nearly(draw: &mut Draw) -> Outline {
     Outline { pieces, down: pick(draw, 4) == 0 }
 }
 
-/// Corners from a small grid, some moved by next to nothing: nearly touching, nearly tangent,
-/// nearly without length. Nothing panics, and what is taken is right.
+/// Corners from a small grid, some moved by next to nothing: nearly touching, nearly tangent, nearly without
+/// length. Nothing panics, and accepted profiles are right.
 #[test]
 fn nearly_bad_profiles_never_panic() {
     let count = super::profiles();
-    let mut draw = Draw::new(43);
+    let mut draw = Rng::new(43);
     let (mut taken, mut vague, mut flawed) = (0, 0, Vec::new());
     for _ in 0..10 * count {
         let outline = nearly(&mut draw);

@@ -2,18 +2,18 @@
 
 use super::outline::{Feature, Outline, P2, add, len, sub, unit};
 use tool_dsl::CheckedTool;
-use tool_dsl::interpret::{Felt, Interpreter};
+use tool_dsl::interpret::{Evaluation, Interpreter};
 use touchoff::Level;
-use touchoff::tool::{Ask, Felt as Lists, Interpreted, Points, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff::tool::{Evaluations as Lists, Interpreted, Outputs, PointBatch, Tool};
+use touchoff_tests::oracle::draw::Rng;
 
-/// What came of comparing.
+/// The results of a comparison.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) inside: usize,
     pub(crate) outside: usize,
     pub(crate) directions: usize,
-    /// The worst error of a depth or clearance, in sizes.
+    /// The worst error of a depth or clearance, relative to the profile's size.
     pub(crate) worst: f64,
 }
 
@@ -28,19 +28,19 @@ impl Tally {
     }
 }
 
-/// The kind of a mistake, and the rest about it.
+/// The kind of a mistake, and its details.
 pub(crate) type Flaw = (&'static str, String);
 
-/// Points anywhere, beside the surface, beside borders, on the axis and at the corners.
-pub(crate) fn points(outline: &Outline, count: usize, draw: &mut Draw) -> Vec<P2> {
+/// Returns points anywhere, beside the surface, beside borders, on the axis and at the corners.
+pub(crate) fn points(outline: &Outline, count: usize, draw: &mut Rng) -> Vec<P2> {
     let size = outline.size();
     let [low, high] = outline.reach();
     let span = sub(high, low).map(|part| part.max(0.05 * size));
-    let anywhere = |draw: &mut Draw| {
+    let anywhere = |draw: &mut Rng| {
         let d = draw.between(0.0, high[0] + 0.2 * span[0]);
         [d, draw.between(low[1] - 0.2 * span[1], high[1] + 0.2 * span[1])]
     };
-    let a_little = |draw: &mut Draw| size * 10f64.powf(draw.between(-6.0, -2.0));
+    let a_little = |draw: &mut Rng| size * 10f64.powf(draw.between(-6.0, -2.0));
     let mut all: Vec<P2> = (0..=outline.pieces.len()).map(|k| outline.vertex(k)).collect();
     for k in 0..count {
         all.push(match k % 8 {
@@ -69,12 +69,12 @@ pub(crate) fn points(outline: &Outline, count: usize, draw: &mut Draw) -> Vec<P2
     all
 }
 
-/// Compares the reference and the planned tape with brute force at so many points.
+/// Compares the reference and the planned tape with brute force at `count` points.
 pub(crate) fn compare(
     outline: &Outline,
     (tool, planned): (&CheckedTool, &Interpreted),
     count: usize,
-    draw: &mut Draw,
+    draw: &mut Rng,
 ) -> Result<Tally, Flaw> {
     let mut reference = Interpreter::new(tool);
     let mut tally = Tally::default();
@@ -85,17 +85,17 @@ pub(crate) fn compare(
             [d, 0.0, z]
         })
         .collect();
-    let (mut list, mut felt) = (Points::default(), Lists::default());
+    let (mut list, mut evaluation) = (PointBatch::default(), Lists::default());
     wanted.iter().for_each(|p| list.push(*p));
-    planned.evaluate(Level::new(), Ask::EVERYTHING, &list, 1.0, &mut felt);
+    planned.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut evaluation);
     for (k, point) in wanted.into_iter().enumerate() {
-        let tape = (felt.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Felt {
-            region: felt.region[k] as usize,
-            depth: felt.depth[k],
-            magnitude: felt.magnitude[k],
-            direction: felt.direction.each_ref().map(|list| list[k]),
-            gradient: felt.gradient.each_ref().map(|list| list[k]),
-            niceness: felt.niceness[k],
+        let tape = (evaluation.inside[k / 8] >> (k % 8) & 1 == 1).then(|| Evaluation {
+            region: evaluation.region[k] as usize,
+            depth: evaluation.depth[k],
+            magnitude: evaluation.magnitude[k],
+            direction: evaluation.direction.each_ref().map(|list| list[k]),
+            gradient: evaluation.gradient.each_ref().map(|list| list[k]),
+            niceness: evaluation.niceness[k],
         });
         let p = outline.back([point[0], point[2]]);
         let at = |(kind, text): Flaw, who: &str| {
@@ -108,11 +108,12 @@ pub(crate) fn compare(
             (kind, format!("{who}, at {p:?}: {text}"))
         };
         let clearance = planned.clearance(point);
-        let told = |felt: Option<Felt>| {
-            felt.map_or("outside", |felt| tool.model.regions[felt.region].name.as_str())
+        let told = |evaluation: Option<Evaluation>| {
+            evaluation
+                .map_or("outside", |evaluation| tool.model.regions[evaluation.region].name.as_str())
         };
-        let felt = [("reference", reference.at(point, 1.0)), ("tape", tape)];
-        for (who, got) in felt {
+        let evaluation = [("reference", reference.at(point, 1.0)), ("tape", tape)];
+        for (who, got) in evaluation {
             let who = || format!("{who} says {}", told(got));
             let one = judge(outline, tool, p, got, clearance).map_err(|flaw| at(flaw, &who()))?;
             tally = tally.and(one);
@@ -121,7 +122,7 @@ pub(crate) fn compare(
     Ok(tally)
 }
 
-/// The feature that a region is called after.
+/// Returns the feature that a region is named after.
 pub(crate) fn feature(outline: &Outline, name: &str) -> Option<Feature> {
     let number = |word: &str| word.strip_prefix('s')?.parse::<usize>().ok();
     let Some((a, b)) = name.split_once('/') else { return number(name).map(Feature::Piece) };
@@ -140,7 +141,7 @@ fn judge(
     outline: &Outline,
     tool: &CheckedTool,
     p: P2,
-    got: Option<Felt>,
+    got: Option<Evaluation>,
     clearance: f64,
 ) -> Result<Tally, Flaw> {
     let size = outline.size();

@@ -4,7 +4,7 @@ use super::tool;
 use std::collections::BTreeSet;
 use tool_dsl::formula::Formula;
 use tool_dsl::interpret::Interpreter;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Oracle, d2_ball, fig_7_3_exact, half_sphere_cylinder};
 
 pub(crate) const FIG_7_3: &str = "tool Fig73 { units mm; tip z = 20; spindle -z;
@@ -33,15 +33,15 @@ const HALF_SPHERE: &str = "tool Half { units mm; tip z = -2;
         line to (1, 6), (0, 6)       as stem;
     } }";
 
-/// Owner, depth and direction are the oracle's; `order` gives the oracle's place of each region.
+/// Asserts that owner, depth and direction are the oracle's; `order` gives the oracle's index of each region.
 fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
     let tool = tool(text).expect("a good profile");
     assert_eq!(tool.model.regions.len(), order.len());
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Draw::new(3);
+    let mut draw = Rng::new(3);
     let [radius, height] = oracle.extent();
     let scale = radius.max(height);
-    let mut felt = 0;
+    let mut evaluation = 0;
     for _ in 0..60_000 {
         let p = [
             draw.between(-1.1 * radius, 1.1 * radius),
@@ -56,7 +56,7 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
             assert_eq!(got.is_some(), expected.is_some(), "inside at {p:?}");
             continue;
         };
-        felt += 1;
+        evaluation += 1;
         assert_eq!(order[got.region], expected.owner, "owner at {p:?}");
         assert!((got.depth - expected.depth).abs() < 1e-13 * scale, "{} at {p:?}", got.depth);
         for (a, b) in got.direction.iter().zip(expected.direction) {
@@ -68,7 +68,7 @@ fn agrees(text: &str, oracle: &dyn Oracle, order: &[usize]) {
             );
         }
     }
-    assert!(felt > 10_000);
+    assert!(evaluation > 10_000);
 }
 
 #[test]
@@ -119,15 +119,15 @@ fn the_half_sphere_is_derived() {
     agrees(HALF_SPHERE, &half_sphere_cylinder(), &[0, 1, 2, 3, 4]);
 }
 
-/// A magnitude that is the depth is a length and changes with the part's unit; a law of another
-/// form is the file's own number.
+/// A magnitude that is the depth is a length and changes with the part's unit; a law of another form is the file's
+/// own number.
 #[test]
 fn a_law_that_is_the_depth_is_a_length() {
-    let felt = |law: &str| {
+    let evaluation = |law: &str| {
         let tool = tool(&D2_BALL.replace("niceness cutting", &format!("{law} niceness cutting")));
         Interpreter::new(&tool.expect("a good profile")).at([0.5, 0.0, 3.0], 0.25).expect("inside")
     };
-    assert_eq!(felt("").magnitude, 0.125);
-    assert_eq!(felt("magnitude: depth;").magnitude, 0.125);
-    assert_eq!(felt("magnitude: 2*depth;").magnitude, 1.0);
+    assert_eq!(evaluation("").magnitude, 0.125);
+    assert_eq!(evaluation("magnitude: depth;").magnitude, 0.125);
+    assert_eq!(evaluation("magnitude: 2*depth;").magnitude, 1.0);
 }

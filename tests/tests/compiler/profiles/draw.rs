@@ -3,12 +3,12 @@
 use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
 use proptest::prelude::*;
 
-/// The most segments of a profile.
+/// Largest number of segments of a profile.
 const MOST: usize = 12;
-/// Lengths of a recipe are in these parts.
+/// Number of grid steps per unit of length in a recipe.
 const GRID: f64 = 64.0;
 
-/// How a profile begins, ends and goes on, in whole numbers.
+/// The beginning, the moves and the end of a profile, in whole numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Recipe {
     nose: Nose,
@@ -24,7 +24,7 @@ pub(crate) struct Recipe {
 enum Nose {
     /// The first move begins at the axis.
     Open,
-    /// An arc about the axis, so many degrees of it.
+    /// An arc about the axis: its radius, and its angle in degrees.
     Ball(i32, i32),
     /// A flat face to the first number, and a quarter of a circle of the second.
     Torus(i32, i32),
@@ -36,14 +36,14 @@ enum Nose {
 enum Cap {
     Flat,
     Cone(i32),
-    /// An arc about the axis whose centre lies so far below its start, or above for a dish.
+    /// An arc about the axis whose centre lies this far below its start, or above for a dish.
     Dome(i32),
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Move {
     Line(i32, i32),
-    /// To a point by an arc whose radius is so many hundredths of the chord.
+    /// An arc to a point, whose radius is `ratio` hundredths of the chord.
     Arc {
         to: (i32, i32),
         ratio: i32,
@@ -55,7 +55,7 @@ enum Move {
         radius: i32,
         convex: bool,
     },
-    /// Goes on in the direction of travel, turning by so many degrees.
+    /// An arc that goes on in the direction of travel and turns by an angle in degrees.
     Tangent {
         radius: i32,
         degrees: i32,
@@ -70,7 +70,7 @@ enum Move {
         reach: i32,
         width: i32,
     },
-    /// The corner behind is rounded over so many sixteenths of the shorter edge beside it.
+    /// The corner behind is rounded over `share` sixteenths of the shorter edge beside it.
     Fillet {
         share: i32,
         by_radius: bool,
@@ -115,7 +115,7 @@ pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
     )
 }
 
-/// A piece to be, and the share of the shorter edge over which its first corner is rounded.
+/// A piece to be added, and the share of the shorter edge over which its first corner is rounded.
 struct Step {
     piece: Piece,
     fillet: Option<(f64, bool)>,
@@ -129,7 +129,7 @@ struct Pen {
 }
 
 impl Recipe {
-    /// The profile; not always a valid one.
+    /// Returns the profile, which is not always valid.
     pub(crate) fn outline(&self) -> Outline {
         let scale = f64::from(self.scale.0) / 1000.0 * 10f64.powi(self.scale.1);
         let start = [0.0, f64::from(self.lift) / GRID * scale];
@@ -165,7 +165,7 @@ impl Pen {
         f64::from(count) / GRID * self.scale
     }
 
-    /// A point relative to here, kept off the axis.
+    /// Returns a point relative to the current one, kept off the axis.
     fn by(&self, d: i32, z: i32) -> P2 {
         let [x, y] = add(self.at, [self.unit(d), self.unit(z)], 1.0);
         [x.max(self.unit(8)), y]
@@ -259,7 +259,7 @@ impl Move {
     }
 }
 
-/// The pieces, corners between lines rounded where a step says so.
+/// Returns the pieces, with corners between lines rounded where a step says so.
 fn rounded(steps: &[Step]) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
     for step in steps {
@@ -293,7 +293,8 @@ fn rounded(steps: &[Step]) -> Vec<Piece> {
     pieces
 }
 
-/// The arc that touches two lines this far from their corner, and what it leaves of the second.
+/// Returns the arc that touches two lines at a distance of `cut` from their corner, and what it leaves of the
+/// second.
 fn corner(last: Piece, next: Piece, cut: f64, by_radius: bool) -> Option<(Piece, Piece)> {
     if last.round.is_some() || next.round.is_some() {
         return None;

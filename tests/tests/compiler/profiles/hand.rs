@@ -1,13 +1,13 @@
-//! Regions by hand beside a profile: they say what is felt, never where the tool is.
+//! Regions by hand beside a profile: they determine the evaluation, never the solid.
 
 use super::outline::{Outline, P2, Piece, add, len, sub, unit};
 use super::{said, tool, warned};
 use tool_dsl::CheckedTool;
-use tool_dsl::interpret::{Felt, Interpreter};
+use tool_dsl::interpret::{Evaluation, Interpreter};
 use tool_dsl::source::Source;
 use touchoff::Level;
-use touchoff::tool::{Ask, Interpreted, Points, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff::tool::{Interpreted, Outputs, PointBatch, Tool};
+use touchoff_tests::oracle::draw::Rng;
 
 const PROFILE: &str = "profile {
         start (0, 0);
@@ -41,7 +41,7 @@ fn text(down: bool, regions: &str) -> String {
     format!("tool T {{ units mm; {frame} {PROFILE} {regions} }}")
 }
 
-/// The foot of a point, and the surface of the nearest feature: what `as` would else be.
+/// Returns the foot of a point on the profile.
 fn foot(outline: &Outline, p: P2) -> P2 {
     let on = |piece: &Piece| {
         let (distance, end) = piece.clamped(p);
@@ -54,7 +54,7 @@ fn foot(outline: &Outline, p: P2) -> P2 {
     feet.min_by(|a, b| len(sub(*a, p)).total_cmp(&len(sub(*b, p)))).expect("pieces")
 }
 
-/// What the table of the language says: region, surface, magnitude, direction, niceness.
+/// Returns the values of the table of the language: region, surface, magnitude, direction, niceness.
 fn wanted(outline: &Outline, p: P2) -> (&'static str, &'static str, f64, P2, f64) {
     let depth = outline.nearest(p).1;
     let foot = foot(outline, p);
@@ -82,7 +82,7 @@ fn each_region_feels_what_the_table_says() {
         let tool = warned(&text).expect("good regions");
         let planned = Interpreted::parse(&Source::new("t.tool", text.as_str())).expect("the same");
         let outline = outline(down);
-        let mut draw = Draw::new(31);
+        let mut draw = Rng::new(31);
         for _ in 0..30_000 {
             let p = [draw.between(0.0, 7.0), draw.between(-1.0, 21.0)];
             let borders = [p[1] - 1.0, p[1] - 3.0, p[1] - 8.0, p[1] - 13.0, p[0] - 1.0];
@@ -100,10 +100,10 @@ fn each_region_feels_what_the_table_says() {
 fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let [d, z] = outline.turned(p);
     let point = [d, 0.0, z];
-    let (mut list, mut lists) = (Points::default(), touchoff::tool::Felt::default());
+    let (mut list, mut lists) = (PointBatch::default(), touchoff::tool::Evaluations::default());
     list.push(point);
-    planned.evaluate(Level::new(), Ask::EVERYTHING, &list, 1.0, &mut lists);
-    let tape = (lists.inside[0] & 1 == 1).then(|| Felt {
+    planned.evaluate(Level::new(), Outputs::EVERYTHING, &list, 1.0, &mut lists);
+    let tape = (lists.inside[0] & 1 == 1).then(|| Evaluation {
         region: lists.region[0] as usize,
         depth: lists.depth[0],
         magnitude: lists.magnitude[0],
@@ -114,12 +114,12 @@ fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let reference = Interpreter::new(tool).at(point, 1.0);
     assert_eq!(reference, tape, "at {p:?}");
     assert_eq!(reference.is_some(), outline.contains(p), "at {p:?}");
-    let Some(felt) = reference else {
+    let Some(evaluation) = reference else {
         assert!((planned.clearance(point) - outline.nearest(p).1).abs() < 1e-12, "at {p:?}");
         return;
     };
     let (name, surface, magnitude, [e, f], niceness) = wanted(outline, p);
-    let region = &tool.model.regions[felt.region];
+    let region = &tool.model.regions[evaluation.region];
     assert_eq!(
         (region.name.as_str(), tool.model.surfaces[region.surface].name.as_str()),
         (name, surface),
@@ -128,13 +128,13 @@ fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
     let near = |a: f64, b: f64, what: &str| {
         assert!((a - b).abs() < 1e-11, "{what} is {a}, not {b}, at {p:?} in {name}");
     };
-    near(felt.depth, outline.nearest(p).1, "depth");
-    near(felt.magnitude, magnitude, "magnitude");
-    near(felt.niceness, niceness, "niceness");
+    near(evaluation.depth, outline.nearest(p).1, "depth");
+    near(evaluation.magnitude, magnitude, "magnitude");
+    near(evaluation.niceness, niceness, "niceness");
     let f = if outline.down { -f } else { f };
-    near(felt.direction[0], e, "radial part");
-    near(felt.direction[1], 0.0, "part across");
-    near(felt.direction[2], f, "axial part");
+    near(evaluation.direction[0], e, "radial part");
+    near(evaluation.direction[1], 0.0, "part across");
+    near(evaluation.direction[2], f, "axial part");
 }
 
 /// The gradient is the magnitude's slope.
@@ -142,31 +142,31 @@ fn judge(tool: &CheckedTool, planned: &Interpreted, outline: &Outline, p: P2) {
 fn gradients_are_slopes() {
     let tool = warned(&text(false, REGIONS)).expect("good regions");
     let mut interpreter = Interpreter::new(&tool);
-    let mut draw = Draw::new(32);
+    let mut draw = Rng::new(32);
     for _ in 0..5_000 {
         let p = [draw.between(0.05, 6.0), 0.0, draw.between(0.0, 20.0)];
-        let Some(felt) = interpreter.at(p, 1.0) else { continue };
+        let Some(evaluation) = interpreter.at(p, 1.0) else { continue };
         let h = 1e-6;
         let slopes = [0, 1, 2].map(|k| {
             let ends = [h, -h].map(|h| {
                 let mut q = p;
                 q[k] += h;
-                interpreter.at(q, 1.0).filter(|other| other.region == felt.region)
+                interpreter.at(q, 1.0).filter(|other| other.region == evaluation.region)
             });
             ends[0].zip(ends[1]).map(|(a, b)| (a.magnitude - b.magnitude) / (2.0 * h))
         });
-        if felt.depth > 1e-3 && slopes.iter().all(Option::is_some) {
-            for (slope, part) in slopes.iter().zip(felt.gradient) {
+        if evaluation.depth > 1e-3 && slopes.iter().all(Option::is_some) {
+            for (slope, part) in slopes.iter().zip(evaluation.gradient) {
                 assert!(
                     (slope.unwrap_or(f64::NAN) - part).abs() < 1e-4,
-                    "{slopes:?} at {p:?}, {felt:?}"
+                    "{slopes:?} at {p:?}, {evaluation:?}"
                 );
             }
         }
     }
 }
 
-/// Each mistake is said where it was made.
+/// Each mistake is shown at its place.
 #[test]
 fn mistakes_of_regions_are_shown() {
     let two = "region low as ball where z <= 3 {} region high as shank where z >= 3 {}";

@@ -15,7 +15,7 @@ use std::ffi::OsStr;
 use tool_dsl::source::Source;
 use tool_dsl::{CheckedTool, compile};
 
-/// The tool of a text, or what is said of it.
+/// Returns the tool of a text, or its diagnostics.
 fn tool(text: &str) -> Result<Box<CheckedTool>, String> {
     let source = Source::new("t.tool", text);
     let compiled = compile(&source);
@@ -27,12 +27,12 @@ fn tool(text: &str) -> Result<Box<CheckedTool>, String> {
     }
 }
 
-/// The tool of a text, whatever is warned of.
+/// Returns the tool of a text, whatever its warnings.
 fn warned(text: &str) -> Option<Box<CheckedTool>> {
     compile(&Source::new("t.tool", text)).into_tool()
 }
 
-/// What is said of a text, each with the text of its place.
+/// Returns the diagnostics of a text, each with the text of its place.
 fn said(text: &str) -> Vec<(String, String)> {
     let compiled = compile(&Source::new("t.tool", text));
     let place =
@@ -43,7 +43,7 @@ fn said(text: &str) -> Vec<(String, String)> {
     said
 }
 
-/// Returns how many random profiles are tried: the variable `PROFILES`, or 60 without it.
+/// Returns the number of random profiles to test: the variable `PROFILES`, or 60 without it.
 ///
 /// # Panics
 /// If the variable is no whole number above 0: a typing error must not pass for a long run.

@@ -1,5 +1,5 @@
-//! A profile as the tests draw it. Nearest features are found by trying them all, the inside by
-//! crossings, validity by looking at points along it: nothing is shared with the compiler.
+//! Profiles as the tests draw them. Nearest features are found by exhaustive search, the inside by crossings,
+//! validity from points along the profile: nothing is shared with the compiler.
 
 use std::fmt::Write as _;
 
@@ -48,13 +48,13 @@ impl Piece {
         Piece { from, to, round: None }
     }
 
-    /// The arc about a centre.
+    /// Returns the arc about a centre.
     pub(crate) fn about(from: P2, to: P2, centre: P2, convex: bool) -> Piece {
         let radius = len(sub(from, centre));
         Piece { from, to, round: Some(Round { centre, radius, convex, by_radius: false }) }
     }
 
-    /// The arc of a radius; a radius just below half of the chord makes half a circle.
+    /// Returns the arc of a radius; a radius just below half of the chord makes half a circle.
     pub(crate) fn by_radius(from: P2, to: P2, radius: f64, convex: bool) -> Piece {
         let chord = sub(to, from);
         let half = len(chord) / 2.0;
@@ -65,7 +65,7 @@ impl Piece {
         Piece { from, to, round: Some(Round { centre, radius, convex, by_radius: true }) }
     }
 
-    /// The direction of travel at a point of it.
+    /// Returns the direction of travel at a point of the piece.
     pub(crate) fn tangent(&self, at: P2) -> P2 {
         match self.round {
             None => unit(sub(self.to, self.from)),
@@ -76,7 +76,7 @@ impl Piece {
         }
     }
 
-    /// From 0 at the start to 1 at the end.
+    /// Returns a point of the piece, from 0 at the start to 1 at the end.
     pub(crate) fn at(&self, share: f64) -> P2 {
         let Some(round) = self.round else {
             return add(self.from, sub(self.to, self.from), share);
@@ -86,7 +86,7 @@ impl Piece {
         add(round.centre, [a[0] * cos - a[1] * sin, a[0] * sin + a[1] * cos], 1.0)
     }
 
-    /// The angle of an arc, positive counter-clockwise.
+    /// Returns the angle of an arc in rad, positive counter-clockwise; 0 for a line.
     pub(crate) fn sweep(&self) -> f64 {
         let Some(round) = self.round else { return 0.0 };
         let (a, b) = (sub(self.from, round.centre), sub(self.to, round.centre));
@@ -94,7 +94,7 @@ impl Piece {
         if round.convex { angle } else { -angle }
     }
 
-    /// Whether the foot of `p` on the whole line or circle lies on the piece.
+    /// Returns whether the foot of `p` on the whole line or circle lies on the piece.
     pub(crate) fn faces(&self, p: P2) -> bool {
         match self.round {
             None => {
@@ -111,7 +111,7 @@ impl Piece {
         }
     }
 
-    /// The distance to the whole line or circle, positive on the material's side.
+    /// Returns the distance to the whole line or circle, positive on the material's side.
     pub(crate) fn signed(&self, p: P2) -> f64 {
         match self.round {
             None => cross(unit(sub(self.to, self.from)), sub(p, self.from)),
@@ -122,7 +122,7 @@ impl Piece {
         }
     }
 
-    /// The distance to the piece, and which end is nearest if that is the nearest point.
+    /// Returns the distance to the piece, and the index of the nearest end if that is the nearest point.
     pub(crate) fn clamped(&self, p: P2) -> (f64, Option<usize>) {
         if self.faces(p) {
             return (self.signed(p).abs(), None);
@@ -131,7 +131,7 @@ impl Piece {
         if ends[0] <= ends[1] { (ends[0], Some(0)) } else { (ends[1], Some(1)) }
     }
 
-    /// The unit vector out of the material at the foot of `p`.
+    /// Returns the unit vector out of the material at the foot of `p`.
     pub(crate) fn outward(&self, p: P2) -> P2 {
         match self.round {
             None => {
@@ -143,7 +143,7 @@ impl Piece {
         }
     }
 
-    /// The piece in parts that do not turn in z, each with its side of the centre.
+    /// Returns the piece in parts that do not turn in z, each with its side of the centre.
     fn rising(&self) -> Vec<(P2, P2, f64)> {
         let Some(round) = self.round else { return vec![(self.from, self.to, 0.0)] };
         let order = if cross(sub(self.from, round.centre), [0.0, 1.0]) > 0.0 { 1.0 } else { -1.0 };
@@ -165,7 +165,7 @@ impl Piece {
         cuts.windows(2).map(|w| (w[0], w[1], side(w[0], w[1]))).collect()
     }
 
-    /// How often the ray from `p` toward larger d meets it.
+    /// Counts the intersections of the piece with the ray from `p` toward larger d.
     fn crossings(&self, p: P2) -> usize {
         let meets = |&(a, b, side): &(P2, P2, f64)| {
             if (a[1] <= p[1]) == (b[1] <= p[1]) {
@@ -185,7 +185,7 @@ impl Piece {
     }
 }
 
-/// What can be nearest: a piece, or the corner before a piece (behind the last for their number).
+/// A feature that can be nearest: a piece, or the corner before a piece (behind the last for their number).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Feature {
     Piece(usize),
@@ -196,18 +196,18 @@ pub(crate) enum Feature {
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
     pub(crate) pieces: Vec<Piece>,
-    /// Whether the spindle lies toward smaller z.
+    /// True if the spindle lies toward smaller z.
     pub(crate) down: bool,
 }
 
 impl Outline {
-    /// The largest coordinate.
+    /// Returns the largest coordinate.
     pub(crate) fn size(&self) -> f64 {
         let ends = self.pieces.iter().flat_map(|piece| [piece.from, piece.to]);
         ends.flatten().fold(0.0, |most, part| part.abs().max(most))
     }
 
-    /// The least and the largest `[d, z]`.
+    /// Returns the least and the largest `[d, z]`.
     pub(crate) fn reach(&self) -> [P2; 2] {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let mut widen = |p: P2| {
@@ -230,22 +230,22 @@ impl Outline {
         [low, high]
     }
 
-    /// The tip's z.
+    /// Returns the tip's z.
     pub(crate) fn tip(&self) -> f64 {
         self.reach()[usize::from(self.down)][1]
     }
 
-    /// A point of the file's frame in the tool's, and back.
+    /// Transforms a point from the file's frame to the tool's.
     pub(crate) fn turned(&self, [d, z]: P2) -> P2 {
         if self.down { [d, self.tip() - z] } else { [d, z - self.tip()] }
     }
 
-    /// The same, back.
+    /// Transforms a point from the tool's frame to the file's.
     pub(crate) fn back(&self, [d, z]: P2) -> P2 {
         if self.down { [d, self.tip() - z] } else { [d, z + self.tip()] }
     }
 
-    /// The `.tool` file; each piece is a surface of its own, `s0` and so on.
+    /// Returns the `.tool` file; each piece is a surface of its own, `s0` and so on.
     pub(crate) fn text(&self) -> String {
         let frame = if self.down { " spindle -z;" } else { "" };
         let [d, z] = self.pieces[0].from;
@@ -271,12 +271,12 @@ impl Outline {
         text + "} }"
     }
 
-    /// Even-odd; undecided on the profile itself.
+    /// Returns whether a point is inside, by the even-odd rule; undecided on the profile itself.
     pub(crate) fn contains(&self, p: P2) -> bool {
         self.pieces.iter().map(|piece| piece.crossings(p)).sum::<usize>() % 2 == 1
     }
 
-    /// The nearest feature and its distance.
+    /// Returns the nearest feature and its distance.
     pub(crate) fn nearest(&self, p: P2) -> (Feature, f64) {
         let each = self.pieces.iter().enumerate().map(|(k, piece)| {
             let (distance, end) = piece.clamped(p);
@@ -285,7 +285,7 @@ impl Outline {
         each.min_by(|a, b| a.1.total_cmp(&b.1)).expect("a profile has pieces")
     }
 
-    /// How much farther than the nearest a feature is, at most; large for one that owns nothing.
+    /// Returns how much farther than the nearest a feature is, at most; infinite for one that owns nothing.
     pub(crate) fn excess(&self, feature: Feature, p: P2) -> f64 {
         let least = self.nearest(p).1;
         match feature {
@@ -298,19 +298,19 @@ impl Outline {
         }
     }
 
-    /// The point before a piece, or behind the last.
+    /// Returns the vertex before a piece, or behind the last.
     pub(crate) fn vertex(&self, k: usize) -> P2 {
         self.pieces.get(k).map_or_else(|| self.pieces[k - 1].to, |piece| piece.from)
     }
 
-    /// The sine of the turn at a vertex, negative at a reflex corner. At the axis the profile
-    /// meets its mirror image.
+    /// Returns the sine of the turn at a vertex, negative at a reflex corner. At the axis the profile meets its
+    /// mirror image.
     pub(crate) fn turn(&self, k: usize) -> f64 {
         let [a, b] = self.ways(k);
         cross(a, b)
     }
 
-    /// The directions of travel into a vertex and out of it.
+    /// Returns the directions of travel into a vertex and out of it.
     pub(crate) fn ways(&self, k: usize) -> [P2; 2] {
         let at = self.vertex(k);
         let before = k.checked_sub(1).map(|k| self.pieces[k].tangent(at));

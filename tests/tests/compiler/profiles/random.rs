@@ -12,13 +12,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use tool_dsl::prove::Certificate;
 use tool_dsl::source::Source;
 use touchoff::tool::Interpreted;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Points of each profile.
+/// Points per profile.
 const POINTS: usize = 320;
-/// How often a failing profile is tried smaller.
+/// Number of attempts to make a failing profile smaller.
 const SHRINKS: usize = 250;
-/// How many of one kind are shrunk and shown.
+/// Number of failures of one kind that are shrunk and shown.
 const SHOWN: usize = 4;
 
 /// Compiles and compares one profile.
@@ -27,7 +27,7 @@ fn tried(outline: &Outline) -> Result<Tally, Flaw> {
     let run = || {
         let tool = tool(&text).map_err(|message| (refusal(&message), message))?;
         let planned = Interpreted::parse(&Source::new("t.tool", &text)).expect("as before");
-        compare(outline, (&tool, &planned), POINTS, &mut Draw::new(1))
+        compare(outline, (&tool, &planned), POINTS, &mut Rng::new(1))
     };
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err(("panic", String::new())))
 }
@@ -37,7 +37,7 @@ fn is_proved(outline: &Outline) -> bool {
     tool(&outline.text()).is_ok_and(|tool| Certificate::of(&tool).is_exact())
 }
 
-/// Refusals are told apart by their first words.
+/// Returns the kind of a refusal, by its words.
 fn refusal(message: &str) -> &'static str {
     if message.contains("no curve tells") {
         "refused: no curve tells"
@@ -48,7 +48,7 @@ fn refusal(message: &str) -> &'static str {
     }
 }
 
-/// The smallest profile found that fails in the same way.
+/// Returns the smallest profile found that fails in the same way.
 fn shrunk(mut tree: impl ValueTree<Value = Recipe>, flaw: Flaw) -> (Outline, Flaw) {
     let mut best = (tree.current().outline(), flaw);
     let mut more = tree.simplify();
@@ -69,7 +69,7 @@ fn shrunk(mut tree: impl ValueTree<Value = Recipe>, flaw: Flaw) -> (Outline, Fla
     best
 }
 
-/// What occurs in a profile.
+/// Returns the kinds of pieces and joints that occur in a profile.
 fn kinds(outline: &Outline) -> Vec<&'static str> {
     let mut all = Vec::new();
     for (k, piece) in outline.pieces.iter().enumerate() {

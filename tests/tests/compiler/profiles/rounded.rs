@@ -1,8 +1,8 @@
-//! A profile with its corners rounded, by growing balls: nothing is shared with the compiler.
+//! Profiles with rounded corners, by growing balls: nothing is shared with the compiler.
 
 use super::outline::{Outline, P2, Piece, Round, add, len, sub};
 
-/// The pieces of a profile, shortened where arcs round its corners.
+/// Returns the pieces of a profile, shortened where arcs round its corners.
 pub(crate) fn rounded(outline: &Outline, w: f64) -> Vec<Piece> {
     let pieces = &outline.pieces;
     let fans: Vec<Option<Piece>> = (0..=pieces.len()).map(|k| fan(outline, k, w)).collect();
@@ -21,8 +21,8 @@ pub(crate) fn rounded(outline: &Outline, w: f64) -> Vec<Piece> {
     rounded
 }
 
-/// The arc of the corner before a piece, behind the last for their number, if the profile turns there: the ball at `w` from
-/// the corner on one of its pieces, grown until it touches the other.
+/// Returns the arc of the corner before a piece, behind the last for their number, if the profile turns there. It
+/// is the ball at `w` from the corner on one of its pieces, grown until it touches the other.
 fn fan(outline: &Outline, k: usize, w: f64) -> Option<Piece> {
     let turn = outline.turn(k);
     if turn.abs() < 1e-9 {
@@ -64,13 +64,13 @@ fn fan(outline: &Outline, k: usize, w: f64) -> Option<Piece> {
     found.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, piece)| piece)
 }
 
-/// The length along a piece.
+/// Returns the length along a piece.
 pub(crate) fn size(piece: &Piece) -> f64 {
     let chord = len(sub(piece.to, piece.from));
     piece.round.map_or(chord, |round| round.radius * piece.sweep().abs())
 }
 
-/// A piece moved down.
+/// Returns a piece moved down.
 pub(crate) fn lowered(piece: &Piece, by: f64) -> Piece {
     let down = |p: P2| add(p, [0.0, by], -1.0);
     let mut piece = Piece { from: down(piece.from), to: down(piece.to), ..*piece };

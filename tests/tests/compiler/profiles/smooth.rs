@@ -6,21 +6,21 @@ use super::rounded::{lowered, rounded, size};
 use super::tool;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use tool_dsl::CheckedTool;
-use tool_dsl::interpret::{Felt, Interpreter};
-use touchoff_tests::oracle::draw::Draw;
+use tool_dsl::interpret::{Evaluation, Interpreter};
+use touchoff_tests::oracle::draw::Rng;
 
-/// A smoothed tool beside the same one by nearest features.
+/// A smoothed tool, and the same tool by nearest features.
 struct Pair {
     smooth: Box<CheckedTool>,
     nearest: Box<CheckedTool>,
     /// The rounded profile, in the file's frame.
     rounded: Vec<Piece>,
-    /// The tip's z, if the spindle lies toward smaller z; then the tip is at 0 otherwise.
+    /// The tip's z if the spindle lies toward smaller z; otherwise the tip is at 0.
     down: Option<f64>,
     extent: P2,
 }
 
-/// Fig. 7.3 by the table of centres; every fan has the tangent length `w`.
+/// Returns fig. 7.3 by the table of centres; every fan has the tangent length `w`.
 fn thesis(w: f64) -> Pair {
     let (t, rho) = (w * FRAC_1_SQRT_2, w * (1.0 + SQRT_2));
     let rounded = vec![
@@ -50,12 +50,12 @@ fn thesis(w: f64) -> Pair {
     }
 }
 
-/// A profile of lines, its corners rounded in the order of the points.
+/// Returns a profile of lines, its corners rounded in the order of the points.
 fn lines(points: &[P2], w: f64) -> Pair {
     profile(surface_of(points), w)
 }
 
-/// A profile whose corners are rounded.
+/// Returns a profile whose corners are rounded.
 fn profile(pieces: Vec<Piece>, w: f64) -> Pair {
     let outline = Outline { pieces, down: false };
     let rounded = rounded(&outline, w);
@@ -76,13 +76,16 @@ impl Pair {
         [d, self.down.map_or(z, |tip| tip - z)]
     }
 
-    /// The direction at a point of the file's frame, in that frame.
-    fn direction(&self, felt: &Felt) -> P2 {
-        [felt.direction[0], felt.direction[2] * if self.down.is_some() { -1.0 } else { 1.0 }]
+    /// Returns the direction of an evaluation, in the file's frame.
+    fn direction(&self, evaluation: &Evaluation) -> P2 {
+        [
+            evaluation.direction[0],
+            evaluation.direction[2] * if self.down.is_some() { -1.0 } else { 1.0 },
+        ]
     }
 
-    /// The normal of the rounded profile, how far its piece's centre is, and how much farther the
-    /// next piece is that would say something else.
+    /// Returns the normal of the rounded profile, the distance to its piece's centre, and how much farther the next
+    /// piece with another normal is.
     fn normal(&self, p: P2) -> (P2, f64, f64) {
         let facing = self.rounded.iter().filter(|piece| piece.faces(p));
         let mut all: Vec<(f64, &Piece)> =
@@ -95,29 +98,32 @@ impl Pair {
         (way, away, other.map_or(f64::INFINITY, |other| other.0 - least))
     }
 
-    /// Depths are those of nearest features, bit by bit; directions the rounded profile's. The
-    /// mean angle to the way to the true profile comes back.
+    /// Asserts that depths are those of nearest features, bit by bit, and directions those of the rounded profile.
+    /// Returns the mean angle to the direction by nearest features.
     fn agrees(&self, count: u32) -> f64 {
         let (mut smooth, mut nearest) =
             (Interpreter::new(&self.smooth), Interpreter::new(&self.nearest));
-        let mut draw = Draw::new(21);
+        let mut draw = Rng::new(21);
         let (mut compared, mut inside, mut angles) = (0, 0u32, 0.0);
         for _ in 0..count {
             let p = [draw.between(0.0, self.extent[0]), draw.between(0.0, self.extent[1])];
             let [d, z] = self.turned(p);
             let at = [d, 0.0, z];
-            let (felt, plain) = (smooth.at(at, 1.0), nearest.at(at, 1.0));
-            let (Some(felt), Some(plain)) = (felt, plain) else {
-                assert_eq!(felt.is_some(), plain.is_some(), "inside at {p:?}");
+            let (evaluation, plain) = (smooth.at(at, 1.0), nearest.at(at, 1.0));
+            let (Some(evaluation), Some(plain)) = (evaluation, plain) else {
+                assert_eq!(evaluation.is_some(), plain.is_some(), "inside at {p:?}");
                 continue;
             };
             inside += 1;
-            assert_eq!(felt.depth, plain.depth, "at {p:?}");
+            assert_eq!(evaluation.depth, plain.depth, "at {p:?}");
             let surface = |tool: &CheckedTool, region: usize| {
                 tool.model.surfaces[tool.model.regions[region].surface].name.clone()
             };
-            assert_eq!(surface(&self.smooth, felt.region), surface(&self.nearest, plain.region));
-            let got = self.direction(&felt);
+            assert_eq!(
+                surface(&self.smooth, evaluation.region),
+                surface(&self.nearest, plain.region)
+            );
+            let got = self.direction(&evaluation);
             angles += angle(got, self.direction(&plain));
             let (wanted, away, margin) = self.normal(p);
             if margin > 1e-9 && away > 1e-6 {
@@ -132,7 +138,7 @@ impl Pair {
         angles / f64::from(inside)
     }
 
-    /// The largest turn of the direction from step to step along the surface, just below it.
+    /// Returns the largest turn of the direction from step to step along the surface, just below it.
     fn steps(&self, surface: &[Piece], step: f64) -> f64 {
         let mut interpreter = Interpreter::new(&self.smooth);
         let (mut last, mut most) = (None, 0.0f64);
@@ -142,9 +148,9 @@ impl Pair {
             for k in 0..=count {
                 let on = piece.at(f64::from(k) / f64::from(count));
                 let [d, z] = self.turned(add(on, piece.outward(on), -1e-9));
-                let Some(felt) = interpreter.at([d.abs(), 0.0, z], 1.0) else { continue };
-                assert!(felt.depth < 2e-9);
-                let way = self.direction(&felt);
+                let Some(evaluation) = interpreter.at([d.abs(), 0.0, z], 1.0) else { continue };
+                assert!(evaluation.depth < 2e-9);
+                let way = self.direction(&evaluation);
                 most = most.max(last.map_or(0.0, |last| angle(last, way)));
                 last = Some(way);
             }
@@ -152,14 +158,16 @@ impl Pair {
         most
     }
 
-    /// Depths at which the direction jumps, on straight ways through the inside.
+    /// Returns depths at which the direction jumps, on straight ways through the inside.
     fn jumps(&self, count: usize, rho: f64) -> Vec<f64> {
         let mut interpreter = Interpreter::new(&self.smooth);
-        let mut felt = |p: P2| {
+        let mut evaluation = |p: P2| {
             let [d, z] = self.turned(p);
-            interpreter.at([d, 0.0, z], 1.0).map(|felt| (self.direction(&felt), felt.depth))
+            interpreter
+                .at([d, 0.0, z], 1.0)
+                .map(|evaluation| (self.direction(&evaluation), evaluation.depth))
         };
-        let mut draw = Draw::new(22);
+        let mut draw = Rng::new(22);
         let mut depths = Vec::new();
         for _ in 0..count {
             let a = [draw.between(0.0, self.extent[0]), draw.between(0.0, self.extent[1])];
@@ -167,7 +175,9 @@ impl Pair {
             let (mut a, mut b) = (a, b);
             while len(sub(b, a)) > 1e-9 {
                 let middle = [0, 1].map(|k| f64::midpoint(a[k], b[k]));
-                let (Some(first), Some(half), Some(last)) = (felt(a), felt(middle), felt(b)) else {
+                let (Some(first), Some(half), Some(last)) =
+                    (evaluation(a), evaluation(middle), evaluation(b))
+                else {
                     break;
                 };
                 if angle(first.0, last.0) < 1e-3 + 1e-6 * len(sub(b, a)) / rho {
@@ -176,7 +186,7 @@ impl Pair {
                 if angle(first.0, half.0) > angle(half.0, last.0) { b = middle } else { a = middle }
             }
             if len(sub(b, a)) <= 1e-9 {
-                depths.extend(felt(a).map(|felt| felt.1));
+                depths.extend(evaluation(a).map(|evaluation| evaluation.1));
             }
         }
         depths
@@ -216,8 +226,8 @@ fn the_thesis_tool_turns_in_fans() {
     }
 }
 
-/// A tip on the axis, one that points inward, a step under a flange, and skirts around a pin: fans
-/// of small corners reach under larger ones and must not claim what is nearer to those.
+/// A tip on the axis, one that points inward, a step under a flange, and skirts around a pin: fans of small corners
+/// reach under larger ones and must not claim points that are nearer to those.
 #[test]
 fn fans_are_the_rounded_profiles() {
     let shapes: [(&[P2], f64); 6] = [
@@ -255,7 +265,7 @@ fn fans_are_the_rounded_profiles() {
     }
 }
 
-/// Corners between lines and arcs, and between arcs, that stand out and that do not, on the axis too.
+/// Corners between lines and arcs, and between arcs, convex and reflex, on the axis too.
 #[test]
 fn fans_touch_arcs() {
     let arc = |from, to, centre, convex| Piece::about(from, to, centre, convex);
@@ -294,7 +304,7 @@ fn fans_touch_arcs() {
             ],
             0.4,
         ),
-        // A convex and a concave arc at a reflex corner, and at one that stands out.
+        // A convex and a concave arc at a reflex corner, and at a convex one.
         (
             vec![
                 line([0.0, 0.0], [2.0, 0.0]),
@@ -340,8 +350,8 @@ fn a_smooth_tip_points_along_the_axis() {
     let pair = lines(&[[0.0, 0.0], [3.0, 3.0], [3.0, 10.0], [0.0, 10.0]], 0.5);
     let mut interpreter = Interpreter::new(&pair.smooth);
     for z in [1e-9, 0.1, 0.5] {
-        let felt = interpreter.at([0.0, 0.0, z], 1.0).expect("inside");
-        assert_eq!(felt.direction, [0.0, 0.0, -1.0]);
+        let evaluation = interpreter.at([0.0, 0.0, z], 1.0).expect("inside");
+        assert_eq!(evaluation.direction, [0.0, 0.0, -1.0]);
     }
 }
 

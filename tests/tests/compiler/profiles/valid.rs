@@ -1,14 +1,14 @@
-//! Whether a drawn profile is a good one, with room to spare: told from points along it.
+//! Validity of a drawn profile, with room to spare, from points along it.
 
 use super::outline::{Outline, P2, Piece, add, cross, dot, len, sub};
 
-/// How near a profile may come to itself, in sizes.
+/// Least distance of a profile from itself, as a fraction of its size.
 const MARGIN: f64 = 3e-4;
-/// How sharp a corner may be, as a sine.
+/// Sharpest corner that is allowed, as a sine.
 const SHARP: f64 = 0.03;
 const CHORDS: u32 = 48;
 
-/// Whether the profile is valid, and stays so if moved a little.
+/// Returns whether the profile is valid, and stays so if moved a little.
 pub(crate) fn is_valid(outline: &Outline) -> bool {
     let size = outline.size();
     let margin = MARGIN * size;
@@ -53,7 +53,7 @@ pub(crate) fn is_valid(outline: &Outline) -> bool {
     true
 }
 
-/// Points along a piece; those of lines are close together near the ends.
+/// Returns points along a piece; those of lines are close together near the ends.
 fn chords(piece: &Piece) -> Vec<P2> {
     let share = |k: u32| f64::from(k) / f64::from(CHORDS);
     match piece.round {
@@ -62,8 +62,8 @@ fn chords(piece: &Piece) -> Vec<P2> {
     }
 }
 
-/// Whether a point of one polyline is too near the other, or they cross. Beside a joint they may
-/// be as near as it is.
+/// Returns whether a point of one polyline is too near the other, or they cross. Beside a joint they may be as near
+/// as it is.
 fn near(line: &[P2], other: &[P2], joint: Option<P2>, margin: f64) -> bool {
     let limit = |p: P2| joint.map_or(margin, |joint| margin.min(0.5 * SHARP * len(sub(p, joint))));
     line.windows(2).any(|a| {
@@ -87,7 +87,7 @@ fn cross_each_other(a: &[P2], b: &[P2]) -> bool {
     side(a, b[0]) != side(a, b[1]) && side(b, a[0]) != side(b, a[1])
 }
 
-/// Positive if the material is on the left.
+/// Returns the signed area, positive if the material is on the left.
 fn area(lines: &[Vec<P2>]) -> f64 {
     lines.iter().flat_map(|line| line.windows(2)).map(|pair| cross(pair[0], pair[1]) / 2.0).sum()
 }

@@ -1,7 +1,8 @@
 //! Contacts against their closed forms (`oracle::closed_forms`), with real clouds.
 //!
-//! Two kinds of cloud: midpoints of regular cells, whose weights are exact and whose error falls as the cells' area, and random ones, whose
-//! error falls as the square root of the number of points and is compared with its own standard deviation, worked out from the integrand.
+//! There are two kinds of cloud. Midpoints of regular cells have exact weights, and their error falls as the cells'
+//! area. Random points have an error that falls as the inverse square root of their number; it is compared with its
+//! own standard deviation, computed from the integrand.
 
 mod random;
 mod regular;
@@ -18,7 +19,8 @@ fn tool(name: &str) -> &'static dyn Tool {
     tools_library::find(name).expect("in the library")
 }
 
-/// A contact to be measured: a pose, what it should add up to, along which axis, and about which point it has no torque.
+/// A contact to be measured: a pose, the expected result, the axis of the forces, and the point about which there
+/// is no torque.
 struct Scene {
     tool: &'static dyn Tool,
     pose: Pose,
@@ -34,19 +36,19 @@ fn figures(contact: &Contact) -> Figures {
     [contact.integral, contact.force, contact.gradient_force, contact.energy]
 }
 
-/// What a probe measures, and the largest force across the axis and torque about the balance.
+/// Returns the measured figures, and the largest force across the axis and torque about the balance point.
 fn measure(scene: &Scene, part: &Part) -> (Figures, f64) {
-    // The balance in the tool's frame; torque about another centre is checked too.
+    // The balance point in the tool's frame; torque about another centre is checked too.
     let balance = scene.pose.rotation().transpose() * (scene.balance - scene.pose.tip());
-    let felt = |law, centre: Vector3<f64>| {
-        Probe::new(part, scene.tool).law(law).centre(centre.into()).wrench(&scene.pose)
+    let evaluation = |law, centre: Vector3<f64>| {
+        Probe::new(part, scene.tool).with_law(law).with_centre(centre.into()).wrench(&scene.pose)
     };
-    let (thesis, gradient) = (felt(Law::Thesis, balance), felt(Law::Gradient, balance));
+    let (thesis, gradient) = (evaluation(Law::Thesis, balance), evaluation(Law::Gradient, balance));
     assert_eq!((thesis.integral, thesis.energy), (gradient.integral, gradient.energy));
-    // Nothing faces away in these contacts, so the third law is the first.
-    assert_eq!(thesis.force, felt(Law::Facing, balance).force);
+    // Nothing faces away in these contacts, so `facing` gives the thesis's force.
+    assert_eq!(thesis.force, evaluation(Law::Facing, balance).force);
     let aside = Vector3::new(0.3, -0.8, 0.5);
-    let about = felt(Law::Thesis, balance - aside).torque
+    let about = evaluation(Law::Thesis, balance - aside).torque
         - (scene.pose.rotation() * aside).cross(&thesis.force);
     assert!((about - thesis.torque).norm() < 1e-12 * (1.0 + thesis.force.norm()));
     let across = [thesis.force, gradient.force]
@@ -58,7 +60,8 @@ fn measure(scene: &Scene, part: &Part) -> (Figures, f64) {
     ([thesis.integral, along(thesis.force), along(gradient.force), thesis.energy], across)
 }
 
-/// CF1: a ball (radius 1, its centre 1 above the tip) `h` deep in the plane z = 0 at `x, y`, tilted.
+/// CF1: a ball (radius 1, its centre 1 above the tip) `h` deep in the plane z = 0 at `x, y`, tilted by `tilt`
+/// (rad).
 fn ball_in_a_plane(name: &str, h: f64, tilt: f64, [x, y]: [f64; 2]) -> Scene {
     let axis = Vector3::new(0.6 * tilt.sin(), 0.8 * tilt.sin(), tilt.cos());
     let balance = Point3::new(x, y, 1.0 - h);
@@ -71,8 +74,8 @@ fn ball_in_a_plane(name: &str, h: f64, tilt: f64, [x, y]: [f64; 2]) -> Scene {
     }
 }
 
-/// CF2: the side of a cylinder in a strip of the plane z = 0 that is `2 long` along the tool, whose axis lies along x with `z` of the tool
-/// over the middle.
+/// CF2: the side of a cylinder in a strip of the plane z = 0 that is `2 long` along the tool. The tool's axis lies
+/// at an angle of `turn` (rad) from x, and its `z` is over the middle.
 fn side_in_a_plane(name: &str, radius: f64, h: f64, z: f64, long: f64, turn: f64) -> Scene {
     let along = Vector3::new(turn.cos(), turn.sin(), 0.0);
     let c = cylinder_in_plane(radius, h);
@@ -95,7 +98,8 @@ fn times(c: &Contact, by: f64) -> Contact {
     }
 }
 
-/// CF3 and CF4: a unit ball on a ball, or in a cavity, about the origin; the tool is `-along`.
+/// CF3 and CF4: a unit ball on a ball, or in a cavity, about the origin; `along` points from the origin to the unit
+/// ball.
 fn ball_on_a_ball(sigma: f64, part: f64, h: f64, along: Vector3<f64>) -> Scene {
     let (want, dist) = if sigma > 0.0 {
         (ball_on_ball(1.0, part, h), 1.0 + part - h)
@@ -103,12 +107,12 @@ fn ball_on_a_ball(sigma: f64, part: f64, h: f64, along: Vector3<f64>) -> Scene {
         (ball_in_cavity(1.0, part, h), part - 1.0 + h)
     };
     let balance = Point3::from(dist * along);
-    // The spindle away from the part, or toward its middle.
+    // The spindle points away from the part, or toward its middle.
     let pose = Pose::from_axis(balance - sigma * along, sigma * along).expect("a pose");
     Scene { tool: tool("UnitSphere"), pose, want, axis: along, balance }
 }
 
-/// How high the cap of the part is that lies in the tool.
+/// Returns the height of the cap of the part that lies in the tool.
 fn cap_height(sigma: f64, part: f64, h: f64) -> f64 {
     let dist = if sigma > 0.0 { 1.0 + part - h } else { part - 1.0 + h };
     part - (part * part + dist * dist - 1.0) / (2.0 * dist)

@@ -1,4 +1,4 @@
-//! Random clouds: errors fall as the square root of the number of points.
+//! Random clouds: errors fall as the inverse square root of the number of points.
 
 use super::{
     Figures, Scene, UNIT, ball_in_a_plane, ball_on_a_ball, cap_height, figures, measure,
@@ -9,13 +9,14 @@ use std::f64::consts::{PI, TAU};
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Pose};
 use touchoff_tests::oracle::closed_forms::quadrature;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Random clouds of a mesh: the errors of the four figures against their standard deviations, over seeds and four numbers of points, each
-/// four times the last. `squares` are the integrals of the four integrands' squares.
+/// Compares the errors of the four figures on random clouds of a mesh with their standard deviations, over seeds
+/// and four numbers of points, each four times the last. `squares` are the integrals of the squares of the four
+/// integrands.
 fn scatters(what: &str, mesh: &Mesh, squares: Figures, scenes: impl Fn(u64) -> Scene) {
     const SEEDS: u64 = 24;
-    let area = mesh.survey().area;
+    let area = mesh.diagnostics().area;
     let counts = [1_000usize, 4_000, 16_000, 64_000];
     let mut logs = Vec::new();
     let (mut sum, mut square) = ([0.0; 4], [0.0; 4]);
@@ -24,7 +25,7 @@ fn scatters(what: &str, mesh: &Mesh, squares: Figures, scenes: impl Fn(u64) -> S
         for seed in 0..SEEDS {
             let scene = scenes(seed);
             // A longer cloud begins with the shorter one of its seed: other seeds for every count.
-            let cloud = Cloud::random(mesh, count, count as u64 + seed).expect("a cloud");
+            let cloud = Cloud::uniform(mesh, count, count as u64 + seed).expect("a cloud");
             let part = Part::from_cloud(&cloud);
             let (got, _) = measure(&scene, &part);
             for (k, want) in figures(&scene.want).into_iter().enumerate() {
@@ -44,14 +45,15 @@ fn scatters(what: &str, mesh: &Mesh, squares: Figures, scenes: impl Fn(u64) -> S
         let slope = fit / 5.0 / 4f64.ln();
         let (mean, spread) = (sum[k] / all, (square[k] / all).sqrt());
         println!("{what} {k}: slope {slope:.3} mean z {mean:.3} rms z {spread:.3}");
-        // Over 96 draws: three standard deviations of each, about.
+        // About three standard deviations of each, over 96 clouds.
         assert!((slope + 0.5).abs() < 0.16, "{what} {k}: slope {slope}");
         assert!(mean.abs() < 0.35, "{what} {k}: mean {mean}");
         assert!((0.75..1.25).contains(&spread), "{what} {k}: spread {spread}");
     }
 }
 
-/// `∫ f² dA` over a cap that is given by the depth's distance `s` from the ball's centre: along the thesis's and the gradient's push.
+/// Computes `∫ f² dA` over a contact for the integrands of the four figures. `at` gives the depth and the
+/// components of `u` and `n` along the axis; `area` is the area per unit of the parameter.
 fn squares(area: f64, [from, to]: [f64; 2], at: impl Fn(f64) -> (f64, f64, f64)) -> Figures {
     let over = |f: &dyn Fn(f64, f64, f64) -> f64| {
         area * quadrature(from, to, |s| {
@@ -71,7 +73,7 @@ fn squares(area: f64, [from, to]: [f64; 2], at: impl Fn(f64) -> (f64, f64, f64))
 fn cf1_a_ball_in_a_plane_random() {
     let h: f64 = 0.4;
     let mesh = shapes::plane(1.0, 3, UNIT).expect("a plane");
-    // By the square of the radius, q: dA = π dq.
+    // The parameter is the square of the radius, q: dA = π dq.
     let at = |q: f64| {
         let s = (q + (1.0 - h).powi(2)).sqrt();
         (1.0 - s, -(1.0 - h) / s, 1.0)
@@ -97,13 +99,13 @@ fn cf2_a_side_in_a_plane_random() {
     scatters("CF2", &mesh, squares, |_| side_in_a_plane("Fig73Exact", radius, h, 3.0, 1.0, 0.0));
 }
 
-/// On a ball of 327,680 triangles, whose flats are within 4e-5 of the sphere: less than any error measured.
+/// A ball of 327,680 triangles, which are within 4e-5 of the sphere: less than any error measured.
 #[test]
 fn cf3_a_ball_on_a_ball_random() {
     let (radius, h) = (2.0, 0.5);
     let mesh = shapes::sphere(radius, 7, UNIT).expect("a ball");
     let dist = 1.0 + radius - h;
-    // By height z on the sphere: dA = 2π R dz; e is +z.
+    // The parameter is the height z on the sphere: dA = 2π R dz; e is +z.
     let at = |z: f64| {
         let s = (radius * radius + dist * dist - 2.0 * dist * z).sqrt();
         (1.0 - s, (z - dist) / s, z / radius)
@@ -111,13 +113,13 @@ fn cf3_a_ball_on_a_ball_random() {
     let low = radius - cap_height(1.0, radius, h);
     let squares = squares(TAU * radius, [low, radius], at);
     scatters("CF3", &mesh, squares, |seed| {
-        let mut draw = Draw::new(seed);
+        let mut draw = Rng::new(seed);
         let along = Vector3::from_fn(|_, _| draw.between(-1.0, 1.0)).normalize();
         ball_on_a_ball(1.0, radius, h, along)
     });
 }
 
-/// The wall of a bore about z, `0 <= z <= height`, facing inward: 4,096 flats, within 1e-6 of it.
+/// Returns the wall of a bore about z, `0 <= z <= height`, facing inward: 4,096 flat faces, within 1e-6 of it.
 fn wall(bore: f64, height: f64) -> Mesh {
     const SIDES: u32 = 4096;
     let at = |i: u32, z: f64| {

@@ -1,4 +1,4 @@
-//! Midpoints of regular cells: weights are exact, errors fall as the cells' area.
+//! Midpoints of regular cells: weights are exact, and errors fall as the cells' area.
 
 use super::{
     Scene, UNIT, ball_in_a_plane, ball_on_a_ball, cap_height, figures, measure, side_in_a_bore,
@@ -7,9 +7,10 @@ use super::{
 use nalgebra::{Point3, Rotation3, Vector3};
 use std::f64::consts::TAU;
 use touchoff::{Cloud, Part};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// The largest error of a measurement, relative to the figures; across and torques to the thesis's force.
+/// Returns the largest error of a measurement, relative to the figures. Forces across the axis and torques are
+/// relative to the thesis's force.
 fn error(scene: &Scene, part: &Part) -> f64 {
     let (got, across) = measure(scene, part);
     let want = figures(&scene.want);
@@ -17,7 +18,8 @@ fn error(scene: &Scene, part: &Part) -> f64 {
     along.fold((across / scene.want.force).abs(), f64::max)
 }
 
-/// Midpoints of `n × m` cells of the unit square, carried over by `at`, which gives point, normal and area per unit of the square.
+/// Returns the midpoints of `n × m` cells of the unit square, mapped by `at`, which gives point, normal and area
+/// per unit of the square.
 fn patch([n, m]: [u32; 2], at: impl Fn(f64, f64) -> (Point3<f64>, Vector3<f64>, f64)) -> Part {
     let (mut points, mut normals, mut weights) = (Vec::new(), Vec::new(), Vec::new());
     for i in 0..n {
@@ -34,7 +36,8 @@ fn patch([n, m]: [u32; 2], at: impl Fn(f64, f64) -> (Point3<f64>, Vector3<f64>, 
     Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
 }
 
-/// A square of the plane z = 0, `half` about `middle`, the material below, its cells turned by `turn`.
+/// Returns a rectangle of the plane z = 0 about `middle`, with half sides `wide` and `long`, the material below,
+/// its cells turned by `turn` (rad).
 fn plane(cells: [u32; 2], [wide, long]: [f64; 2], middle: [f64; 2], turn: f64) -> Part {
     let (sin, cos) = turn.sin_cos();
     patch(cells, |s, t| {
@@ -44,13 +47,13 @@ fn plane(cells: [u32; 2], [wide, long]: [f64; 2], middle: [f64; 2], turn: f64) -
     })
 }
 
-/// Errors at two resolutions, mean square over a few placements: at most `bounds`, and falling as the cells' area: the slope over the
-/// number of cells is -1 within `band`.
-fn converges(what: &str, bounds: [f64; 2], band: f64, error: impl Fn(u32, &mut Draw) -> f64) {
+/// Asserts that errors at two resolutions, root mean square over a few placements, are at most `bounds` and fall as
+/// the cells' area: the slope over the number of cells is -1 within `band`.
+fn converges(what: &str, bounds: [f64; 2], band: f64, error: impl Fn(u32, &mut Rng) -> f64) {
     const PLACEMENTS: u32 = 6;
     let cells = [120u32, 480];
     let rms = cells.map(|n| {
-        let mut draw = Draw::new(u64::from(n));
+        let mut draw = Rng::new(u64::from(n));
         let squares = (0..PLACEMENTS).map(|_| error(n, &mut draw).powi(2));
         (squares.sum::<f64>() / f64::from(PLACEMENTS)).sqrt()
     });
@@ -60,7 +63,7 @@ fn converges(what: &str, bounds: [f64; 2], band: f64, error: impl Fn(u32, &mut D
     assert!((slope + 1.0).abs() < band, "{what}: slope {slope}");
 }
 
-/// Ball, depth and tilt; the last no more than asin((r - h)/r), beyond which the shank touches.
+/// Ball, depth and tilt (rad); the last no more than asin((r - h)/r) where a shank would touch beyond that.
 const BALLS: [(&str, f64, f64); 8] = [
     ("UnitSphere", 0.1, 0.0),
     ("UnitSphere", 0.5, 1.2),
@@ -90,7 +93,7 @@ fn cf1_a_ball_in_a_plane_regular() {
     assert!(found < 1e-6, "{found:e}");
 }
 
-/// Tool, radius, a depth, the middle of a stretch of its side, and half its length.
+/// Tool, radius, depth, the middle of a stretch of its side, and half its length.
 const SIDES: [(&str, f64, f64, f64, f64); 6] = [
     ("Cylinder", 2.0, 0.25, 3.0, 0.9),
     ("Fig73Exact", 1.0, 0.3, 3.0, 1.0),
@@ -108,7 +111,7 @@ fn cf2_a_side_in_a_plane() {
             let turn = draw.between(0.0, TAU);
             let slip = 0.02 * half * draw.between(-1.0, 1.0);
             let middle = [-slip * turn.sin(), slip * turn.cos()];
-            // Along the tool nothing changes: a few cells do.
+            // Nothing changes along the tool, so a few cells are enough.
             let part = plane([20, n], [long, half], middle, turn);
             error(&side_in_a_plane(name, radius, h, z, long, turn), &part)
         });
@@ -122,7 +125,8 @@ fn cf3_cf4_a_ball_on_a_ball_and_in_a_cavity() {
             let along = Vector3::new(draw.between(-1.0, 1.0), draw.between(-1.0, 1.0), 0.7);
             let along = along.normalize();
             let turn = Rotation3::rotation_between(&Vector3::z(), &along).expect("not opposite");
-            // The cap about the contact, equal areas by Archimedes: a circle a little wider, sliced by height and angle.
+            // The cap around the contact, a little wider, in cells of equal area by Archimedes: slices by height
+            // and angle.
             let (sin, cap) = (draw.between(0.0, TAU), 1.1 * cap_height(sigma, radius, h));
             let part = patch([n, n], |s, t| {
                 let z = radius - s * cap;
@@ -155,7 +159,8 @@ fn cf5_a_side_in_a_bore() {
     }
 }
 
-/// The printed figures, with the signs of forces on the tool: up out of a plane, away from a ball, back from a bore's wall.
+/// The printed figures, with the signs of forces on the tool: up out of a plane, away from a ball, back from a
+/// bore's wall.
 #[test]
 fn the_printed_figures() {
     let part = plane([700, 700], [0.5; 2], [0.0, 0.0], 0.3);

@@ -1,21 +1,20 @@
-//! A tool's evaluators against its oracle, within the contract of a generated evaluator: depth to
-//! 1 ulp(S), the side certain beyond 2 ulp(S), unit directions to 8 ε · max(1, S/ρ), where S is the
-//! next power of two above the tool's largest coordinate, and ρ the distance to the nearest point
-//! at which the direction does not exist.
+//! A tool's evaluators against its oracle, within the contract of a generated evaluator: depth to 1 ulp(S), the
+//! side certain beyond 2 ulp(S), unit directions to 8 ε · max(1, S/ρ). S is the next power of two above the tool's
+//! largest coordinate, and ρ the distance to the nearest point at which the direction does not exist.
 
 use super::LENGTHS;
 use super::points::{scale, shown};
 use touchoff::tool::Evaluators;
 use touchoff_tests::oracle::reference::{At, Reference};
-use touchoff_tests::oracle::{Oracle, Sense, restated};
+use touchoff_tests::oracle::{Oracle, OracleEvaluation, restated};
 
-/// Closer to a border than this part of S, either neighbour may own a point.
+/// Distance from a border, as a fraction of S, within which either neighbour may own a point.
 const CLOSE: f64 = 1e-12;
 
-/// Beyond so many ulp(S) the oracle, itself in doubles, is doubted, and 256 bits decide.
+/// Error in ulp(S) beyond which the oracle, itself in doubles, is doubted, and 256 bits decide.
 const ROUGH: f64 = 0.5;
 
-/// The largest error of one kind, and where it is.
+/// The largest error of one kind, and its point.
 #[derive(Default)]
 struct Worst {
     error: f64,
@@ -30,31 +29,31 @@ impl Worst {
     }
 
     fn within(&self, bound: f64, what: &str) {
-        // A NaN is not within.
+        // A NaN fails this comparison.
         assert!(self.error <= bound, "{what}: {} > {bound} at {}", self.error, self.place);
     }
 }
 
-/// What is found out about a tool.
+/// Results for a tool.
 #[derive(Default)]
 struct Findings {
-    /// In ulp(S).
+    /// Error of the depth, in ulp(S).
     depth: Worst,
-    /// In ulp(S), the unit of length's change taken out.
+    /// Error of the magnitude, in ulp(S), with the change of the unit of length taken out.
     magnitude: Worst,
-    /// In ε · max(1, S/ρ).
+    /// Error of the direction, in ε · max(1, S/ρ).
     direction: Worst,
-    /// In ε.
+    /// Error of the direction's length, in ε.
     length: Worst,
-    /// In ε · max(1, S/ρ), relative to the gradient's size where that is above 1.
+    /// Error of the gradient, in ε · max(1, S/ρ), relative to the gradient's size where that is above 1.
     gradient: Worst,
-    /// In ulp(S).
+    /// Error of the niceness, in ulp(S).
     niceness: Worst,
     sides: Vec<String>,
     owners: Vec<String>,
 }
 
-/// Compares a tool with its oracle on some points, prints a row and asserts the contract.
+/// Compares a tool with its oracle at some points, prints a row and asserts the contract.
 pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
     let s = scale(oracle);
     let ulp = s * f64::EPSILON;
@@ -76,7 +75,7 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
         }
         if let Some(owner) = owner.filter(|_| contained) {
             inside += 1;
-            felt::<T>(oracle, p, owner, sense, ulp, reference.as_ref(), &mut found);
+            evaluation::<T>(oracle, p, owner, sense, ulp, reference.as_ref(), &mut found);
         }
     }
     println!(
@@ -107,12 +106,12 @@ pub(crate) fn of<T: Evaluators>(oracle: &dyn Oracle, points: &[[f64; 3]]) {
     found.niceness.within(1.0, "niceness in ulp(S)");
 }
 
-/// What is felt at one point inside.
-fn felt<T: Evaluators>(
+/// Compares the evaluation at one point inside.
+fn evaluation<T: Evaluators>(
     oracle: &dyn Oracle,
     p: [f64; 3],
     owner: usize,
-    sense: Option<Sense>,
+    sense: Option<OracleEvaluation>,
     ulp: f64,
     reference: Option<&Reference>,
     found: &mut Findings,
@@ -121,7 +120,7 @@ fn felt<T: Evaluators>(
     let whole = [depth, niceness].into_iter().chain(direction);
     assert!(whole.clone().all(f64::is_finite), "{:?} at {}", whole.collect::<Vec<_>>(), shown(p));
     assert!(depth >= 0.0 && niceness >= 0.0, "{depth} {niceness} at {}", shown(p));
-    // Where rounding alone puts a point inside, the oracle feels nothing: the depth is 0.
+    // The oracle has no evaluation of a point that rounding alone puts inside: its depth is 0.
     let mut deep = sense.map_or(0.0, |sense| sense.depth);
     if (depth - deep).abs() > ROUGH * ulp
         && let Some(reference) = reference
@@ -141,11 +140,11 @@ fn felt<T: Evaluators>(
     }
     let size = norm(direction);
     found.length.see((size - 1.0).abs() / f64::EPSILON, p, || format!("{direction:?}"));
-    // On a border each of two neighbours has its own direction.
+    // On a border each of the two neighbours has its own direction.
     let Some(sense) = sense.filter(|sense| sense.owner == owner) else { return };
     let rho = oracle.singular(p);
-    // Exactly where no direction exists, the one that the language fixes is wanted; but off the axes
-    // `hypot` only rounds to such a place.
+    // Exactly where no direction exists, the one that the language fixes is required; but off the axes `hypot` only
+    // rounds to such a point.
     let exact = p[0] == 0.0 || p[1] == 0.0;
     let closeness = match rho {
         0.0 if exact => 1.0,
@@ -170,8 +169,8 @@ fn felt<T: Evaluators>(
     }
 }
 
-/// Of the library's tools only the thesis's own writes `magnitude`; a `magnitude` that is the
-/// depth is a length, and changes with the part's unit.
+/// Returns whether a tool's magnitude is its depth. Only the thesis's own tool of the library writes `magnitude`; a
+/// `magnitude` that is the depth is a length, and changes with the part's unit.
 fn magnitude_is_depth(oracle: &dyn Oracle) -> bool {
     oracle.name() != "Fig73"
 }

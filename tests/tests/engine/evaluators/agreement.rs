@@ -1,24 +1,23 @@
-//! All evaluators of a tool have the bits of the reference, which follows the text region by
-//! region.
+//! All evaluators of a tool have the bits of the reference, which follows the text region by region.
 
 use super::LENGTHS;
 use super::points::{scale, shown};
 use tool_dsl::CheckedTool;
 use tool_dsl::interpret::Interpreter;
 use touchoff::Level;
-use touchoff::tool::{Ask, Evaluators, Felt, Interpreted, Points, Tool};
+use touchoff::tool::{Evaluations, Evaluators, Interpreted, Outputs, PointBatch, Tool};
 use touchoff_tests::oracle::Oracle;
 
 /// The region, and the bits of depth, magnitude, niceness, direction and gradient; `None` outside.
 type Answer = Option<(usize, [u64; 9])>;
 
-/// The largest distance from a border, in ulp(S), at which the plan may answer otherwise than the
-/// list of regions: the plan leaves out tests that cannot fail in real arithmetic, and where three
-/// borders meet rounding has points that geometry has not.
+/// The largest distance from a border, in ulp(S), at which the plan may differ from the list of regions. The plan
+/// leaves out tests that cannot fail in real arithmetic, and where three borders meet rounding has points that
+/// geometry has not.
 const CORNER: f64 = 1.0;
 
-/// Compares all evaluators on some points. What follows the plan (both forms of code, the tape) has
-/// the same bits everywhere; the reference too, but for [`CORNER`]s.
+/// Compares all evaluators at some points. Those that follow the plan (both forms of code, the tape) have the same
+/// bits everywhere; the reference has them too, but for [`CORNER`]s.
 pub(crate) fn of<T: Evaluators>(
     tool: T,
     oracle: &dyn Oracle,
@@ -26,7 +25,7 @@ pub(crate) fn of<T: Evaluators>(
     tape: &Interpreted,
     points: &[[f64; 3]],
 ) {
-    let mut list = Points::default();
+    let mut list = PointBatch::default();
     points.iter().for_each(|p| list.push(*p));
     for p in points {
         assert_eq!(T::contains(*p), T::owner(*p).is_some(), "at {}", shown(*p));
@@ -58,13 +57,13 @@ pub(crate) fn of<T: Evaluators>(
     }
     println!(
         "{:20} {:7} points: code, tape and lanes at {} alike; reference too, but for {corners} answers at corners",
-        T::card().name,
+        T::info().name,
         points.len(),
         levels().map(|(name, _)| name).collect::<Vec<_>>().join(", "),
     );
 }
 
-/// Every level of this machine, the best among them twice.
+/// Returns every SIMD level of this machine, the best among them twice.
 fn levels() -> impl Iterator<Item = (&'static str, Level)> {
     let best = Level::new();
     let mut levels = vec![("baseline", Level::baseline()), ("best", best)];
@@ -78,26 +77,32 @@ fn levels() -> impl Iterator<Item = (&'static str, Level)> {
     levels.into_iter()
 }
 
-fn evaluated(tool: &dyn Tool, level: Level, ask: Ask, points: &Points, length: f64) -> Felt {
-    let mut felt = Felt::default();
-    tool.evaluate(level, ask, points, length, &mut felt);
-    felt
+fn evaluated(
+    tool: &dyn Tool,
+    level: Level,
+    ask: Outputs,
+    points: &PointBatch,
+    length: f64,
+) -> Evaluations {
+    let mut evaluation = Evaluations::default();
+    tool.evaluate(level, ask, points, length, &mut evaluation);
+    evaluation
 }
 
-/// All that a tool says, after a look at whether it says the same when asked for less.
+/// Returns all outputs of a tool, after a check that a request for fewer outputs gives the same values.
 fn everything(
     tool: &dyn Tool,
     what: &str,
     level: Level,
-    list: &Points,
+    list: &PointBatch,
     length: f64,
 ) -> Vec<Answer> {
-    let felt = evaluated(tool, level, Ask::EVERYTHING, list, length);
-    for ask in [Ask::INSIDE, Ask::DIRECTION, Ask::GRADIENT] {
+    let evaluation = evaluated(tool, level, Outputs::EVERYTHING, list, length);
+    for ask in [Outputs::INSIDE, Outputs::DIRECTION, Outputs::GRADIENT] {
         let part = evaluated(tool, level, ask, list, length);
-        same(what, ask, &part, &felt, list.len());
+        same(what, ask, &part, &evaluation, list.len());
     }
-    (0..list.len()).map(|i| at(&felt, i)).collect()
+    (0..list.len()).map(|i| at(&evaluation, i)).collect()
 }
 
 fn bits(depth: f64, magnitude: f64, niceness: f64, u: [f64; 3], g: [f64; 3]) -> [u64; 9] {
@@ -108,54 +113,54 @@ fn numbers(answer: Answer) -> Option<(usize, [f64; 9])> {
     answer.map(|(region, bits)| (region, bits.map(f64::from_bits)))
 }
 
-fn answer_of(felt: Option<tool_dsl::interpret::Felt>) -> Answer {
-    felt.map(|f| (f.region, bits(f.depth, f.magnitude, f.niceness, f.direction, f.gradient)))
+fn answer_of(evaluation: Option<tool_dsl::interpret::Evaluation>) -> Answer {
+    evaluation.map(|f| (f.region, bits(f.depth, f.magnitude, f.niceness, f.direction, f.gradient)))
 }
 
 fn scalar<T: Evaluators>(p: [f64; 3], length: f64) -> Answer {
     let owner = T::owner(p);
     owner.filter(|_| T::contains(p)).map(|region| {
-        let felt = bits(
+        let evaluation = bits(
             T::depth(p),
             T::magnitude(p, length),
             T::niceness(p),
             T::direction(p),
             T::gradient(p, length),
         );
-        (region, felt)
+        (region, evaluation)
     })
 }
 
-fn inside(felt: &Felt, i: usize) -> bool {
-    felt.inside[i / 8] >> (i % 8) & 1 == 1
+fn inside(evaluation: &Evaluations, i: usize) -> bool {
+    evaluation.inside[i / 8] >> (i % 8) & 1 == 1
 }
 
-fn at(felt: &Felt, i: usize) -> Answer {
-    inside(felt, i).then(|| {
+fn at(evaluation: &Evaluations, i: usize) -> Answer {
+    inside(evaluation, i).then(|| {
         let felt_here = bits(
-            felt.depth[i],
-            felt.magnitude[i],
-            felt.niceness[i],
-            [0, 1, 2].map(|k| felt.direction[k][i]),
-            [0, 1, 2].map(|k| felt.gradient[k][i]),
+            evaluation.depth[i],
+            evaluation.magnitude[i],
+            evaluation.niceness[i],
+            [0, 1, 2].map(|k| evaluation.direction[k][i]),
+            [0, 1, 2].map(|k| evaluation.gradient[k][i]),
         );
-        (felt.region[i] as usize, felt_here)
+        (evaluation.region[i] as usize, felt_here)
     })
 }
 
-/// Asking for less gives the same of it.
-fn same(what: &str, ask: Ask, part: &Felt, everything: &Felt, count: usize) {
+/// Asserts that a request for fewer outputs gives the same values of these.
+fn same(what: &str, ask: Outputs, part: &Evaluations, everything: &Evaluations, count: usize) {
     assert_eq!(part.inside, everything.inside, "{what}, {ask:?}");
-    let lists = |felt: &Felt, i: usize| -> Vec<u64> {
+    let lists = |evaluation: &Evaluations, i: usize| -> Vec<u64> {
         let mut numbers = Vec::new();
-        if ask != Ask::INSIDE {
-            numbers.extend([felt.depth[i], felt.magnitude[i], felt.niceness[i]]);
+        if ask != Outputs::INSIDE {
+            numbers.extend([evaluation.depth[i], evaluation.magnitude[i], evaluation.niceness[i]]);
         }
         if ask.direction {
-            numbers.extend(felt.direction.iter().map(|list| list[i]));
+            numbers.extend(evaluation.direction.iter().map(|list| list[i]));
         }
         if ask.gradient {
-            numbers.extend(felt.gradient.iter().map(|list| list[i]));
+            numbers.extend(evaluation.gradient.iter().map(|list| list[i]));
         }
         numbers.into_iter().map(f64::to_bits).collect()
     };

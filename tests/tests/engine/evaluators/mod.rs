@@ -1,12 +1,11 @@
-//! Every evaluator of every tool of the library: all of them against the reference interpreter to
-//! the last bit ([`agreement`]), and against the independent oracles ([`accuracy`]), on the same
-//! points ([`points`]).
+//! Every evaluator of every tool of the library: all of them against the reference interpreter to the last bit
+//! ([`agreement`]), and against the independent oracles ([`accuracy`]), at the same points ([`points`]).
 //!
 //! `cargo test -p touchoff-tests --test engine evaluators -- --nocapture` prints a table.
 
 mod accuracy;
 mod agreement;
-mod card;
+mod info;
 mod partitions;
 mod points;
 
@@ -16,23 +15,23 @@ use tool_dsl::{CheckedTool, compile};
 use touchoff::tool::Interpreted;
 use touchoff_tests::oracle::{self, Nearest, restated};
 
-/// Lengths of the file's unit in the part's that are tried: the same unit, and mm in inches.
+/// Lengths of the file's unit in the part's that are tested: the same unit, and mm in inches.
 const LENGTHS: [f64; 2] = [1.0, 1.0 / 25.4];
 
-/// The text of a tool of the library.
+/// Returns the text of a tool of the library.
 fn text(file: &str) -> Source {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools-library/tools").join(file);
     Source::read(path).expect("the library has the file")
 }
 
-/// The tool of a text, checked for the reference interpreter.
+/// Returns the tool of a text, checked for the reference interpreter.
 fn checked(source: &Source) -> CheckedTool {
     let compiled = compile(source);
     assert_eq!(compiled.diagnostics(), [], "a tool of the library has nothing to report");
     *compiled.into_tool().expect("no report, so a tool")
 }
 
-/// The tool of a text as it is loaded at run time.
+/// Returns the tool of a text as it is loaded at run time.
 fn interpreted(source: &Source) -> Interpreted {
     Interpreted::parse(source).expect("a tool of the library has no error")
 }
@@ -53,10 +52,10 @@ macro_rules! suites {
 
             #[test]
             fn the_card_agrees() {
-                let card = touchoff::Tool::card(&tools_library::$tool);
+                let info = touchoff::Tool::info(&tools_library::$tool);
                 match restated::of(stringify!($tool)) {
-                    Some(tool) => card::of(&tools_library::$tool, &Nearest::new(&tool)),
-                    None => assert!(card.outline.is_empty(), "its profile is not restated"),
+                    Some(tool) => info::of(&tools_library::$tool, &Nearest::new(&tool)),
+                    None => assert!(info.outline.is_empty(), "its profile is not restated"),
                 }
             }
 
@@ -71,7 +70,7 @@ macro_rules! suites {
         fn no_tool_of_the_library_is_left_out() {
             let mut tested = [$(stringify!($tool)),*].map(String::from).to_vec();
             let mut there: Vec<String> =
-                tools_library::TOOLS.iter().map(|tool| tool.card().name.to_string()).collect();
+                tools_library::TOOLS.iter().map(|tool| tool.info().name.to_string()).collect();
             tested.sort();
             there.sort();
             assert_eq!(tested, there);

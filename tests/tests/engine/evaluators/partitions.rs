@@ -1,13 +1,13 @@
-//! Tools of many regions, made up here: the plan finds the owner that the list of regions has,
-//! however the regions lie.
+//! Artificial tools of many regions: the plan finds the owner that the list of regions has, however the regions
+//! lie.
 
 use tool_dsl::interpret::Interpreter;
 use tool_dsl::source::Source;
 use touchoff::Level;
-use touchoff::tool::{Ask, Felt, Points, Tool};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff::tool::{Evaluations, Outputs, PointBatch, Tool};
+use touchoff_tests::oracle::draw::Rng;
 
-/// A rod of radius 5 from z = 0 to 20 with these regions; what is felt is the same in all.
+/// Returns a rod of radius 5 from z = 0 to 20 with these regions, which all have the same depth and direction.
 fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
     let mut text = format!("tool Rod {{ units mm; {curves}\n");
     for (k, condition) in conditions.into_iter().enumerate() {
@@ -21,8 +21,8 @@ fn rod(curves: &str, conditions: impl IntoIterator<Item = String>) -> Source {
 fn agree(source: &Source) {
     let (checked, tape) = (super::checked(source), super::interpreted(source));
     let mut reference = Interpreter::new(&checked);
-    let mut draw = Draw::new(9);
-    let (mut points, mut felt) = (Points::default(), Felt::default());
+    let mut draw = Rng::new(9);
+    let (mut points, mut evaluation) = (PointBatch::default(), Evaluations::default());
     let mut list = Vec::new();
     for _ in 0..20_000 {
         let mut across = || draw.between(-5.5, 5.5);
@@ -30,13 +30,13 @@ fn agree(source: &Source) {
         points.push(p);
         list.push(p);
     }
-    tape.evaluate(Level::baseline(), Ask::EVERYTHING, &points, 1.0, &mut felt);
+    tape.evaluate(Level::baseline(), Outputs::EVERYTHING, &points, 1.0, &mut evaluation);
     for (i, p) in list.iter().enumerate() {
-        let inside = felt.inside[i / 8] >> (i % 8) & 1 == 1;
-        let owner = inside.then_some(felt.region[i] as usize);
+        let inside = evaluation.inside[i / 8] >> (i % 8) & 1 == 1;
+        let owner = inside.then_some(evaluation.region[i] as usize);
         assert_eq!(
             owner,
-            reference.at(*p, 1.0).map(|felt| felt.region),
+            reference.at(*p, 1.0).map(|evaluation| evaluation.region),
             "{p:?} of {}",
             source.text
         );

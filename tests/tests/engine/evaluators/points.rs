@@ -1,17 +1,17 @@
-//! Points that an evaluator finds hard, and plenty of ordinary ones.
+//! Test points that are hard for an evaluator, and plenty of ordinary ones.
 
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Meridian, Oracle, moved};
 
-/// Points spread over the box, and as many close to borders.
+/// Number of points spread over the box; as many are close to borders.
 const UNIFORM: usize = 60_000;
-/// Borders that are looked for, and points beside each.
+/// Number of border points to find, and of points beside each.
 const BORDERS: usize = 15_000;
 const BESIDE: usize = 4;
 
-/// At least 100,000 points for a tool, from a seed.
+/// Returns at least 100,000 points for a tool, from a seed.
 pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     let mut points = Vec::new();
     uniform(oracle, &mut draw, &mut points);
     beside_borders(oracle, &mut draw, &mut points);
@@ -21,8 +21,8 @@ pub(crate) fn all(oracle: &dyn Oracle, seed: u64) -> Vec<[f64; 3]> {
     points
 }
 
-/// Unit vectors across the axis: exactly along x and y, and anywhere.
-fn azimuths(draw: &mut Draw) -> [[f64; 2]; 6] {
+/// Returns unit vectors across the axis: exactly along x and y, and two in random directions.
+fn azimuths(draw: &mut Rng) -> [[f64; 2]; 6] {
     let mut any = || {
         let (sin, cos) = draw.between(0.0, std::f64::consts::TAU).sin_cos();
         [cos, sin]
@@ -34,8 +34,8 @@ fn over([d, z]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 3] {
     [d * cos, d * sin, z]
 }
 
-/// In a box a tenth larger than the tool.
-fn uniform(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+/// Adds points in a box a tenth larger than the tool.
+fn uniform(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let [radius, height] = oracle.extent();
     for _ in 0..UNIFORM {
         let across = [0; 2].map(|_| draw.between(-1.1 * radius, 1.1 * radius));
@@ -43,9 +43,9 @@ fn uniform(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
     }
 }
 
-/// Within 1e-6 of the surface or a splitting curve. Where they run is found by halving a stretch
-/// on whose ends the oracle disagrees, so that nothing but the oracle's answer is trusted.
-fn beside_borders(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+/// Adds points within 1e-6 of the surface or a splitting curve. These are found by bisection of a line segment on
+/// whose ends the oracle disagrees, so that nothing but the oracle's evaluation is trusted.
+fn beside_borders(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let samples: Vec<[f64; 3]> = oracle.curve_points().into_iter().flatten().collect();
     let owner = |p: [f64; 3]| oracle.sense(p).map(|sense| sense.owner);
     let mut found = 0;
@@ -77,8 +77,8 @@ fn beside_borders(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3
     }
 }
 
-/// Every corner and every sample of a curve, and one ulp to either side of it in each coordinate.
-fn exact(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+/// Adds every corner and every sample of a curve, and points one ulp to either side of it in each coordinate.
+fn exact(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     let around = |v: f64| [v, v.next_up(), v.next_down()];
     let curves = oracle.curve_points().into_iter().flatten();
     for [x, y, z] in oracle.corner_points().into_iter().chain(curves) {
@@ -94,13 +94,14 @@ fn exact(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
     }
 }
 
-/// A point of the half plane y = 0 of a solid of revolution turned about z; of another solid as it is.
+/// Returns a point of the half plane y = 0 turned about z if the solid is one of revolution; of another solid as it
+/// is.
 fn turned(oracle: &dyn Oracle, p: [f64; 3], azimuth: [f64; 2]) -> [f64; 3] {
     if oracle.revolved() { over([p[0], p[2]], azimuth) } else { p }
 }
 
-/// On the axis and as close to it as numbers go, at every height that a corner has and others.
-fn axis(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
+/// Adds points on the axis and as close to it as numbers go, at every height that a corner has and at others.
+fn axis(oracle: &dyn Oracle, draw: &mut Rng, points: &mut Vec<[f64; 3]>) {
     const CLOSE: [f64; 8] = [0.0, 5e-324, 1e-310, 1.7e-162, 1.6e-154, 1e-100, 1e-20, f64::EPSILON];
     let height = oracle.extent()[1];
     let mut heights: Vec<f64> = oracle.corner_points().into_iter().map(|[.., z]| z).collect();
@@ -121,7 +122,7 @@ fn axis(oracle: &dyn Oracle, draw: &mut Draw, points: &mut Vec<[f64; 3]>) {
     }
 }
 
-/// How large a tool is to its rounding: the next power of two above its largest coordinate.
+/// Returns the scale of a tool's rounding, S: the next power of two above its largest coordinate.
 pub(crate) fn scale(oracle: &dyn Oracle) -> f64 {
     let [radius, height] = oracle.extent();
     let mut scale = 1.0;
@@ -131,7 +132,7 @@ pub(crate) fn scale(oracle: &dyn Oracle) -> f64 {
     scale
 }
 
-/// A point as it is shown: where it lies in the half plane, and its coordinates to the last bit.
+/// Formats a point: its coordinates in the half plane, and in space to the last bit.
 pub(crate) fn shown(p: [f64; 3]) -> String {
     let [d, z] = Meridian::of(p).dz;
     format!("(d, z) = ({d:e}, {z:e}), p = {p:?}")

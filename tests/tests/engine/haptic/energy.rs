@@ -1,42 +1,44 @@
-//! The hand never gets back more than it put in.
+//! Energy: the hand never gets back more than it put in.
 
 use nalgebra::Vector3;
-use touchoff::haptic::{Coupling, Energy, Limits, Rendering, Scripted, Session, Settings};
-use touchoff::scenes::{Path, tube};
+use touchoff::haptic::{
+    Coupling, DeviceLimits, EnergyBalance, Rendering, ScriptedDevice, Session, SessionSettings,
+};
+use touchoff::scenes::{ScenePath, tube};
 use touchoff::{Law, Part, Probe};
 use touchoff_tests::haptics::energy::{height, plane, tapping, tapping_at};
 use touchoff_tests::haptics::tool;
 use touchoff_tests::haptics::wall::LIMITS;
 
-const STRONG: Limits = Limits { force: 40.0, torque: 2000.0, ..LIMITS };
+const STRONG: DeviceLimits = DeviceLimits { force: 40.0, torque: 2000.0, ..LIMITS };
 
-/// The account of a path that is gone there and back.
+/// The account of a path that is travelled there and back.
 struct Account {
-    /// After the last cycle.
-    last: Energy,
-    /// The most that was held.
+    /// The balance after the last cycle.
+    last: EnergyBalance,
+    /// The largest energy held.
     most: f64,
-    /// The work that pushes gave because each was held for a cycle: the sum of `-½ (p' - p)·d` where it is
-    /// positive, the difference between the trapezoid of the pushes `p` and `p'` at both ends of a step `d`
-    /// and the rectangle of `p`. It is negative where the tool springs to another grain.
+    /// The work that pushes did because each was held for a cycle: the sum of `-½ (p' - p)·d` where it is positive.
+    /// That is the difference between the trapezoid of the pushes `p` and `p'` at both ends of a step `d` and the
+    /// rectangle of `p`. It is negative where the tool springs to another grain.
     lag: f64,
 }
 
-/// The shortest turn from one axis to another.
+/// Returns the shortest rotation from one axis to another, as a rotation vector.
 fn turn(from: Vector3<f64>, to: Vector3<f64>) -> Vector3<f64> {
     let sine = from.cross(&to);
     let size = sine.norm();
     if size > 0.0 { sine * (size.atan2(from.dot(&to)) / size) } else { sine }
 }
 
-fn there_and_back(part: &Part, law: Law, settings: &Settings, path: Path) -> Account {
+fn there_and_back(part: &Part, law: Law, settings: &SessionSettings, path: ScenePath) -> Account {
     let tool = tool("Fig73Exact");
-    let probe = Probe::new(part, tool).law(law);
+    let probe = Probe::new(part, tool).with_law(law);
     let mut session = Session::new(probe, settings, STRONG).expect("settings");
     const WAY: u64 = 20_000;
-    let mut device = Scripted::new(STRONG, |cycle| {
+    let mut device = ScriptedDevice::new(STRONG, |cycle| {
         let at = if cycle <= WAY { cycle } else { 2 * WAY - cycle };
-        // A tenth of the path, which is gone along in seconds instead of minutes.
+        // A tenth of the path, which takes seconds instead of minutes.
         Ok(path.pose(at as usize, 10 * WAY as usize))
     });
     let (mut most, mut lag) = (0.0f64, 0.0);
@@ -45,34 +47,40 @@ fn there_and_back(part: &Part, law: Law, settings: &Settings, path: Path) -> Acc
         let state = session.cycle(&mut device).expect("it was somewhere");
         most = most.max(state.energy.held);
         let (from, to) = (last.device, state.device);
-        let by_force = (state.push.force - last.push.force).dot(&(to.tip() - from.tip()));
-        let by_torque = (state.push.torque - last.push.torque).dot(&turn(from.axis(), to.axis()));
+        let by_force =
+            (state.wrench_on_hand.force - last.wrench_on_hand.force).dot(&(to.tip() - from.tip()));
+        let by_torque = (state.wrench_on_hand.torque - last.wrench_on_hand.torque)
+            .dot(&turn(from.axis(), to.axis()));
         lag += (-0.5 * (by_force + by_torque)).max(0.0);
         last = state;
     }
     Account { last: last.energy, most, lag }
 }
 
-/// Coupled, the push is the gradient of what contact and spring hold, so a way there and back gives nothing away
-/// but the lag of pushes that are held for a cycle. That is less than a thousandth of the most energy that was
-/// held; on the path inside, where only 2.6e-4 N·mm are, less than 9 %. The controller leaves less than 0.02 %
-/// everywhere. Where the tool springs from one grain of the cloud to the next, some is lost.
+/// With a coupling, the push is the gradient of the energy that contact and spring hold. A way there and back then
+/// generates nothing but the lag of pushes that are held for a cycle. That is less than a thousandth of the largest
+/// energy held; on the path inside, where only 2.6e-4 N·mm are held, less than 9 %. The controller leaves less than
+/// 0.02 % everywhere. Where the tool springs from one grain of the cloud to the next, some energy is lost.
 #[test]
 fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
     let part = Part::from_mesh(&tube(), 20_000, 1).expect("points of a tube");
     let coupling = Coupling { damping: 0.0, ..Coupling::of(&STRONG) };
     let rendering = Some(Rendering::Coupled(coupling));
-    for path in Path::ALL {
+    for path in ScenePath::ALL {
         for passive in [false, true] {
-            let settings =
-                Settings { stiffness: 300.0, rendering, passive, ..Settings::new(1000.0) };
+            let settings = SessionSettings {
+                stiffness: 300.0,
+                rendering,
+                passive,
+                ..SessionSettings::new(1000.0)
+            };
             let Account { last: energy, most, lag } =
                 there_and_back(&part, Law::Gradient, &settings, path);
             println!("{path:?}: {energy:?}, most {most}, lag {lag}");
             assert!(most > 0.0, "{path:?}");
             let share = match (passive, path) {
                 (true, _) => 2e-4,
-                (false, Path::Inside) => 0.09,
+                (false, ScenePath::Inside) => 0.09,
                 (false, _) => 1e-3,
             };
             let net = energy.put_in - energy.held;
@@ -83,9 +91,9 @@ fn coupled_by_the_gradient_only_the_lag_of_held_pushes_is_generated() {
     }
 }
 
-/// A wall that is sampled pushes longer than it is pressed, so that each tap gives a little more than it took.
-/// The controller takes that out as far as its damper may brake: a half of the device's stiffness times the
-/// squares of the ways, `½ k Σ d²`, 0.125 N·mm in these taps.
+/// A wall that is sampled pushes longer than it is pressed, so that each tap returns a little more than it took.
+/// The controller takes that out as far as its damper may brake: half the device's stiffness times the squares of
+/// the displacements, `½ k Σ d²`, 0.125 N·mm in these taps.
 #[test]
 fn what_comes_from_nowhere_is_taken_out_up_to_the_dampers_limit() {
     let part = plane();
@@ -100,12 +108,12 @@ fn what_comes_from_nowhere_is_taken_out_up_to_the_dampers_limit() {
         let beyond = free.generated > limit;
         reached[usize::from(beyond)] = true;
         if beyond {
-            // All that it may; the rest stays.
+            // The controller takes out all that it may; the rest stays.
             assert!(passive.taken_out > 0.99 * limit, "{stiffness}: {passive:?} of {limit}");
             let left = free.generated - passive.taken_out;
             assert!(passive.generated < 1.01 * left, "{stiffness}: {passive:?} {free:?}");
         } else {
-            // All but what came in the last cycles.
+            // The controller takes out all but the energy of the last cycles.
             assert!(passive.generated < 0.002 * free.generated, "{passive:?} {free:?}");
             assert!(passive.taken_out > 0.998 * free.generated, "{passive:?} {free:?}");
             assert!(passive.put_in > 0.0, "{passive:?}");

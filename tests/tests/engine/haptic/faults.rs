@@ -1,24 +1,26 @@
-//! Devices that say nonsense, jump, vanish and come back.
+//! Devices that report nonsense, jump, vanish and come back.
 
-use touchoff::haptic::{Device, DeviceError, Limits, Push, Scripted, Session, Settings};
+use touchoff::haptic::{
+    Device, DeviceError, DeviceLimits, DeviceWrench, ScriptedDevice, Session, SessionSettings,
+};
 use touchoff::{Law, Pose, PoseError, Probe};
 use touchoff_tests::haptics::wall::LIMITS;
 use touchoff_tests::haptics::{block, tool, upright};
 
 fn session(part: &touchoff::Part) -> Session<'_> {
-    let probe = Probe::new(part, tool("Flat")).law(Law::Gradient);
-    Session::new(probe, &Settings::new(1000.0), LIMITS).expect("settings")
+    let probe = Probe::new(part, tool("Flat")).with_law(Law::Gradient);
+    Session::new(probe, &SessionSettings::new(1000.0), LIMITS).expect("settings")
 }
 
-/// Half a millimetre deep, but for what a function puts in its place.
+/// Returns a device that is half a millimetre deep, except where a function replaces its pose.
 fn deep(
     instead: impl Fn(u64) -> Option<Result<Pose, DeviceError>>,
-) -> Scripted<impl FnMut(u64) -> Result<Pose, DeviceError>> {
-    Scripted::new(LIMITS, move |cycle| instead(cycle).unwrap_or(Ok(upright(-0.5))))
+) -> ScriptedDevice<impl FnMut(u64) -> Result<Pose, DeviceError>> {
+    ScriptedDevice::new(LIMITS, move |cycle| instead(cycle).unwrap_or(Ok(upright(-0.5))))
 }
 
 fn gone() -> DeviceError {
-    DeviceError::Gone(std::io::Error::from(std::io::ErrorKind::NotConnected))
+    DeviceError::NotResponding(std::io::Error::from(std::io::ErrorKind::NotConnected))
 }
 
 #[test]
@@ -30,7 +32,10 @@ fn what_is_no_pose_is_held_and_counted() {
     let states: Vec<_> =
         (0..600).map(|_| session.cycle(&mut device).expect("it was somewhere")).collect();
     for state in &states[200..] {
-        assert!((state.push.force - states[199].push.force).norm() < 1e-9, "{state:?}");
+        assert!(
+            (state.wrench_on_hand.force - states[199].wrench_on_hand.force).norm() < 1e-9,
+            "{state:?}"
+        );
         assert_eq!(state.held, (300..320).contains(&state.cycle));
     }
     assert_eq!(session.faults().no_pose, 20);
@@ -45,7 +50,7 @@ fn a_device_that_vanishes_and_returns_is_held_meanwhile() {
         let state = session.cycle(&mut device).expect("it was somewhere");
         assert_eq!(state.held, (300..400).contains(&cycle));
     }
-    assert_eq!(session.faults().gone, 100);
+    assert_eq!(session.faults().not_responding, 100);
 }
 
 #[test]
@@ -58,7 +63,7 @@ fn before_it_is_anywhere_nothing_is_pushed() {
     }
 }
 
-/// One wild pose is not followed; where the device stays, the hand begins anew, gently.
+/// One wild pose is not followed; if the device stays there, rendering begins anew, gently.
 #[test]
 fn a_jump_is_not_followed_unless_it_stays() {
     let part = block(20_000);
@@ -70,18 +75,18 @@ fn a_jump_is_not_followed_unless_it_stays() {
         _ => None,
     });
     let mut largest = 0.0f64;
-    let mut before: Option<Push> = None;
+    let mut before: Option<DeviceWrench> = None;
     for cycle in 0..800 {
         let state = session.cycle(&mut device).expect("it was somewhere");
         let stayed = (400..450).contains(&cycle) || (500..550).contains(&cycle);
         assert_eq!(state.held, cycle == 300 || stayed, "{cycle}");
-        // Torn away, it lets go at once.
+        // If the device is torn away, the force is released at once.
         if let Some(before) = before.filter(|_| cycle != 450) {
-            largest = largest.max((state.push.force - before.force).norm());
+            largest = largest.max((state.wrench_on_hand.force - before.force).norm());
         }
-        before = Some(state.push);
+        before = Some(state.wrench_on_hand);
     }
-    // 0.5 N come on in a tenth of a second.
+    // A force of 0.5 N rises over a tenth of a second.
     assert!(largest < 0.02, "{largest}");
     assert_eq!(session.faults().jumps, 1 + 51 + 51);
 }
@@ -93,10 +98,10 @@ impl Device for Deaf {
     fn pose(&mut self) -> Result<Pose, DeviceError> {
         Ok(upright(-0.1))
     }
-    fn push(&mut self, _: &Push) -> Result<(), DeviceError> {
+    fn apply(&mut self, _: &DeviceWrench) -> Result<(), DeviceError> {
         Err(gone())
     }
-    fn limits(&self) -> Limits {
+    fn limits(&self) -> DeviceLimits {
         LIMITS
     }
 }
@@ -108,19 +113,20 @@ fn a_push_that_fails_is_counted() {
     for _ in 0..5 {
         session.cycle(&mut Deaf);
     }
-    assert_eq!(session.faults().not_pushed, 5);
+    assert_eq!(session.faults().failed_writes, 5);
 }
 
 #[test]
 fn never_more_than_the_device_can_push() {
     let part = block(20_000);
     for stiffness in [1.0, 1e3, 1e9] {
-        let settings = Settings { stiffness, ..Settings::new(1000.0) };
-        let probe = Probe::new(&part, tool("Flat")).law(Law::Gradient);
+        let settings = SessionSettings { stiffness, ..SessionSettings::new(1000.0) };
+        let probe = Probe::new(&part, tool("Flat")).with_law(Law::Gradient);
         let mut session = Session::new(probe, &settings, LIMITS).expect("settings");
-        let mut device = Scripted::new(LIMITS, |cycle| Ok(upright(0.1 - 0.005 * cycle as f64)));
+        let mut device =
+            ScriptedDevice::new(LIMITS, |cycle| Ok(upright(0.1 - 0.005 * cycle as f64)));
         for _ in 0..4000 {
-            let push = session.cycle(&mut device).expect("it was somewhere").push;
+            let push = session.cycle(&mut device).expect("it was somewhere").wrench_on_hand;
             assert!(push.force.norm() <= LIMITS.force * (1.0 + 1e-12));
             assert!(push.torque.norm() <= LIMITS.torque * (1.0 + 1e-12));
         }

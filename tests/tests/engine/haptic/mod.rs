@@ -1,4 +1,4 @@
-//! The haptic loop: against theory, and against what devices, clocks and hands do wrong.
+//! The haptic loop: against theory, and against faults of devices, clocks and hands.
 
 mod energy;
 mod faults;

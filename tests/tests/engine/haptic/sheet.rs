@@ -4,9 +4,9 @@ use touchoff::Law;
 use touchoff::haptic::Rendering;
 use touchoff_tests::haptics::sheet::{pressed, sheet};
 
-/// On its side: the tip is never below the middle of the sheet, where the other surface would be nearer. The
-/// hand feels its grip of 0.2 N/mm and the coupling of 1 N/mm in a row, as far as it wants the tool below where
-/// it is.
+/// The tip stays on its side: it is never below the middle of the sheet, where the other surface would be nearer.
+/// The hand feels its grip of 0.2 N/mm and the coupling of 1 N/mm in series, as far as it wants the tool below its
+/// position.
 #[test]
 fn a_coupled_tool_stays_on_its_side() {
     let all = pressed(&sheet(), Law::Gradient, None);
@@ -19,7 +19,7 @@ fn a_coupled_tool_stays_on_its_side() {
     assert!((force / springs - 1.0).abs() < 0.01, "{force} N of {springs}");
 }
 
-/// By the thesis's law alone the tool goes where the hand wants it.
+/// By the thesis's law alone the tool goes to the pose that the hand wants.
 #[test]
 fn without_a_coupling_it_is_pulled_through() {
     let direct = Rendering::Direct { scaled: true, damping: 0.0 };

@@ -1,10 +1,10 @@
-//! A SpaceMouse, from a daemon that speaks the protocol.
+//! A SpaceMouse, through a test daemon that speaks the protocol.
 
 use nalgebra::Vector3;
 use std::io::Write;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::time::{Duration, Instant};
-use touchoff::haptic::spacenav::{Flight, Spacenav};
+use touchoff::haptic::spacenav::{Spacenav, SpeedGains};
 use touchoff::haptic::{Device, DeviceError};
 use touchoff::{Pose, Unit};
 use touchoff_tests::haptics::upright;
@@ -18,7 +18,7 @@ fn event(kind: i32, pushed: [i32; 6]) -> [u8; 32] {
     bytes
 }
 
-const FLIGHT: Flight = Flight { way: 100.0, turn: 1.0 };
+const FLIGHT: SpeedGains = SpeedGains { linear: 100.0, angular: 1.0 };
 
 fn opened(folder: &tempfile::TempDir) -> (UnixListener, UnixStream, Spacenav) {
     let socket = folder.path().join("spnav.sock");
@@ -29,7 +29,7 @@ fn opened(folder: &tempfile::TempDir) -> (UnixListener, UnixStream, Spacenav) {
     (listener, stream, device)
 }
 
-/// Asks until something is so, or a second is over.
+/// Polls the device until a condition holds, or two seconds are over.
 fn until(
     device: &mut Spacenav,
     so: impl Fn(&Result<Pose, DeviceError>) -> bool,
@@ -54,7 +54,7 @@ fn the_cap_is_the_tools_speed() {
     let folder = tempfile::tempdir().expect("a folder");
     let (_listener, mut stream, mut device) = opened(&folder);
     assert_eq!(device.pose().expect("a pose"), upright(10.0));
-    // In two pieces, with a button between two motions.
+    // Sent in two pieces, with a button between two motions.
     let right = event(0, [350, 0, 0, 0, 0, 0]);
     stream.write_all(&right[..13]).expect("sent");
     stream.flush().expect("sent");
@@ -66,7 +66,7 @@ fn the_cap_is_the_tools_speed() {
     let x = device.pose().expect("a pose").tip().z;
     until(&mut device, |said| said.as_ref().is_ok_and(|pose| pose.tip().z > x + 0.04)).expect("up");
     assert!((moves(&mut device) - Vector3::new(0.0, 0.0, 0.05)).norm() < 1e-12);
-    // A cap that is let go says so; one that says nothing is not pushed either.
+    // A released cap reports so; one that reports nothing counts as released.
     std::thread::sleep(Duration::from_millis(600));
     device.pose().expect("a pose");
     assert_eq!(moves(&mut device), Vector3::zeros());
@@ -78,7 +78,7 @@ fn a_daemon_that_goes_away_is_called_again() {
     let (listener, stream, mut device) = opened(&folder);
     drop(stream);
     let said = until(&mut device, Result::is_err);
-    assert!(matches!(said, Err(DeviceError::Gone(_))), "{said:?}");
+    assert!(matches!(said, Err(DeviceError::NotResponding(_))), "{said:?}");
     let (mut stream, _) = listener.accept().expect("it calls again");
     until(&mut device, Result::is_ok).expect("it is there again");
     stream.write_all(&event(0, [0, 0, 350, 0, 0, 0])).expect("sent");

@@ -1,43 +1,43 @@
-//! Cycles at their time, by clocks of every kind.
+//! Cycles at their time, with clocks of every kind.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use touchoff::haptic::{
-    Clock, DeviceError, Monotonic, Recorded, Report, Scripted, Session, Settings, Unhurried, run,
-    watched,
+    Clock, DeviceError, LoopReport, MonotonicClock, PlaybackDevice, ScriptedDevice, Session,
+    SessionSettings, SimulatedClock, run, state_channel,
 };
 use touchoff::{Law, Part, Pose, Probe};
 use touchoff_tests::haptics::wall::LIMITS;
 use touchoff_tests::haptics::{block, tool, upright};
 
 fn session(part: &Part) -> Session<'_> {
-    let probe = Probe::new(part, tool("Flat")).law(Law::Gradient);
-    Session::new(probe, &Settings::new(1000.0), LIMITS).expect("settings")
+    let probe = Probe::new(part, tool("Flat")).with_law(Law::Gradient);
+    Session::new(probe, &SessionSettings::new(1000.0), LIMITS).expect("settings")
 }
 
-/// Cycles.
+/// Cycles per second.
 const SECOND: u64 = 1000;
 
-fn ran(clock: &mut impl Clock) -> Report {
+fn ran(clock: &mut impl Clock) -> LoopReport {
     let part = block(5_000);
-    let mut device = Scripted::new(LIMITS, |_| Ok(upright(-0.2)));
-    let (mut watch, _latest, _samples) = watched(16);
+    let mut device = ScriptedDevice::new(LIMITS, |_| Ok(upright(-0.2)));
+    let (mut watch, _latest, _samples) = state_channel(16);
     let stop = AtomicBool::new(false);
     run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop)
 }
 
 #[test]
 fn a_second_takes_a_second() {
-    let mut clock = Monotonic::new(Duration::from_micros(100));
+    let mut clock = MonotonicClock::new(Duration::from_micros(100));
     let report = ran(&mut clock);
-    assert_eq!(report.cycles + report.left_out, 1000);
+    assert_eq!(report.cycles + report.skipped, 1000);
     assert!(clock.now() >= Duration::from_millis(999));
     assert_eq!(report.stalls, 0);
-    assert_eq!(report.took.len(), report.cycles);
-    assert!(report.peak[0] > 0.1);
+    assert_eq!(report.durations.len(), report.cycles);
+    assert!(report.peak_wrench[0] > 0.1);
 }
 
-/// A clock by a list of what happens at which cycle.
+/// A clock that jumps at one cycle.
 struct Wrong {
     time: Duration,
     waited: u64,
@@ -58,16 +58,16 @@ impl Clock for Wrong {
     }
 }
 
-fn wrong(jump: fn(Duration) -> Duration) -> Report {
+fn wrong(jump: fn(Duration) -> Duration) -> LoopReport {
     ran(&mut Wrong { time: Duration::from_secs(100), waited: 0, at: 500, jump })
 }
 
 #[test]
 fn a_clock_that_jumps_is_survived() {
     let ahead = wrong(|time| time + Duration::from_secs(3600));
-    assert_eq!((ahead.cycles, ahead.left_out, ahead.stalls), (1000, 0, 1));
+    assert_eq!((ahead.cycles, ahead.skipped, ahead.stalls), (1000, 0, 1));
     let back = wrong(|time| time - Duration::from_secs(50));
-    assert_eq!((back.cycles, back.left_out, back.stalls), (1000, 0, 1));
+    assert_eq!((back.cycles, back.skipped, back.stalls), (1000, 0, 1));
 }
 
 /// Each cycle is one entry, stalls too: a tail that leaves the latest cycles out would look shorter than it is.
@@ -79,28 +79,35 @@ fn cycles_that_begin_more_than_a_second_late_are_in_the_histogram() {
             30.0 => wrong(|time| time + Duration::from_secs(30)),
             _ => wrong(|time| time + Duration::from_secs(3600)),
         };
-        assert_eq!((report.stalls, report.late.len()), (1, report.cycles), "{seconds} s");
-        let latest = report.late.max() as f64 / 1e9;
+        assert_eq!((report.stalls, report.start_delays.len()), (1, report.cycles), "{seconds} s");
+        let latest = report.start_delays.max() as f64 / 1e9;
         // To three digits; the last bin counts all above a minute.
         assert!((latest / counted - 1.0).abs() < 2e-3, "{latest} s of {seconds} s");
-        assert_eq!(report.late.count_between(1_000_000_000, u64::MAX), 1, "{seconds} s");
+        assert_eq!(report.start_delays.count_between(1_000_000_000, u64::MAX), 1, "{seconds} s");
     }
     let back = wrong(|time| time - Duration::from_secs(50));
-    assert_eq!((back.stalls, back.late.len(), back.late.max()), (1, back.cycles, 0));
+    assert_eq!(
+        (back.stalls, back.start_delays.len(), back.start_delays.max()),
+        (1, back.cycles, 0)
+    );
 }
 
 #[test]
 fn a_starved_thread_leaves_cycles_out() {
     let late = wrong(|time| time + Duration::from_micros(7_500));
-    assert_eq!((late.cycles, late.missed, late.left_out, late.stalls), (994, 1, 6, 0));
+    assert_eq!((late.cycles, late.missed, late.skipped, late.stalls), (994, 1, 6, 0));
     // To three digits.
-    assert!((late.late.max() as f64 / 7.5e6 - 1.0).abs() < 1e-3, "{}", late.late.max());
+    assert!(
+        (late.start_delays.max() as f64 / 7.5e6 - 1.0).abs() < 1e-3,
+        "{}",
+        late.start_delays.max()
+    );
 }
 
 #[test]
 fn it_stops_when_it_is_told_or_nothing_is_left() {
     let part = block(5_000);
-    let (mut watch, _latest, _samples) = watched(16);
+    let (mut watch, _latest, _samples) = state_channel(16);
     let stop = AtomicBool::new(false);
     let stops = |cycle: u64| {
         if cycle == 99 {
@@ -108,31 +115,31 @@ fn it_stops_when_it_is_told_or_nothing_is_left() {
         }
         Ok(upright(1.0))
     };
-    let clock = &mut Unhurried::default();
-    let mut device = Scripted::new(LIMITS, stops);
+    let clock = &mut SimulatedClock::default();
+    let mut device = ScriptedDevice::new(LIMITS, stops);
     let report = run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop);
     assert_eq!(report.cycles, 100);
 
     let never = AtomicBool::new(false);
     let path = vec![upright(1.0), upright(-1.0), upright(1.0)];
-    let mut played = Recorded::new(path, 50, LIMITS).expect("no axis turns over");
+    let mut played = PlaybackDevice::new(path, 50, LIMITS).expect("no axis turns over");
     let report = run((&mut session(&part), &mut played), (clock, SECOND), &mut watch, &never);
     assert_eq!(report.cycles, 51);
 }
 
-/// Whoever watches sees states in order, and a record has all of them; one that is not emptied loses some
-/// and says how many.
+/// A reader sees states in order, and a record has all of them; one that is not emptied loses some and reports
+/// their number.
 #[test]
 fn others_see_it() {
     let part = block(5_000);
     let script = |cycle: u64| -> Result<Pose, DeviceError> { Ok(upright(-1e-4 * cycle as f64)) };
-    let (mut watch, mut latest, samples) = watched(1000);
+    let (mut watch, mut latest, samples) = state_channel(1000);
     assert!(latest.read().is_none());
     let stop = AtomicBool::new(false);
     let report = std::thread::scope(|scope| {
         let looped = scope.spawn(|| {
-            let mut device = Scripted::new(LIMITS, script);
-            let clock = &mut Monotonic::new(Duration::ZERO);
+            let mut device = ScriptedDevice::new(LIMITS, script);
+            let clock = &mut MonotonicClock::new(Duration::ZERO);
             run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop)
         });
         let mut seen = 0;
@@ -144,14 +151,14 @@ fn others_see_it() {
         }
         looped.join().expect("the loop panics at nothing")
     });
-    assert_eq!(report.lost, 0);
+    assert_eq!(report.dropped_states, 0);
     let cycles: Vec<u64> = samples.map(|state| state.cycle).collect();
     assert_eq!(cycles, (0..report.cycles).collect::<Vec<u64>>());
     assert_eq!(latest.read().map(|state| state.cycle), report.last.map(|state| state.cycle));
 
-    let (mut watch, _latest, _full) = watched(10);
-    let clock = &mut Unhurried::default();
-    let mut device = Scripted::new(LIMITS, script);
+    let (mut watch, _latest, _full) = state_channel(10);
+    let clock = &mut SimulatedClock::default();
+    let mut device = ScriptedDevice::new(LIMITS, script);
     let report = run((&mut session(&part), &mut device), (clock, SECOND), &mut watch, &stop);
-    assert_eq!(report.lost, 990);
+    assert_eq!(report.dropped_states, 990);
 }

@@ -1,7 +1,7 @@
-//! A hand that presses a flat end onto a plane: a mass at a spring that is sampled, whose stability is the
-//! spectral radius of two by two numbers.
+//! A hand that presses a flat end onto a plane: a mass on a spring that is sampled, whose stability is the spectral
+//! radius of a two by two matrix.
 
-use touchoff::haptic::{Coupling, Grip, Rendering};
+use touchoff::haptic::{Coupling, HandImpedance, Rendering};
 use touchoff_tests::haptics::block;
 use touchoff_tests::haptics::wall::{DIRECT, LIMITS, Wall, theory};
 
@@ -9,7 +9,7 @@ use touchoff_tests::haptics::wall::{DIRECT, LIMITS, Wall, theory};
 fn it_is_stable_as_far_as_theory_says() {
     let part = block(100_000);
     for rate in [500.0, 1000.0, 5000.0] {
-        let limit = theory(&Grip::default(), rate);
+        let limit = theory(&HandImpedance::default(), rate);
         let [below, above] = [0.95, 1.05].map(|share| {
             Wall { part: &part, rate, rendering: DIRECT, step: 0.0 }.swing(share * limit)
         });
@@ -21,7 +21,7 @@ fn it_is_stable_as_far_as_theory_says() {
 #[test]
 fn with_a_coupling_no_wall_is_too_stiff() {
     let part = block(100_000);
-    let limit = theory(&Grip::default(), 1000.0);
+    let limit = theory(&HandImpedance::default(), 1000.0);
     let rendering = Rendering::Coupled(Coupling::of(&LIMITS));
     let wall = Wall { part: &part, rate: 1000.0, rendering, step: 0.0 };
     for share in [1.0, 10.0, 1000.0] {
@@ -33,7 +33,7 @@ fn with_a_coupling_no_wall_is_too_stiff() {
 #[test]
 fn scaled_to_what_the_device_bears_it_is_stable_too() {
     let part = block(100_000);
-    let limit = theory(&Grip::default(), 1000.0);
+    let limit = theory(&HandImpedance::default(), 1000.0);
     let rendering = Rendering::Direct { scaled: true, damping: 0.0 };
     let wall = Wall { part: &part, rate: 1000.0, rendering, step: 0.0 };
     for share in [1.05, 10.0] {

@@ -1,11 +1,12 @@
-//! Poses that are aligned with the part to the last bit, and hardly not.
+//! Poses that are aligned with the part to the last bit, and ones that hardly differ from that.
 
 use super::compare::{Case, tools};
 use super::parts;
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose};
 
-/// A grid of points half a unit apart: on faces, axes, edges and splitting curves of the tools, all at once.
+/// Returns a grid of points half a unit apart: on faces, axes, edges and splitting curves of the tools, all at
+/// once.
 fn grid(half: i32) -> Part {
     let at = |i: i32| 0.5 * f64::from(i);
     let mut points = Vec::new();
@@ -21,7 +22,7 @@ fn grid(half: i32) -> Part {
     parts::of(points, normals.collect(), vec![0.25; count])
 }
 
-/// Quarter and half turns; half of them have rotations without rounding.
+/// Returns quarter and half turns; half of them have rotations without rounding.
 fn quaternions() -> [[f64; 4]; 10] {
     let s = std::f64::consts::FRAC_1_SQRT_2;
     [
@@ -58,7 +59,7 @@ fn quarter_and_half_turns() {
                 assert!(case.check(&pose, k) > 0);
                 k += 1;
                 if pose.rotation().iter().all(|c| [-1.0, 0.0, 1.0].contains(c)) {
-                    // Nothing is rounded: what is on the surface belongs to the tool on both sides.
+                    // Nothing is rounded: points on the surface belong to the tool on both sides.
                     assert_eq!(case.seen.disputed, before, "{} {pose:?}", oracle.name());
                 }
             }

@@ -1,15 +1,15 @@
-//! Any part, any tool, anywhere.
+//! Any part and any tool, at any pose.
 
 use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Every tool about a part; fails unless some poses touch.
+/// Checks every tool about a part; fails unless two fifths of the poses touch.
 fn all_tools(what: &str, part: &Part, count: usize) {
     for (at, (tool, oracle)) in tools().into_iter().enumerate() {
-        let mut draw = Draw::new(31 + at as u64);
+        let mut draw = Rng::new(31 + at as u64);
         let mut case = Case::new(part, tool, &*oracle);
         for k in 0..count {
             case.check(&poses::about(part, &*oracle, k, &mut draw), k);
@@ -27,7 +27,7 @@ fn surfaces() {
     all_tools("cuboid", &parts::cuboid(9.0, 4_000), 120);
 }
 
-/// Trees that are just full, just not, and one level more.
+/// Trees that are just full, just not full, and one level deeper.
 #[test]
 fn counts_about_powers_of_sixteen() {
     for count in [1, 2, 15, 16, 17, 255, 256, 257, 4095, 4096, 4097] {
@@ -48,7 +48,7 @@ fn a_point_again_and_again() {
 /// Points in a line and in a plane: boxes without a width.
 #[test]
 fn thin_parts() {
-    let mut draw = Draw::new(17);
+    let mut draw = Rng::new(17);
     let mut of = |keep: [f64; 3]| {
         let points = (0..1000).map(|_| {
             Point3::from(parts::vector(&mut draw, 20.0).component_mul(&Vector3::from(keep)))
@@ -60,11 +60,11 @@ fn thin_parts() {
     }
 }
 
-/// Wholly inside a hollow box nothing is felt, nor wholly outside.
+/// A tool wholly inside a hollow box has no contact, nor has one wholly outside.
 #[test]
 fn clear_of_the_part() {
     let part = parts::cuboid(120.0, 3_000);
-    let mut draw = Draw::new(5);
+    let mut draw = Rng::new(5);
     for (tool, oracle) in tools() {
         let mut case = Case::new(&part, tool, &*oracle);
         for k in 0..60 {
@@ -82,13 +82,13 @@ fn clear_of_the_part() {
     }
 }
 
-/// All of the part in the tool: every point counts.
+/// All of the part is in the tool: every point counts.
 #[test]
 fn swallowed() {
     for (tool, oracle) in tools() {
         let part = parts::soup(0.2, 3_000, 3);
         let mut case = Case::new(&part, tool, &*oracle);
-        let mut draw = Draw::new(6);
+        let mut draw = Rng::new(6);
         for k in 0..30 {
             let pose = poses::bringing(Vector3::new(0.0, 0.0, 1.0), Point3::origin(), &mut draw);
             assert_eq!(case.check(&pose, k), 3_000);
@@ -106,7 +106,7 @@ fn at_the_end_of_the_world() {
             for way in [Vector3::x(), -Vector3::y(), Vector3::z(), -Vector3::z()] {
                 for axis in [Vector3::x(), Vector3::z(), Vector3::new(0.6, 0.0, -0.8)] {
                     let pose = Pose::from_axis(Point3::from(far * way), axis).expect("a pose");
-                    assert!(!probe.detect(&pose), "{} {far:e} {way} {axis}", tool.card().name);
+                    assert!(!probe.detect(&pose), "{} {far:e} {way} {axis}", tool.info().name);
                     let wrench = probe.wrench(&pose);
                     assert_eq!((wrench.colliding, wrench.force.norm()), (0, 0.0));
                     assert!(probe.contacts(&pose).is_empty());

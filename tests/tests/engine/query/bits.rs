@@ -6,9 +6,9 @@ use std::path::Path;
 use touchoff::tool::Interpreted;
 use touchoff::{Level, Part, Pose, Probe, Tool};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Every level of this machine.
+/// Returns every SIMD level of this machine.
 fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = vec![best, Level::baseline()];
@@ -22,20 +22,21 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// All that a probe says of a pose; every number so that no other has the same text, the sign of zeros included.
+/// Formats all results of a probe at a pose. No two different numbers have the same text, the sign of zeros
+/// included.
 fn said(probe: &mut Probe<'_>, pose: &Pose) -> String {
     let (wrench, detected) = (probe.wrench(pose), probe.detect(pose));
     format!("{wrench:?} {detected} {:?}", probe.contacts(pose))
 }
 
-/// Parts small and large, full leaves and not.
+/// Returns parts small and large, with full leaves and others.
 fn parts() -> Vec<Part> {
     vec![parts::soup(6.0, 37, 1), parts::tube(3_000), parts::cuboid(9.0, 4_097)]
 }
 
-/// Poses about a part.
+/// Returns poses about a part.
 fn some(part: &Part, oracle: &dyn Oracle, count: usize, seed: u64) -> Vec<Pose> {
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     (0..count).map(|k| poses::about(part, oracle, k, &mut draw)).collect()
 }
 
@@ -48,8 +49,8 @@ fn at_every_level() {
             for (k, pose) in some(&part, &*oracle, 60, 2).iter().enumerate() {
                 let (law, weights) = WAYS[k % 6];
                 let at = |level: &Level| {
-                    let probe = Probe::new(&part, tool).law(law).weights(weights);
-                    said(&mut probe.level(*level), pose)
+                    let probe = Probe::new(&part, tool).with_law(law).with_weights(weights);
+                    said(&mut probe.with_level(*level), pose)
                 };
                 let best = at(&levels[0]);
                 for level in &levels[1..] {
@@ -80,7 +81,7 @@ fn fresh_and_used() {
     }
 }
 
-/// Detecting first, so that the evaluator finds nothing of an earlier question.
+/// Detects first: the evaluator must not find anything of an earlier query.
 #[test]
 fn whatever_was_asked_first() {
     let part = parts::tube(3_000);
@@ -108,15 +109,17 @@ fn compiled_and_interpreted() {
     let mut seen = 0;
     for file in files.filter(|path| path.extension().is_some_and(|end| end == "tool")) {
         let interpreted = Interpreted::load(file).expect("a tool");
-        let name = &interpreted.card().name;
+        let name = &interpreted.info().name;
         let tool = tools_library::find(name).expect("compiled too");
         let oracle = oracles.iter().find(|oracle| oracle.name() == *name).expect("it has one");
-        assert_eq!(interpreted.card(), tool.card());
+        assert_eq!(interpreted.info(), tool.info());
         seen += 1;
         for part in parts() {
             for (k, pose) in some(&part, &**oracle, 60, 6).iter().enumerate() {
                 let (law, weights) = WAYS[k % 6];
-                let by = |tool| said(&mut Probe::new(&part, tool).law(law).weights(weights), pose);
+                let by = |tool| {
+                    said(&mut Probe::new(&part, tool).with_law(law).with_weights(weights), pose)
+                };
                 assert_eq!(by(tool), by(&interpreted), "{name}");
             }
         }

@@ -1,12 +1,13 @@
 //! One query against brute force, with bounds that follow from rounding alone.
 //!
-//! **Noise.** Probe and oracle see a point at most `noise` apart: 8 units in the last place of S, the power of two above the tool's
-//! largest coordinate (`accuracy.md`, section 1), and 4 of the world's coordinates. Depths and magnitudes may differ by that times their
-//! Lipschitz constant (1; √5 for fig. 7.3), directions by that over the distance to where they do not exist. Sums may differ by as much
-//! for every point, and by their own rounding.
+//! **Noise.** Probe and oracle see a point at most `noise` apart: 8 units in the last place of S, the power of two
+//! above the tool's largest coordinate (`accuracy.md`, section 1), and 4 of the world's coordinates. Depths and
+//! magnitudes may differ by that times their Lipschitz constant (1; √5 for fig. 7.3), directions by that over the
+//! distance to where they do not exist. Sums may differ by as much for every point, and by their own rounding.
 //!
-//! **Doubt.** A point within 1e-12 S (and the noise) of the surface or a splitting curve may be felt on either side of it. Such points
-//! are counted, and widen the bounds by what they could do; no other point may be missing or belong elsewhere.
+//! **Doubt.** A point within 1e-12 S (and the noise) of the surface or a splitting curve may be assigned to either
+//! side of it. Such points are counted, and widen the bounds by their possible effect; no other point may be
+//! missing or belong elsewhere.
 
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
@@ -14,7 +15,7 @@ use touchoff::{Contact, Law, Part, Pose, Probe, Tool, Weights, Wrench, summary};
 use touchoff_tests::oracle::brute::{self, Answer, Query};
 use touchoff_tests::oracle::{Oracle, thesis};
 
-/// The thesis's tools, each with its oracle.
+/// Returns the thesis's tools, each with its oracle.
 pub(crate) fn tools() -> Vec<(&'static dyn Tool, Box<dyn Oracle>)> {
     thesis()
         .into_iter()
@@ -32,15 +33,15 @@ pub(crate) const WAYS: [(Law, Weights); 6] = [
     (Law::Facing, Weights::Unit),
 ];
 
-/// What was seen over several poses.
+/// Statistics over several poses.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Seen {
     pub(crate) poses: usize,
     pub(crate) touching: usize,
     pub(crate) contacts: usize,
-    /// Points that could be felt either way.
+    /// Number of points that may be assigned to either side.
     pub(crate) doubtful: usize,
-    /// Points that one side felt and the other did not.
+    /// Number of points in contact for the probe or the oracle alone.
     pub(crate) disputed: usize,
     /// The largest errors: of depth in ulp(S), of force and torque relative to the sums of their terms' sizes.
     pub(crate) worst: [f64; 3],
@@ -55,7 +56,7 @@ pub(crate) struct Case<'a> {
     normals: Vec<[f64; 3]>,
     weights: Vec<f64>,
     ones: Vec<f64>,
-    /// Of each id, its point's place in the tree.
+    /// Per id, the index of its point in the tree.
     places: Vec<usize>,
     /// The largest coordinate.
     reach: f64,
@@ -66,7 +67,7 @@ pub(crate) struct Case<'a> {
     pub(crate) seen: Seen,
 }
 
-/// One pose, asked about.
+/// The results of both sides at one pose.
 struct Asked<'a> {
     query: Query<'a>,
     answer: Answer,
@@ -76,18 +77,18 @@ struct Asked<'a> {
     band: f64,
 }
 
-/// How far sums may be apart.
+/// Bounds on the differences of sums.
 #[derive(Default)]
 struct Bounds {
     force: f64,
     torque: f64,
     integral: f64,
     energy: f64,
-    /// Whether the least niceness may be that of a point in doubt.
+    /// True if the least niceness may be that of a point in doubt.
     nice: bool,
 }
 
-/// The greatest rotation or slope that a law pushes by.
+/// Bound on the difference of two directions, and on a law's force per weight and magnitude.
 const PUSH: f64 = 2.3;
 
 impl<'a> Case<'a> {
@@ -116,12 +117,16 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// Asks both about a pose, in the `k`th way of pushing, and compares all that they say. Returns how many points touch.
+    /// Queries both sides at a pose, with the `k`th combination of law and weights, and compares all results.
+    /// Returns the number of points that touch.
     pub(crate) fn check(&mut self, pose: &Pose, k: usize) -> usize {
         // A compliance centre at the tip, up the tool, and beside it.
         let centre = [[0.0; 3], [0.0, 0.0, 1.5], [-2.0, 3.0, 0.7]][k / 6 % 3].into();
         let (law, weights) = WAYS[k % 6];
-        let mut probe = Probe::new(self.part, self.tool).law(law).weights(weights).centre(centre);
+        let mut probe = Probe::new(self.part, self.tool)
+            .with_law(law)
+            .with_weights(weights)
+            .with_centre(centre);
         let wrench = probe.wrench(pose);
         assert_eq!((wrench.law, wrench.weights), (law, weights));
         assert_eq!(probe.detect(pose), wrench.colliding > 0, "detect at {pose:?}");
@@ -164,25 +169,25 @@ impl<'a> Case<'a> {
         Asked { answer: query.answer(), query, wrench, contacts, noise, band }
     }
 
-    /// The points that touch, one by one; both sides list them in the tree's order.
+    /// Compares the points that touch, one by one; both sides list them in the tree's order.
     fn compare_points(&self, asked: &Asked<'_>, seen: &mut Seen) {
         let place = |contact: &Contact| self.places[contact.triangle as usize];
         assert!(asked.contacts.is_sorted_by_key(place));
-        let mut felt: BTreeMap<usize, &Contact> =
+        let mut evaluation: BTreeMap<usize, &Contact> =
             asked.contacts.iter().map(|contact| (place(contact), contact)).collect();
         for &i in &asked.answer.contacts {
             let q = asked.query.in_tool(self.points[i]);
-            match felt.remove(&i) {
+            match evaluation.remove(&i) {
                 Some(contact) => self.compare_point(asked, i, q, contact),
                 None => self.dispute(asked, q, "was not felt", seen),
             }
         }
-        for i in felt.into_keys() {
+        for i in evaluation.into_keys() {
             self.dispute(asked, asked.query.in_tool(self.points[i]), "should not be felt", seen);
         }
     }
 
-    /// A point that only one side feels must be on the surface.
+    /// Asserts that a point which touches for one side only is on the surface.
     fn dispute(&self, asked: &Asked<'_>, q: [f64; 3], what: &str, seen: &mut Seen) {
         let off = self.oracle.signed_distance(q);
         let (name, pose) = (self.oracle.name(), asked.query.pose);
@@ -203,7 +208,7 @@ impl<'a> Case<'a> {
         assert!((contact.point - Point3::from(self.points[i])).norm() <= asked.noise);
         assert_eq!(contact.normal, Vector3::from(tree.normal(i)));
         assert_eq!(contact.weight, query.weights[i]);
-        assert_eq!(contact.surface, self.tool.card().regions[contact.region].surface);
+        assert_eq!(contact.surface, self.tool.info().regions[contact.region].surface);
         let doubt = self.oracle.border(q) <= asked.band;
         if doubt {
             return;
@@ -217,12 +222,12 @@ impl<'a> Case<'a> {
         near((contact.gradient - slope).norm(), 0.0, self.steep * turn, "gradient");
     }
 
-    /// How far directions may be apart at a point.
+    /// Returns the bound on the difference of directions at a point.
     fn turn(&self, asked: &Asked<'_>, q: [f64; 3]) -> f64 {
         (16.0 * f64::EPSILON + 2.0 * asked.noise / self.oracle.singular(q)).min(PUSH)
     }
 
-    /// The wrench.
+    /// Compares the wrenches.
     fn compare_sums(&self, asked: &Asked<'_>, seen: &mut Seen) -> Bounds {
         let (answer, wrench) = (&asked.answer, &asked.wrench);
         let level = self.steep * asked.noise;
@@ -236,7 +241,7 @@ impl<'a> Case<'a> {
             (got - want).abs()
         };
         let deepest = answer.deepest.map_or(0.0, |(depth, _)| depth);
-        // One that only one side feels is no deeper than the band.
+        // A point that touches for one side only is no deeper than the band.
         let deeper = if asked.contacts.len() == answer.count { level } else { level + asked.band };
         let depth = near(wrench.depth(), deepest, self.steep * deeper, "depth");
         near(wrench.integral, answer.integral, bounds.integral, "integral");
@@ -259,7 +264,7 @@ impl<'a> Case<'a> {
         bounds
     }
 
-    /// What sums may be apart by, and the sums of the terms' sizes.
+    /// Returns the bounds on the differences of sums, and the sums of the terms' sizes.
     fn bounds(&self, asked: &Asked<'_>, seen: &mut Seen) -> (Bounds, [f64; 2]) {
         let (query, noise) = (&asked.query, asked.noise);
         let tip = Point3::from(query.pose.tip);
@@ -289,7 +294,7 @@ impl<'a> Case<'a> {
             sizes[1] += arm * w * m * PUSH;
             seen.doubtful += usize::from(doubt);
         }
-        // Points that only the probe feels: hardly inside, if at all.
+        // Points that touch for the probe only are hardly inside, if at all.
         let tally = |contacts: &[Contact]| contacts.iter().map(|c| c.weight).sum::<f64>();
         if asked.contacts.len() != asked.answer.count {
             let slight = self.steep * asked.band * tally(&asked.contacts).max(1.0) * PUSH;
@@ -303,7 +308,8 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Wrench and contacts of one probe agree to the rounding of their sums, and exactly where nothing is added.
+/// Asserts that wrench and contacts of one probe agree to the rounding of their sums, and exactly where nothing is
+/// added.
 fn consistent(asked: &Asked<'_>, bounds: &Bounds) {
     let (wrench, contacts) = (&asked.wrench, &asked.contacts[..]);
     assert_eq!(contacts.len(), wrench.colliding);

@@ -3,12 +3,12 @@
 use nalgebra::{Matrix3, Point3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, TAU};
 use touchoff::Pose;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 /// Largest entry of `RᵀR - I` of a composed rotation, in ε.
 const APART: f64 = 4.0;
 
-/// Axes and angles, small and large, about any axis and about those of the frame.
+/// Axes and angles (rad), small and large, about any axis and about those of the frame.
 const TURNS: [([f64; 3], f64); 7] = [
     ([1.0, 2.0, 3.0], 1e-3),
     ([3.0, -1.0, 2.0], 1.0),
@@ -19,7 +19,8 @@ const TURNS: [([f64; 3], f64); 7] = [
     ([0.6, -0.5, 2.0], TAU / 7.0),
 ];
 
-/// The largest entry of `RᵀR - I`, in ε: products without rounding, sums of six as if in twice the precision.
+/// Returns the largest entry of `RᵀR - I`, in ε: products without rounding, sums of six as if in twice the
+/// precision.
 fn apart(rotation: &Matrix3<f64>) -> f64 {
     let mut most = 0f64;
     for i in 0..3 {
@@ -29,7 +30,7 @@ fn apart(rotation: &Matrix3<f64>) -> f64 {
                 let (a, b) = (rotation[(k, i)], rotation[(k, j)]);
                 let product = a * b;
                 rest += a.mul_add(b, -product);
-                // Knuth's sum of two: what it rounds away is known.
+                // Knuth's two-sum: the part that is rounded away is known.
                 let total: f64 = sum + product;
                 let back = total - sum;
                 rest += (sum - (total - back)) + (product - back);
@@ -41,13 +42,13 @@ fn apart(rotation: &Matrix3<f64>) -> f64 {
     most / f64::EPSILON
 }
 
-/// The rotation by `times` an angle about an axis.
+/// Returns the rotation by `times` an angle about an axis.
 fn turn((axis, angle): ([f64; 3], f64), times: f64) -> UnitQuaternion<f64> {
     let axis = Unit::new_normalize(Vector3::from(axis));
     UnitQuaternion::from_axis_angle(&axis, (times * angle) % TAU)
 }
 
-/// A motion: the rotation about a point that is not the origin.
+/// Returns a motion: the rotation about a point that is not the origin.
 fn motion(by: ([f64; 3], f64)) -> Pose {
     let turn = turn(by, 1.0);
     let fixed = Point3::new(10.0, -20.0, 5.0);
@@ -74,10 +75,10 @@ fn rotations_stay_rotations() {
     }
 }
 
-/// However a chain of poses goes, seen from one another or one after the other.
+/// Any chain of poses, each composed with the last or taken relative to it.
 #[test]
 fn any_chain_of_poses_ends_in_a_rotation() {
-    let mut draw = Draw::new(12);
+    let mut draw = Rng::new(12);
     let mut any = || {
         let [x, y, z] = draw.direction();
         let [a, b, c] = draw.direction();
@@ -92,10 +93,10 @@ fn any_chain_of_poses_ends_in_a_rotation() {
     for _ in 0..20_000 {
         for other in any() {
             assert!(apart(other.rotation()) <= 2.0 * APART, "{other:?}");
-            pose = pose.then(&other).seen_from(&any()[1]);
+            pose = pose.then(&other).relative_to(&any()[1]);
             assert!(apart(pose.rotation()) <= APART, "{pose:?}");
-            // The way there and back.
-            let back = pose.then(&other).seen_from(&other);
+            // A pose composed with another and taken relative to it is the same again.
+            let back = pose.then(&other).relative_to(&other);
             assert!((back.rotation() - pose.rotation()).norm() < 3e-15, "{other:?}");
             assert!((back.tip() - pose.tip()).norm() < 1e-14 * (1.0 + pose.tip().coords.norm()));
         }
@@ -105,7 +106,7 @@ fn any_chain_of_poses_ends_in_a_rotation() {
 /// One motion after another is the product, point by point.
 #[test]
 fn one_motion_after_another() {
-    let mut draw = Draw::new(5);
+    let mut draw = Rng::new(5);
     for by in TURNS {
         let first = motion(by);
         let second = motion((draw.direction(), 0.7));
@@ -114,8 +115,8 @@ fn one_motion_after_another() {
         let p = Point3::from(draw.direction());
         let off = through(&both, p) - through(&second, through(&first, p));
         assert!(off.norm() < 1e-12, "{off}");
-        assert!(both.is_full());
+        assert!(both.has_spin());
         let spun = Pose::from_axis(p, Vector3::z()).expect("a unit vector");
-        assert!(!spun.then(&second).is_full());
+        assert!(!spun.then(&second).has_spin());
     }
 }

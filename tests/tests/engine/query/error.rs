@@ -1,29 +1,29 @@
-//! What a probe says of its own error, against the depth of the points that were given.
+//! The error bounds that a probe states, against the depth of the points that were given.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::{Cloud, Part, Pose, Probe};
 use touchoff_tests::accuracy::tools;
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::reference::{At, Reference};
 
 #[test]
 fn depths_keep_the_error_that_is_stated() {
-    let mut draw = Draw::new(3);
+    let mut draw = Rng::new(3);
     let mut tightest = f64::INFINITY;
     for (tool, restated) in tools() {
-        let card = tool.card();
-        // What a file writes as depth is not what the reference measures.
-        if !card.exact() {
+        let info = tool.info();
+        // A depth that a file writes is not the distance that the reference measures.
+        if !info.is_exact() {
             continue;
         }
         let reference = Reference::new(&restated);
-        let [low, high] = card.reach();
-        // A box of points about the tool, each a triangle of its own, far from the world's origin.
+        let [low, high] = info.reach();
+        // A box of points about the tool, each with a triangle id of its own, far from the world's origin.
         let far = Vector3::new(700.0, -300.0, 55.0);
         let count = 4_000;
-        let within = |draw: &mut Draw| {
-            let across = |draw: &mut Draw| draw.between(-card.radius(), card.radius());
+        let within = |draw: &mut Rng| {
+            let across = |draw: &mut Rng| draw.between(-info.radius(), info.radius());
             Point3::new(across(draw), across(draw), draw.between(low, high)) + far
         };
         let points: Vec<Point3<f64>> = (0..count).map(|_| within(&mut draw)).collect();
@@ -32,12 +32,12 @@ fn depths_keep_the_error_that_is_stated() {
             vec![Vector3::z(); count],
             (0..count as u32).collect(),
             vec![1.0; count],
-            card.unit,
+            info.unit,
         )
         .expect("a cloud");
         let part = Part::from_cloud(&cloud);
         let mut probe = Probe::new(&part, tool);
-        let stated = probe.error().expect("the library's depths are bounded");
+        let stated = probe.rounding_error_bound().expect("the library's depths are bounded");
         let pose = Pose::from_axis(Point3::from(far), Vector3::z()).expect("a pose");
         let mut worst = 0.0f64;
         for contact in probe.contacts(&pose) {
@@ -46,9 +46,9 @@ fn depths_keep_the_error_that_is_stated() {
             let exact = reference.depth(&At::new(at));
             worst = worst.max((&Big::exactly(contact.depth) - &exact).abs().to_f64());
         }
-        assert!(worst <= stated, "{}: {worst:e} over {stated:e}", card.name);
+        assert!(worst <= stated, "{}: {worst:e} over {stated:e}", info.name);
         tightest = tightest.min(stated / worst);
     }
-    // The statement is of the worst leaf and the steepest place, but no idle one.
+    // The bound is that of the worst leaf and the steepest place, but not an idle one.
     assert!(tightest < 20.0, "{tightest}");
 }

@@ -1,12 +1,12 @@
-//! Far from the world's origin, tiny and huge: the tree keeps its points relative to themselves.
+//! Parts far from the world's origin, tiny and huge: the tree keeps its points relative to themselves.
 
 use super::compare::{Case, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Coordinates that are multiples of 2^-10, so that sums with 2^40 are exact.
+/// Rounds coordinates to multiples of 2^-10, so that sums with 2^40 are exact.
 fn on_a_grid(p: Point3<f64>) -> Point3<f64> {
     p.map(|c| (c * 1024.0).round() / 1024.0)
 }
@@ -21,7 +21,7 @@ fn moved(part: &Part, by: Vector3<f64>) -> Part {
     )
 }
 
-/// Part and pose moved together, by what loses no bit, feel the same to the last bit.
+/// Part and pose that are moved together, by an amount that loses no bit, give the same results to the last bit.
 #[test]
 fn moved_without_a_trace() {
     let part = parts::tube(2_000);
@@ -30,7 +30,7 @@ fn moved_without_a_trace() {
         let by = 2f64.powi(power) * Vector3::new(1.0, -1.0, 0.5);
         let there = moved(&part, by);
         for (tool, oracle) in tools() {
-            let mut draw = Draw::new(21);
+            let mut draw = Rng::new(21);
             for k in 0..30 {
                 let pose = poses::about(&here, &*oracle, k, &mut draw);
                 let tip = on_a_grid(pose.tip());
@@ -52,14 +52,14 @@ fn moved_without_a_trace() {
     }
 }
 
-/// Moved by anything, all differences are those of the points' own last bits.
+/// After any other move, all differences are those of the points' own last bits.
 #[test]
 fn moved_far_away() {
     for far in [1e3, 1e6, 1e9, 1e12] {
         let by = far * Vector3::new(1.0, -0.7, 0.3);
         let part = parts::carried(&parts::tube_mesh(), 2_000, |p| p + by);
         for (tool, oracle) in tools() {
-            let mut draw = Draw::new(22);
+            let mut draw = Rng::new(22);
             let mut case = Case::new(&part, tool, &*oracle);
             for k in 0..48 {
                 case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
@@ -70,13 +70,13 @@ fn moved_far_away() {
     }
 }
 
-/// Parts from a billionth of the tool to a billion times it, all of them felt somewhere.
+/// Parts of sizes from 1e-30 to 1e30, all of them with contacts somewhere.
 #[test]
 fn tiny_and_huge_parts() {
     for size in [1e-30, 1e-9, 1e-4, 1e-2, 1e2, 1e4, 1e6, 1e9, 1e15, 1e30] {
         let part = parts::soup(size, 2_000, 23);
         for (tool, oracle) in tools() {
-            let mut draw = Draw::new(24);
+            let mut draw = Rng::new(24);
             let mut case = Case::new(&part, tool, &*oracle);
             for k in 0..24 {
                 case.check(&poses::about(&part, &*oracle, k, &mut draw), k);
@@ -92,7 +92,7 @@ fn tiny_and_huge_parts() {
 fn a_small_tool_on_a_large_part() {
     for size in [1e3, 1e5, 1e8, 1e12] {
         for off in [0.0, 0.6 * size] {
-            let mut draw = Draw::new(25);
+            let mut draw = Rng::new(25);
             let here = Point3::new(off, -off, 0.5 * off);
             let close =
                 (0..1_000).map(|_| here + parts::vector(&mut draw, 8.0)).collect::<Vec<_>>();
@@ -115,7 +115,7 @@ fn a_small_tool_on_a_large_part() {
     }
 }
 
-/// Coordinates about the smallest numbers there are.
+/// Coordinates about the smallest positive numbers.
 #[test]
 fn denormal_parts() {
     for size in [5e-324, 1e-310, 1e-300, 1e-150] {
@@ -123,7 +123,7 @@ fn denormal_parts() {
         let part = parts::of(points.to_vec(), vec![Vector3::x(); 5], vec![1.0; 5]);
         for (tool, oracle) in tools() {
             let mut case = Case::new(&part, tool, &*oracle);
-            let mut draw = Draw::new(26);
+            let mut draw = Rng::new(26);
             for k in 0..12 {
                 let own = Vector3::new(0.3, 0.2, 0.7);
                 assert_eq!(case.check(&poses::bringing(own, Point3::origin(), &mut draw), k), 5);

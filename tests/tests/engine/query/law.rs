@@ -1,17 +1,17 @@
-//! What the laws promise: signs by hand, and the gradient law as the slope of the energy.
+//! Properties of the laws: signs by hand, and the gradient law as the slope of the energy.
 
 use super::compare::tools;
 use super::{parts, poses};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use touchoff::{Law, Part, Pose, Probe};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// The energy at a pose.
+/// Returns the energy at a pose.
 fn energy(probe: &mut Probe<'_>, at: Isometry3<f64>) -> f64 {
     probe.wrench(&Pose::try_from(at).expect("a pose")).energy
 }
 
-/// The slope of the energy as the pose is moved by `step` in each of the ways.
+/// Returns the slope of the energy as the pose is moved by a step along each coordinate.
 fn slope(probe: &mut Probe<'_>, moved: impl Fn(Vector3<f64>) -> Isometry3<f64>) -> Vector3<f64> {
     const STEP: f64 = 1e-6;
     Vector3::from_fn(|axis, _| {
@@ -20,20 +20,20 @@ fn slope(probe: &mut Probe<'_>, moved: impl Fn(Vector3<f64>) -> Isometry3<f64>) 
     })
 }
 
-/// Force is the negative slope of the energy over the tip's place, torque over turns about the compliance centre. Points that enter
-/// within the step, or change their region, leave an error of its order.
+/// Force is the negative slope of the energy over the tip's position, torque that over rotations about the
+/// compliance centre. Points that enter within the step, or change their region, leave an error of its order.
 #[test]
 fn the_gradient_law_is_the_slope_of_the_energy() {
     let part = parts::tube(3_000);
     let centre = Point3::new(0.5, -1.0, 2.0);
     for (tool, oracle) in tools() {
-        let mut draw = Draw::new(12);
-        let mut probe = Probe::new(&part, tool).law(Law::Gradient).centre(centre);
+        let mut draw = Rng::new(12);
+        let mut probe = Probe::new(&part, tool).with_law(Law::Gradient).with_centre(centre);
         let (mut touching, mut worst) = (0, [0f64; 2]);
         for k in 0..60 {
             let pose = poses::about(&part, &*oracle, k, &mut draw);
-            let felt = probe.wrench(&pose);
-            let at = pose.isometry();
+            let evaluation = probe.wrench(&pose);
+            let at = pose.to_isometry();
             let about = (at * centre).coords;
             let to_tip = slope(&mut probe, |step| Translation3::from(step) * at);
             let turned = slope(&mut probe, |step| {
@@ -46,9 +46,9 @@ fn the_gradient_law_is_the_slope_of_the_energy() {
                 .map(|c| c.weight * c.magnitude * c.gradient.norm())
                 .sum();
             let size = size + 1e-9;
-            worst[0] = worst[0].max((felt.force + to_tip).norm() / size);
-            worst[1] = worst[1].max((felt.torque + turned).norm() / (20.0 * size));
-            touching += usize::from(felt.colliding > 0);
+            worst[0] = worst[0].max((evaluation.force + to_tip).norm() / size);
+            worst[1] = worst[1].max((evaluation.torque + turned).norm() / (20.0 * size));
+            touching += usize::from(evaluation.colliding > 0);
         }
         println!("{} {touching} {worst:?}", oracle.name());
         assert!(touching > 30 && worst.iter().all(|w| *w < 1e-4), "{} {worst:?}", oracle.name());
@@ -57,15 +57,15 @@ fn the_gradient_law_is_the_slope_of_the_energy() {
 
 const LAWS: [Law; 3] = [Law::Thesis, Law::Gradient, Law::Facing];
 
-/// A plate below z = 0 and nothing else.
+/// Returns the upper face of a plate, z = 0, and nothing else.
 fn plate() -> Part {
-    let mut draw = Draw::new(13);
+    let mut draw = Rng::new(13);
     let points =
         (0..4_000).map(|_| Point3::new(draw.between(-1.0, 1.0), draw.between(-1.0, 1.0), 0.0));
     parts::of(points.collect(), vec![Vector3::z(); 4_000], vec![1e-3; 4_000])
 }
 
-/// A ball pressed into a plate from above is pushed up, and pushed further the deeper it is.
+/// A ball pressed into a plate from above is pushed up, and pushed harder the deeper it is.
 #[test]
 fn up_out_of_a_plate() {
     let part = plate();
@@ -75,7 +75,7 @@ fn up_out_of_a_plate() {
             let mut last = 0.0;
             for depth in [0.01, 0.1, 0.2, 0.4] {
                 let pose = Pose::from_axis(Point3::new(0.0, 0.0, -depth), Vector3::z());
-                let wrench = Probe::new(&part, tool).law(law).wrench(&pose.expect("a pose"));
+                let wrench = Probe::new(&part, tool).with_law(law).wrench(&pose.expect("a pose"));
                 let force = wrench.force;
                 assert!(force.z > last, "{law} {depth} {force}");
                 assert!(force.x.hypot(force.y) < 0.1 * force.z);
@@ -85,7 +85,8 @@ fn up_out_of_a_plate() {
     }
 }
 
-/// One point, worked out on paper. The ball (radius 1) enters the plate by 0.25 below its middle: `m = 0.25`, `u = -z`, `n = +z`.
+/// One point, worked out on paper. The ball (radius 1) enters the plate by 0.25 below its middle: `m = 0.25`, `u
+/// = -z`, `n = +z`.
 #[test]
 fn one_contact_by_hand() {
     let weight = 2.0;
@@ -94,7 +95,8 @@ fn one_contact_by_hand() {
     let pose = Pose::from_axis(Point3::new(10.0, 20.0, 29.75), Vector3::z()).expect("a pose");
     for (law, push) in [(Law::Thesis, 2.0), (Law::Gradient, 1.0), (Law::Facing, 2.0)] {
         // Torque about a centre beside the tool, 3 below x: r = (3, 0, 0.25), F = (0, 0, f), r × F = (0, -3 f, 0).
-        let mut probe = Probe::new(&part, tool).law(law).centre(Point3::new(-3.0, 0.0, 0.0));
+        let mut probe =
+            Probe::new(&part, tool).with_law(law).with_centre(Point3::new(-3.0, 0.0, 0.0));
         let wrench = probe.wrench(&pose);
         let force = weight * 0.25 * push;
         assert_eq!(wrench.force, Vector3::new(0.0, 0.0, force));
@@ -114,26 +116,26 @@ fn the_centre_is_the_tools() {
     let tool = tools_library::find("UnitSphere").expect("in the library");
     let pose = Pose::from_axis(Point3::new(-0.25, 0.0, 0.0), Vector3::x()).expect("a pose");
     let up = pose.rotation() * Vector3::x();
-    let wrench = Probe::new(&part, tool).centre(Point3::new(2.0, 0.0, 0.0)).wrench(&pose);
+    let wrench = Probe::new(&part, tool).with_centre(Point3::new(2.0, 0.0, 0.0)).wrench(&pose);
     assert_eq!(wrench.force, Vector3::new(0.5, 0.0, 0.0));
     // From the centre, 2 along the tool's x, to the contact.
     let want = (Vector3::new(0.25, 0.0, 0.0) - 2.0 * up).cross(&wrench.force);
     assert!((wrench.torque - want).norm() < 1e-15 && want.norm() > 0.9);
 }
 
-/// Two faces of a thin sheet in one ball: under `facing` the far one is silent, and still counts.
+/// Two faces of a thin sheet in one ball: under `facing` the far one exerts no force, and still counts.
 #[test]
 fn the_far_side_of_a_sheet() {
     let points = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(0.0, 0.0, -0.0625)];
     let part = parts::of(points, vec![Vector3::z(), -Vector3::z()], vec![1.0; 2]);
     let tool = tools_library::find("UnitSphere").expect("in the library");
     let pose = Pose::from_axis(Point3::new(0.0, 0.0, -0.25), Vector3::z()).expect("a pose");
-    let felt = |law| Probe::new(&part, tool).law(law).wrench(&pose);
-    let (thesis, facing) = (felt(Law::Thesis), felt(Law::Facing));
+    let evaluation = |law| Probe::new(&part, tool).with_law(law).wrench(&pose);
+    let (thesis, facing) = (evaluation(Law::Thesis), evaluation(Law::Facing));
     assert_eq!((thesis.colliding, facing.colliding), (2, 2));
     assert_eq!(facing.force, Vector3::new(0.0, 0.0, 0.5));
     // The far side's normal and direction both point down and cancel.
     assert!((thesis.force - facing.force).norm() < 1e-15);
     assert!((thesis.integral - 0.4375).abs() < 1e-15 && thesis.integral == facing.integral);
-    assert!((felt(Law::Gradient).force.z - 0.4375).abs() < 1e-15);
+    assert!((evaluation(Law::Gradient).force.z - 0.4375).abs() < 1e-15);
 }

@@ -1,16 +1,17 @@
-//! Points so close to the tool's surface and splitting curves that only margins keep them: every one that belongs to the tool must be
-//! found, however large the part that it lies on.
+//! Points so close to the tool's surface and splitting curves that only margins keep them. Every one that belongs
+//! to the tool must be found, however large the part that it lies on.
 
 use super::compare::{Case, Seen, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 use touchoff_tests::oracle::{Oracle, moved};
 
-/// Points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, carried to a pose, among others over a part of `size`.
+/// Checks points by the tool's curves, displaced by 0 and from 1e-15 to 1e-3, moved to a pose, among others over a
+/// part of `size`.
 fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
     let (tool, oracle) = tools().swap_remove(tool_at);
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     let here = Point3::from(off * parts::direction(&mut draw));
     let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
     let mut points: Vec<Point3<f64>> = own_points(&*oracle, &mut draw)
@@ -28,7 +29,7 @@ fn skin(tool_at: usize, size: f64, off: f64, seed: u64) -> Seen {
     case.seen
 }
 
-fn own_points(oracle: &dyn Oracle, draw: &mut Draw) -> Vec<Vector3<f64>> {
+fn own_points(oracle: &dyn Oracle, draw: &mut Rng) -> Vec<Vector3<f64>> {
     let mut points = Vec::new();
     for p in oracle.curve_points().into_iter().flatten() {
         for power in [0, -15, -14, -13, -12, -11, -9, -7, -6, -5, -3] {
@@ -54,11 +55,11 @@ fn on_the_surface_and_the_curves() {
     }
 }
 
-/// A part of one point is kept to the last bit: on the surface, and 1e-15 to 1e-3 off.
+/// A part of one point is stored to the last bit: on the surface, and 1e-15 to 1e-3 off.
 #[test]
 fn one_point_at_a_time() {
     for (tool, oracle) in tools() {
-        let mut draw = Draw::new(43);
+        let mut draw = Rng::new(43);
         let mut seen = Seen::default();
         for (k, own) in own_points(&*oracle, &mut draw).into_iter().enumerate() {
             let at = [0.0, 0.0, 1e2, 1e5][k % 4] * parts::direction(&mut draw);
@@ -75,16 +76,16 @@ fn one_point_at_a_time() {
     }
 }
 
-/// Points outside the tool by a little: none is felt. Inside by a little: all are.
+/// Points a little outside the tool never touch; points a little inside all do.
 #[test]
 fn a_hair_to_either_side() {
     for (tool, oracle) in tools() {
-        let mut draw = Draw::new(41);
+        let mut draw = Rng::new(41);
         for size in [1e2, 1e4, 1e6] {
             for hair in [1e-3, 1e-6, 1e-8] {
                 let here = Point3::from(0.3 * size * parts::direction(&mut draw));
                 let pose = poses::bringing(Vector3::zeros(), here, &mut draw);
-                // Where a step along the outward slope of the signed distance leads to, if it is the wanted distance off.
+                // Points at a step of `hair` from the curves, kept if they are about as far off the surface.
                 let mut both = [Vec::new(), Vec::new()];
                 for p in oracle.curve_points().into_iter().flatten() {
                     let angle = draw.between(0.0, std::f64::consts::TAU);
@@ -108,7 +109,7 @@ fn a_hair_to_either_side() {
                     let part = parts::of(all.collect(), normals, vec![1.0; count + 2]);
                     let mut case = Case::new(&part, tool, &*oracle);
                     let found = case.check(&pose, 0);
-                    // The last leaf reaches to a corner, and its points are kept to 2^-24 of that.
+                    // The last leaf reaches to a corner, and its points are stored to 2^-24 of that.
                     if 1e-6 * size < hair {
                         assert_eq!(found, if inside { count } else { 0 }, "{}", oracle.name());
                     }

@@ -1,6 +1,6 @@
-//! The tree query against asking the oracle about every point.
+//! The tree query against evaluations of the oracle at every point.
 //!
-//! [`compare`] holds the comparison and its bounds, [`parts`] and [`poses`] what is compared.
+//! [`compare`] has the comparison and its bounds, [`parts`] and [`poses`] the inputs.
 
 mod aligned;
 mod anywhere;

@@ -1,22 +1,22 @@
-//! Parts to be felt. The triangle ids of their clouds are the points' own places in the cloud, so that a contact can be told from its
-//! neighbours.
+//! Parts for the queries. The triangle ids of their clouds are the points' own indices in the cloud, so that a
+//! contact can be told from its neighbours.
 
 use nalgebra::{Point3, Vector3};
 use touchoff::mesh::shapes;
 use touchoff::{Cloud, Mesh, Part, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 pub(crate) const UNIT: Unit = Unit::Millimetre;
 
-/// A part of points, normals and weights.
+/// Returns a part of these points, normals and weights.
 pub(crate) fn of(points: Vec<Point3<f64>>, normals: Vec<Vector3<f64>>, weights: Vec<f64>) -> Part {
     let ids = (0..points.len() as u32).collect();
     Part::from_cloud(&Cloud::new(points, normals, ids, weights, UNIT).expect("a cloud"))
 }
 
-/// A part of random points of a mesh, carried over by `at`.
+/// Returns a part of random points of a mesh, mapped by `at`.
 pub(crate) fn carried(mesh: &Mesh, count: usize, at: impl Fn(Point3<f64>) -> Point3<f64>) -> Part {
-    let cloud = Cloud::random(mesh, count, 1).expect("a cloud");
+    let cloud = Cloud::uniform(mesh, count, 1).expect("a cloud");
     let points = cloud.points().iter().copied().map(at).collect();
     of(points, cloud.normals().to_vec(), cloud.weights().to_vec())
 }
@@ -25,7 +25,7 @@ pub(crate) fn tube_mesh() -> Mesh {
     shapes::tube(3.0, 5.0, touchoff::scenes::HEIGHT, 256, 4, UNIT).expect("a tube")
 }
 
-/// The tube of the scenes.
+/// Returns the tube of the scenes.
 pub(crate) fn tube(count: usize) -> Part {
     carried(&tube_mesh(), count, |p| p)
 }
@@ -40,27 +40,27 @@ pub(crate) fn cuboid(half: f64, count: usize) -> Part {
     carried(&mesh, count, |p| p)
 }
 
-/// Points anywhere in a cube, normals and weights at random.
+/// Returns points anywhere in a cube, with random normals and weights.
 pub(crate) fn soup(half: f64, count: usize, seed: u64) -> Part {
-    let mut draw = Draw::new(seed);
+    let mut draw = Rng::new(seed);
     let points = (0..count).map(|_| Point3::from(vector(&mut draw, half))).collect();
     let normals = (0..count).map(|_| direction(&mut draw)).collect();
     let weights = (0..count).map(|_| draw.between(0.0, 2.0)).collect();
     of(points, normals, weights)
 }
 
-/// The same point `count` times.
+/// Returns a part of the same point `count` times.
 pub(crate) fn identical(at: Point3<f64>, count: usize) -> Part {
-    let mut draw = Draw::new(9);
+    let mut draw = Rng::new(9);
     let normals = (0..count).map(|_| direction(&mut draw)).collect();
     of(vec![at; count], normals, vec![0.5; count])
 }
 
-pub(crate) fn vector(draw: &mut Draw, half: f64) -> Vector3<f64> {
+pub(crate) fn vector(draw: &mut Rng, half: f64) -> Vector3<f64> {
     Vector3::from_fn(|_, _| draw.between(-half, half))
 }
 
-pub(crate) fn direction(draw: &mut Draw) -> Vector3<f64> {
+pub(crate) fn direction(draw: &mut Rng) -> Vector3<f64> {
     loop {
         let v = vector(draw, 1.0);
         if (0.01..=1.0).contains(&v.norm()) {

@@ -1,13 +1,13 @@
-//! Poses at random.
+//! Random poses.
 
 use super::parts::{direction, vector};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Part, Pose};
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// Any orientation at all.
-pub(crate) fn quaternion(draw: &mut Draw) -> [f64; 4] {
+/// Returns a random orientation, as a unit quaternion.
+pub(crate) fn quaternion(draw: &mut Rng) -> [f64; 4] {
     loop {
         let v = [0; 4].map(|_| draw.between(-1.0, 1.0));
         let norm = v.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -17,19 +17,20 @@ pub(crate) fn quaternion(draw: &mut Draw) -> [f64; 4] {
     }
 }
 
-/// The tool turned at random, its own point `in_tool` brought to `at`.
-pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, draw: &mut Draw) -> Pose {
+/// Returns a pose of random orientation that brings the tool's own point `in_tool` to `at`.
+pub(crate) fn bringing(in_tool: Vector3<f64>, at: Point3<f64>, draw: &mut Rng) -> Pose {
     let turned = Pose::from_quaternion(Point3::origin(), quaternion(draw)).expect("a pose");
     Pose::from_quaternion(at - turned.rotation() * in_tool, quaternion_of(&turned)).expect("a pose")
 }
 
 fn quaternion_of(pose: &Pose) -> [f64; 4] {
-    let q = pose.isometry().rotation.coords;
+    let q = pose.to_isometry().rotation.coords;
     [q.x, q.y, q.z, q.w]
 }
 
-/// A pose about a part: one in eight far off, the others with some point of the part in the tool or hardly outside.
-pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Draw) -> Pose {
+/// Returns a pose about a part: one in eight far off, the others with some point of the part in the tool or hardly
+/// outside.
+pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Rng) -> Pose {
     let tree = part.tree();
     let point = tree.point(draw.bits() as usize % tree.len());
     let [width, height] = oracle.extent();
@@ -38,7 +39,7 @@ pub(crate) fn about(part: &Part, oracle: &dyn Oracle, k: usize, draw: &mut Draw)
         return bringing(vector(draw, height), point + far * height * direction(draw), draw);
     }
     if !oracle.revolved() {
-        // Of a box about it a solid may fill little: somewhere near a face or a splitting surface.
+        // A solid may fill little of the box about it, so the point is near a face or a splitting surface.
         let curves = oracle.curve_points();
         let curve = &curves[draw.bits() as usize % curves.len()];
         let own = Vector3::from(curve[draw.bits() as usize % curve.len()]);

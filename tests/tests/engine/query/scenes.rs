@@ -2,15 +2,15 @@
 
 use super::compare::{Case, Seen, tools};
 use super::parts;
-use touchoff::scenes::Path;
+use touchoff::scenes::ScenePath;
 
-/// Every pose of a path cut into `poses`, felt by every tool.
-fn along(path: Path, count: usize, poses: usize) -> Seen {
+/// Checks the poses of a path cut into `poses`, with every tool. Returns the statistics of the thesis's tool.
+fn along(path: ScenePath, count: usize, poses: usize) -> Seen {
     let part = parts::tube(count);
     let mut fig73 = Seen::default();
     for (tool, oracle) in tools() {
         let mut case = Case::new(&part, tool, &*oracle);
-        // The scenes are the thesis's tool's; of the others some poses suffice.
+        // The scenes are those of the thesis's tool; for the others every fifth pose is enough.
         let step = if oracle.name() == "Fig73" { 1 } else { 5 };
         for k in (0..poses).step_by(step) {
             case.check(&path.pose(k, poses), k / step);
@@ -26,21 +26,21 @@ fn along(path: Path, count: usize, poses: usize) -> Seen {
 
 #[test]
 fn a_thousand_points() {
-    for path in Path::ALL {
+    for path in ScenePath::ALL {
         along(path, 1_000, 600);
     }
 }
 
 #[test]
 fn five_thousand_points() {
-    for path in Path::ALL {
+    for path in ScenePath::ALL {
         along(path, 5_000, 240);
     }
 }
 
 #[test]
 fn twenty_thousand_points() {
-    for path in Path::ALL {
+    for path in ScenePath::ALL {
         let seen = along(path, 20_000, 120);
         assert!(seen.contacts > 5 * seen.poses, "{path:?} hardly touches: {seen:?}");
     }

@@ -1,13 +1,13 @@
-//! Solids without an axis at full poses, where contacts are known in closed form.
+//! Solids without an axis at full poses, with contacts that are known in closed form.
 
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use tools_library::{Block, LBracket};
 use touchoff::mesh::shapes;
 use touchoff::{Law, Part, Pose, Probe, Unit};
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// A plane of z = 0 in a pose's own frame, 60 by 60 in squares of a quarter, facing up.
+/// Returns the plane z = 0 of a pose's own frame, 60 by 60 in squares of a quarter, facing up.
 fn plane(pose: &Pose) -> Part {
     let spots = (0..240).flat_map(|i| (0..240).map(move |k| (i, k)));
     let along = |k: i32| f64::from(k) / 4.0 - 29.875;
@@ -18,23 +18,23 @@ fn plane(pose: &Pose) -> Part {
     parts::of(points, vec![pose.rotation() * Vector3::z(); count], vec![1.0 / 16.0; count])
 }
 
-fn anywhere(draw: &mut Draw) -> Pose {
+fn anywhere(draw: &mut Rng) -> Pose {
     let tip = Point3::from(parts::vector(draw, 100.0));
     Pose::from_quaternion(tip, poses::quaternion(draw)).expect("a pose")
 }
 
-/// A pose moved by a step of its own frame.
+/// Returns a pose moved by a step in its own frame.
 fn shifted(pose: &Pose, step: Vector3<f64>) -> Pose {
-    let mut isometry = pose.isometry();
+    let mut isometry = pose.to_isometry();
     isometry.translation.vector += pose.rotation() * step;
     Pose::try_from(isometry).expect("a pose")
 }
 
-/// The block pressed `h` deep into a plane: the depth is `h`, but for a hipped rim of 45°, so that
-/// `∫ m dA = h w l - h² (w + l) + 4 h³/3`; only what is nearest to the underside pushes up.
+/// The block pressed `h` deep into a plane. The depth is `h`, but for a hipped rim of 45°, so that `∫ m dA = h w
+/// l - h² (w + l) + 4 h³/3`; only the part that is nearest to the underside pushes up.
 #[test]
 fn a_block_on_a_plane() {
-    let mut draw = Draw::new(91);
+    let mut draw = Rng::new(91);
     let (w, l) = (40.0, 30.0);
     for k in 0..8 {
         let there = if k == 0 {
@@ -45,28 +45,35 @@ fn a_block_on_a_plane() {
         let part = plane(&there);
         for h in [0.5, 1.5, 4.0] {
             let pose = shifted(&there, Vector3::new(0.0, 0.0, -h));
-            let mut probe = Probe::new(&part, &Block).law(Law::Gradient);
-            let felt = probe.wrench(&pose);
+            let mut probe = Probe::new(&part, &Block).with_law(Law::Gradient);
+            let evaluation = probe.wrench(&pose);
             assert!(probe.detect(&pose));
-            assert!((felt.depth() - h).abs() < 1e-5, "{} at {h}", felt.depth());
+            assert!((evaluation.depth() - h).abs() < 1e-5, "{} at {h}", evaluation.depth());
             let integral = h * w * l - h * h * (w + l) + 4.0 * h.powi(3) / 3.0;
-            assert!((felt.integral / integral - 1.0).abs() < 1e-3, "{} {integral}", felt.integral);
+            assert!(
+                (evaluation.integral / integral - 1.0).abs() < 1e-3,
+                "{} {integral}",
+                evaluation.integral
+            );
             let up = h * (w - 2.0 * h) * (l - 2.0 * h);
-            let push = there.rotation().transpose() * felt.force;
+            let push = there.rotation().transpose() * evaluation.force;
             assert!((push.z / up - 1.0).abs() < 0.03, "{push} {up}");
-            // All but the points of the hips themselves, which may fall to either side, cancels.
-            assert!(push.xy().norm() < 0.01 * up && felt.torque.norm() < 0.1 * up, "{push} {up}");
+            // Everything cancels but the points of the hips themselves, which may fall to either side.
+            assert!(
+                push.xy().norm() < 0.01 * up && evaluation.torque.norm() < 0.1 * up,
+                "{push} {up}"
+            );
         }
         let clear = shifted(&there, Vector3::new(0.0, 0.0, 1e-3));
         assert!(!Probe::new(&part, &Block).detect(&clear));
     }
 }
 
-/// A pin in the bracket's hole, turned with it: clear while it is thinner than the hole, and as
-/// deep in its wall all round as it is thicker.
+/// A pin in the bracket's hole, turned with it: clear while it is thinner than the hole, and as deep in its wall
+/// all round as it is thicker.
 #[test]
 fn a_pin_in_the_hole_of_a_bracket() {
-    let mut draw = Draw::new(92);
+    let mut draw = Rng::new(92);
     for _ in 0..6 {
         let pose = anywhere(&mut draw);
         for (radius, depth) in [(3.2, None), (3.4, Some(0.1)), (4.0, Some(0.7))] {
@@ -94,7 +101,7 @@ fn a_pin_in_the_hole_of_a_bracket() {
     }
 }
 
-/// Against every point of a mesh's cloud, one after the other, with the bracket's surfaces by name.
+/// Surfaces of the bracket in contact with a rail, by name, and the greatest depth.
 #[test]
 fn a_bracket_around_a_rail() {
     let rail = shapes::cuboid(
@@ -110,7 +117,7 @@ fn a_bracket_around_a_rail() {
     let mut surfaces = |x: f64, z: f64| {
         let contacts = probe.contacts(&at(x, z).expect("a pose")).to_vec();
         let name =
-            |k: usize| &*tools_library::find("LBracket").expect("there").card().surfaces[k].name;
+            |k: usize| &*tools_library::find("LBracket").expect("there").info().surfaces[k].name;
         let deepest = contacts.iter().map(|c| c.depth).fold(0.0, f64::max);
         let mut names: Vec<String> = contacts.iter().map(|c| name(c.surface).to_owned()).collect();
         names.sort();
@@ -129,17 +136,17 @@ fn a_bracket_around_a_rail() {
     );
 }
 
-/// Without an axis the spin matters: a pose from an axis is not one for a solid, and says so.
+/// Spin matters without an axis: a pose from an axis does not place a solid, and reports that it has no spin.
 #[test]
 fn the_spin_matters() {
     let there = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, 0.0, 1.0]).expect("a pose");
     let point = Point3::new(18.0, 0.0, 5.0);
     let part = parts::identical(point, 1);
     let mut probe = Probe::new(&part, &Block);
-    assert!(there.is_full() && probe.detect(&there));
+    assert!(there.has_spin() && probe.detect(&there));
     let half = 0.5f64.sqrt();
     let turned = Pose::from_quaternion(Point3::origin(), [0.0, 0.0, half, half]).expect("a pose");
-    assert!(turned.is_full() && !probe.detect(&turned));
+    assert!(turned.has_spin() && !probe.detect(&turned));
     let axial = Pose::from_axis(Point3::origin(), Vector3::z()).expect("a pose");
-    assert!(!axial.is_full());
+    assert!(!axial.has_spin());
 }

@@ -1,4 +1,4 @@
-//! The derivative of what is felt against differences of what is felt.
+//! The derivative of the wrench against its finite differences.
 
 use super::compare::tools;
 use super::{parts, poses};
@@ -7,12 +7,12 @@ use touchoff::{Law, Part, Pose, Probe, Tool, Wrench};
 use touchoff_tests::haptics::{block, tool, upright};
 use touchoff_tests::library::read;
 use touchoff_tests::oracle::Oracle;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
-/// How far the tool is moved and turned for a difference.
+/// Step of the finite differences: a length in the part's unit, and an angle in rad.
 const STEP: f64 = 1e-6;
 
-/// A pose moved by the first three and turned by the last three about a point of the tool.
+/// Returns a pose moved by the first three components and turned by the last three about a point of the tool.
 fn moved(pose: &Pose, centre: Point3<f64>, step: &Vector6<f64>) -> Pose {
     let about = pose.tip() + pose.rotation() * centre.coords;
     let turn = Rotation3::from_scaled_axis(Vector3::new(step[3], step[4], step[5]));
@@ -28,7 +28,7 @@ fn both(wrench: &Wrench) -> Vector6<f64> {
     Vector6::new(f.x, f.y, f.z, t.x, t.y, t.z)
 }
 
-/// Minus the wrench's central differences.
+/// Returns minus the wrench's central differences.
 fn differences(probe: &mut Probe<'_>, pose: &Pose, centre: Point3<f64>) -> Matrix6<f64> {
     let mut matrix = Matrix6::zeros();
     for axis in 0..6 {
@@ -41,11 +41,12 @@ fn differences(probe: &mut Probe<'_>, pose: &Pose, centre: Point3<f64>) -> Matri
     matrix
 }
 
-/// How far apart they are, of the matrix's own size, at poses about a part: sorted.
+/// Returns the differences between the two matrices at poses about a part, relative to the matrix's own size,
+/// sorted.
 fn apart(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) -> Vec<f64> {
-    let mut draw = Draw::new(31);
+    let mut draw = Rng::new(31);
     let centre = Point3::new(0.3, -0.2, 1.5);
-    let mut probe = Probe::new(part, tool).law(law).centre(centre);
+    let mut probe = Probe::new(part, tool).with_law(law).with_centre(centre);
     let mut apart = Vec::new();
     for k in 0..60 {
         let pose = poses::about(part, oracle, k, &mut draw);
@@ -62,7 +63,8 @@ fn apart(part: &Part, tool: &dyn Tool, oracle: &dyn Oracle, law: Law) -> Vec<f64
     apart
 }
 
-/// Where a point changes its region within a step, differences are of no use; so little of them is asked.
+/// Where a point changes its region within a step, differences are of no use; therefore the worst tenth is not
+/// compared.
 #[test]
 fn it_is_what_differences_come_to() {
     let part = parts::soup(6.0, 1_500, 5);
@@ -81,9 +83,9 @@ fn an_interpreted_tool_has_the_same() {
     let part = parts::soup(6.0, 1_500, 6);
     for (tool, oracle) in tools() {
         let (interpreted, _) = read(oracle.name());
-        let mut draw = Draw::new(32);
-        let mut compiled = Probe::new(&part, tool).law(Law::Gradient);
-        let mut read = Probe::new(&part, &interpreted as &dyn Tool).law(Law::Gradient);
+        let mut draw = Rng::new(32);
+        let mut compiled = Probe::new(&part, tool).with_law(Law::Gradient);
+        let mut read = Probe::new(&part, &interpreted as &dyn Tool).with_law(Law::Gradient);
         for k in 0..30 {
             let pose = poses::about(&part, &*oracle, k, &mut draw);
             let [one, other] = [compiled.stiffness(&pose), read.stiffness(&pose)];
@@ -93,11 +95,11 @@ fn an_interpreted_tool_has_the_same() {
     }
 }
 
-/// A flat end in a plane: a spring by the area, and torques that tip it back.
+/// A flat end in a plane: a spring by the area.
 #[test]
 fn a_flat_face_is_a_spring() {
     let plane = block(200_000);
-    let mut probe = Probe::new(&plane, tool("Flat")).law(Law::Gradient);
+    let mut probe = Probe::new(&plane, tool("Flat")).with_law(Law::Gradient);
     let found = probe.stiffness(&upright(-1e-3));
     let area = found.wrench.force.z / 1e-3;
     assert!((found.matrix[(2, 2)] / area - 1.0).abs() < 1e-3, "{} {area}", found.matrix);

@@ -1,11 +1,11 @@
-//! What a wrench says of its own rounding, against sums in 256 bits of the same contacts.
+//! The rounding that a wrench states, against sums of the same contacts with 256 bits.
 
 use super::compare::{WAYS, tools};
 use super::{parts, poses};
 use nalgebra::{Point3, Vector3};
 use touchoff::{Contact, Law, Pose, Probe};
 use touchoff_tests::oracle::big::Big;
-use touchoff_tests::oracle::draw::Draw;
+use touchoff_tests::oracle::draw::Rng;
 
 type Triple = [Big; 3];
 
@@ -29,7 +29,7 @@ fn off(sum: &Triple, found: Vector3<f64>) -> f64 {
     Vector3::from(parts).norm()
 }
 
-/// Force, torque about the tip, the sum of weights times magnitudes, and that times the arm.
+/// Returns force and torque about the tip, the sum of weights times magnitudes, and that times the arm.
 fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64; 2]) {
     let mut sums = [(); 2].map(|()| [(); 3].map(|()| Big::zero()));
     let mut sizes = [0.0; 2];
@@ -56,17 +56,17 @@ fn sums(contacts: &[Contact], law: Law, tip: Point3<f64>) -> ([Triple; 2], [f64;
 
 #[test]
 fn sums_keep_the_rounding_that_is_stated() {
-    // What lists of contacts lose themselves: directions turned to the world and rounded, weights multiplied
-    // and rounded, places rounded at the world's coordinates.
+    // Rounding in the list of contacts itself: directions turned to the world and rounded, weights multiplied and
+    // rounded, points rounded at the world's coordinates.
     const LISTED: f64 = 16.0 * f64::EPSILON;
     let (mut touching, mut tightest) = (0, f64::INFINITY);
     for part in [parts::soup(6.0, 2_000, 1), parts::tube(6_000)] {
         for (tool, oracle) in tools() {
-            let mut draw = Draw::new(17);
+            let mut draw = Rng::new(17);
             for k in 0..60 {
                 let pose: Pose = poses::about(&part, &*oracle, k, &mut draw);
                 let (law, weights) = WAYS[k % 6];
-                let mut probe = Probe::new(&part, tool).law(law).weights(weights);
+                let mut probe = Probe::new(&part, tool).with_law(law).with_weights(weights);
                 let wrench = probe.wrench(&pose);
                 let ([force, torque], sizes) = sums(probe.contacts(&pose), law, pose.tip());
                 if wrench.colliding == 0 {
@@ -89,16 +89,16 @@ fn sums_keep_the_rounding_that_is_stated() {
     assert!(touching > 200);
 }
 
-/// About another point than the tip, and of several parts that stand where they stand.
+/// The stated rounding holds about another point than the tip too.
 #[test]
 fn a_centre_far_away_is_in_it() {
     let part = parts::tube(6_000);
     let (tool, oracle) = tools().swap_remove(0);
     let centre = Point3::new(300.0, -200.0, 1000.0);
-    let mut draw = Draw::new(4);
+    let mut draw = Rng::new(4);
     for k in 0..40 {
         let pose = poses::about(&part, &*oracle, k, &mut draw);
-        let mut probe = Probe::new(&part, tool).centre(centre);
+        let mut probe = Probe::new(&part, tool).with_centre(centre);
         let wrench = probe.wrench(&pose);
         let about = pose.tip() + pose.rotation() * centre.coords;
         let ([_, torque], [size, _]) = sums(probe.contacts(&pose), Law::Thesis, about);

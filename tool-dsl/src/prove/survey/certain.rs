@@ -1,12 +1,12 @@
-//! Points at which a direction is certainly not the steepest way out, or niceness certainly rises with depth: a box
-//! encloses angles and slopes, and says nothing of what any of its points has.
+//! Points at which a direction certainly is not that of steepest descent, or niceness certainly rises with
+//! depth. The enclosure of angles and slopes over a box does not show that any of its points attains them.
 
 use super::{NOTHING, ROUNDING, Survey};
 use crate::expr::interval::Cell;
-use crate::prove::aim::off;
+use crate::prove::direction::off;
 
-/// A direction is said to be the steepest way out up to this angle, in radians: components that are written with four
-/// decimals turn it by no more.
+/// The largest angle, in radians, at which a direction counts as that of steepest descent. Components written
+/// with four decimals turn it by no more.
 const STRAIGHT: f64 = 1e-4;
 
 /// A value that is certain at a point, and the point.
@@ -15,9 +15,9 @@ type At = (f64, [f64; 3]);
 /// The facts about a region that are certain at single points.
 #[derive(Clone, Default)]
 pub(super) struct Certain {
-    /// The largest angle between the direction and the steepest way out.
+    /// The largest angle between the direction and that of steepest descent, in radians.
     pub(super) oblique: Option<At>,
-    /// Where niceness rises most with depth, and by how much for each length of it.
+    /// The largest rate at which niceness rises per unit of depth.
     pub(super) rises: Option<At>,
 }
 
@@ -28,8 +28,8 @@ fn keep_larger(known: &mut Option<At>, value: f64, point: [f64; 3]) {
 }
 
 impl Survey<'_> {
-    /// Looks at the middle of the present box, if that is `owner`'s and the box may have more than is known: an angle so
-    /// large, or a niceness that may rise.
+    /// Examines the centre of the current box, if it belongs to `owner` and the box may contain more than is
+    /// known: a larger angle, or a niceness that rises.
     pub(super) fn look_at_middle(&mut self, owner: usize, cell: Cell, angle: f64, may_rise: bool) {
         let known = self.certain[owner].oblique.map_or(STRAIGHT, |(most, _)| most);
         if angle <= known && !may_rise {
@@ -54,7 +54,7 @@ impl Survey<'_> {
         }
         let along =
             (0..3).fold(NOTHING, |sum, k| sum.plus(depth.parts[k].times(niceness.parts[k])));
-        // Below 0 niceness counts as 0.
+        // Niceness below 0 counts as 0.
         if along.low > ROUNDING * depth.length.high * niceness.length.high
             && niceness.value.low > 0.0
         {

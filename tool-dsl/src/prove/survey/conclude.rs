@@ -1,6 +1,6 @@
-//! The certificate: what all boxes together prove.
+//! The certificate: the conclusions from all boxes.
 
-use super::{RegionFacts, Survey, TOLERANCE, Undecided, unless_rounding, up};
+use super::{OpenProof, RegionFacts, Survey, TOLERANCE, unless_rounding, up};
 use crate::diagnostic::Statement;
 use crate::expr::interval::{Cell, Interval};
 use crate::prove::Certificate;
@@ -9,7 +9,7 @@ use crate::prove::range::Ranges;
 use crate::prove::witness::BESIDE;
 
 impl Survey<'_> {
-    /// Returns what all boxes together prove.
+    /// Returns the certificate that follows from all boxes.
     pub(super) fn certificate(mut self) -> Certificate {
         let shares = self.witness.shares();
         let (least, short) = self.least();
@@ -39,7 +39,7 @@ impl Survey<'_> {
                     share,
                     distance,
                     steepness: if distance { Interval::new(1.0, 1.0) } else { facts.steepness },
-                    aside: aim.off,
+                    direction_error: aim.off,
                     oblique: certain.oblique,
                     rises: certain.rises,
                     singular: aim.singular,
@@ -59,12 +59,14 @@ impl Survey<'_> {
         }
     }
 
-    /// Returns how much depth may gain by jumps on a straight way, and by being no exact distance.
+    /// Returns an upper bound of the amount that depth may gain by jumps along a straight path, and by
+    /// differing from an exact distance.
     ///
-    /// Let all depths be distances from lines, circles or points, less than `off` apart from these. On a way of length `t` each of
-    /// these distances less `t` does not grow, wherever its own region is. So when the way comes back to a region it has not
-    /// gained since it left it, and only the jumps between regions count that remain when such loops are cut out: each pair once.
-    /// Other depths may be steep outside of their regions, so that each jump counts; a straight way crosses a conic twice.
+    /// Let all depths differ by less than `off` from distances to lines, circles or points. On a path of
+    /// length `t`, each of these distances minus `t` does not grow, inside or outside its own region. When
+    /// the path returns to a region, it has therefore not gained since it left. Only the jumps that remain
+    /// after such loops are removed count: one per pair of regions. Other depths may be steep outside their
+    /// regions, so every jump counts. A straight path crosses a conic twice.
     fn crossed(&self) -> f64 {
         let steps = self.steps.values().copied().fold(0.0, up);
         let Some(feet) = &self.feet else { return up(self.jumps, 2.0 * steps) };
@@ -73,21 +75,22 @@ impl Survey<'_> {
         self.widest.values().copied().fold(up(steps, up(off, 2.0 * pairs * off)), up)
     }
 
-    /// Returns how far the solid's surface may be from the nearest place of its profile, given the slack of depth.
+    /// Returns an upper bound of the distance from the solid's surface to its profile, given the slack of
+    /// depth.
     fn off_profile(&mut self, slack: f64) -> f64 {
         let Some(section) = &self.tool.model.section else { return 0.0 };
         let (off, ends) = self.witness.off_profile(&section.outline);
         let open = off
             .into_iter()
-            .map(|at| Undecided { cell: Cell::point(at), statement: Statement::EndsOnProfile });
+            .map(|at| OpenProof { cell: Cell::point(at), statement: Statement::EndsOnProfile });
         self.undecided.extend(open);
-        // Where something is open, or depth is not the distance from the profile, nothing follows.
+        // Nothing follows if a proof is open, or if depth is not the distance to the profile.
         if self.feet.is_none() || !self.undecided.is_empty() {
             return 0.0;
         }
         let off = Profile::new(&section.outline).off(slack, BESIDE * self.size).filter(|_| ends);
         off.unwrap_or_else(|| {
-            self.undecided.push(Undecided {
+            self.undecided.push(OpenProof {
                 cell: self.tool.extent.cell(),
                 statement: Statement::EndsOnProfile,
             });

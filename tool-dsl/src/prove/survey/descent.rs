@@ -1,43 +1,46 @@
-//! Bounds of how steeply depth falls toward the surface, for tools whose depth the feet of a profile do not bound.
+//! Bounds of the rate at which depth falls toward the surface, for tools whose depth is not bounded by the
+//! feet of a profile.
 
 use super::super::cover::reach;
-use super::super::kink::{EQUAL, ROUNDING};
-use super::{Grain, Survey};
+use super::super::nonsmooth::{EQUAL, ROUNDING};
+use super::{BoxSize, Survey};
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 use std::f64::consts::TAU;
 
-/// From boxes as good as points ways down of these parts of the tool's size are tried, and to the surface ways of so
-/// many times such a box's half diagonal.
+/// The lengths of descents tried from point boxes: relative to the tool's size, and, to reach the surface, in
+/// half diagonals of the box.
 const STEPS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 const NEAR: [f64; 6] = [4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
-/// Directions that are tried beside those.
+/// The number of other directions tried.
 const OTHERS: u32 = 16;
 
-/// Ways down from a box that is as good as a point.
+/// The descents from a point box.
 pub(super) struct Descent {
-    /// The least depth in the box less the depth where a way ends, by the way from the box's farthest point: the most that
-    /// was found. Infinite if the box is beside the outside.
+    /// The largest rate found: the least depth in the box minus the depth at the descent's end, divided by
+    /// the distance of that end from the box's farthest point. Infinite if the box is next to the outside.
     steepest: f64,
-    /// The shortest of the ways that soon lead to where it is less deep than anywhere in the box.
+    /// The shortest of the short descents that end where depth is less than anywhere in the box.
     step: Option<f64>,
 }
 
 impl Survey<'_> {
-    /// Returns how steeply a region's depth falls at least in the present box, which some owners have.
+    /// Returns a lower bound of the rate at which a region's depth falls in the current box, which has the
+    /// given owners.
     pub(super) fn fall(&mut self, owner: usize, owners: &[Option<usize>]) -> f64 {
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
-        // The kink of a length is where it is 0. Beside the outside that is the surface, where depth need not fall.
+        // A length is not smooth where it is 0. Next to the outside that is the surface, where depth need not
+        // fall.
         let unkinked = depth.value.low > 0.0 || owners.contains(&None);
         if self.parting.is_length(owner) && unkinked { depth.length.low } else { depth.fall() }
     }
 
-    /// Notes how steeply depth falls from any point of a box.
-    pub(super) fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: Grain) {
+    /// Records the rate at which depth falls from the points of a box.
+    pub(super) fn descend(&mut self, owners: &[Option<usize>], cell: Cell, grain: BoxSize) {
         if self.feet.is_some() {
             return;
         }
-        if grain != Grain::Point {
+        if grain != BoxSize::Point {
             for owner in owners.iter().flatten() {
                 self.least = self.least.min(self.fall(*owner, owners));
             }
@@ -52,8 +55,8 @@ impl Survey<'_> {
         }
     }
 
-    /// Notes how steeply depth falls from points of a box on the axis. Where it grows away from the axis it has a kink
-    /// there, at which only its slope along the axis leads down.
+    /// Records the rate at which depth falls from points of a box on the axis. Where depth grows away from
+    /// the axis it is not smooth there, and only its slope along the axis leads down.
     fn descend_on_axis(&mut self, cell: Cell) {
         if self.tool.model.domain != Domain::HalfPlane || cell.sides[0].low > 0.0 {
             return;
@@ -68,8 +71,8 @@ impl Survey<'_> {
         }
     }
 
-    /// Tries ways out of a box that is as good as a point: straight down the owners' slopes, and if these do not help,
-    /// in other directions.
+    /// Tries descents from a point box: straight down the owners' gradients, and if these do not suffice, in
+    /// other directions.
     fn descent_from_point(&mut self, owners: &[Option<usize>], cell: Cell) -> Descent {
         let (regions, middle) = (&self.tool.model.regions, cell.middle());
         let depths = owners.iter().flatten().map(|owner| regions[*owner].depth);
@@ -112,8 +115,8 @@ impl Survey<'_> {
         best
     }
 
-    /// Returns how deep it is at a point at most, whichever of the regions that may have it has it; 0 if none may. Nothing
-    /// if it is no point of the domain.
+    /// Returns the largest possible depth at a point, over all regions that may own it; 0 if none may.
+    /// Returns `None` if the point is not in the domain.
     fn deepest_at(&mut self, at: [f64; 3]) -> Option<f64> {
         let off_axis = self.tool.model.domain == Domain::HalfPlane && at[0] < 0.0;
         if off_axis || !at.iter().all(|part| part.is_finite()) {
@@ -125,12 +128,14 @@ impl Survey<'_> {
         Some(claims.iter().filter_map(|claim| claim.owner).map(depth).fold(0.0, f64::max))
     }
 
-    /// Returns how steeply depth falls toward the surface at least, and how far that may miss the surface.
+    /// Returns a lower bound of the rate at which depth falls toward the surface, and the distance by which
+    /// the descent may miss the surface.
     pub(super) fn least(&self) -> (f64, f64) {
         if self.feet.is_some() {
             return (1.0, 0.0);
         }
-        // Depth falls on a way down, so it meets each such box once: a step out of it is added to what is missed.
+        // Depth falls along a descent, so each such box is met once: the length of the step out of it is
+        // added to the distance missed.
         let (mut least, mut steps) = (self.least, 0.0);
         for descent in self.descents.iter().filter(|descent| descent.steepest < self.least) {
             match descent.step {
@@ -138,13 +143,14 @@ impl Survey<'_> {
                 None => least = least.min(descent.steepest),
             }
         }
-        // What was neglected of slopes; of a set without an inside nothing was asked.
+        // The tolerance covers neglected slopes. If no box was inside, the rate is still infinite and proves
+        // nothing.
         let least = if least.is_finite() { least - ROUNDING } else { 0.0 };
         (least, self.near + steps)
     }
 }
 
-/// Returns how far the points of a box are from another at most.
+/// Returns an upper bound of the distance between a point and the points of a box.
 fn farthest(cell: &Cell, from: [f64; 3]) -> f64 {
     let away = |axis: usize| cell.sides[axis].plus(Interval::new(-from[axis], -from[axis]));
     let squares = [0, 1, 2].map(|axis| away(axis).square());

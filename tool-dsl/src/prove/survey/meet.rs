@@ -1,34 +1,34 @@
-//! What happens in a box that several have: how depth goes on from one to another.
+//! Borders in a box with several owners: the continuity of depth from one to another.
 
+use super::super::borders::{Joint, Pair, Parted};
 use super::super::cover::{Claim, reach};
-use super::super::kink::{across, angle};
-use super::super::parting::{Joint, Pair, Parted};
-use super::super::{Border, SMALL, Seen, TOLERANCE, Undecided};
-use super::{Grain, SLOPING, Survey, VAGUE, up};
+use super::super::nonsmooth::{across, angle};
+use super::super::{Border, JumpPoint, OpenProof, SMALL, TOLERANCE};
+use super::{BoxSize, SLOPING, Survey, VAGUE, up};
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::Id;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
 
-/// On the surface directions are told to this, in radians, or by boxes that are as good as points. It says only when a box
-/// is divided: the angle that is stated is that of its enclosure.
+/// The accuracy of turns of the direction on the surface, in radians, unless boxes are as small as points. It
+/// only decides whether a box is divided; the certificate has the angle of the enclosure.
 const VAGUE_TURN: f64 = 1e-5;
 
-/// Two claims to a box that a curve parts.
+/// Two claims to a box that a curve separates.
 struct Met {
     pair: Pair,
     by: Parted,
-    /// Where points of both were seen side by side, with a jump between.
-    seen: Option<Seen>,
+    /// A point where both were found side by side with a jump between.
+    seen: Option<JumpPoint>,
 }
 
 impl Survey<'_> {
-    /// Whether what happens between the owners of the present box is known well enough.
-    pub(super) fn meet(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
+    /// Returns whether enough is known about the borders between the owners of the current box.
+    pub(super) fn meet(&mut self, cell: Cell, claims: &[Claim], grain: BoxSize) -> bool {
         let mut all = Vec::new();
         for (k, a) in claims.iter().enumerate() {
             for b in &claims[k + 1..] {
-                // The region first, of two the one listed earlier.
+                // The region comes first; of two regions, the one listed earlier.
                 let (a, b) = match (a.owner, b.owner) {
                     (x, y) if x == y => continue,
                     (None, _) => (b, a),
@@ -57,14 +57,14 @@ impl Survey<'_> {
             if met.by.joint == Joint::None && met.seen.is_none() && !grain.is_last() {
                 return false;
             }
-            // At points others come between.
-            if grain != Grain::Point && self.feet.is_none() {
+            // In a point box other regions may lie between the two.
+            if grain != BoxSize::Point && self.feet.is_none() {
                 let (fall, slack) = self.across(met);
                 vague |= fall < SLOPING && slack > VAGUE;
                 least = least.min(fall);
             }
         }
-        // Small boxes tell how far directions turn on the surface.
+        // Small boxes resolve the turn of directions on the surface.
         let is_plane = self.tool.model.domain == Domain::HalfPlane;
         if is_plane && !grain.is_last() {
             let is_vague = |met: &Met| {
@@ -75,7 +75,7 @@ impl Survey<'_> {
                 return false;
             }
         }
-        // So flat may be only what a large box tells.
+        // A slope this small may be an artefact of a large box.
         if (vague || least < SLOPING && !small) && !grain.is_last() {
             return false;
         }
@@ -98,7 +98,8 @@ impl Survey<'_> {
         true
     }
 
-    /// How steeply depth falls toward one of the sides of a border at least, and how well that is known.
+    /// Returns a lower bound of the rate at which depth falls toward one of the sides of a border, and its
+    /// uncertainty.
     fn across(&mut self, met: &Met) -> (f64, f64) {
         let regions = &self.tool.model.regions;
         let (Joint::Kinked, (own, Some(other))) = (met.by.joint, met.pair) else {
@@ -109,7 +110,7 @@ impl Survey<'_> {
         across(own, other, curve, met.by.below)
     }
 
-    /// How far apart two depths are in the present box.
+    /// Returns the difference of two depths in the current box.
     fn jump(&mut self, (own, other): Pair) -> Interval {
         let regions = &self.tool.model.regions;
         let own = self.slopes.get(regions[own].depth).value;
@@ -117,12 +118,12 @@ impl Survey<'_> {
         own.plus(other.negated()).abs()
     }
 
-    /// Returns whether a region may reach the surface in the present box.
+    /// Returns whether a region may reach the surface in the current box.
     fn is_on_surface(&mut self, (own, _): Pair) -> bool {
         self.slopes.get(self.tool.model.regions[own].depth).value.low <= 0.0
     }
 
-    /// Encloses the angle between the directions of two regions in the present box.
+    /// Encloses the angle between the directions of two regions in the current box.
     fn turn(&mut self, (own, other): Pair) -> Interval {
         let Some(other) = other else { return NOTHING };
         let regions = &self.tool.model.regions;
@@ -140,22 +141,22 @@ impl Survey<'_> {
         };
         let depth = self.slopes.get(regions[own].depth);
         let turn = self.turn(met.pair);
-        // Where no more is divided, a jump that may be none is one of a corner.
+        // In a box that is not divided further, a jump that may be 0 is one at a corner.
         if met.by.joint == Joint::None && met.seen.is_none() && jump.high > TOLERANCE * self.size {
             let [from, to] = [Some(own), other].map(|owner| self.named(owner));
             let statement = Statement::Continues(from, to);
-            self.undecided.push(Undecided { cell, statement });
+            self.undecided.push(OpenProof { cell, statement });
         }
         let magnitude = |owner: usize| (regions[owner].magnitude, regions[owner].depth);
         let [of_own, of_other] = [Some(own), other].map(|owner| owner.map(magnitude));
         let same = |of: Option<(Id, Id)>| of.is_none_or(|(magnitude, depth)| magnitude == depth);
-        let felt = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
+        let evaluation = |survey: &mut Survey<'_>, of: Option<(Id, Id)>| {
             of.map_or(NOTHING, |(magnitude, _)| survey.slopes.get(magnitude).value)
         };
         let step = if same(of_own) && same(of_other) {
             jump
         } else {
-            felt(self, of_own).plus(felt(self, of_other).negated()).abs()
+            evaluation(self, of_own).plus(evaluation(self, of_other).negated()).abs()
         };
         let here = Border {
             between: met.pair,

@@ -1,20 +1,21 @@
-//! Box after box: what is felt in each region, and what changes from one to the next.
+//! The traversal of boxes: bounds of the quantities in each region, and of their changes from one region to
+//! the next.
 
 mod certain;
 mod conclude;
 mod descent;
 mod meet;
 
-use super::aim::{self, Aim};
+use super::borders::{BorderProver, Pair};
 use super::cover::{Boxes, Claim, Cover, reach};
+use super::direction::{self, DirectionFacts};
 use super::foot::Feet;
-use super::kink::ROUNDING;
-use super::parting::{Pair, Parting};
+use super::nonsmooth::ROUNDING;
 use super::root::Forms;
 use super::rounding::Errors;
 use super::slope::Slopes;
 use super::witness::Witness;
-use super::{Border, Certificate, FEW, RegionFacts, SMALL, Seen, TOLERANCE, Undecided};
+use super::{Border, Certificate, FEW, JumpPoint, OpenProof, RegionFacts, SMALL, TOLERANCE};
 use crate::diagnostic::Statement;
 use crate::domain::Domain;
 use crate::expr::interval::{Cell, Interval, ZERO as NOTHING};
@@ -24,33 +25,35 @@ use crate::plan::PlannedTool;
 use certain::Certain;
 use std::collections::BTreeMap;
 
-/// Boxes on a border are divided to this part of the tool's size, in the half plane and in space.
+/// The size to which boxes on a border are divided, relative to the tool's size, in the half plane and in
+/// space.
 const FINE: f64 = 1.0 / 56.0;
 const FINE_OF_SPACE: f64 = 1.0 / 7.0;
-/// Tries of a proof: boxes where nothing explains a border are divided to this part of the tool's size, and no more boxes are
-/// looked at than these thirds of what it may take. Tools of which no borders touch need few; where curves touch it takes so many
-/// more boxes as the root of their size is smaller. How far depths may differ in such boxes adds to the slack.
+/// The tries of a proof. Each gives the size, relative to the tool's size, to which boxes with an unexplained
+/// border are divided, and its part of the budget of boxes, in thirds. Tools whose borders do not touch need
+/// few boxes. Where curves touch, the number of boxes grows with the inverse square root of their size. The
+/// difference of depths in such boxes is added to the slack.
 const TRIES: [(f64, usize); 3] = [(1e-12, 1), (1e-10, 3), (1e-8, 9)];
-/// The same of the last try, which comes to an end.
+/// The size for the last try, which always finishes.
 const COARSEST: f64 = 1e-7;
-/// Feet may be beyond the ends of pieces by this part of the tool's size, and by so many times the half diagonal of a box
-/// that is as good as a point. By how much they are adds to the slack, so these only say when a box is divided.
+/// The largest distance of feet past the ends of segments, relative to the tool's size, and in half diagonals
+/// of a point box. The actual distance is added to the slack, so these only decide whether a box is divided.
 const BEYOND: f64 = 1e-11;
 const FAR: f64 = 4096.0;
-/// More claims to a box are not compared two by two.
+/// The largest number of claims to a box that are compared pairwise.
 const CROWD: usize = 48;
-/// Boxes times regions that a proof may take: a box takes longer the more regions there are. Up to 200 regions, the
-/// budget of boxes alone counts.
+/// The largest number of boxes times regions in a proof, since a box takes longer the more regions there are.
+/// Up to 200 regions, only the budget of boxes counts.
 const WORK: usize = 7_000_000;
-/// Inside a region a box is divided until its slope is known so well.
+/// The relative accuracy of the slope up to which a box inside a region is divided.
 const SLACK: f64 = 0.02;
-/// A border where depth may fall less steeply is looked at in smaller boxes.
+/// The slope below which a border is examined in smaller boxes.
 const SLOPING: f64 = 0.9;
-/// And in still smaller ones, as long as slopes are known no better than that.
+/// The uncertainty of that slope above which boxes become still smaller.
 const VAGUE: f64 = 0.1;
 
-/// Proves what can be proved in so many boxes, and of regions by hand whether any has points `alone`, if
-/// that is asked for.
+/// Proves as much as possible with a number of boxes. For regions by hand this includes, if `alone` is set,
+/// that no two of them overlap.
 pub(super) fn survey(tool: &PlannedTool, boxes: usize, alone: bool) -> Certificate {
     let boxes = boxes.min(WORK / tool.model.regions.len().max(1));
     let hasty = [(TRIES[0].0, 3)];
@@ -65,32 +68,32 @@ pub(super) fn survey(tool: &PlannedTool, boxes: usize, alone: bool) -> Certifica
     survey.certificate()
 }
 
-/// Returns the sum of two lengths, no less than it is; nothing is rounded where one is 0.
+/// Returns an upper bound of the sum of two lengths. Adding 0 is exact.
 fn up(a: f64, b: f64) -> f64 {
     Interval::new(a, a).plus(Interval::new(b, b)).high
 }
 
-/// Returns a length, or 0 for one that is rounding of constants with 256 bits, less than 2^-95 of the tool's size: the root
-/// of what a sum of squares keeps when it cancels.
+/// Returns a length, or 0 if it is rounding of 256-bit constants. The limit is 2^-95 of the tool's size, the
+/// root of the residue of a cancelling sum of squares.
 fn unless_rounding(length: f64, size: f64) -> f64 {
     if length > size * number::ROUNDING.sqrt() { length } else { 0.0 }
 }
 
-/// How small a box is.
+/// The size class of a box.
 #[derive(Clone, Copy, PartialEq)]
-enum Grain {
+enum BoxSize {
     Coarse,
     /// Small enough for a border that is explained.
     Fine,
-    /// As good as a point.
+    /// As small as a point: not divided further.
     Point,
-    /// Not small, but no more are divided.
+    /// Not small, but the budget is exhausted.
     Last,
 }
 
-impl Grain {
+impl BoxSize {
     fn is_last(self) -> bool {
-        matches!(self, Grain::Point | Grain::Last)
+        matches!(self, BoxSize::Point | BoxSize::Last)
     }
 }
 
@@ -100,37 +103,39 @@ struct Survey<'t> {
     slopes: Slopes<'t>,
     witness: Witness<'t>,
     errors: Errors<'t>,
-    parting: Parting<'t>,
+    parting: BorderProver<'t>,
     size: f64,
-    /// Boxes on a border are divided to this part of the tool's size.
+    /// The size to which boxes on a border are divided, relative to the tool's size.
     fine: f64,
-    /// Boxes that are as good as points.
+    /// The size of point boxes, relative to the tool's size.
     finest: f64,
     regions: Vec<Option<RegionFacts>>,
-    aims: Vec<Aim>,
+    aims: Vec<DirectionFacts>,
     certain: Vec<Certain>,
     borders: BTreeMap<(Pair, CurveIndex), Border>,
     /// A point where two owners are side by side, with a jump between.
-    jumping: BTreeMap<(Pair, CurveIndex), Seen>,
-    /// The pieces of a profile. With them it is shown that depth is no less than the distance to the surface; without,
-    /// by ways along which depth falls.
+    jumping: BTreeMap<(Pair, CurveIndex), JumpPoint>,
+    /// The segments of a profile. They prove that depth is at least the distance to the surface. Without
+    /// them, descents of depth prove it.
     feet: Option<Feet<'t>>,
-    /// By how much feet are beyond a piece's end at most.
+    /// The largest distance of a foot past the end of its segment.
     beyond: f64,
     /// The least slope toward the surface.
     least: f64,
-    /// Ways down from boxes that are as good as points.
+    /// The descents from point boxes.
     descents: Vec<descent::Descent>,
-    /// How far points of such boxes are from the outside at most, where nothing else is known of how depth falls.
+    /// The largest distance from points of such boxes to the outside, where nothing else is known about the
+    /// fall of depth.
     near: f64,
-    /// The sum, over boxes where several regions meet that no curve joins, of the largest difference of two depths there.
+    /// The sum, over boxes where several regions meet that no curve joins, of the largest difference of two
+    /// depths there.
     jumps: f64,
     /// The largest difference of the depths of each pair of regions in such boxes.
     widest: BTreeMap<Pair, f64>,
-    /// The largest difference of depths on each border where the profile is all but smooth.
+    /// The largest difference of depths on each border where the profile is nearly smooth.
     steps: BTreeMap<(Pair, CurveIndex), f64>,
-    undecided: Vec<Undecided>,
-    /// Whether it is looked whether regions overlap.
+    undecided: Vec<OpenProof>,
+    /// True if regions are checked for overlaps.
     alone: bool,
     boxes: usize,
 }
@@ -138,16 +143,18 @@ struct Survey<'t> {
 impl<'t> Survey<'t> {
     fn new(tool: &'t PlannedTool, finest: f64, alone: bool) -> Survey<'t> {
         let model = &tool.model;
-        let felt = model.regions.iter().flat_map(|region| {
-            let felt = [region.depth, region.magnitude, region.niceness];
-            felt.into_iter().chain(region.direction).chain(region.course.0)
+        let evaluation = model.regions.iter().flat_map(|region| {
+            let evaluation = [region.depth, region.magnitude, region.niceness];
+            evaluation.into_iter().chain(region.direction).chain(region.raw_direction.0)
         });
-        let roots = felt.chain(model.curves.iter().map(|curve| curve.value));
+        let roots = evaluation.chain(model.curves.iter().map(|curve| curve.value));
         let whole = tool.extent.cell();
         let mut forms = Forms::new(&model.graph);
         let feet = Feet::of(tool, &mut forms, reach(&whole));
-        let parting = Parting::new(model, whole, &mut forms, (feet.is_some(), finest));
-        let aim = |(index, region)| Aim::new(aim::straight(model, region, parting.depth(index)));
+        let parting = BorderProver::new(model, whole, &mut forms, (feet.is_some(), finest));
+        let aim = |(index, region)| {
+            DirectionFacts::new(direction::straight(model, region, parting.depth(index)))
+        };
         let aims = model.regions.iter().enumerate().map(aim).collect();
         Survey {
             tool,
@@ -185,8 +192,8 @@ impl<'t> Survey<'t> {
         }
     }
 
-    /// Looks at all boxes; beyond the budget, at the large ones that are left, if it is to come to an end then. Returns
-    /// whether it did.
+    /// Examines all boxes. Once the budget is exhausted it stops, or, with `to_the_end`, examines the
+    /// remaining boxes without dividing them. Returns whether it finished.
     fn run(&mut self, budget: usize, to_the_end: bool) -> bool {
         let mut boxes = Boxes::new(self.tool.extent.cell());
         while let Some(cell) = boxes.next() {
@@ -198,18 +205,18 @@ impl<'t> Survey<'t> {
             owners.sort_unstable();
             owners.dedup();
             let grain = match reach(&cell) / self.size {
-                reach if reach <= self.finest => Grain::Point,
-                _ if boxes.count > budget => Grain::Last,
-                reach if reach <= self.fine => Grain::Fine,
-                _ => Grain::Coarse,
+                reach if reach <= self.finest => BoxSize::Point,
+                _ if boxes.count > budget => BoxSize::Last,
+                reach if reach <= self.fine => BoxSize::Fine,
+                _ => BoxSize::Coarse,
             };
             let done = match owners.as_slice() {
                 [None] => self.owned(cell, &claims, grain),
                 [Some(owner)] => {
                     self.owned(cell, &claims, grain) && self.within(*owner, cell, grain)
                 }
-                _ if grain == Grain::Coarse => false,
-                _ if claims.len() > CROWD && grain == Grain::Fine => false,
+                _ if grain == BoxSize::Coarse => false,
+                _ if claims.len() > CROWD && grain == BoxSize::Fine => false,
                 _ => {
                     self.owned(cell, &claims, grain) && self.between(cell, &claims, &owners, grain)
                 }
@@ -222,31 +229,32 @@ impl<'t> Survey<'t> {
         true
     }
 
-    /// Whether the owners of a box are those that the list of regions says, as far as that is looked at.
-    fn owned(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
+    /// Returns whether the owners of a box are proved to be those of the list of regions, as far as that is
+    /// checked.
+    fn owned(&mut self, cell: Cell, claims: &[Claim], grain: BoxSize) -> bool {
         if self.feet.is_some() {
             return self.footed(cell, claims, grain);
         }
-        // The owner is the nearest if depth is the distance.
-        if self.tool.model.is_exact() || grain == Grain::Point {
+        // If depth is the distance, the owner is the nearest.
+        if self.tool.model.is_exact() || grain == BoxSize::Point {
             return true;
         }
         let wrong = claims
             .iter()
             .find(|claim| !self.parting.is_right(claim, (&mut self.cover, cell), self.alone));
-        if let (Some(claim), Grain::Last) = (wrong, grain) {
+        if let (Some(claim), BoxSize::Last) = (wrong, grain) {
             let statement = Statement::Alone(self.named(claim.owner));
-            self.undecided.push(Undecided { cell, statement });
+            self.undecided.push(OpenProof { cell, statement });
             return true;
         }
         wrong.is_none()
     }
 
-    /// Returns whether the points of a profile that are nearest to those of a box's claims are on their owners' pieces.
-    fn footed(&mut self, cell: Cell, claims: &[Claim], grain: Grain) -> bool {
+    /// Returns whether the feet of a box's points on the profile lie on their owners' segments.
+    fn footed(&mut self, cell: Cell, claims: &[Claim], grain: BoxSize) -> bool {
         let Some(feet) = &mut self.feet else { return true };
         let allowed = match grain {
-            Grain::Point => (FAR * reach(&cell)).min(TOLERANCE * self.size),
+            BoxSize::Point => (FAR * reach(&cell)).min(TOLERANCE * self.size),
             _ => BEYOND * self.size,
         };
         for claim in claims {
@@ -255,7 +263,7 @@ impl<'t> Survey<'t> {
                 self.beyond = self.beyond.max(unless_rounding(beyond, self.size));
             } else if grain.is_last() {
                 let statement = Statement::Nearest(self.named(claim.owner));
-                self.undecided.push(Undecided { cell, statement });
+                self.undecided.push(OpenProof { cell, statement });
                 return true;
             } else {
                 return false;
@@ -264,38 +272,38 @@ impl<'t> Survey<'t> {
         true
     }
 
-    /// Whether enough is known of a box that one region has.
-    fn within(&mut self, owner: usize, cell: Cell, grain: Grain) -> bool {
+    /// Returns whether enough is known about a box with one owner.
+    fn within(&mut self, owner: usize, cell: Cell, grain: BoxSize) -> bool {
         self.slopes.set(cell);
         let depth = self.slopes.get(self.tool.model.regions[owner].depth);
         let known = depth.length.high - depth.length.low <= SLACK * depth.length.high;
         let positive = depth.value.low >= -TOLERANCE * self.size;
         let falls = self.feet.is_some() || self.fall(owner, &[Some(owner)]) > 0.0;
-        // Where a direction vanishes is told well in the half plane, where that is a point.
+        // In the half plane a direction vanishes at points, which small boxes locate well.
         let plane = self.tool.model.domain == Domain::HalfPlane;
-        let large = grain == Grain::Coarse || plane && reach(&cell) > SMALL * self.size;
-        if !grain.is_last() && large && aim::vanishes(self.course(owner)) {
+        let large = grain == BoxSize::Coarse || plane && reach(&cell) > SMALL * self.size;
+        if !grain.is_last() && large && direction::vanishes(self.course(owner)) {
             return false;
         }
-        if !grain.is_last() && !(positive && falls && (known || grain == Grain::Fine)) {
+        if !grain.is_last() && !(positive && falls && (known || grain == BoxSize::Fine)) {
             return false;
         }
         if !positive {
             let statement = Statement::NotNegative(self.named(Some(owner)));
-            self.undecided.push(Undecided { cell, statement });
+            self.undecided.push(OpenProof { cell, statement });
         }
-        self.felt(owner, cell);
+        self.evaluation(owner, cell);
         self.descend(&[Some(owner)], cell, grain);
         true
     }
 
-    /// Whether enough is known of a box that several have.
+    /// Returns whether enough is known about a box with several owners.
     fn between(
         &mut self,
         cell: Cell,
         claims: &[Claim],
         owners: &[Option<usize>],
-        grain: Grain,
+        grain: BoxSize,
     ) -> bool {
         self.slopes.set(cell);
         let falls = self.feet.is_some()
@@ -305,22 +313,23 @@ impl<'t> Survey<'t> {
         }
         if claims.len() > CROWD {
             let statement = Statement::Crowd(owners.len());
-            self.undecided.push(Undecided { cell, statement });
+            self.undecided.push(OpenProof { cell, statement });
         } else if !self.meet(cell, claims, grain) {
             return false;
         }
-        owners.iter().flatten().for_each(|owner| self.felt(*owner, cell));
+        owners.iter().flatten().for_each(|owner| self.evaluation(*owner, cell));
         self.descend(owners, cell, grain);
         true
     }
 
-    /// A region or the outside, in words.
+    /// Returns the name of a region, or `None` for the outside.
     fn named(&self, owner: Option<usize>) -> Option<String> {
         owner.map(|owner| self.tool.model.regions[owner].name.clone())
     }
 
-    /// Notes what is felt in the present box, of a region that has all of it or a part.
-    fn felt(&mut self, owner: usize, cell: Cell) {
+    /// Records the range of a region's quantities in the current box, which lies in the region wholly or in
+    /// part.
+    fn evaluation(&mut self, owner: usize, cell: Cell) {
         let region = &self.tool.model.regions[owner];
         let depth = self.slopes.get(region.depth);
         let niceness = self.slopes.get(region.niceness);
@@ -356,6 +365,6 @@ impl<'t> Survey<'t> {
     }
 
     fn course(&mut self, owner: usize) -> [Interval; 3] {
-        self.tool.model.regions[owner].course.0.map(|part| self.slopes.get(part).value)
+        self.tool.model.regions[owner].raw_direction.0.map(|part| self.slopes.get(part).value)
     }
 }

@@ -1,15 +1,15 @@
-//! Brackets that nothing closes, or that close nothing.
+//! Unmatched brackets.
 
 use super::super::lexeme::{Kind, Lexeme, lexemes};
 use super::{ITEMS, Stop, first_token};
 use crate::diagnostic::{Diagnostic, SyntaxKind};
 
-/// Words that begin an item and nothing else.
+/// Returns whether a word begins an item and nothing else.
 fn begins_an_item(word: &str) -> bool {
     ITEMS.contains(&word) && !["magnitude", "niceness"].contains(&word)
 }
 
-/// A bracket without its other one, if the text stopped to fit because of it.
+/// Returns an error for an unmatched bracket, if parsing stopped because of it.
 pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
     let Brackets { open, extra } = Brackets::of(stop.text);
     if let Some((at, bracket)) = extra.filter(|(at, _)| *at == stop.at) {
@@ -27,7 +27,7 @@ pub(super) fn unmatched(stop: &Stop<'_>) -> Option<Diagnostic> {
     })
 }
 
-/// Where the lines of a text begin, and how far in their first characters stand.
+/// The start of each line of a text, and the indentation of its first character that is not a blank.
 struct Lines(Vec<(usize, Option<usize>)>);
 
 impl Lines {
@@ -41,8 +41,8 @@ impl Lines {
         Lines(text.split_inclusive('\n').map(line).collect())
     }
 
-    /// Returns how far in the line of a place begins, and whether it begins with that place. Nothing for the first
-    /// line.
+    /// Returns the indentation of the line at a position, and whether the position is the line's first character that
+    /// is not a blank. `None` in the first line.
     fn indent(&self, at: usize) -> Option<(usize, bool)> {
         let line = self.0.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
         let (start, width) = self.0[line];
@@ -50,7 +50,7 @@ impl Lines {
     }
 }
 
-/// The first brackets of a text that do not match.
+/// The first unmatched brackets of a text.
 #[derive(Default)]
 struct Brackets {
     open: Option<(usize, char)>,
@@ -63,7 +63,7 @@ impl Brackets {
         let lines = Lines::of(text);
         let mut open: Vec<(usize, char)> = Vec::new();
         let mut begins = true;
-        // An item inside another's braces: those were not closed.
+        // The braces that contain the start of another item, so they were not closed.
         let mut swallows = None;
         let whole = super::FILES.contains(&super::word(text.trim_start()));
         let file = text.find('{').filter(|_| whole);
@@ -74,7 +74,7 @@ impl Brackets {
                     let fits = |(_, other): &(usize, char)| (*other == '(') == (c == ')');
                     match open.last().copied().filter(fits) {
                         Some((begun, _)) => {
-                            // A brace farther left than its block belongs to what is about that.
+                            // A closing brace indented less than its block belongs to the enclosing block.
                             let left = lines.indent(at).zip(lines.indent(begun));
                             if c == '}' && left.is_some_and(|(own, other)| own.1 && own.0 < other.0)
                             {
@@ -85,7 +85,7 @@ impl Brackets {
                         None if open.is_empty() || c == ')' => {
                             found.extra = found.extra.or(Some((at, c)));
                         }
-                        // A `}` ends what was open in its braces.
+                        // A `}` closes all parentheses that are open inside its braces.
                         None => {
                             found.open = found.open.or(open.last().copied());
                             while open.pop().is_some_and(|(_, bracket)| bracket != '{') {}

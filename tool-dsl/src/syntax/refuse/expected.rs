@@ -1,9 +1,9 @@
-//! What would have fitted, as a person would write it.
+//! The expected input, in terms that a user would write.
 
 use crate::syntax::Rule;
 use pest::error::{Error, ErrorVariant};
 
-/// The rules and tokens that would have fitted.
+/// Returns descriptions of the rules and tokens that would have matched.
 pub(super) fn expected(error: &Error<Rule>) -> Vec<String> {
     let attempts = error.parse_attempts();
     let token_at = attempts.as_ref().map_or(0, |attempts| attempts.max_position);
@@ -23,7 +23,7 @@ pub(super) fn expected(error: &Error<Rule>) -> Vec<String> {
     words
 }
 
-/// A token; of words only if no rule says more.
+/// Describes a token. Word tokens are described only if no rule is.
 fn token(token: &str, ruled: bool) -> Option<String> {
     match token {
         "+" | "-" | "*" | "/" | "^" if !ruled => Some("an operator".to_owned()),

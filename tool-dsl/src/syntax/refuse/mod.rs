@@ -1,4 +1,4 @@
-//! What does not parse, said in the words of the language.
+//! Converts syntax errors to diagnostics in the terms of the language.
 
 mod bracket;
 mod expected;
@@ -10,7 +10,7 @@ use crate::source::Span;
 use expected::expected;
 use pest::error::{Error, InputLocation};
 
-/// What a file is.
+/// The keywords that begin a file.
 pub(super) const FILES: [&str; 2] = ["tool", "solid"];
 const ITEMS: [&str; 13] = [
     "units",
@@ -27,25 +27,25 @@ const ITEMS: [&str; 13] = [
     "magnitude",
     "niceness",
 ];
-/// The words behind `allow`, of a direction and of a niceness.
+/// The words after `allow`, for a direction and for a niceness.
 pub(super) const OBLIQUE: &str = "oblique";
 pub(super) const RISING: &str = "rising";
 const PROPERTIES: [&str; 4] = ["depth", "magnitude", "direction", "niceness"];
 
-/// A comparison that a closed region cannot have.
+/// Returns the error for a comparison that a closed region cannot have.
 pub(super) fn comparison(span: Span, written: &str) -> Diagnostic {
     Diagnostic::new(span, SyntaxKind::StrictComparison { written: written.to_owned() })
 }
 
-/// An `allow` of something that is not allowed there, or nowhere.
+/// Returns the error for an `allow` with a word that is not allowed there, or nowhere.
 pub(super) fn allowance(span: Span, written: &str) -> Diagnostic {
     Diagnostic::new(span, SyntaxKind::UnknownAllowance { written: written.to_owned() })
 }
 
-/// A text that stopped to fit somewhere.
+/// The position in a text at which parsing stopped.
 struct Stop<'t> {
     text: &'t str,
-    /// Where the text begins among all sources.
+    /// The offset of the text among all sources.
     offset: usize,
     at: usize,
 }
@@ -55,33 +55,33 @@ impl<'t> Stop<'t> {
         &self.text[self.at..]
     }
 
-    /// What was read, without blanks at its end.
+    /// Returns the text before the position, without trailing blanks.
     fn before(&self) -> &'t str {
         self.text[..self.at].trim_end_matches(BLANK)
     }
 
-    /// The stretch between two places of the text.
+    /// Returns the span between two positions of the text.
     fn span(&self, start: usize, end: usize) -> Span {
         Span { start, end }.behind(self.offset)
     }
 
-    /// The next bytes, or the next character.
+    /// Returns the span of the next `length` bytes, and at least of the next character.
     fn next(&self, length: usize) -> Span {
         let character = self.rest().chars().next().map_or(0, char::len_utf8);
         self.span(self.at, self.at + length.max(character))
     }
 
-    /// The last word that was read, if nothing stands behind it.
+    /// Returns the last word before the position, if nothing else follows it.
     fn last_word(&self) -> &'t str {
         let before = self.before();
         &before[before.trim_end_matches(in_name).len()..]
     }
 }
 
-/// What pest skips.
+/// The characters that pest skips.
 const BLANK: [char; 4] = [' ', '\t', '\r', '\n'];
 
-/// A syntax error of pest's, at a place in a text that begins at `offset` of the source.
+/// Converts a syntax error of pest, in a text that begins at `offset` of the source.
 pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Diagnostic {
     let stop = Stop { text, offset, at: place(text, error) };
     let wants_end = error.parse_attempts().is_some_and(|attempts| {
@@ -111,19 +111,19 @@ pub(super) fn syntax(text: &str, offset: usize, error: &Error<Rule>) -> Diagnost
     )
 }
 
-/// A text between quotes with a character that must not come onto a screen.
+/// Returns an error for a quoted text that has a character unsafe to show on a screen.
 pub(super) fn hidden(text: &str, place: Span) -> Option<Diagnostic> {
     let found = text.chars().find(|c| is_hidden(*c))?;
     Some(Diagnostic::new(place, SyntaxKind::HiddenCharacter { code: u32::from(found) }))
 }
 
-/// A text without a tool.
+/// Returns the error for a text without a tool.
 pub(super) fn nothing(text: &str) -> Diagnostic {
     let stop = Stop { text, offset: 0, at: text.len() };
     spelling::no_tool(&stop)
 }
 
-/// A syntax error in what a tool's params are given.
+/// Converts a syntax error in the arguments of a tool's parameters.
 pub(super) fn given(text: &str, error: &Error<Rule>) -> Diagnostic {
     let stop = Stop { text, offset: 0, at: place(text, error) };
     spelling::character(&stop)
@@ -142,14 +142,14 @@ fn does_not_fit(stop: &Stop<'_>, expected: Expected) -> Diagnostic {
     }
 }
 
-/// Where a rule was tried that did not fit.
+/// Returns the position at which the failed rule was tried.
 fn rule_at(error: &Error<Rule>) -> usize {
     match error.location {
         InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
     }
 }
 
-/// Where a text stopped to fit.
+/// Returns the position at which the text stops to match.
 fn place(text: &str, error: &Error<Rule>) -> usize {
     // Rules are tried where they begin; a token may have been missing further on.
     let token_at = error.parse_attempts().map_or(0, |attempts| attempts.max_position);
@@ -157,7 +157,7 @@ fn place(text: &str, error: &Error<Rule>) -> usize {
     text.len() - text[at..].trim_start_matches(BLANK).len()
 }
 
-/// An item or property that begins with a word that none does.
+/// Returns an error for an item or property that begins with an unknown word.
 fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
     let whole = stop.text.trim_start_matches(BLANK);
     let first = word(whole);
@@ -166,7 +166,7 @@ fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
     }
     let start = stop.text.len() - whole.len();
     let place = stop.span(start, start + first.len());
-    // A whole file comes with its header, an item without.
+    // A whole file includes its header; an item does not.
     if stop.offset == 0 && stop.at == start && !FILES.contains(&first) {
         let kind = SyntaxKind::UnknownFile { word: first.to_owned(), meant: nearest(first, FILES) };
         return Some(Diagnostic::new(place, kind));
@@ -193,12 +193,12 @@ fn item(stop: &Stop<'_>) -> Option<Diagnostic> {
     None
 }
 
-/// Whether a character may stand in a name.
+/// Returns whether a character may be part of a name.
 pub(super) fn in_name(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// The name that a text begins with.
+/// Returns the name at the beginning of a text.
 fn word(text: &str) -> &str {
     let end = text.find(|c| !in_name(c)).unwrap_or(text.len());
     if text.starts_with(|c: char| c.is_ascii_alphabetic()) { &text[..end] } else { "" }

@@ -1,9 +1,9 @@
-//! Mistakes of spelling: characters and habits from elsewhere.
+//! Spelling mistakes: foreign characters, and habits from other languages.
 
 use super::{BLANK, FILES, Stop, ends_a_value, in_name, word};
 use crate::diagnostic::{Diagnostic, NameStart, SpellingKind, SyntaxKind};
 
-/// Characters that look like what is meant.
+/// Characters that resemble the intended ones.
 const MEANT: [(char, &str); 15] = [
     ('×', "*"),
     ('·', "*"),
@@ -22,10 +22,10 @@ const MEANT: [(char, &str); 15] = [
     (']', ")"),
 ];
 
-/// Words behind which a name stands.
+/// Words after which a name follows.
 const NAMING: [&str; 7] = ["tool", "solid", "let", "param", "curve", "region", "as"];
 
-/// Mistakes that a character gives away.
+/// Returns an error for a mistake that its first character identifies.
 pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let next = rest.chars().next()?;
@@ -40,7 +40,7 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
         return Some(diagnostic);
     }
     let glued = before.len() == stop.at;
-    // The place of something with this character behind it.
+    // The span of `begun` with this character after it.
     let whole = |begun: &str| {
         let end = stop.at + next.len_utf8();
         stop.span(if glued { stop.at - begun.len() } else { stop.at }, end)
@@ -82,7 +82,7 @@ pub(super) fn character(stop: &Stop<'_>) -> Option<Diagnostic> {
     }
 }
 
-/// Returns the kind of a character that is none of the language's: one that cannot be seen is named by its number.
+/// Returns the error for a character that the language does not use. An invisible one is shown by its code point.
 fn foreign(next: char) -> Option<SpellingKind> {
     let visible = !(next.is_control()
         || next.is_whitespace()
@@ -96,7 +96,7 @@ fn foreign(next: char) -> Option<SpellingKind> {
     }
 }
 
-/// Habits from elsewhere: a unit apart from its number, `and`, a name with a dash.
+/// Returns an error for a habit from elsewhere: a unit apart from its number, `and`, a name with a dash.
 pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let next = word(rest);
@@ -139,7 +139,7 @@ pub(super) fn habit(stop: &Stop<'_>) -> Option<Diagnostic> {
     None
 }
 
-/// Text or a comment that does not end, and a file in which nothing is.
+/// Returns an error for a text or a comment that does not end, or for an empty file.
 pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
     let comment = |at: usize| Diagnostic::new(stop.span(at, at + 2), SyntaxKind::CommentNotClosed);
     if stop.rest().starts_with("/*") {
@@ -163,12 +163,12 @@ pub(super) fn unended(stop: &Stop<'_>) -> Option<Diagnostic> {
     open.then(|| comment(before.rfind("/*").unwrap_or_default()))
 }
 
-/// A text that ends without a tool.
+/// Returns the error for a text that ends without a tool.
 pub(super) fn no_tool(stop: &Stop<'_>) -> Diagnostic {
     Diagnostic::new(stop.next(0), SyntaxKind::NoTool)
 }
 
-/// A name with a dash, or one that begins with a digit.
+/// Returns an error for a name with a dash, or one that begins with a digit.
 fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let of_tool = |naming: &str| FILES.contains(&naming);
@@ -184,7 +184,7 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
     let naming = before[..before.len() - begun.len()].trim_end_matches(BLANK);
     let naming = &naming[naming.trim_end_matches(in_name).len()..];
     if rest.starts_with('-') && NAMING.contains(&naming) {
-        // Inline each token stands apart.
+        // Tokens of an inline tool are separated by blanks.
         let tail = rest[1..].trim_start_matches(BLANK);
         let tail = &tail[..tail.find(|c| !in_name(c) && c != '-').unwrap_or(tail.len())];
         let whole = format!("{begun}-{tail}");
@@ -196,7 +196,7 @@ fn name(stop: &Stop<'_>) -> Option<Diagnostic> {
     None
 }
 
-/// Operators of other languages.
+/// Returns an error for an operator of another language.
 fn operator(stop: &Stop<'_>) -> Option<Diagnostic> {
     let (rest, before) = (stop.rest(), stop.before());
     let both = || stop.span(stop.at - 1, stop.at + 1);
@@ -223,7 +223,7 @@ fn operator(stop: &Stop<'_>) -> Option<Diagnostic> {
     None
 }
 
-/// The number that a text ends with.
+/// Returns the number at the end of a text.
 fn number_before(before: &str) -> &str {
     let digits = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
     let number = &before[digits.len()..];

@@ -1,14 +1,14 @@
-//! Exports say what the map has, to the bit.
+//! Exports reproduce the map to the bit.
 
 use super::*;
-use crate::mesh::Shape;
-use crate::postures::colour;
+use crate::mesh::Geometry;
+use crate::postures::colormap;
 use serde_json::Value;
 
 fn known() -> (Place, PostureMap) {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(7));
     let map = place.open();
-    let mut given: Vec<(u32, Row)> = (0..10).map(|k| (k, any_row(&mut random))).collect();
+    let mut given: Vec<(u32, MapRow)> = (0..10).map(|k| (k, any_row(&mut random))).collect();
     given[2].1.access.clear();
     given[3].1.best[..].iter_mut().for_each(|record| record.depth = 5e-324);
     map.record(&given).expect("recorded");
@@ -78,7 +78,7 @@ fn json_reads_back() {
         assert_eq!(value["triangle"], *triangle);
         assert_eq!(value["access"].as_array().map(Vec::len), Some(row.access.len()));
         for (record, value) in row.best.iter().zip(value["best"].as_array().expect("a list")) {
-            // As it is written, whatever a reader makes of it.
+            // Compare the text as written, independently of a reader's rounding.
             let tip = record.tip.map(|number| serde_json::to_string(&number).expect("a number"));
             tip.iter().zip(record.tip).for_each(|(text, number)| same(number, text));
             assert!(line.contains(&tip.join(",")));
@@ -92,13 +92,13 @@ fn ply_reads_back() {
     let (place, map) = known();
     let (mesh, path) = (block(), place.0.path().join("a.ply"));
     let mut bytes = Vec::new();
-    map.write_ply(&mut bytes, &mesh, colour).expect("written");
+    map.write_ply(&mut bytes, &mesh, colormap).expect("written");
     fs::write(&path, &bytes).expect("written");
-    let Shape::Mesh(read) = Shape::read(&path, Unit::Millimetre).expect("a PLY") else {
+    let Geometry::Mesh(read) = Geometry::read(&path, Unit::Millimetre).expect("a PLY") else {
         panic!("no mesh")
     };
-    assert_eq!(PartStamp::of(&read), PartStamp::of(&mesh));
-    // A face is a count, three corners, three bytes of colour and a double.
+    assert_eq!(PartFingerprint::of(&read), PartFingerprint::of(&mesh));
+    // A face has a count, three corners, three bytes of colour and a double.
     let faces = &bytes[bytes.len() - 12 * 24..];
     for (triangle, face) in (0..).zip(faces.chunks(24)) {
         let niceness = f64::from_le_bytes(face[16..].try_into().expect("8 bytes"));
@@ -106,13 +106,13 @@ fn ply_reads_back() {
         match row.best.first() {
             Some(best) => {
                 assert_eq!(niceness.to_bits(), best.niceness.to_bits());
-                assert_eq!(face[13..16], colour(niceness));
+                assert_eq!(face[13..16], colormap(niceness));
             }
             None => assert!(niceness.is_nan() && face[13..16] == [0x80; 3]),
         }
     }
     let other = shapes::sphere(3.0, 1, Unit::Millimetre).expect("a sphere");
-    let error = map.write_ply(&mut Vec::new(), &other, colour).expect_err("another part");
+    let error = map.write_ply(&mut Vec::new(), &other, colormap).expect_err("another part");
     assert!(matches!(error, MapError::Differs { .. }), "{error:?}");
 }
 
@@ -131,7 +131,7 @@ fn an_export_that_cannot_be_written_says_so() {
     let said = [
         map.write_csv(&mut Full),
         map.write_json(&mut Full),
-        map.write_ply(&mut Full, &block(), colour),
+        map.write_ply(&mut Full, &block(), colormap),
     ];
     for said in said {
         assert!(matches!(said, Err(MapError::Export { .. })), "{said:?}");

@@ -1,4 +1,4 @@
-//! A disk without room: nothing that was recorded is lost.
+//! A full disk: nothing that was recorded is lost.
 
 use super::*;
 use redb::StorageBackend;
@@ -6,7 +6,7 @@ use redb::backends::InMemoryBackend;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
-/// A disk with room for so many bytes more.
+/// A disk with room for a limited number of further bytes.
 #[derive(Clone, Debug)]
 struct Disk {
     bytes: Arc<InMemoryBackend>,
@@ -14,7 +14,7 @@ struct Disk {
 }
 
 impl Disk {
-    /// One with a map that has no rows.
+    /// Creates a disk with a map that has no rows.
     fn new() -> Disk {
         let disk = Disk { bytes: Arc::default(), room: Arc::new(AtomicI64::new(i64::MAX)) };
         write_facts(&disk.store().expect("room"), &identity()).expect("written");
@@ -71,9 +71,9 @@ fn a_full_disk_says_so_and_keeps_what_was_recorded() {
         let disk = Disk::new();
         let map = disk.map().expect("room");
         disk.room.store(room, Ordering::Relaxed);
-        let mut acknowledged: Vec<(u32, Row)> = Vec::new();
+        let mut acknowledged: Vec<(u32, MapRow)> = Vec::new();
         for triangle in 0..12 {
-            let row = Row { best: vec![any_record(&mut random)], access: Vec::new() };
+            let row = MapRow { best: vec![any_record(&mut random)], access: Vec::new() };
             match map.record(&[(triangle, row.clone())]) {
                 Ok(()) => acknowledged.push((triangle, row)),
                 Err(error) => {
@@ -81,7 +81,7 @@ fn a_full_disk_says_so_and_keeps_what_was_recorded() {
                     assert!(matches!(error, MapError::Full { .. }), "{error:?}");
                     assert!(text.contains("what was recorded before is safe in it"), "{text}");
                     stopped[usize::from(triangle > 0)] += 1;
-                    // It is not gone on with as if nothing were.
+                    // A further attempt fails as well.
                     let again = map.record(&[(triangle, row)]).expect_err("no room yet");
                     assert!(matches!(again, MapError::Unwritable { .. } | MapError::Full { .. }));
                     break;
@@ -91,7 +91,7 @@ fn a_full_disk_says_so_and_keeps_what_was_recorded() {
         drop(map);
         disk.room.store(i64::MAX, Ordering::Relaxed);
         let found = rows(&disk.map().expect("room again"));
-        // The last may be there though it could not be said.
+        // The last batch may be stored although it could not be acknowledged.
         assert!(found.starts_with(&acknowledged), "{room}: {found:?} {acknowledged:?}");
         assert!(found.len() <= acknowledged.len() + 1);
     }

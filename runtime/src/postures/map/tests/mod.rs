@@ -38,7 +38,7 @@ crate::tool! {
     }
 }
 
-/// Twelve triangles.
+/// Returns a mesh of twelve triangles.
 fn block() -> Mesh {
     shapes::cuboid(Point3::origin(), Point3::new(9.0, 8.0, 7.0), Unit::Millimetre).expect("a mesh")
 }
@@ -47,13 +47,13 @@ fn rules() -> Rules {
     Rules { tolerance: 0.01, niceness: 0.25, allowed: vec![("shank".into(), -0.5)] }
 }
 
-/// Of two tools, 70 directions and three postures a triangle.
-fn identity() -> Identity {
+/// Returns an identity with two tools, 70 directions and three postures per triangle.
+fn identity() -> MapIdentity {
     let directions = (0..70).map(|k| (f64::from(k) / 10.0).sin_cos()).map(|(x, y)| [x, y, 0.0]);
-    Identity::new(&block(), &[&Ball, &Flat], rules())
+    MapIdentity::new(&block(), &[&Ball, &Flat], rules())
         .expect("rules")
-        .directions(directions.collect())
-        .keeping(NonZeroU16::new(3).expect("not 0"))
+        .with_directions(directions.collect())
+        .with_keep(NonZeroU16::new(3).expect("not 0"))
 }
 
 struct Place(TempDir);
@@ -80,38 +80,38 @@ fn part(random: &mut Pcg64Mcg) -> f64 {
     random.next_u64() as f64 / u64::MAX as f64
 }
 
-fn any_record(random: &mut Pcg64Mcg) -> Record {
+fn any_record(random: &mut Pcg64Mcg) -> PostureRecord {
     let tip = [0; 3].map(|_| 20.0 * part(random) - 10.0);
     let (x, z) = (6.0 * part(random)).sin_cos();
-    Record {
+    PostureRecord {
         tool: (random.next_u32() % 2) as u16,
         tip,
         axis: [x, 0.0, z],
-        // Some are as nice as others.
+        // Few values, so that some are equal.
         niceness: f64::from(random.next_u32() % 4) / 3.0,
         depth: part(random) / 1e3,
         clearance: if random.next_u32().is_multiple_of(4) { f64::INFINITY } else { part(random) },
     }
 }
 
-fn any_row(random: &mut Pcg64Mcg) -> Row {
-    let access = |tool: u16, random: &mut Pcg64Mcg| Access {
+fn any_row(random: &mut Pcg64Mcg) -> MapRow {
+    let access = |tool: u16, random: &mut Pcg64Mcg| Accessibility {
         tool,
         directions: vec![random.next_u64(), random.next_u64() & 0b11_1111],
         stickout: (tool == 0).then(|| 30.0 * part(random)),
     };
     let best = (0..random.next_u32() % 3).map(|_| any_record(random)).collect();
-    Row { best, access: vec![access(0, random), access(1, random)] }
+    MapRow { best, access: vec![access(0, random), access(1, random)] }
 }
 
-fn rows(map: &PostureMap) -> Vec<(u32, Row)> {
+fn rows(map: &PostureMap) -> Vec<(u32, MapRow)> {
     map.rows().expect("rows").collect::<Result<_, _>>().expect("rows that are whole")
 }
 
 #[test]
 fn what_is_recorded_is_there_when_it_is_opened_again() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(1));
-    let given: Vec<(u32, Row)> = (0..9).map(|k| (k, any_row(&mut random))).collect();
+    let given: Vec<(u32, MapRow)> = (0..9).map(|k| (k, any_row(&mut random))).collect();
     let first = {
         let map = place.open();
         map.record(&given[..5]).expect("recorded");
@@ -137,15 +137,15 @@ fn what_is_recorded_is_there_when_it_is_opened_again() {
 #[test]
 fn the_same_postures_stay_in_whatever_order_they_come() {
     let mut random = Pcg64Mcg::seed_from_u64(2);
-    let mut records: Vec<(u32, Record)> =
+    let mut records: Vec<(u32, PostureRecord)> =
         (0..200).map(|_| (random.next_u32() % 12, any_record(&mut random))).collect();
     let mut found = Vec::new();
     for size in [200, 7, 1] {
         let place = Place::new();
         let map = place.open();
-        records.chunks(size).for_each(|some| map.offer(some).expect("recorded"));
-        // Once more changes nothing.
-        map.offer(&records).expect("recorded");
+        records.chunks(size).for_each(|some| map.merge(some).expect("recorded"));
+        // Merging the same records once more changes nothing.
+        map.merge(&records).expect("recorded");
         found.push(rows(&map));
         let shift = 1 + random.next_u32() as usize % 100;
         records.rotate_left(shift);
@@ -155,7 +155,7 @@ fn the_same_postures_stay_in_whatever_order_they_come() {
     assert_eq!(found[0], found[2]);
     for (triangle, row) in &found[0] {
         let of = records.iter().filter(|(of, _)| of == triangle).map(|(_, record)| record);
-        let mut all: Vec<&Record> = of.collect();
+        let mut all: Vec<&PostureRecord> = of.collect();
         all.sort_by(|one, other| other.niceness.total_cmp(&one.niceness));
         let nicest: Vec<f64> = all.iter().take(3).map(|record| record.niceness).collect();
         let kept: Vec<f64> = row.best.iter().map(|record| record.niceness).collect();
@@ -166,9 +166,9 @@ fn the_same_postures_stay_in_whatever_order_they_come() {
 #[test]
 fn of_equally_nice_postures_the_clearer_and_then_the_less_deep_stays() {
     let place = Place::new();
-    let once = identity().keeping(NonZeroU16::MIN);
+    let once = identity().with_keep(NonZeroU16::MIN);
     let map = PostureMap::open(place.path(), &once).expect("a map");
-    let record = |niceness, clearance, depth, tool| Record {
+    let record = |niceness, clearance, depth, tool| PostureRecord {
         tool,
         tip: [0.0; 3],
         axis: [0.0, 0.0, 1.0],
@@ -184,10 +184,10 @@ fn of_equally_nice_postures_the_clearer_and_then_the_less_deep_stays() {
         record(0.6, 2.0, 0.01, 0),
     ];
     for record in order {
-        map.offer(&[(0, record)]).expect("recorded");
+        map.merge(&[(0, record)]).expect("recorded");
         assert_eq!(map.row(0).expect("read").expect("a row").best, [record]);
     }
-    order.iter().for_each(|record| map.offer(&[(0, *record)]).expect("recorded"));
+    order.iter().for_each(|record| map.merge(&[(0, *record)]).expect("recorded"));
     assert_eq!(map.row(0).expect("read").expect("a row").best, [order[4]]);
 }
 
@@ -195,30 +195,32 @@ fn of_equally_nice_postures_the_clearer_and_then_the_less_deep_stays() {
 fn a_sweep_and_a_hand_do_not_take_from_each_other() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(3));
     let map = place.open();
-    let nice = Record { niceness: 2.0, ..any_record(&mut random) };
-    map.offer(&[(4, nice)]).expect("recorded");
+    let nice = PostureRecord { niceness: 2.0, ..any_record(&mut random) };
+    map.merge(&[(4, nice)]).expect("recorded");
     assert!(!map.swept().expect("read").contains(&4));
     let row = any_row(&mut random);
     map.record(&[(4, row.clone())]).expect("recorded");
     let found = map.row(4).expect("read").expect("a row");
     assert_eq!(found.best[0], nice);
     assert_eq!(found.access, row.access);
-    let again = Row { best: Vec::new(), ..any_row(&mut random) };
+    let again = MapRow { best: Vec::new(), ..any_row(&mut random) };
     map.record(&[(4, again.clone())]).expect("recorded");
     let known = map.row(4).expect("read").expect("a row");
-    assert_eq!(known, Row { access: again.access, ..found });
+    assert_eq!(known, MapRow { access: again.access, ..found });
 }
 
 #[test]
 fn a_part_is_another_when_a_bit_of_a_corner_is() {
     let mesh = block();
-    let own = PartStamp::of(&mesh);
+    let own = PartFingerprint::of(&mesh);
     let (vertices, triangles) = (mesh.vertices().to_vec(), mesh.triangles().to_vec());
     let of = |vertices: &[Point3<f64>], triangles: &[[u32; 3]], unit| {
-        PartStamp::of(&Mesh::new(vertices.to_vec(), triangles.to_vec(), unit).expect("a mesh"))
+        PartFingerprint::of(
+            &Mesh::new(vertices.to_vec(), triangles.to_vec(), unit).expect("a mesh"),
+        )
     };
     assert_eq!(of(&vertices, &triangles, Unit::Millimetre), own);
-    // Corners that are listed otherwise are the same corners.
+    // A duplicated vertex leaves the corners the same.
     let mut twice = vertices.clone();
     twice.push(vertices[triangles[0][0] as usize]);
     let mut other = triangles.clone();

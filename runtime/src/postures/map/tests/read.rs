@@ -1,11 +1,11 @@
-//! Maps that are only read: as they are at a moment, whoever writes into them, and not changed by that.
+//! Maps opened for reading: they show one moment, whoever writes to the file, and leave the file unchanged.
 
 use super::*;
 use crate::postures::Directions;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
-fn some_rows(random: &mut Pcg64Mcg, triangles: std::ops::Range<u32>) -> Vec<(u32, Row)> {
+fn some_rows(random: &mut Pcg64Mcg, triangles: std::ops::Range<u32>) -> Vec<(u32, MapRow)> {
     triangles.map(|k| (k, any_row(random))).collect()
 }
 
@@ -37,7 +37,7 @@ fn a_copy_is_not_recorded_into() {
     let copy = PostureMap::read(place.path()).expect("a map");
     let error = copy.record(&some_rows(&mut random, 0..1)).expect_err("read only");
     assert!(matches!(error, MapError::ReadOnly { .. }), "{error:?}");
-    let error = copy.offer(&[(0, any_record(&mut random))]).expect_err("read only");
+    let error = copy.merge(&[(0, any_record(&mut random))]).expect_err("read only");
     assert!(error.to_string().contains("`PostureMap::resume`"), "{error}");
     let map = PostureMap::resume(place.path()).expect("a map");
     map.record(&some_rows(&mut random, 0..1)).expect("recorded");
@@ -54,15 +54,15 @@ fn a_map_is_read_while_another_records_into_it() {
     assert_eq!(rows(&early), known, "a copy stays as it is");
     assert_eq!(rows(&PostureMap::read(place.path()).expect("a map")), rows(&map));
 
-    let nice = |niceness, random: &mut Pcg64Mcg| Record { niceness, ..any_record(random) };
-    map.offer(&[(3, nice(9.0, &mut random))]).expect("recorded");
+    let nice = |niceness, random: &mut Pcg64Mcg| PostureRecord { niceness, ..any_record(random) };
+    map.merge(&[(3, nice(9.0, &mut random))]).expect("recorded");
     let (over, path) = (AtomicBool::new(false), place.path());
     std::thread::scope(|scope| {
         let reader = scope.spawn(|| {
             let mut nicest = f64::NEG_INFINITY;
             let mut reads = 0;
             loop {
-                // What is read after all was recorded has all of it.
+                // A map that is read after the last record has all records.
                 let last = over.load(Ordering::Acquire) && reads >= 2;
                 let map = PostureMap::read(&path).expect("a map");
                 let now = rows(&map)[3].1.best[0].niceness;
@@ -75,7 +75,7 @@ fn a_map_is_read_while_another_records_into_it() {
         });
         for step in 0..60 {
             let record = nice(10.0 + f64::from(step), &mut random);
-            map.offer(&[(3, record)]).expect("recorded");
+            map.merge(&[(3, record)]).expect("recorded");
         }
         over.store(true, Ordering::Release);
         assert_eq!(reader.join().expect("it reads"), 69.0);
@@ -95,7 +95,7 @@ fn a_map_without_its_end_is_called_truncated() {
             assert!(error.to_string().contains(&format!("truncated: it has {length} of ")));
         }
     }
-    // Also one whose writer was killed, of which the header says less.
+    // The same for a file whose writer was killed, although its header has less information.
     fs::write(place.path(), &bytes).expect("written");
     let live = place.open();
     let killed = fs::read(place.path()).expect("read");
@@ -109,8 +109,8 @@ fn a_map_without_its_end_is_called_truncated() {
     assert_eq!(rows(&PostureMap::read(place.path()).expect("whole")).len(), 12);
 }
 
-/// A map's file with that identity and these rows' bytes, as a stranger could make it.
-fn crafted(place: &Place, identity: &Identity, rows: &[(u32, Vec<u8>)]) {
+/// Creates a map's file with the given identity and bytes of rows, as an attacker could.
+fn crafted(place: &Place, identity: &MapIdentity, rows: &[(u32, Vec<u8>)]) {
     let _ = fs::remove_file(place.path());
     let store = Database::create(place.path()).expect("a store");
     write_facts(&store, identity).expect("written");
@@ -127,7 +127,7 @@ fn crafted(place: &Place, identity: &Identity, rows: &[(u32, Vec<u8>)]) {
 fn no_file_asks_for_more_memory_than_it_has_bytes() {
     let place = Place::new();
     // The tables between 50,000 directions would take 5 GB.
-    let many = identity().directions(vec![[0.0, 0.0, 1.0]; 50_000]);
+    let many = identity().with_directions(vec![[0.0, 0.0, 1.0]; 50_000]);
     crafted(&place, &many, &[]);
     let error = PostureMap::read(place.path()).expect_err("too many");
     assert!(matches!(error, MapError::Oversized { .. }), "{error:?}");
@@ -142,7 +142,7 @@ fn no_file_asks_for_more_memory_than_it_has_bytes() {
     let error = PostureMap::read(place.path()).expect_err("too many");
     assert!(error.to_string().contains("70000 tools"), "{error}");
 
-    // Of more triangles than any mesh has; what is known of them takes as much as is in the file.
+    // More triangles than any mesh has: the data take as much memory as the file has bytes.
     let mut vast = identity();
     vast.part.triangles = u32::MAX;
     let row = any_row(&mut Pcg64Mcg::seed_from_u64(11));
@@ -150,10 +150,10 @@ fn no_file_asks_for_more_memory_than_it_has_bytes() {
     let map = PostureMap::read(place.path()).expect("a map");
     assert_eq!(map.swept().expect("read").len(), 1);
 
-    let access = |tool| Access { tool, directions: vec![0, 0], stickout: None };
-    let row = Row { best: Vec::new(), access: vec![access(1), access(0), access(1)] };
+    let access = |tool| Accessibility { tool, directions: vec![0, 0], stickout: None };
+    let row = MapRow { best: Vec::new(), access: vec![access(1), access(0), access(1)] };
     let record = any_record(&mut Pcg64Mcg::seed_from_u64(12));
-    let more = Row { best: vec![record; 4], access: Vec::new() };
+    let more = MapRow { best: vec![record; 4], access: Vec::new() };
     for row in [row, more] {
         crafted(&place, &identity(), &[(3, encode(&row))]);
         let map = PostureMap::read(place.path()).expect("a map");

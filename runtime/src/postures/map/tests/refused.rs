@@ -1,4 +1,4 @@
-//! What is no map, or that of something else, is refused and says so.
+//! Files that are no map, or a map of something else, are refused with an explanation.
 
 use super::*;
 use redb::TableDefinition;
@@ -7,7 +7,7 @@ use redb::TableDefinition;
 fn what_belongs_to_something_else_is_refused() {
     let place = Place::new();
     drop(place.open());
-    let says = |asked: &Identity| {
+    let says = |asked: &MapIdentity| {
         let error = PostureMap::open(place.path(), asked).expect_err("it should be refused");
         assert!(matches!(error, MapError::Differs { .. }), "{error:?}");
         let text = error.to_string();
@@ -31,11 +31,11 @@ fn what_belongs_to_something_else_is_refused() {
     let text = says(&asked);
     assert!(text.contains("(tolerance 0.01, niceness above 0.25, `shank` -0.5, 3 kept"), "{text}");
     assert!(text.contains("than now (tolerance 0.02,"), "{text}");
-    assert!(says(&own.clone().keeping(NonZeroU16::MIN)).contains("1 kept of each triangle"));
+    assert!(says(&own.clone().with_keep(NonZeroU16::MIN)).contains("1 kept of each triangle"));
     let mut asked = own.clone();
     asked.directions[9][2] = 1e-300;
     assert!(says(&asked).contains("it has 70, now there are 70, and number 9 from 0"));
-    asked = own.clone().directions(own.directions[..60].to_vec());
+    asked = own.clone().with_directions(own.directions[..60].to_vec());
     assert!(says(&asked).contains("it has 70, now there are 60, and number 60 from 0"));
     assert_eq!(place.open().identity(), &own);
 }
@@ -98,7 +98,7 @@ fn a_file_that_may_not_be_written_is_refused() {
     let place = Place::new();
     drop(place.open());
     fs::set_permissions(place.path(), fs::Permissions::from_mode(0o000)).expect("set");
-    // To some users everything is permitted.
+    // Some users, such as root, may read any file.
     if File::open(place.path()).is_err() {
         assert!(matches!(place.error(), MapError::Unreadable { .. }));
     }
@@ -109,23 +109,23 @@ fn a_row_that_does_not_fit_is_refused_with_its_batch() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(4));
     let map = place.open();
     let good = any_record(&mut random);
-    let access = |directions: Vec<u64>, tool| Row {
+    let access = |directions: Vec<u64>, tool| MapRow {
         best: Vec::new(),
-        access: vec![Access { tool, directions, stickout: None }],
+        access: vec![Accessibility { tool, directions, stickout: None }],
     };
     let bad = [
         (12, good),
-        (0, Record { tool: 2, ..good }),
-        (0, Record { niceness: f64::NAN, ..good }),
-        (0, Record { depth: f64::INFINITY, ..good }),
-        (0, Record { clearance: -1.0, ..good }),
-        (0, Record { axis: [0.0; 3], ..good }),
-        (0, Record { tip: [f64::NAN; 3], ..good }),
+        (0, PostureRecord { tool: 2, ..good }),
+        (0, PostureRecord { niceness: f64::NAN, ..good }),
+        (0, PostureRecord { depth: f64::INFINITY, ..good }),
+        (0, PostureRecord { clearance: -1.0, ..good }),
+        (0, PostureRecord { axis: [0.0; 3], ..good }),
+        (0, PostureRecord { tip: [f64::NAN; 3], ..good }),
     ];
     for (triangle, record) in bad {
-        let error = map.offer(&[(1, good), (triangle, record)]).expect_err("unfit");
+        let error = map.merge(&[(1, good), (triangle, record)]).expect_err("unfit");
         assert!(matches!(error, MapError::Unfit { .. }), "{error:?}");
-        let row = Row { best: vec![record], access: Vec::new() };
+        let row = MapRow { best: vec![record], access: Vec::new() };
         assert!(map.record(&[(triangle, row)]).is_err());
     }
     for row in [access(vec![0], 0), access(vec![0, 1 << 6], 0), access(vec![0, 0], 2)] {
@@ -137,17 +137,17 @@ fn a_row_that_does_not_fit_is_refused_with_its_batch() {
 #[test]
 fn no_flipped_bit_is_taken_for_a_posture() {
     let (place, mut random) = (Place::new(), Pcg64Mcg::seed_from_u64(5));
-    let given: Vec<(u32, Row)> = (0..12).map(|k| (k, any_row(&mut random))).collect();
+    let given: Vec<(u32, MapRow)> = (0..12).map(|k| (k, any_row(&mut random))).collect();
     let map = place.open();
     map.record(&given).expect("recorded");
     let whole = rows(&map);
     drop(map);
     let bytes = fs::read(place.path()).expect("read");
-    let look = |bytes: &[u8]| -> Result<Vec<(u32, Row)>, MapError> {
+    let look = |bytes: &[u8]| -> Result<Vec<(u32, MapRow)>, MapError> {
         fs::write(place.path(), bytes).expect("written");
         PostureMap::open(place.path(), &identity())?.rows()?.collect()
     };
-    // The file is mostly empty: what is not 0, and some of the rest.
+    // The file is mostly zeros: change bytes that are not 0, and some of the rest.
     let used: Vec<usize> = (0..bytes.len()).filter(|at| bytes[*at] != 0).collect();
     let step = used.len().div_ceil(100);
     let places = used.into_iter().step_by(step).chain((0..bytes.len()).step_by(bytes.len() / 25));

@@ -1,0 +1,93 @@
+//! The distance of a tool from a part.
+
+use super::Certifier;
+use super::query::DepthQuery;
+use super::rounding;
+use super::search::{QuerySetting, SearchState};
+use super::tool_model::ToolModel;
+use super::triangle::line_search::Goal;
+use super::verdict::Clearance;
+use crate::pose::Pose;
+
+/// The queries for the distance of some surfaces: the depth of points inside the tool, and the distance of those
+/// outside.
+pub(super) struct ClearanceQuery {
+    surfaces: Vec<usize>,
+    inside: DepthQuery,
+    outside: DepthQuery,
+}
+
+impl Certifier<'_> {
+    /// Computes the distance of the part's triangles from the tool. The interval is at most as wide as the tolerance,
+    /// in the part's unit, plus the rounding error bound. It is 0 in contact. For a tool inside the material it is
+    /// the distance to the part's surface.
+    pub fn clearance(&mut self, pose: &Pose, tolerance: f64) -> Clearance {
+        let Certifier { setting, whole, work, budget, .. } = self;
+        distance(setting, [whole, whole], work, pose, (tolerance, *budget))
+    }
+
+    /// Computes the distance of the part's triangles from some surfaces of the tool, given by their indices in the
+    /// tool's list. The interval is that of [`Certifier::clearance`]. It is 0 if a point inside the tool is the
+    /// nearest to one of these surfaces. For a point in a region of the tool that other surfaces own, it is the
+    /// distance from the nearest of these surfaces. Without any surfaces it is infinite. For a tool without a profile
+    /// the nearest surface is unknown (see [`Certifier::with_allowance`]): the lower bound is that of the whole tool,
+    /// the upper bound infinite.
+    ///
+    /// # Panics
+    /// If there is no such surface.
+    pub fn clearance_of(&mut self, surfaces: &[usize], pose: &Pose, tolerance: f64) -> Clearance {
+        assert!(surfaces.iter().all(|surface| *surface < self.info.surfaces.len()));
+        if surfaces.is_empty() {
+            return Clearance { distance: [f64::INFINITY; 2], witness: None };
+        }
+        let ToolModel::Profile(section) = &self.setting.body else {
+            let [low, _] = self.clearance(pose, tolerance).distance;
+            return Clearance { distance: [low, f64::INFINITY], witness: None };
+        };
+        if self.apart.as_ref().is_none_or(|apart| apart.surfaces != surfaces) {
+            let margin = self.setting.setup.margin;
+            let of = |limit| DepthQuery::new(section, margin, limit, |k| surfaces.contains(&k));
+            // Any limit below 0 makes a query for the distance from the surfaces themselves.
+            let (inside, outside) = (of(0.0), of(-1.0));
+            self.apart = Some(ClearanceQuery { surfaces: surfaces.to_vec(), inside, outside });
+        }
+        let Certifier { setting, apart, work, budget, .. } = self;
+        let ClearanceQuery { inside, outside, .. } = apart.as_ref().expect("it was just made");
+        distance(setting, [inside, outside], work, pose, (tolerance, *budget))
+    }
+}
+
+/// Computes the distance of the nearest point, or 0 if one is inside.
+fn distance(
+    setting: &QuerySetting<'_>,
+    [inside, outside]: [&DepthQuery; 2],
+    work: &mut SearchState,
+    pose: &Pose,
+    (tolerance, budget): (f64, u32),
+) -> Clearance {
+    let touch = 2.0 * setting.error;
+    let goal = Goal { least: -touch, tolerance: touch, enough: touch, budget };
+    work.inside(setting, inside, pose, goal);
+    if let Some(best) = &work.best {
+        let witness = setting.witness(best, pose);
+        let high = if work.search.best > touch { 0.0 } else { 2.0 * touch + work.skew };
+        let distance = [0.0, high * setting.length];
+        return Clearance { distance, witness: Some(witness) };
+    }
+    let unsure = work.search.open();
+    // The rounding error grows with the distance.
+    let error = setting.error + rounding::distance_error_bound(work.far());
+    // Written so that a NaN tolerance is replaced.
+    let tolerance = (4.0 * error).max(tolerance / setting.length);
+    let [least, enough] = [f64::NEG_INFINITY, f64::INFINITY];
+    work.outside(setting, outside, pose, Goal { least, tolerance, enough, budget });
+    let more = error + work.skew;
+    let low = -work.search.wanted().max(work.search.most) - more;
+    let low = if unsure { 0.0 } else { low.max(0.0) };
+    // For a point outside, a depth field gives only a lower bound of the distance.
+    let high = if setting.exact { -work.search.best + more } else { f64::INFINITY };
+    Clearance {
+        distance: [low, high].map(|distance| distance * setting.length),
+        witness: work.best.as_ref().map(|best| setting.witness(best, pose)),
+    }
+}

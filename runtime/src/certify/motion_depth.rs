@@ -1,0 +1,367 @@
+//! Queries about motions: clearance along the whole motion, and the greatest depth of a surface, with proved
+//! bounds.
+//!
+//! A sweep either finds a point that is too deep or proves that there is none. The greatest depth is therefore
+//! bounded by repeated sweeps for something deeper than the deepest point known. That point is found by hill
+//! climbing in time, from a few times of the motion and from the points that sweeps return. A sweep proceeds in
+//! order of time and is slow near points whose depth is close to its limit. It is therefore used last, and with
+//! no finer limit than pays off.
+
+use super::containment::{Containment, CorePoints};
+use super::query::DepthQuery;
+use super::rounding;
+use super::search::{MARGIN, QuerySetting, SearchState};
+use super::sweep::{SweepEnd, SweepTask, Sweeper};
+use super::tool_model::ToolModel;
+use super::triangle::line_search::Goal;
+use super::verdict::{MotionDepth, MotionVerdict, Witness};
+use super::{Certifier, ContactVerdict, penetration};
+use crate::motion::Motion;
+use crate::tool::{Symmetry, ToolInfo};
+use std::slice;
+
+/// Returns the error bound of a point of the tool along a motion, in the tool's unit: `rounding` derives it.
+pub(super) fn error(setting: &QuerySetting<'_>, motion: &Motion) -> f64 {
+    let turned = if motion.has_spin() { setting.error } else { 0.5 * setting.error };
+    setting.error
+        + turned
+        + rounding::distance_error_bound(motion.displacement().norm() / setting.length)
+}
+
+/// Returns whether a motion determines the tool's position. For a tool without an axis it has to include the
+/// spin.
+pub(super) fn determines_pose(info: &ToolInfo, motion: &Motion) -> bool {
+    info.symmetry == Symmetry::Revolved || motion.has_spin()
+}
+
+/// The maximum number of sweeps for something deeper than the deepest point known.
+const ROUNDS: u32 = 16;
+
+/// A motion is probed at its beginning and at this number of later times before it is swept.
+pub(super) const TIMES: u32 = 8;
+
+/// The greatest depth along a motion is bounded to within this fraction of the excess over the allowance.
+const CLOSE: f64 = 0.125;
+
+/// Each sweep for that bound gets this fraction of the budget (1/16): the bound is not needed to prove a motion
+/// clear.
+const PART: u32 = 16;
+
+/// Time steps shorter than this fraction of a motion are not resolved.
+const SHORTEST: f64 = 1e-12;
+
+impl Certifier<'_> {
+    /// Checks whether the tool stays clear of the part along a whole motion, or exceeds the depth that is
+    /// [allowed](Certifier::with_allowance) by no more than a tolerance, in the part's unit. A tolerance below the
+    /// rounding error bound, or NaN, is replaced by that bound.
+    ///
+    /// The verdict is undecided for a solid without an axis on a motion without [spin](Motion::with_spin), and for
+    /// tools and parts larger than some 1e15 of the tool's unit.
+    ///
+    /// ```
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::certify::{Certifier, MotionVerdict, TriangleBvh};
+    /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
+    /// touchoff::tool! {
+    ///     tool EndMill "12 mm across, 20 mm of it cut" {
+    ///         units mm;
+    ///         profile {
+    ///             start (0, 0);
+    ///             line to (6, 0) as face cutting;
+    ///             line to (6, 20) as flute cutting;
+    ///             line to (6, 60), (0, 60) as shank;
+    ///         }
+    ///         niceness cutting: 1;
+    ///     }
+    /// }
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let (low, high) = (Point3::new(0., -30., 0.), Point3::new(40., 30., 25.));
+    /// let wall = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    /// let pose = |y: f64, z: f64| Pose::from_axis(Point3::new(-4.0, y, z), Vector3::z());
+    /// let mut certifier = Certifier::new(&wall, &EndMill)?
+    ///     .with_allowance("face", f64::INFINITY)?
+    ///     .with_allowance("flute", f64::INFINITY)?;
+    /// // The flute cuts 2 mm into the wall, as high as that is; lower, the shank would rub.
+    /// let cut = Motion::new(&pose(-20.0, 6.0)?, &pose(20.0, 6.0)?)?;
+    /// assert_eq!(certifier.check_motion(&cut, 1e-6), MotionVerdict::Clear);
+    /// let lower = Motion::new(&pose(-20.0, 6.0)?, &pose(20.0, 4.0)?)?;
+    /// assert!(matches!(certifier.check_motion(&lower, 1e-6), MotionVerdict::Touching(at, _) if at >= 0.5));
+    /// # Ok(()) }
+    /// ```
+    pub fn check_motion(&mut self, motion: &Motion, tolerance: f64) -> MotionVerdict {
+        if !determines_pose(self.info, motion) || self.setting.margin() > MARGIN {
+            return MotionVerdict::Undecided(0.0);
+        }
+        let Certifier { setting, info, whole, rules, cores, budget, sweeper, .. } = self;
+        let rules = rules.as_deref().unwrap_or(slice::from_ref(whole));
+        let error = self::error(setting, motion);
+        // Written so that a NaN tolerance is replaced.
+        let tolerance = (16.0 * error).max(tolerance / setting.length);
+        let mut first: Option<SweepEnd> = None;
+        // A margin no larger than the tolerance requires no check.
+        for question in
+            rules.iter().filter(|rule| rule.limit >= 0.0 || rule.limit + tolerance < 0.0)
+        {
+            let limit = question.limit;
+            let task = SweepTask { setting, question, motion, limit, error, tolerance };
+            let stop = sweeper.run(&task, *budget);
+            first = match (first, stop) {
+                (Some(first), Some(stop)) if stop.before(&first) => Some(stop),
+                (first, stop) => first.or(stop),
+            };
+        }
+        match first {
+            Some(SweepEnd::Deeper { at, best }) => {
+                MotionVerdict::Touching(at, setting.witness(&best, &motion.pose(at)))
+            }
+            Some(SweepEnd::Spent { at }) => self.touches_from(motion, at),
+            None => match setting.containment((info, cores), &motion.pose(0.0), tolerance) {
+                Containment::Inside(surface) => MotionVerdict::Inside(surface),
+                Containment::Outside => MotionVerdict::Clear,
+                Containment::Unknown => MotionVerdict::SurfaceOnly,
+                Containment::Undecided => MotionVerdict::Undecided(0.0),
+            },
+        }
+    }
+
+    /// Probes a motion for contact at some times after the one at which the budget was spent. A sweep takes longest
+    /// just before contact, whereas deep contact is found at once.
+    fn touches_from(&mut self, motion: &Motion, from: f64) -> MotionVerdict {
+        for step in 1..=TIMES {
+            let at = from + (1.0 - from) * f64::from(step) / f64::from(TIMES);
+            if let ContactVerdict::Yes(witness) = self.touches(&motion.pose(at)) {
+                return MotionVerdict::Touching(at, witness);
+            }
+        }
+        MotionVerdict::Undecided(from)
+    }
+
+    /// Computes the greatest depth of a surface, given by its index in the tool's list, along a motion, at points to
+    /// which it is the nearest surface. If it exceeds `allowed` by more than a tolerance, the result has the deepest
+    /// point found and an upper bound. Both lengths are in the part's unit; a tolerance below the rounding error
+    /// bound is replaced by that bound. A negative `allowed` is a margin: the distance that the surface has to keep
+    /// from all of the part.
+    ///
+    /// [Allowances](Certifier::with_allowance) of the certifier do not count, and an `allowed` of NaN counts as 0.
+    /// The result is undecided for a solid without an axis on a motion without [spin](Motion::with_spin), and for a
+    /// margin of a tool without a profile.
+    ///
+    /// ```
+    /// # use nalgebra::{Point3, Vector3};
+    /// # use touchoff::certify::{Certifier, MotionDepth, TriangleBvh};
+    /// # use touchoff::{Motion, Pose, Unit, mesh::shapes};
+    /// # touchoff::tool! {
+    /// #     tool Ball "6 mm" {
+    /// #         units mm;
+    /// #         profile { start (0, 0); arc to (0, 6) center (0, 3) as ball cutting; }
+    /// #         niceness cutting: 1;
+    /// #     }
+    /// # }
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let (low, high) = (Point3::new(-5., -5., -9.), Point3::new(5., 5., 0.));
+    /// let block = TriangleBvh::new(&shapes::cuboid(low, high, Unit::Millimetre)?);
+    /// let pose = |x: f64| Pose::from_axis(Point3::new(x, 0.0, -0.5), Vector3::z());
+    /// // Both ends are clear of the block; between them the ball is 0.5 deep.
+    /// let motion = Motion::new(&pose(-20.0)?, &pose(20.0)?)?;
+    /// let found = Certifier::new(&block, &Ball)?.motion_depth(0, &motion, 0.0, 1e-6);
+    /// let MotionDepth::Deeper { depth: [low, high], most, .. } = found else { panic!("{found:?}") };
+    /// assert!(low <= 0.5 && 0.5 <= high && high - low < 1.1e-6 && most < 0.57);
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Panics
+    /// If there is no such surface.
+    pub fn motion_depth(
+        &mut self,
+        surface: usize,
+        motion: &Motion,
+        allowed: f64,
+        tolerance: f64,
+    ) -> MotionDepth {
+        let Certifier { setting, info, each, each_cores, work, budget, sweeper, .. } = self;
+        if !determines_pose(info, motion) {
+            return MotionDepth::Undecided(0.0);
+        }
+        let question = |limit| setting.depth_query(limit, |other| other == surface);
+        let error = error(setting, motion);
+        // Written so that a NaN tolerance is replaced.
+        let tolerance = (32.0 * error).max(tolerance / setting.length);
+        let allowed = if allowed.is_nan() { 0.0 } else { allowed / setting.length };
+        let whole = each[surface].get_or_insert_with(|| question(0.0));
+        let depth = allowed.max(0.0);
+        let cores = match &mut each_cores[surface] {
+            Some((known, cores)) if *known == depth => cores,
+            other => {
+                let all = 0..info.surfaces.len();
+                let limits = all.map(|k| if k == surface { depth } else { f64::INFINITY });
+                &mut other.insert((depth, CorePoints::new(limits))).1
+            }
+        };
+        let budget = *budget;
+        let mut search = MotionSearch {
+            setting,
+            info,
+            cores,
+            work,
+            sweeper,
+            motion,
+            question: whole,
+            tolerance,
+            budget,
+        };
+        let found = search.deepest(depth);
+        if allowed >= 0.0 || matches!(found, MotionDepth::Deeper { .. }) {
+            return found;
+        }
+        if let ToolModel::Field(_) = &setting.body {
+            return MotionDepth::Undecided(0.0);
+        }
+        let near = question(allowed);
+        search.question = &near;
+        match search.deepest(allowed) {
+            MotionDepth::Within => found,
+            nearer => nearer,
+        }
+    }
+}
+
+/// The search for the greatest depth of one surface along one motion; lengths are in the tool's unit.
+struct MotionSearch<'a, 's> {
+    setting: &'a QuerySetting<'s>,
+    info: &'a ToolInfo,
+    /// Points of the region that the surface owns and that may not be inside the part.
+    cores: &'a mut CorePoints,
+    work: &'a mut SearchState,
+    sweeper: &'a mut Sweeper,
+    motion: &'a Motion,
+    question: &'a DepthQuery,
+    tolerance: f64,
+    budget: u32,
+}
+
+/// The depth at one time of a motion.
+#[derive(Clone, Copy)]
+struct DepthPeak {
+    depth: [f64; 2],
+    at: f64,
+    witness: Witness,
+}
+
+impl MotionSearch<'_, '_> {
+    fn deepest(&mut self, allowed: f64) -> MotionDepth {
+        let times = (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES));
+        let seen = times.filter_map(|at| self.at(at)).collect::<Vec<DepthPeak>>();
+        let seen = seen.into_iter().filter(|peak| peak.depth[0] > allowed).reduce(deeper);
+        let first = match seen {
+            Some(peak) => peak,
+            None => match self.sweep(allowed, self.tolerance, self.budget) {
+                None => return self.within(),
+                Some(SweepEnd::Spent { at }) => return MotionDepth::Undecided(at),
+                Some(SweepEnd::Deeper { at, best }) => {
+                    let witness = self.setting.witness(&best, &self.motion.pose(at));
+                    let depth = [allowed, allowed + self.tolerance];
+                    let seen = DepthPeak { depth, at, witness };
+                    self.at(at).map_or(seen, |here| deeper(seen, here))
+                }
+            },
+        };
+        let top = self.climb(first);
+        let (best, most) = self.bounded(top, allowed);
+        let length = self.setting.length;
+        let depth = best.depth.map(|depth| depth * length);
+        MotionDepth::Deeper { at: best.at, depth, most: most * length, witness: best.witness }
+    }
+
+    /// Returns the deepest point found and an upper bound on the depth over the motion.
+    fn bounded(&mut self, mut best: DepthPeak, allowed: f64) -> (DepthPeak, f64) {
+        // No point is farther from the surface than the largest radius.
+        let any = if self.question.limit < 0.0 { 0.0 } else { self.info.radius() };
+        let mut close = CLOSE;
+        for _ in 0..ROUNDS {
+            let [low, high] = best.depth;
+            let gap = self.tolerance.max(close * (high - allowed));
+            // One half is for the tolerance of the sweep, the other for the gain of each round.
+            let limit = (low + 0.5 * gap).max(allowed);
+            match self.sweep(limit, 0.5 * gap, self.budget / PART) {
+                None => return (best, high.max(any.min(limit + 0.5 * gap))),
+                Some(SweepEnd::Spent { .. }) => close *= 4.0,
+                Some(SweepEnd::Deeper { at, .. }) => match self.at(at) {
+                    Some(here) if here.depth[0] > low => best = self.climb(here),
+                    _ => close *= 4.0,
+                },
+            }
+        }
+        (best, any.max(best.depth[1]))
+    }
+
+    /// Sweeps the motion: returns a point that exceeds a limit, if any point exceeds it by more than a tolerance.
+    fn sweep(&mut self, limit: f64, tolerance: f64, budget: u32) -> Option<SweepEnd> {
+        let MotionSearch { setting, question, motion, .. } = *self;
+        if self.question.limit < 0.0 && limit + tolerance >= 0.0 {
+            return None;
+        }
+        let error = error(setting, motion);
+        let task = SweepTask { setting, question, motion, limit, error, tolerance };
+        self.sweeper.run(&task, budget)
+    }
+
+    /// Returns the result if no triangle is too deep.
+    fn within(&mut self) -> MotionDepth {
+        let MotionSearch { setting, info, motion, tolerance, .. } = *self;
+        match setting.containment((info, self.cores), &motion.pose(0.0), tolerance) {
+            Containment::Inside(_) => MotionDepth::Inside,
+            Containment::Outside | Containment::Unknown => MotionDepth::Within,
+            Containment::Undecided => MotionDepth::Undecided(0.0),
+        }
+    }
+
+    /// Climbs to a local maximum of depth over time. Steps that gain are taken; others are halved until they are too
+    /// short to gain more than the tolerance.
+    fn climb(&mut self, from: DepthPeak) -> DepthPeak {
+        let QuerySetting { size, length, .. } = *self.setting;
+        let pace = self.motion.displacement().norm() / length + self.motion.angle() * size;
+        let mut best = from;
+        let mut step = 0.5 / f64::from(TIMES);
+        while step * pace > self.fine() && step > SHORTEST {
+            let sides = [best.at - step, best.at + step].map(|at| at.clamp(0.0, 1.0));
+            let found = sides.map(|at| self.at(at)).into_iter().flatten();
+            let found = found.fold(best, deeper);
+            if found.depth[0] > best.depth[0] {
+                best = found;
+            } else {
+                step *= 0.5;
+            }
+        }
+        best
+    }
+
+    /// Returns the tolerance of depths at single times.
+    fn fine(&self) -> f64 {
+        self.tolerance / 32.0
+    }
+
+    /// Returns the depth at a fraction of the motion, if there is any.
+    fn at(&mut self, at: f64) -> Option<DepthPeak> {
+        let tolerance = self.fine();
+        let MotionSearch { setting, question, ref mut work, budget, .. } = *self;
+        let pose = self.motion.pose(at);
+        if question.limit >= 0.0 {
+            let asked = (tolerance * setting.length, budget);
+            let found = penetration(setting, question, work, &pose, asked);
+            let depth = found.depth.map(|depth| depth / setting.length);
+            return found.witness.map(|witness| DepthPeak { depth, at, witness });
+        }
+        setting.set_pose(work, &pose);
+        let goal = Goal { least: question.limit, tolerance, enough: f64::INFINITY, budget };
+        work.outside(setting, question, &pose, goal);
+        let best = work.best?;
+        let (found, more) = (work.search.best, error(setting, self.motion) + work.skew);
+        let high = (found + tolerance).max(work.search.most) + more;
+        Some(DepthPeak { depth: [found - more, high], at, witness: setting.witness(&best, &pose) })
+    }
+}
+
+fn deeper(one: DepthPeak, other: DepthPeak) -> DepthPeak {
+    if other.depth[0] > one.depth[0] { other } else { one }
+}

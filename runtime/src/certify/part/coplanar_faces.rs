@@ -1,0 +1,174 @@
+//! Flat faces of many triangles, so that a depth common to all of them is bounded once.
+//!
+//! A tool in a bore, or flat on a plate, is equally deep in many triangles, and no bounding box of them is tight
+//! enough to show it. The rectangle around a flat face is: a bound for the rectangle holds for all triangles of
+//! the face.
+
+use crate::bvh::WIDTH;
+use crate::certify::space::{Point, cross, dot, minus, norm};
+use crate::mesh::Mesh;
+
+/// The smallest number of triangles of a face.
+const FEW: usize = 8;
+
+/// The largest number of faces over a node's triangles for which the faces are used to rule it out.
+const FACES: usize = 16;
+
+/// The index that stands for no face.
+const NONE: u32 = u32::MAX;
+
+/// The flat faces of a part. Triangles are given by their indices in the tree's order.
+#[derive(Clone, Debug)]
+pub(crate) struct CoplanarFaces {
+    pub(crate) faces: Vec<Face>,
+    /// The face of each triangle.
+    of: Vec<u32>,
+    /// Per node the faces that contain all of its triangles, if these are few. The last list is for the leaves.
+    nodes: Vec<Vec<[u32; FACES]>>,
+}
+
+/// The rectangle around a flat face, in the part's frame and unit.
+#[derive(Clone, Debug)]
+pub(crate) struct Face {
+    /// A corner of one of its triangles.
+    pub(crate) from: Point,
+    /// The corners of the rectangle relative to that.
+    pub(crate) corners: [Point; 4],
+}
+
+/// Returns the unit vector in a direction, or `None` for a vector of length 0.
+fn unit(a: Point) -> Option<Point> {
+    let size = norm(a);
+    (size > 0.0).then(|| a.map(|part| part / size))
+}
+
+impl CoplanarFaces {
+    /// Finds the faces of a mesh, whose triangles are in the order of `ids`. Points no farther than `flat` from a
+    /// triangle's plane count as in it.
+    pub(crate) fn new(
+        mesh: &Mesh,
+        ids: &[u32],
+        corners: &[[Point; 3]],
+        flat: f64,
+    ) -> CoplanarFaces {
+        let beside = beside(mesh, ids);
+        let (mut of, mut faces) = (vec![NONE; ids.len()], Vec::new());
+        let mut taken = vec![false; ids.len()];
+        let mut face = Vec::new();
+        for seed in 0..ids.len() {
+            let [a, b, c] = corners[seed];
+            let Some(normal) = unit(cross(minus(b, a), minus(c, a))).filter(|_| !taken[seed])
+            else {
+                continue;
+            };
+            let lies = |k: u32| {
+                corners[k as usize].iter().all(|p| dot(normal, minus(*p, a)).abs() <= flat)
+            };
+            if !lies(seed as u32) {
+                continue;
+            }
+            face.clear();
+            face.push(seed as u32);
+            taken[seed] = true;
+            let mut next = 0;
+            while next < face.len() {
+                for other in beside[face[next] as usize] {
+                    if other != NONE && !taken[other as usize] && lies(other) {
+                        taken[other as usize] = true;
+                        face.push(other);
+                    }
+                }
+                next += 1;
+            }
+            if face.len() < FEW {
+                // They may belong to a face that is found from another triangle.
+                face[1..].iter().for_each(|k| taken[*k as usize] = false);
+                continue;
+            }
+            face.iter().for_each(|k| of[*k as usize] = faces.len() as u32);
+            faces.push(Face::around(&face, corners, normal));
+        }
+        let mut nodes = vec![of.chunks(WIDTH).map(|some| few(some.iter().copied())).collect()];
+        while let Some(last) = nodes.last().filter(|last: &&Vec<_>| last.len() > 1) {
+            nodes
+                .push(last.chunks(WIDTH).map(|some| few(some.iter().flatten().copied())).collect());
+        }
+        nodes.reverse();
+        CoplanarFaces { faces, of, nodes }
+    }
+
+    /// Returns the faces that contain all triangles of a node; `None` if some triangle is in no face, or the faces
+    /// are many.
+    pub(crate) fn of_node(&self, level: usize, index: usize) -> Option<&[u32]> {
+        let faces = &self.nodes.get(level)?[index];
+        let count = faces.iter().take_while(|face| **face != NONE).count();
+        (count > 0).then_some(&faces[..count])
+    }
+
+    /// Returns the face of a triangle.
+    pub(crate) fn of_triangle(&self, index: u32) -> Option<u32> {
+        Some(self.of[index as usize]).filter(|face| *face != NONE)
+    }
+}
+
+/// Returns the distinct faces of a list, the existing ones first; none at all if one is missing or they are too
+/// many.
+fn few(some: impl Iterator<Item = u32>) -> [u32; FACES] {
+    let (mut faces, mut count) = ([NONE; FACES], 0);
+    for face in some {
+        if faces[..count].contains(&face) {
+            continue;
+        }
+        if face == NONE || count == FACES {
+            return [NONE; FACES];
+        }
+        faces[count] = face;
+        count += 1;
+    }
+    faces
+}
+
+/// Returns the neighbours of each triangle across edges that exactly two triangles share.
+fn beside(mesh: &Mesh, ids: &[u32]) -> Vec<[u32; 3]> {
+    let mut edges: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(3 * ids.len());
+    for (index, id) in (0u32..).zip(ids) {
+        let [a, b, c] = mesh.triangles()[*id as usize];
+        for (side, [p, q]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+            edges.push(([p.min(q), p.max(q)], index, side));
+        }
+    }
+    edges.sort_unstable();
+    let mut beside = vec![[NONE; 3]; ids.len()];
+    for group in edges.chunk_by(|a, b| a.0 == b.0) {
+        if let [(_, first, side), (_, second, other)] = group {
+            beside[*first as usize][*side] = *second;
+            beside[*second as usize][*other] = *first;
+        }
+    }
+    beside
+}
+
+impl Face {
+    /// Returns the rectangle of least area among those with a side along an edge of the face's first triangle.
+    fn around(face: &[u32], corners: &[[Point; 3]], normal: Point) -> Face {
+        let [a, b, c] = corners[face[0] as usize];
+        let places = || face.iter().flat_map(|k| corners[*k as usize]).map(|p| minus(p, a));
+        let along = |side: Point| {
+            let out = dot(side, normal);
+            let u = unit([0, 1, 2].map(|k| side[k] - out * normal[k]))?;
+            let v = unit(cross(normal, u))?;
+            let ends = |way: Point| {
+                places()
+                    .map(|p| dot(way, p))
+                    .fold([0.0f64; 2], |[low, high], at| [low.min(at), high.max(at)])
+            };
+            let ([u0, u1], [v0, v1]) = (ends(u), ends(v));
+            let corner = |x: f64, y: f64| [0, 1, 2].map(|k| x * u[k] + y * v[k]);
+            let corners = [corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)];
+            Some(((u1 - u0) * (v1 - v0), corners))
+        };
+        let sides = [minus(b, a), minus(c, b), minus(a, c)];
+        let least = sides.into_iter().filter_map(along).min_by(|p, q| p.0.total_cmp(&q.0));
+        Face { from: a, corners: least.expect("a triangle with a normal has sides").1 }
+    }
+}

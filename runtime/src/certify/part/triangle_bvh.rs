@@ -1,0 +1,156 @@
+//! A bounding volume hierarchy of a part's triangles.
+
+use super::coplanar_faces::CoplanarFaces;
+use super::planarity::Plane;
+use crate::bvh::{Bounds, Boxes, BuildItem, Frame, WIDTH, levels, order};
+use crate::mesh::Mesh;
+use crate::mesh::{self, inverted};
+use crate::unit::Unit;
+use nalgebra::Point3;
+
+/// A bounding volume hierarchy of a part's triangles, for queries of the depth of a tool: a 16-wide tree of boxes
+/// like that of a point cloud, whose leaves hold 16 triangles.
+///
+/// Corners are kept as given, in the part's frame and unit. Triangles without area are kept too: they act as
+/// edges.
+#[derive(Clone, Debug)]
+pub struct TriangleBvh {
+    pub(crate) frame: Frame,
+    /// The levels of boxes, from the root's children down to the leaves.
+    pub(crate) levels: Vec<Vec<Boxes>>,
+    /// A plane per node of each level; the last list is for the leaves.
+    pub(crate) planes: Vec<Vec<Plane>>,
+    pub(crate) flats: CoplanarFaces,
+    /// The corners of the 16 triangles of each leaf.
+    pub(crate) leaves: Vec<Corners>,
+    /// The corners of each triangle, in the tree's order, in the part's frame and unit.
+    pub(crate) corners: Vec<[[f64; 3]; 3]>,
+    /// The ids of the triangles in the mesh, in the tree's order.
+    pub(crate) ids: Vec<u32>,
+    unit: Unit,
+    /// True if inside and outside are defined; see [`TriangleBvh::has_inside`].
+    pub(crate) solid: bool,
+}
+
+/// The first, second and third corners of 16 triangles relative to the centre of their box, coordinate by
+/// coordinate. Absent triangles have NaN coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Corners(pub(crate) [[[f32; WIDTH]; 3]; 3]);
+
+/// Returns the distance from a plane, in the part's unit, up to which a point counts as in it. It adds to the
+/// depth of a face, so any value would be correct. With `32 u` of the part's extent (`u = ε/2`), triangles of a
+/// plane whose corners were rounded once form one face. The test itself errs by less than `10 u` of a face's
+/// extent, for which [`rounding`](crate::certify::rounding) has room: a face is used for a bound only, without
+/// the `41 uM` of meridians and lines.
+pub(crate) fn flat(frame: &Frame) -> f64 {
+    16.0 * f64::EPSILON * f64::from(frame.size) * frame.scale
+}
+
+impl TriangleBvh {
+    /// Builds the tree of a mesh's triangles.
+    pub fn new(mesh: &Mesh) -> TriangleBvh {
+        let corners: Vec<[[f64; 3]; 3]> =
+            mesh.corners().map(|corners| corners.map(|p| [p.x, p.y, p.z])).collect();
+        let frame = Frame::around(corners.iter().flatten().copied());
+        let bounds = |corners: &[[f64; 3]; 3]| Bounds::of(corners.map(|place| frame.inside(place)));
+        let mut items: Vec<BuildItem> = corners
+            .iter()
+            .zip(0u32..)
+            .map(|(corners, index)| {
+                let bounds = bounds(corners);
+                BuildItem { at: [0, 1, 2].map(|axis| bounds.middle(axis)), index }
+            })
+            .collect();
+        order(&mut items);
+        let corners: Vec<_> = items.iter().map(|item| corners[item.index as usize]).collect();
+        let boxes: Vec<Bounds> = corners
+            .chunks(WIDTH)
+            .map(|leaf| Bounds::of(leaf.iter().flatten().map(|corner| frame.inside(*corner))))
+            .collect();
+        let levels = levels(boxes);
+        let above = &levels[levels.len() - 1];
+        let leaves = corners.chunks(WIDTH).enumerate().map(|(leaf, triangles)| {
+            let mut corners = Corners([[[f32::NAN; WIDTH]; 3]; 3]);
+            let boxes = &above[leaf / WIDTH];
+            for (lane, triangle) in triangles.iter().enumerate() {
+                for (list, corner) in corners.0.iter_mut().zip(triangle) {
+                    let place = frame.inside(*corner);
+                    for axis in 0..3 {
+                        let middle = f64::from(boxes.centre[axis][leaf % WIDTH]);
+                        list[axis][lane] = (place[axis] - middle) as f32;
+                    }
+                }
+            }
+            corners
+        });
+        let inside: Vec<_> =
+            corners.iter().map(|triangle| triangle.map(|corner| frame.inside(corner))).collect();
+        let depth = levels.len() as u32;
+        let planes = (0..=depth).map(|level| {
+            let below = WIDTH.pow(depth + 1 - level);
+            inside.chunks(below).map(Plane::of).collect()
+        });
+        let ids: Vec<u32> = items.iter().map(|item| item.index).collect();
+        let survey = mesh.diagnostics();
+        let mut bvh = TriangleBvh {
+            flats: CoplanarFaces::new(mesh, &ids, &corners, flat(&frame)),
+            planes: planes.collect(),
+            leaves: leaves.collect(),
+            levels,
+            corners,
+            ids,
+            frame,
+            unit: mesh.unit(),
+            solid: survey.is_solid(),
+        };
+        bvh.solid = bvh.solid && bvh.voids_are_voids(mesh);
+        bvh
+    }
+
+    /// Returns whether pieces that face inward are voids in the material. Next to none of their triangles is the
+    /// winding number of the surface negative, as it is inside a piece that is inside out.
+    fn voids_are_voids(&self, mesh: &Mesh) -> bool {
+        let inverted = inverted(mesh);
+        let mut places = vec![0; if inverted.is_empty() { 0 } else { self.len() }];
+        if !inverted.is_empty() {
+            self.ids.iter().enumerate().for_each(|(place, id)| places[*id as usize] = place);
+        }
+        let is_void = |id: u32| !self.is_negative_beside(places[id as usize]);
+        inverted.into_iter().all(|id| mesh.normal(id).is_none() || is_void(id))
+    }
+
+    /// Returns the lowest and the highest corner of the bounding box, in the part's unit.
+    pub fn bounds(&self) -> [Point3<f64>; 2] {
+        mesh::bounds(self.corners.iter().flatten().map(|corner| Point3::from(*corner)))
+    }
+
+    /// Returns the number of triangles.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Returns whether there are no triangles; a [`Mesh`] always has some.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Returns whether inside and outside are defined: the mesh is closed, consistently oriented, and not inside out.
+    pub fn has_inside(&self) -> bool {
+        self.solid
+    }
+
+    /// Returns the unit of length.
+    pub fn unit(&self) -> Unit {
+        self.unit
+    }
+
+    /// Returns the number of children of a node of a level; below the last level are the leaves.
+    pub(crate) fn children(&self, level: usize, node: usize) -> usize {
+        let below = match self.levels.len() - level.min(self.levels.len()) {
+            0 => self.len(),
+            1 => self.leaves.len(),
+            _ => self.levels[level + 1].len(),
+        };
+        (below - WIDTH * node).min(WIDTH)
+    }
+}

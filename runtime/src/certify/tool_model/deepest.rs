@@ -1,0 +1,97 @@
+//! The deepest point of a tool that is known by its depth field alone.
+
+use crate::certify::space::Point;
+use crate::certify::tool_model::field::{Field, Scratch};
+use crate::certify::tool_model::owners::Owners;
+use crate::certify::tool_model::section::Depth;
+use crate::tool::Symmetry;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A box in the tool's frame and an upper bound of the depth in it.
+struct Cell {
+    low: Point,
+    high: Point,
+    bound: f64,
+}
+
+impl Ord for Cell {
+    fn cmp(&self, other: &Cell) -> Ordering {
+        self.bound.total_cmp(&other.bound)
+    }
+}
+
+impl PartialOrd for Cell {
+    fn partial_cmp(&self, other: &Cell) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Cell {
+    fn eq(&self, other: &Cell) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Cell {}
+
+/// The number of boxes that are examined before the search gives up.
+const BUDGET: u32 = 1 << 18;
+
+impl Field<'_> {
+    /// Returns a point of the owners that is deeper than `least`, its depth, and an upper bound on the depth of all
+    /// their points: at most `factor`, which is more than 1, times that depth unless the budget is spent first. The
+    /// inner option is `None` if it is proved that no point is deeper than `least`, the outer one if the budget was
+    /// spent before a point was found.
+    pub(crate) fn deepest(
+        &self,
+        owners: &Owners,
+        least: f64,
+        factor: f64,
+    ) -> Option<Option<(Point, Depth, f64)>> {
+        let info = self.info();
+        let [bottom, top] = info.reach();
+        // For a tool with an axis the half plane is enough.
+        let [x, y] = match info.symmetry {
+            Symmetry::Revolved => [[0.0, info.radius()], [0.0; 2]],
+            Symmetry::Solid { across } => across,
+        };
+        let (low, high) = ([x[0], y[0], bottom], [x[1], y[1], top]);
+        let mut scratch = Scratch::default();
+        let mut cells = BinaryHeap::from([Cell { low, high, bound: f64::INFINITY }]);
+        let mut best: Option<(Point, Depth)> = None;
+        for _ in 0..BUDGET {
+            let deepest = best.map_or(0.0, |(_, depth)| depth.value);
+            let Some(Cell { low, high, bound }) = cells.pop() else { break };
+            if bound <= least || (deepest > least && bound <= factor * deepest) {
+                return Some(
+                    best.filter(|_| deepest > least).map(|(at, depth)| (at, depth, bound)),
+                );
+            }
+            let middle = [0, 1, 2].map(|k| f64::midpoint(low[k], high[k]));
+            let wide = [0, 1, 2].map(|k| high[k] - low[k]);
+            let reach = 0.5 * wide.iter().map(|side| side * side).sum::<f64>().sqrt();
+            let depth = self.depth(&mut scratch, middle);
+            if depth.value > deepest
+                && let Some(depth) = self.owned(&mut scratch, owners, middle, depth)
+            {
+                best = Some((middle, depth));
+            }
+            if self.passes(&mut scratch, owners, middle, (reach, least)) {
+                continue;
+            }
+            // The depth of a point outside is minus a lower bound of its distance, and depth grows from the surface
+            // inward.
+            let bound = bound.min(depth.value + self.steep * reach);
+            let longest = (0..3).fold(0, |most, k| if wide[k] > wide[most] { k } else { most });
+            let (mut first, mut second) = ((low, high), (low, high));
+            first.1[longest] = middle[longest];
+            second.0[longest] = middle[longest];
+            cells.extend([first, second].map(|(low, high)| Cell { low, high, bound }));
+        }
+        // No owner's point outside the cells that are left is deeper than the best one, or than `least`.
+        let (point, depth) = best.filter(|(_, depth)| depth.value > least)?;
+        let left = cells.peek().map_or(0.0, |cell| cell.bound);
+        Some(Some((point, depth, depth.value.max(left))))
+    }
+}

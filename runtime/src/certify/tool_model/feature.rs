@@ -1,0 +1,391 @@
+//! Features: the monotone pieces of a profile, as geometry of the half plane.
+
+use crate::tool::{Circle, ProfileSegment};
+
+/// A point in the half plane, `[d, z]`.
+pub(crate) type MeridianPoint = [f64; 2];
+
+/// Three points. In a triangle that encloses a curve between two ends, the third is the apex.
+pub(crate) type Triangle = [MeridianPoint; 3];
+
+/// A profile segment, or a piece of an arc of at most a quarter of its circle, so that it is monotone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Feature {
+    pub(crate) ends: [MeridianPoint; 2],
+    /// The unit vector from end to end; 0 if the ends coincide.
+    pub(crate) along: MeridianPoint,
+    pub(crate) length: f64,
+    pub(crate) circle: Option<Circle>,
+    pub(crate) surface: usize,
+}
+
+pub(crate) fn minus(a: MeridianPoint, b: MeridianPoint) -> MeridianPoint {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+pub(crate) fn dot(a: MeridianPoint, b: MeridianPoint) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(crate) fn cross(a: MeridianPoint, b: MeridianPoint) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(crate) fn norm(a: MeridianPoint) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn least([a, b, c]: [f64; 3]) -> f64 {
+    a.min(b).min(c)
+}
+
+fn most([a, b, c]: [f64; 3]) -> f64 {
+    a.max(b).max(c)
+}
+
+impl Feature {
+    fn new(ends: [MeridianPoint; 2], circle: Option<Circle>, surface: usize) -> Feature {
+        let way = minus(ends[1], ends[0]);
+        let length = norm(way);
+        let along = if length > 0.0 { way.map(|part| part / length) } else { [0.0; 2] };
+        Feature { ends, along, length, circle, surface }
+    }
+
+    /// Returns the direction of travel at its beginning (0) or end (1).
+    pub(crate) fn heading(&self, end: usize) -> MeridianPoint {
+        let Some(Circle { centre, radius, convex }) = self.circle else { return self.along };
+        let [d, z] = minus(self.ends[end], centre).map(|part| part / radius);
+        if convex { [-z, d] } else { [z, -d] }
+    }
+
+    /// Returns the line itself, or the line that touches a convex arc at its middle; `None` for a concave arc.
+    pub(crate) fn tangent(&self) -> Option<Feature> {
+        match self.circle {
+            None => Some(*self),
+            Some(Circle { centre, radius, convex: true }) => {
+                let out = [self.along[1], -self.along[0]];
+                let touch = [0, 1].map(|k| centre[k] + radius * out[k]);
+                Some(Feature { ends: [touch; 2], length: 0.0, circle: None, ..*self })
+            }
+            Some(_) => None,
+        }
+    }
+
+    /// Returns a ball about a point of the axis that contains the circle of a convex arc whose centre is near the
+    /// axis, as height and radius. `size` is the tool's size. The ball contains the circle whatever the distance of
+    /// its centre from the axis. Returns `None` beyond 1e-9 of the size, where it is not tight enough to be useful,
+    /// and for balls so large that `f32` loses all precision.
+    pub(crate) fn ball(&self, size: f64) -> Option<[f64; 2]> {
+        let Circle { centre: [d, z], radius, convex } = self.circle?;
+        let small = radius.max(z.abs()) <= 4.0 * size;
+        (convex && small && d.abs() <= 1e-9 * size).then_some([z, radius + d.abs()])
+    }
+
+    /// Returns 1 if the tool is toward the axis, -1 if it is away from it.
+    fn side_sign(&self) -> f64 {
+        if self.ends[1][1] < self.ends[0][1] { -1.0 } else { 1.0 }
+    }
+
+    /// Returns the distance from the axis at a height between its ends.
+    pub(crate) fn radius_at(&self, z: f64) -> f64 {
+        let [[d0, z0], [d1, z1]] = self.ends;
+        if z == z0 || z == z1 {
+            return if z == z0 { d0 } else { d1 };
+        }
+        let radius = match self.circle {
+            None => d0 + (d1 - d0) * ((z - z0) / (z1 - z0)),
+            Some(Circle { centre, radius, convex }) => {
+                let side = if convex { self.side_sign() } else { -self.side_sign() };
+                let up = z - centre[1];
+                centre[0] + side * ((radius - up) * (radius + up)).max(0.0).sqrt()
+            }
+        };
+        radius.clamp(d0.min(d1), d0.max(d1))
+    }
+
+    /// Returns the signed distance of a point on the tool's side of the feature, for points between its heights: at
+    /// least 0 just inside. A convex arc is continued horizontally into the tool, a concave one out of it.
+    #[inline]
+    pub(crate) fn signed_distance(&self, p: MeridianPoint) -> f64 {
+        let Some(Circle { centre, radius, convex }) = self.circle else {
+            return cross(self.along, minus(p, self.ends[0]));
+        };
+        let [d, z] = minus(p, centre);
+        let d = self.side_sign() * d;
+        if convex {
+            radius - norm([d.max(0.0), z])
+        } else if d <= 0.0 {
+            norm([d, z]) - radius
+        } else {
+            z.abs() - radius - d
+        }
+    }
+
+    /// Returns the gradient of [`Feature::over`].
+    pub(crate) fn signed_gradient(&self, p: MeridianPoint) -> MeridianPoint {
+        let Some(Circle { centre, convex, .. }) = self.circle else {
+            return [-self.along[1], self.along[0]];
+        };
+        let sense = self.side_sign();
+        let [d, z] = minus(p, centre);
+        let d = sense * d;
+        let way = if convex { [-d.max(0.0), -z] } else { [d, z] };
+        let far = norm(way);
+        let [d, z] = if (!convex && d > 0.0) || far == 0.0 {
+            [-1.0, 0.0]
+        } else {
+            way.map(|part| part / far)
+        };
+        [sense * d, z]
+    }
+
+    /// Returns at least [`Feature::over`] at every point in a triangle.
+    #[inline]
+    pub(crate) fn signed_distance_upper(&self, triangle: &Triangle) -> f64 {
+        match &self.circle {
+            // Tangents that touch on the tool's side bound nothing: the tool continues there.
+            Some(circle) if circle.convex => {
+                let sense = self.side_sign();
+                below_tangents(circle, triangle, |[d, z]| [sense * (sense * d).max(0.0), z])
+            }
+            // Linear, or convex where it is at least 0.
+            _ => most(triangle.map(|p| self.signed_distance(p))),
+        }
+    }
+
+    /// Returns whether the foot of a point on an arc's circle lies on the arc.
+    #[inline]
+    fn sector(&self, circle: &Circle, p: MeridianPoint) -> bool {
+        let [from, to] = self.ends.map(|end| minus(end, circle.centre));
+        let out = minus(p, circle.centre);
+        let (first, last) = (cross(from, out), cross(out, to));
+        if circle.convex { first >= 0.0 && last >= 0.0 } else { first <= 0.0 && last <= 0.0 }
+    }
+
+    /// Returns the ends that may be the nearest points of the feature to points of a polygon. Returns `None` if the
+    /// nearest point may be elsewhere.
+    pub(crate) fn at_ends(&self, corners: &[MeridianPoint]) -> Option<[bool; 2]> {
+        let [first, last] = self.ends;
+        let middle = [0, 1].map(|k| f64::midpoint(first[k], last[k]));
+        let all = |beyond: &dyn Fn(MeridianPoint) -> f64| corners.iter().all(|p| beyond(*p) > 0.0);
+        let beyond = match &self.circle {
+            None => [
+                all(&|p| -dot(self.along, minus(p, first))),
+                all(&|p| dot(self.along, minus(p, last))),
+            ],
+            // As seen from the centre.
+            Some(Circle { centre, convex, .. }) => {
+                let sense = if *convex { 1.0 } else { -1.0 };
+                let out = |from: MeridianPoint, p: MeridianPoint| {
+                    cross(minus(from, *centre), minus(p, *centre))
+                };
+                [all(&|p| -sense * out(first, p)), all(&|p| sense * out(last, p))]
+            }
+        };
+        if beyond == [false, false] {
+            return None;
+        }
+        let nearer = [
+            all(&|p| -dot(self.along, minus(p, middle))),
+            all(&|p| dot(self.along, minus(p, middle))),
+        ];
+        match nearer {
+            [true, _] => Some([true, false]),
+            [_, true] => Some([false, true]),
+            _ => Some([true, true]),
+        }
+    }
+
+    fn all_in_sector(&self, circle: &Circle, triangle: &Triangle) -> bool {
+        triangle.iter().all(|p| self.sector(circle, *p))
+    }
+
+    /// Returns whether [`Feature::over`] is the signed distance from the feature at all points of a triangle: their
+    /// feet are in the range `from` to `to` along the line, or on the arc.
+    #[inline]
+    pub(crate) fn projects_onto(&self, triangle: &Triangle, [from, to]: [f64; 2]) -> bool {
+        match &self.circle {
+            None => triangle.iter().all(|p| {
+                let at = dot(self.along, minus(*p, self.ends[0]));
+                from <= at && at <= to
+            }),
+            Some(circle) => self.all_in_sector(circle, triangle),
+        }
+    }
+
+    /// Returns the nearest point of the feature.
+    #[inline]
+    pub(crate) fn foot(&self, p: MeridianPoint) -> MeridianPoint {
+        match &self.circle {
+            None => {
+                let at = dot(self.along, minus(p, self.ends[0]));
+                if at <= 0.0 {
+                    self.ends[0]
+                } else if at >= self.length {
+                    self.ends[1]
+                } else {
+                    [0, 1].map(|k| self.ends[0][k] + at * self.along[k])
+                }
+            }
+            Some(circle) if self.sector(circle, p) => {
+                let out = minus(p, circle.centre);
+                let far = norm(out);
+                if far > 0.0 {
+                    [0, 1].map(|k| circle.centre[k] + circle.radius * (out[k] / far))
+                } else {
+                    self.ends[0]
+                }
+            }
+            Some(_) => {
+                let [from, to] = self.ends.map(|end| minus(p, end));
+                self.ends[usize::from(dot(to, to) < dot(from, from))]
+            }
+        }
+    }
+
+    /// Returns the distance of a point from the feature.
+    #[inline]
+    pub(crate) fn distance(&self, p: MeridianPoint) -> f64 {
+        match &self.circle {
+            None => {
+                let off = minus(p, self.ends[0]);
+                let at = dot(self.along, off);
+                if at <= 0.0 {
+                    norm(off)
+                } else if at >= self.length {
+                    norm(minus(p, self.ends[1]))
+                } else {
+                    cross(self.along, off).abs()
+                }
+            }
+            Some(circle) if self.sector(circle, p) => {
+                (norm(minus(p, circle.centre)) - circle.radius).abs()
+            }
+            Some(_) => {
+                let [from, to] = self.ends.map(|end| minus(p, end));
+                dot(from, from).min(dot(to, to)).sqrt()
+            }
+        }
+    }
+
+    /// Returns the gradient of [`Feature::away`].
+    pub(crate) fn distance_gradient(&self, p: MeridianPoint) -> MeridianPoint {
+        let way = minus(p, self.foot(p));
+        let far = norm(way);
+        if far > 0.0 { way.map(|part| part / far) } else { self.signed_gradient(p) }
+    }
+
+    /// Returns at least the distance of every point in a triangle.
+    #[inline]
+    pub(crate) fn at_most(&self, triangle: &Triangle) -> f64 {
+        match &self.circle {
+            // The distance from a convex set is convex.
+            None => most(triangle.map(|p| self.distance(p))),
+            Some(circle) if self.all_in_sector(circle, triangle) => {
+                let out = most(triangle.map(|p| norm(minus(p, circle.centre)) - circle.radius));
+                out.max(below_tangents(circle, triangle, |n| n))
+            }
+            Some(_) => {
+                let [from, to] = self.ends.map(|end| most(triangle.map(|p| norm(minus(p, end)))));
+                from.min(to)
+            }
+        }
+    }
+
+    /// Returns at most the distance of every point in a triangle.
+    #[inline]
+    pub(crate) fn at_least(&self, triangle: &Triangle) -> f64 {
+        let [first, second, middle] = *triangle;
+        // A distance has the Lipschitz constant 1.
+        let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
+        let coarse = self.distance(middle) - reach;
+        if let Some(Circle { centre, radius, convex: false }) = self.circle {
+            // Measured from inside the circle; from beyond it only an end is near.
+            return coarse.max(least(triangle.map(|p| radius - norm(minus(p, centre)))));
+        }
+        let nearer = if self.distance(first) < self.distance(second) { first } else { second };
+        coarse.max(self.separation(triangle, middle)).max(self.separation(triangle, nearer))
+    }
+
+    /// Returns the signed distance of a triangle beyond the line that touches the feature on the side of `seen`,
+    /// normal to the direction of `seen` from its foot; 0 if `seen` is on the feature.
+    fn separation(&self, triangle: &Triangle, seen: MeridianPoint) -> f64 {
+        let way = minus(seen, self.foot(seen));
+        let far = norm(way);
+        if far == 0.0 {
+            return 0.0;
+        }
+        let [from, to] = self.ends.map(|end| dot(way, end));
+        let most = match &self.circle {
+            Some(circle) if self.sector(circle, [0, 1].map(|k| circle.centre[k] + way[k])) => {
+                dot(way, circle.centre) + circle.radius * far
+            }
+            _ => from.max(to),
+        };
+        (least(triangle.map(|p| dot(way, p))) - most) / far
+    }
+}
+
+/// Returns at least the depth of every point of a triangle inside a circle. No point is deeper than under any
+/// tangent. The tangents taken are at the feet of the end that is farther inside and of the apex, in the
+/// directions that `touching` derives from theirs.
+#[inline]
+fn below_tangents(
+    circle: &Circle,
+    triangle: &Triangle,
+    touching: impl Fn(MeridianPoint) -> MeridianPoint,
+) -> f64 {
+    let out = triangle.map(|p| minus(p, circle.centre));
+    let beneath = |out_of: MeridianPoint| {
+        let n = touching(out_of);
+        let far = norm(n);
+        if far > 0.0 { circle.radius - least(out.map(|v| dot(n, v))) / far } else { circle.radius }
+    };
+    let deeper = usize::from(dot(out[1], out[1]) < dot(out[0], out[0]));
+    beneath(out[deeper]).min(beneath(out[2]))
+}
+
+/// Returns the features of a profile segment: an arc is cut where its tangent is horizontal or vertical.
+pub(crate) fn quarters(piece: &ProfileSegment) -> Vec<Feature> {
+    let Some(circle) = piece.circle else {
+        return vec![Feature::new([piece.from, piece.to], None, piece.surface)];
+    };
+    let Circle { centre, radius, convex } = circle;
+    const FULL: f64 = std::f64::consts::TAU;
+    let angle = |p: MeridianPoint| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+    let sense = if convex { 1.0 } else { -1.0 };
+    let turned = |p: MeridianPoint| (sense * (angle(p) - angle(piece.from))).rem_euclid(FULL);
+    // Ends this close are those of a short arc, whose angles rounding may have exchanged.
+    let turn = Some(turned(piece.to)).filter(|turn| *turn < FULL - 1e-9).unwrap_or(0.0);
+    let mut cuts: Vec<MeridianPoint> =
+        [[radius, 0.0], [0.0, radius], [-radius, 0.0], [0.0, -radius]]
+            .into_iter()
+            .map(|[d, z]| [centre[0] + d, centre[1] + z])
+            // Cuts at the ends do not count. An arc that exceeds a quarter by so little reaches beyond its end by
+            // `radius (1 - cos 1e-9)`, 5e-19 of the radius, which is less than the rounding error of its centre and
+            // radius.
+            .filter(|cut| turned(*cut) >= 1e-9 && turned(*cut) < turn - 1e-9)
+            .collect();
+    cuts.sort_by(|a, b| turned(*a).total_cmp(&turned(*b)));
+    cuts.push(piece.to);
+    let mut from = piece.from;
+    cuts.into_iter()
+        .map(|to| Feature::new([std::mem::replace(&mut from, to), to], Some(circle), piece.surface))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The end of the arc is an ulp before its beginning, as rounding may leave it.
+    #[test]
+    fn an_arc_as_short_as_rounding_is_no_full_circle() {
+        let (from, to) = ([5.0, 0.3], [5.0, 0.3f64.next_down()]);
+        for convex in [true, false] {
+            let (from, to) = if convex { (from, to) } else { (to, from) };
+            let circle = Some(Circle { centre: [3.0, 0.1], radius: 2.0_f64.hypot(0.2), convex });
+            assert_eq!(quarters(&ProfileSegment { from, to, circle, surface: 0 }).len(), 1);
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! Witnesses of the region of a tool that may not be inside the material: one point per connected piece.
+//!
+//! Each surface has a *limit*, the depth that the part may have in it. The restricted interior `S` consists of
+//! the points of the tool that are deeper than the limit of their nearest surface. If no triangle of the part
+//! meets `S`, each connected piece of `S` lies wholly inside the part or wholly outside, and one point of it
+//! decides which.
+//!
+//! **Every piece is found.** Let `p` be a point of `S` at depth `t`, and `q` its nearest point on the profile.
+//! `q` is on a feature, or a reflex corner; where the profile begins or ends on the axis, a corner with its
+//! mirror image counts. The ball of radius `t` about `p` touches the profile at `q` and contains nothing of it;
+//! so does every smaller ball that touches there. All points of the normal from `q` between the limit `L` and `p`
+//! therefore have `q` as their nearest point and lie in the same piece of `S`. Hence each piece meets an *offset
+//! curve*: the points at the distance `L` on the normals of a feature, or of the fan of a reflex corner. A point
+//! of an offset curve is in the closure of `S` if no other feature is nearer than `L`. Along the curve that can
+//! change only where it crosses the axis or a curve at the distance `L` from another feature. These are lines and
+//! circles, so their crossings have closed forms. Between two neighbouring crossings one point decides for all.
+//!
+//! **In floating point** `L` is the sum of the limit, the tolerance and the error bound of a point. A point
+//! counts as free if nothing is nearer than `L` less a quarter of that error bound. If two circles nearly touch,
+//! their crossings are accurate only to the square root of the rounding error, or are lost. But there the curves
+//! are apart by no more than the rounding error, which that quarter covers. Neighbouring spans of free points
+//! make one run. Nearer to the feature by half of the error bound the spans are connected, and no triangle is
+//! there. All pieces that are deeper than the limit by the tolerance and the error bound are therefore found.
+
+use crate::certify::tool_model::feature::{Feature, MeridianPoint, minus, norm};
+use crate::certify::tool_model::offset::{AXIS, Normals, levels};
+use crate::certify::tool_model::section::Section;
+
+/// A point of a tool's half plane that stands for a connected piece of its restricted interior.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CorePoint {
+    pub(crate) place: MeridianPoint,
+    /// The nearest feature.
+    pub(crate) feature: usize,
+}
+
+/// The restricted interior of a tool with a profile.
+struct Interior<'a> {
+    section: &'a Section,
+    /// The depth that the part may have where each feature is the nearest; infinity for any depth.
+    limits: &'a [f64],
+}
+
+/// Returns a point of each connected piece of the interior that is deeper than its features' limits by more than
+/// `tolerance` plus the error bound. A piece may have several points if they are not shown to be connected.
+pub(crate) fn witnesses(section: &Section, limits: &[f64], tolerance: f64) -> Vec<CorePoint> {
+    let interior = Interior { section, limits };
+    let more = tolerance + section.error;
+    let mut found = Vec::new();
+    for (index, feature) in section.features.iter().enumerate() {
+        let limit = limits[index] + more;
+        interior.add(&Normals::of(feature), limit, index, &mut found);
+        for fan in [0, 1].into_iter().filter_map(|end| Normals::axis_fan(feature, end)) {
+            interior.add(&fan, limit, index, &mut found);
+        }
+        let Some(next) = section.features.get(index + 1) else { continue };
+        // Points of a fan are equally near to both features, and so belong to the stricter.
+        let owner = if limits[index + 1] < limits[index] { index + 1 } else { index };
+        if let Some(fan) = Normals::fan(feature, next) {
+            interior.add(&fan, limits[owner] + more, owner, &mut found);
+        }
+    }
+    interior.joined(found, more)
+}
+
+impl Interior<'_> {
+    /// Adds a witness of each run of normals that are longer than a limit.
+    fn add(&self, normals: &Normals, limit: f64, feature: usize, found: &mut Vec<CorePoint>) {
+        if limit.is_infinite() || limit >= normals.longest() {
+            return;
+        }
+        let mut cuts = vec![0.0, normals.end()];
+        normals.crossings(limit, AXIS, &mut cuts);
+        for other in &self.section.features {
+            levels(other, limit).for_each(|level| normals.crossings(limit, level, &mut cuts));
+        }
+        cuts.sort_by(f64::total_cmp);
+        // The widest span of each run of spans whose normals are long enough.
+        let mut run: Option<[f64; 2]> = None;
+        let spans = cuts.windows(2).map(|pair| [pair[0], pair[1]]);
+        for span in spans.filter(|[from, to]| from < to).map(Some).chain([None]) {
+            let long = span.filter(|[from, to]| {
+                self.is_free(normals.point(f64::midpoint(*from, *to), limit), limit)
+            });
+            match (run, long) {
+                (Some(widest), Some(span)) if span[1] - span[0] <= widest[1] - widest[0] => {}
+                (_, Some(span)) => run = Some(span),
+                (Some([from, to]), None) => {
+                    let s = f64::midpoint(from, to);
+                    let longest = self.length(normals, s, limit);
+                    let place = normals.point(s, limit + DEEP * (longest - limit));
+                    // The fan of a cusp may point out of the tool. Rounding does not affect this test, since the
+                    // profile is not near.
+                    if self.section.contains(place) {
+                        found.push(CorePoint { place, feature });
+                    }
+                    run = None;
+                }
+                (None, None) => {}
+            }
+        }
+    }
+
+    /// Returns whether nothing of the profile is nearer to a point than its foot, `t` away, by more than rounding.
+    fn is_free(&self, p: MeridianPoint, t: f64) -> bool {
+        p[0] >= 0.0 && self.section.away(p) >= t - NEARLY * self.section.error
+    }
+
+    /// Returns the length of a normal, at least `least`: the distance at which another point of the profile is as
+    /// near as its foot, or at which it reaches the axis.
+    fn length(&self, normals: &Normals, s: f64, least: f64) -> f64 {
+        let [mut low, mut high] = [least, normals.longest().min(2.0 * self.section.size)];
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            if self.is_free(normals.point(s, middle), middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// Returns the radius about a point of the tool within which all points are deeper than the limit of their
+    /// nearest feature by more than `more`. The result is not positive if no such radius is shown.
+    ///
+    /// Let the depth of the point be `d`. Every point within `r` of it has a depth of at least `d - r`, and its
+    /// nearest feature is at most `d + 2r` from the point. For each limit `l`, `r` may therefore be as large as
+    /// `d - l`, or as half the amount by which the features of that limit are farther away than `d`.
+    fn margin(&self, p: MeridianPoint, more: f64) -> f64 {
+        let depth = self.section.signed(p);
+        let of = |(feature, limit): (&Feature, &f64)| {
+            (depth - limit - more).max(0.5 * (feature.distance(p) - depth))
+        };
+        let features = self.section.features.iter().zip(self.limits);
+        features.map(of).fold(depth, f64::min)
+    }
+
+    /// Returns whether the segment between two points is shown to stay in the interior.
+    fn connects(&self, from: MeridianPoint, to: MeridianPoint, more: f64) -> bool {
+        let way = minus(to, from);
+        let length = norm(way);
+        let mut at = 0.0;
+        for _ in 0..STEPS {
+            if at >= length {
+                return true;
+            }
+            let p = [0, 1].map(|k| from[k] + way[k] * (at / length));
+            let margin = self.margin(p, more);
+            if margin <= self.section.error {
+                return false;
+            }
+            at += margin;
+        }
+        false
+    }
+
+    /// Drops redundant witnesses: one of each set of connected witnesses is left, the one with the largest margin.
+    fn joined(&self, mut found: Vec<CorePoint>, more: f64) -> Vec<CorePoint> {
+        let margin = |witness: &CorePoint| self.margin(witness.place, more);
+        found.sort_by(|one, other| margin(other).total_cmp(&margin(one)));
+        let mut kept: Vec<Vec<CorePoint>> = Vec::new();
+        for witness in found {
+            let mut rest = Vec::new();
+            let mut all = vec![witness];
+            for piece in kept {
+                let one = piece.iter().any(|p| self.connects(p.place, witness.place, more));
+                if one {
+                    all = [piece, all].concat();
+                } else {
+                    rest.push(piece);
+                }
+            }
+            rest.push(all);
+            kept = rest;
+        }
+        kept.into_iter().map(|piece| piece[0]).collect()
+    }
+}
+
+/// A witness stands at this fraction of the way from the limit to the end of the normal.
+const DEEP: f64 = 0.75;
+
+/// The fraction of the error bound by which a distance may be less owing to rounding alone.
+const NEARLY: f64 = 0.25;
+
+/// The number of bisections for the length of a normal: to 2^-48 of the tool's size.
+const HALVINGS: u32 = 50;
+
+/// The maximum number of steps along a segment. After these it is not shown to stay inside.
+const STEPS: u32 = 256;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify::tool_model::owners::Owners;
+    use crate::tool::Tool;
+    use crate::tool::{Circle, ProfileSegment, ToolInfo};
+    use std::borrow::Cow;
+
+    crate::tool! {
+        tool Slender "a flat end, a long flute" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (0.5, 0) as face cutting;
+                line to (0.5, 70) as flute cutting;
+                line to (0, 70) as top;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Dumbbell "two cylinders of 3 mm radius, and a neck of 1 mm" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (3, 0), (3, 10) as lower cutting;
+                line to (1, 10), (1, 30), (3, 30) as neck;
+                line to (3, 40), (0, 40) as upper;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    crate::tool! {
+        tool Chamfered "a chamfer of a tenth of a micrometre" {
+            units mm;
+            profile {
+                start (0, 0);
+                line to (4.9999, 0) as face cutting;
+                line to (5, 0.0001) as chamfer cutting;
+                line to (5, 50), (0, 50) as flute;
+            }
+            niceness cutting: 1;
+        }
+    }
+
+    /// Returns the witnesses of a tool whose surfaces have limits by name; all others may have any depth.
+    fn of(tool: &dyn Tool, limits: &[(&str, f64)]) -> Vec<CorePoint> {
+        let info = tool.info();
+        let section = Section::new(info, 1e-12).expect("a profile");
+        let limit = |feature: &Feature| {
+            let name = &*info.surfaces[feature.surface].name;
+            limits
+                .iter()
+                .find(|(known, _)| *known == name)
+                .map_or(f64::INFINITY, |(_, limit)| *limit)
+        };
+        let limits: Vec<f64> = section.features.iter().map(limit).collect();
+        let found = witnesses(&section, &limits, 1e-9);
+        for witness in &found {
+            assert!(section.signed(witness.place) > limits[witness.feature], "{witness:?}");
+            let own = section.features[witness.feature].distance(witness.place);
+            assert!((own - section.signed(witness.place)).abs() < 1e-12, "{witness:?}");
+        }
+        found
+    }
+
+    #[test]
+    fn a_thin_piece_is_found() {
+        let [face] = of(&Slender, &[("face", 0.0)])[..] else { panic!("one piece") };
+        assert!(face.place[1] < 0.5 && face.feature == 0, "{face:?}");
+        let [chamfer] = of(&Chamfered, &[("chamfer", 0.0)])[..] else { panic!("one piece") };
+        assert_eq!(chamfer.feature, 1);
+    }
+
+    /// A profile of lines and concave or convex quarters, as a tool from user code may have it: `.tool` files may not
+    /// turn straight back.
+    fn drawn(pieces: &[([f64; 2], [f64; 2], Option<Circle>)]) -> Section {
+        let pieces = pieces.iter().map(|(from, to, circle)| ProfileSegment {
+            from: *from,
+            to: *to,
+            circle: *circle,
+            surface: 0,
+        });
+        let info = ToolInfo { outline: Cow::Owned(pieces.collect()), ..Dumbbell.info().clone() };
+        Section::new(&info, 1e-12).expect("a profile")
+    }
+
+    /// Two arcs meet with opposite headings: in the rim of a disc, whose fan points out of the tool, and at the
+    /// bottom of a groove, whose fan points into it.
+    #[test]
+    fn cusps_have_no_witness_outside() {
+        let circle =
+            |d: f64, z: f64, convex: bool| Some(Circle { centre: [d, z], radius: 2.0, convex });
+        let disc = drawn(&[
+            ([0.0, 0.0], [3.0, 0.0], None),
+            ([3.0, 0.0], [5.0, 2.0], circle(5.0, 0.0, false)),
+            ([5.0, 2.0], [3.0, 4.0], circle(5.0, 4.0, false)),
+            ([3.0, 4.0], [3.0, 10.0], None),
+            ([3.0, 10.0], [0.0, 10.0], None),
+        ]);
+        let groove = drawn(&[
+            ([0.0, 0.0], [5.0, 0.0], None),
+            ([5.0, 0.0], [3.0, 2.0], circle(3.0, 0.0, true)),
+            ([3.0, 2.0], [5.0, 4.0], circle(3.0, 4.0, true)),
+            ([5.0, 4.0], [5.0, 10.0], None),
+            ([5.0, 10.0], [0.0, 10.0], None),
+        ]);
+        for section in [disc, groove] {
+            for limit in [0.0, 0.1] {
+                let found = witnesses(&section, &vec![limit; section.features.len()], 1e-9);
+                assert!(!found.is_empty());
+                for witness in found {
+                    assert!(section.signed(witness.place) > limit, "{witness:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_greatest_depth_is_that_of_the_middle() {
+        let section = Section::new(Dumbbell.info(), 1e-12).expect("a profile");
+        let of = |surface: usize| Owners::of(&section, |k| k == surface).greatest_depth(&section);
+        // The middle of each cylinder is 3 mm deep. The neck's edge is on the cylinder's end as well: it is the nearest
+        // point of points on the axis down to a depth of 3 mm, the middle excepted.
+        for surface in 0..3 {
+            assert!((3.0..=3.0303).contains(&of(surface)), "{surface}: {}", of(surface));
+        }
+        let section = Section::new(Slender.info(), 1e-12).expect("a profile");
+        for surface in 0..3 {
+            let depth = Owners::of(&section, |k| k == surface).greatest_depth(&section);
+            assert!((0.5..=0.50505).contains(&depth), "{surface}: {depth}");
+        }
+    }
+
+    #[test]
+    fn pieces_are_as_many_as_there_are() {
+        let all = |limit: f64| [("lower", limit), ("neck", limit), ("upper", limit)];
+        assert_eq!(of(&Dumbbell, &all(0.0)).len(), 1);
+        // A path along the axis joins them, which straight segments between witnesses do not show.
+        assert!((1..=3).contains(&of(&Dumbbell, &all(0.9)).len()));
+        // The neck is nowhere so deep.
+        let heights: Vec<f64> = of(&Dumbbell, &all(1.5)).iter().map(|w| w.place[1]).collect();
+        let [low, high] = heights[..] else { panic!("two pieces: {heights:?}") };
+        assert!(low.min(high) < 10.0 && low.max(high) > 30.0, "{heights:?}");
+        assert_eq!(of(&Dumbbell, &all(3.1)), []);
+        assert_eq!(of(&Dumbbell, &[("lower", 0.0), ("upper", 0.0)]).len(), 2);
+        assert_eq!(of(&Dumbbell, &[]), []);
+    }
+}

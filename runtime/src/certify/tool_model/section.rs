@@ -1,0 +1,398 @@
+//! The meridian section of a tool, bounded by its profile: exact distances in the half plane, and slabs between
+//! heights that list the features that matter there.
+//!
+//! Points are `[d, z]` in the tool's frame and unit. A slab is the region between two heights and inward of one
+//! feature, its *side*. It extends to the axis, or to another feature, its *inner* side, where the profile
+//! overhangs. No feature ends between a slab's heights.
+
+use crate::certify::tool_model::circles;
+use crate::certify::tool_model::feature::{
+    Feature, MeridianPoint, Triangle, cross, dot, minus, norm, quarters,
+};
+use crate::certify::tool_model::owners::Owners;
+use crate::tool::ToolInfo;
+
+/// A region between two heights.
+#[derive(Clone, Debug)]
+pub(crate) struct SectionSlab {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// The feature that bounds it away from the axis.
+    pub(crate) side: usize,
+    /// The feature that bounds it toward the axis; `None` if the slab reaches the axis.
+    inner: Option<usize>,
+    /// The least radius.
+    pub(crate) hole: f64,
+    /// The radii of its side at both heights.
+    radii: [f64; 2],
+    /// The features that can be the nearest to a point in it.
+    near: Vec<usize>,
+    /// The largest radius.
+    pub(crate) radius: f64,
+    /// The range along the line of its side in which a foot is on the surface or outside the tool, so that depth is
+    /// at most the distance from that line.
+    pub(crate) feet: [f64; 2],
+}
+
+/// The section of a tool with a profile.
+#[derive(Clone, Debug)]
+pub(crate) struct Section {
+    pub(crate) features: Vec<Feature>,
+    pub(crate) slabs: Vec<SectionSlab>,
+    /// True if some heights have several slabs, or one that does not reach the axis.
+    overhangs: bool,
+    /// The heights of circles about the axis on which depth can be greatest in a triangle.
+    pub(crate) circles: Vec<f64>,
+    /// The largest distance of a point of the profile from the tip.
+    pub(crate) size: f64,
+    /// The error bound of heights: slabs are taken to reach farther by this.
+    pub(crate) error: f64,
+}
+
+/// The depth of a point, and its gradient.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Depth {
+    /// The depth; for a point outside, a value less than 0.
+    pub(crate) value: f64,
+    pub(crate) gradient: MeridianPoint,
+    pub(crate) feature: usize,
+}
+
+impl Section {
+    /// Creates the section of a tool. Returns `None` if the tool has no profile, or if its overhangs are too many to
+    /// resolve.
+    pub(crate) fn new(info: &ToolInfo, error: f64) -> Option<Section> {
+        let features: Vec<Feature> = info.outline.iter().flat_map(quarters).collect();
+        let size = features.iter().flat_map(|f| f.ends).map(norm).fold(0.0, f64::max);
+        // Less than `error`, by which slabs are taken to reach farther: that is 64 ε of a length no smaller than
+        // `size`.
+        let slabs = slabs(&features, 4.0 * f64::EPSILON * size);
+        if slabs.is_empty() {
+            return None;
+        }
+        let overhangs = slabs.iter().any(|slab| slab.inner.is_some());
+        let circles = Vec::new();
+        let mut section = Section { features, slabs, overhangs, circles, size, error };
+        for slab in 0..section.slabs.len() {
+            let side = section.features[section.slabs[slab].side];
+            section.slabs[slab].feet = section.feet(&side, slab);
+        }
+        if overhangs {
+            section.circles = circles::heights(&section)?;
+        }
+        Some(section)
+    }
+
+    /// Returns the range along a line in which its feet are outside the tool, provided that they are between the
+    /// heights of a slab.
+    fn feet(&self, line: &Feature, slab: usize) -> [f64; 2] {
+        let at = |z: f64| (z - line.ends[0][1]) / line.along[1];
+        let SectionSlab { low, high, .. } = self.slabs[slab];
+        let inside = |other: &&SectionSlab| !self.outside(line, other);
+        let below = self.slabs[..slab].iter().rev().find(inside);
+        let above = self.slabs[slab + 1..].iter().find(inside);
+        let beside =
+            |other: Option<&SectionSlab>| other.is_some_and(|o| o.low < high && low < o.high);
+        if beside(below) || beside(above) {
+            // The tool continues beyond a gap: only feet on the side itself are known to be on the surface.
+            return [0.0, line.length];
+        }
+        [
+            below.map_or(f64::NEG_INFINITY, |other| at(other.high).min(0.0)),
+            above.map_or(f64::INFINITY, |other| at(other.low).max(line.length)),
+        ]
+    }
+
+    /// Returns whether a line stays outside the tool between a slab's heights.
+    fn outside(&self, line: &Feature, slab: &SectionSlab) -> bool {
+        let slope = line.along[0] / line.along[1];
+        let radius = |z: f64| line.ends[0][0] + slope * (z - line.ends[0][1]);
+        let (low, high) = (radius(slab.low), radius(slab.high));
+        match self.features[slab.side].circle {
+            None => low >= slab.radii[0] && high >= slab.radii[1],
+            Some(_) => low.min(high) >= slab.radius,
+        }
+    }
+
+    /// Returns whether no point of a slab is deeper than its distance from a line that touches the slab's side: all
+    /// feet are on the surface or outside.
+    pub(crate) fn tangent_bounds_slab(&self, line: &Feature, slab: usize) -> bool {
+        let SectionSlab { low, high, hole, radii, .. } = self.slabs[slab];
+        let [from, to] = self.feet(line, slab);
+        let corners = [[hole, low], [hole, high], [radii[0], low], [radii[1], high]];
+        corners.into_iter().all(|p| {
+            let at = dot(line.along, minus(p, line.ends[0]));
+            from <= at && at <= to
+        })
+    }
+
+    /// Returns the lowest and the highest z of the section.
+    pub(crate) fn reach(&self) -> [f64; 2] {
+        [self.slabs[0].low, self.slabs[self.slabs.len() - 1].high]
+    }
+
+    /// Returns the reflex corners that can be the nearest to points of a slab. The flag tells if a level feature ends
+    /// at the corner, beyond which the tool does not continue. A corner only lowers bounds, so leaving out those
+    /// flatter than 1e-9 makes no result wrong. No point is nearer to such a corner than to the lines that meet there
+    /// by more than 5e-19 of its distance.
+    pub(crate) fn reflex(&self, slab: &SectionSlab) -> impl Iterator<Item = (MeridianPoint, bool)> {
+        let pairs = self.features.windows(2).filter(|pair| {
+            let [before, after] = [pair[0].heading(1), pair[1].heading(0)];
+            cross(before, after) < -1e-9
+        });
+        let near = |z: f64| slab.low - slab.radius <= z && z <= slab.high + slab.radius;
+        // Where the profile overhangs, the tool may be on either side of a level feature.
+        let level = |f: &Feature| !self.overhangs && f.circle.is_none() && f.along[1] == 0.0;
+        pairs
+            .map(move |pair| (pair[1].ends[0], level(&pair[0]) || level(&pair[1])))
+            .filter(move |(place, _)| near(place[1]))
+    }
+
+    /// Returns the slabs from the first that reaches a height.
+    pub(crate) fn from(&self, z: f64) -> &[SectionSlab] {
+        &self.slabs[self.slabs.partition_point(|slab| slab.high + self.error < z)..]
+    }
+
+    /// Returns whether a point is inside or on the surface.
+    pub(crate) fn contains(&self, p: MeridianPoint) -> bool {
+        let inside = |slab: &SectionSlab| {
+            (slab.low..=slab.high).contains(&p[1]) && self.over(slab, p).0 >= 0.0
+        };
+        self.slabs.iter().any(inside)
+    }
+
+    /// Returns the distance of a point on the tool's side of a slab's sides, and the side for which it is less.
+    #[inline]
+    fn over(&self, slab: &SectionSlab, p: MeridianPoint) -> (f64, usize) {
+        let of = |side: usize| (self.features[side].signed_distance(p), side);
+        let outer = of(slab.side);
+        slab.inner.map(of).filter(|inner| inner.0 < outer.0).unwrap_or(outer)
+    }
+
+    /// Returns the depth of a point; for a point outside, a value below 0 or nothing.
+    pub(crate) fn depth_at(&self, owners: &Owners, p: MeridianPoint) -> Option<Depth> {
+        // Several slabs are at a height where the profile overhangs, or where slabs meet.
+        let here = self.from(p[1]).iter().take_while(|slab| slab.low - self.error <= p[1]);
+        let depths = here.map(|slab| self.depth((owners, 0.0), slab, p));
+        depths.reduce(|one, other| if other.value > one.value { other } else { one })
+    }
+
+    /// Returns the distance of a point from the profile.
+    pub(crate) fn away(&self, p: MeridianPoint) -> f64 {
+        self.nearest(0..self.features.len(), p).0
+    }
+
+    /// Returns the signed depth of a point: outside, the negative of its distance.
+    pub(crate) fn signed(&self, p: MeridianPoint) -> f64 {
+        let value = self.away(p);
+        if self.contains(p) { value } else { -value }
+    }
+
+    /// Returns whether owners own no point of a rectangle within `goes` of a point with this depth.
+    pub(crate) fn far_from(
+        &self,
+        owners: &Owners,
+        rectangle: &[MeridianPoint; 4],
+        (p, depth, goes): (MeridianPoint, f64, f64),
+    ) -> bool {
+        !owners.all()
+            && self.owned(owners).all(|owner| {
+                self.features[owner].distance(p) > depth + 2.0 * goes
+                    || self.hidden_by_neighbours(owner, rectangle)
+            })
+    }
+
+    /// Returns the depth of a point in a slab; outside, a value less than 0. It is -∞ if other features are the
+    /// nearest to all points within `slack` of it.
+    #[inline]
+    pub(crate) fn depth(
+        &self,
+        (owners, slack): (&Owners, f64),
+        slab: &SectionSlab,
+        p: MeridianPoint,
+    ) -> Depth {
+        let (over, side) = self.over(slab, p);
+        if over < 0.0 {
+            let other = -over <= self.touch() && self.apart(owners, |f| f.distance(p));
+            let value = if other { f64::NEG_INFINITY } else { over };
+            return Depth {
+                value,
+                gradient: self.features[side].signed_gradient(p),
+                feature: side,
+            };
+        }
+        let (value, mut feature) = self.nearest(slab.near.iter().copied(), p);
+        let gradient = self.features[feature].distance_gradient(p);
+        if !owners.own(feature) {
+            let owned = self.owned(owners).filter(|owner| !self.hidden_by_neighbours(*owner, &[p]));
+            let (other, owner) = self.nearest(owned, p);
+            if other > value + self.error + 2.0 * slack {
+                return Depth { value: f64::NEG_INFINITY, gradient, feature };
+            }
+            feature = owner;
+        }
+        Depth { value, gradient, feature }
+    }
+
+    /// Returns the distance outside up to which a point counts as touching.
+    fn touch(&self) -> f64 {
+        4.0 * self.error
+    }
+
+    /// Returns whether all owners are farther away than that.
+    fn apart(&self, owners: &Owners, away: impl Fn(&Feature) -> f64) -> bool {
+        !owners.all() && self.owned(owners).all(|owner| away(&self.features[owner]) > self.touch())
+    }
+
+    /// Returns at least the depth of every point of a slab in a triangle; below 0 if none is inside. A bound of at
+    /// most `enough` need not be tight.
+    #[inline]
+    pub(crate) fn at_most(
+        &self,
+        (owners, slack): (&Owners, f64),
+        slab: &SectionSlab,
+        triangle: &Triangle,
+        enough: f64,
+    ) -> f64 {
+        let side = &self.features[slab.side];
+        let out = side.signed_distance_upper(triangle);
+        let over = slab
+            .inner
+            .map_or(out, |inner| out.min(self.features[inner].signed_distance_upper(triangle)));
+        if over < 0.0 {
+            let other = over > enough && self.apart(owners, |f| f.at_least(triangle));
+            return if other { f64::NEG_INFINITY } else { over };
+        }
+        let mut bound = if side.projects_onto(triangle, slab.feet) { out } else { f64::INFINITY };
+        for near in &slab.near {
+            if bound <= enough {
+                return bound;
+            }
+            bound = bound.min(self.features[*near].at_most(triangle));
+        }
+        if bound > enough && !owners.all() {
+            let apart = bound + 2.0 * (self.error + slack);
+            let none = |owner: usize| {
+                self.hidden_by_neighbours(owner, triangle)
+                    || self.features[owner].at_least(triangle) > apart
+            };
+            if self.owned(owners).all(none) {
+                return f64::NEG_INFINITY;
+            }
+        }
+        bound
+    }
+
+    /// Returns the distance of a point from the owners, as a negative depth.
+    #[inline]
+    pub(crate) fn distance(&self, owners: &Owners, p: MeridianPoint) -> Depth {
+        let (value, feature) = self.nearest(self.owned(owners), p);
+        let gradient = self.features[feature].distance_gradient(p).map(|part| -part);
+        Depth { value: -value, gradient, feature }
+    }
+
+    /// Returns at least the negative distance from the owners of every point in a triangle. A bound of at most `best`
+    /// need not be tight.
+    #[inline]
+    pub(crate) fn negative_distance_bound(
+        &self,
+        owners: &Owners,
+        triangle: &Triangle,
+        best: f64,
+    ) -> f64 {
+        let [first, second, middle] = *triangle;
+        let reach = norm(minus(first, middle)).max(norm(minus(second, middle)));
+        let mut bound = f64::NEG_INFINITY;
+        for owner in self.owned(owners) {
+            let feature = &self.features[owner];
+            // A distance has the Lipschitz constant 1.
+            let coarse = reach - feature.distance(middle);
+            let near = coarse > best.max(bound);
+            bound = bound.max(if near { -feature.at_least(triangle).max(0.0) } else { coarse });
+        }
+        bound
+    }
+
+    /// Returns whether neighbouring features are nearer than `feature` to all points of a polygon. That is so if the
+    /// nearest point of `feature` is an end that it shares with a neighbour, and the neighbour comes nearer from
+    /// there.
+    pub(crate) fn hidden_by_neighbours(&self, feature: usize, corners: &[MeridianPoint]) -> bool {
+        let Some(ends) = self.features[feature].at_ends(corners) else { return false };
+        let nearer = |end: usize| {
+            let beside = if end == 0 { feature.checked_sub(1) } else { Some(feature + 1) };
+            beside.and_then(|beside| self.features.get(beside)).is_some_and(|other| {
+                let heading = other.heading(1 - end);
+                let way = if end == 0 { heading.map(|part| -part) } else { heading };
+                let from = self.features[feature].ends[end];
+                corners.iter().all(|p| dot(way, minus(*p, from)) > 0.0)
+            })
+        };
+        [0, 1].into_iter().all(|end| !ends[end] || nearer(end))
+    }
+
+    pub(crate) fn owned<'a>(&self, owners: &'a Owners) -> impl Iterator<Item = usize> + use<'a> {
+        (0..self.features.len()).filter(|feature| owners.own(*feature))
+    }
+
+    fn nearest(&self, features: impl Iterator<Item = usize>, p: MeridianPoint) -> (f64, usize) {
+        features.fold((f64::INFINITY, 0), |nearest, feature| {
+            let away = self.features[feature].distance(p);
+            if away < nearest.0 { (away, feature) } else { nearest }
+        })
+    }
+}
+
+/// Returns the slabs between the heights at which features end, in upward order. Features whose ends differ in
+/// height by at most `level` have none.
+fn slabs(features: &[Feature], level: f64) -> Vec<SectionSlab> {
+    let height = |feature: &Feature, end: usize| feature.ends[end][1];
+    let mut heights: Vec<f64> = features.iter().flat_map(|f| f.ends).map(|end| end[1]).collect();
+    heights.sort_by(f64::total_cmp);
+    heights.dedup_by(|upper, lower| *upper - *lower <= level);
+    let mut slabs = Vec::new();
+    for pair in heights.windows(2) {
+        let (low, high) = (pair[0], pair[1]);
+        let middle = f64::midpoint(low, high);
+        let passes = |feature: &Feature| {
+            let [from, to] = [0, 1].map(|end| height(feature, end));
+            (to - from).abs() > level && from.min(to) < middle && middle < from.max(to)
+        };
+        let mut sides: Vec<usize> = (0..features.len()).filter(|k| passes(&features[*k])).collect();
+        let radius = |side: &usize| features[*side].radius_at(middle);
+        sides.sort_by(|one, other| radius(one).total_cmp(&radius(other)));
+        let mut inner = None;
+        for side in sides {
+            if height(&features[side], 0) < height(&features[side], 1) {
+                slabs.push(SectionSlab::new(features, [low, high], side, inner.take()));
+            } else {
+                inner = Some(side);
+            }
+        }
+    }
+    slabs
+}
+
+impl SectionSlab {
+    fn new(
+        features: &[Feature],
+        [low, high]: [f64; 2],
+        side: usize,
+        inner: Option<usize>,
+    ) -> SectionSlab {
+        let radii_of = |side: usize| [low, high].map(|z| features[side].radius_at(z));
+        let radii = radii_of(side);
+        // A quarter of a circle is farthest out at its ends.
+        let radius = radii[0].max(radii[1]);
+        let hole = inner.map(radii_of).map_or(0.0, |[first, last]| first.min(last));
+        // Depth is at most the radial distance to the side. With an inner side, the nearer of the two is at most half
+        // the gap away.
+        let deepest = if inner.is_some() { 0.5 * (radius - hole) } else { radius };
+        let reaches = |f: &Feature| {
+            let [z0, z1] = f.ends.map(|end| end[1]);
+            z0.min(z1) <= high + deepest && z0.max(z1) >= low - deepest
+        };
+        let mut near: Vec<usize> = (0..features.len()).filter(|k| reaches(&features[*k])).collect();
+        near.sort_by_key(|k| k.abs_diff(side));
+        SectionSlab { low, high, side, inner, hole, radii, near, radius, feet: [0.0; 2] }
+    }
+}

@@ -1,0 +1,146 @@
+//! The results of a certifier.
+
+use nalgebra::Point3;
+
+/// The error for a tool that cannot be certified. Without a profile its distance is unknown, and no bound is
+/// proved on the rate at which the depth of its file changes.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{tool} cannot be certified: it has no profile, and how fast its depth changes is not \
+     proved; draw its `profile {{ … }}`, or see what `touchoff check` says of it"
+)]
+pub struct NotCertifiable {
+    /// The name of the tool.
+    pub tool: String,
+}
+
+/// The error for an invalid allowance.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AllowanceError {
+    /// The tool has no surface of that name.
+    #[error("{tool} has no surface `{surface}`; it has {known}")]
+    NoSurface {
+        /// The name of the tool.
+        tool: String,
+        /// The name that was given.
+        surface: String,
+        /// The names of the tool's surfaces.
+        known: String,
+    },
+    /// The allowance is negative, but the distances of outside points from the surface are unknown.
+    #[error(
+        "{tool} has no profile, so that `{surface}` can keep no margin: draw its `profile {{ … }}`, or allow 0 or \
+         more"
+    )]
+    NoMargin {
+        /// The name of the tool.
+        tool: String,
+        /// The name of the surface.
+        surface: String,
+    },
+    /// The allowance is not a length.
+    #[error("an allowance of {allowed} for `{surface}` is no length")]
+    NoLength {
+        /// The name of the surface.
+        surface: String,
+        /// The value that was given.
+        allowed: f64,
+    },
+}
+
+/// The deepest penetration of a part's triangles into a tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Penetration {
+    /// The lower and upper bound of the depth, in the part's unit; 0 if nothing is inside.
+    pub depth: [f64; 2],
+    /// A point whose depth is at least the lower bound; `None` if none was found inside.
+    pub witness: Option<Witness>,
+}
+
+/// A point of contact or closest approach between a tool and a part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Witness {
+    /// The point on the part, in world coordinates.
+    pub point: Point3<f64>,
+    /// The id of the triangle in the mesh.
+    pub triangle: u32,
+    /// The surface of the tool that is the nearest, as an index in the tool's list.
+    pub surface: usize,
+}
+
+/// The verdict on a tool at a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PoseVerdict {
+    /// No point of the part is deeper in the tool than is allowed, and the tool is outside the part. Without
+    /// allowances, no point of the part is inside the tool or on its surface.
+    Clear,
+    /// No triangle is deeper than is allowed, but the part has no inside: its mesh is open, inside out or not
+    /// consistently oriented. Whether the tool is inside the material is unknown.
+    SurfaceOnly,
+    /// A point of the part is deeper in the tool than its surface is [allowed](super::Certifier::with_allowance) to
+    /// be, or nearer to a surface than its margin.
+    Touching(Witness),
+    /// A connected piece of the restricted interior is inside the material, where no triangle shows it. The
+    /// restricted interior is the whole tool, or the points that are deeper than the allowance of their nearest
+    /// surface. Holds a surface of that piece, as an index in the tool's list.
+    Inside(usize),
+    /// Rounding decides, or the budget is spent: no point of the part exceeds its allowance by more than this, in the
+    /// part's unit. It is 0 if the only open question is whether the tool is inside the material.
+    Undecided(f64),
+}
+
+/// The verdict on a tool along a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MotionVerdict {
+    /// No point of the part exceeds its allowance by more than the tolerance at any time, and the tool is outside the
+    /// part.
+    Clear,
+    /// The same, but the part has no inside: its mesh is open, inside out or not consistently oriented. Whether the
+    /// tool is inside the material is unknown.
+    SurfaceOnly,
+    /// At this fraction of the motion, from 0 to 1, a point exceeds its allowance. It may not be the first.
+    Touching(f64, Witness),
+    /// A connected piece of the restricted interior is inside the material when the motion begins, where no triangle
+    /// shows it. Holds a surface of that piece, as an index in the tool's list.
+    Inside(usize),
+    /// The budget is spent, or rounding decides. The motion is clear up to this fraction of it, from 0 to 1; the rest
+    /// is unknown.
+    Undecided(f64),
+}
+
+/// The depth of a surface of a tool in a part along a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MotionDepth {
+    /// The surface exceeds its allowance by no more than the tolerance at any time, and no region of the tool that it
+    /// owns is inside the material. For a part without an inside (see [`MotionVerdict::SurfaceOnly`]) the latter is
+    /// unknown.
+    Within,
+    /// The surface is deeper than its allowance, or nearer than its margin.
+    Deeper {
+        /// The fraction of the motion, from 0 to 1, of the greatest depth found.
+        at: f64,
+        /// The lower and upper bound of the depth at that time, in the part's unit. If negative, the magnitude is the
+        /// distance from the part.
+        depth: [f64; 2],
+        /// Upper bound on depth over the motion, in the part's unit. It usually exceeds `depth[0]` by at most the
+        /// tolerance or an eighth of the excess over the allowance, whichever is larger.
+        most: f64,
+        /// The point with that depth at that time.
+        witness: Witness,
+    },
+    /// No triangle exceeds the allowance, but a region that the surface owns is inside the material when the motion
+    /// begins.
+    Inside,
+    /// The budget is spent, or rounding decides. The allowance holds up to this fraction of the motion, from 0 to 1;
+    /// the rest is unknown.
+    Undecided(f64),
+}
+
+/// The distance of a tool from a part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// The lower and upper bound of the distance, in the part's unit; 0 in contact.
+    pub distance: [f64; 2],
+    /// The nearest point found on the part.
+    pub witness: Option<Witness>,
+}

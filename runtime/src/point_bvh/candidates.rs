@@ -1,0 +1,110 @@
+//! Candidates: points that may be inside, transformed to the tool's frame.
+
+use super::LeafAttributes;
+use crate::bvh::{LANE, PoseTransform, Triple, WIDTH};
+use crate::tool::{LANES, PointBatch, reserve};
+use fearless_simd::{
+    Simd, SimdBase, SimdMask, SimdWiden, f32x16, f64x8, mask32x16, mask64x8, u32x16,
+};
+
+/// Points that may be inside: their tree indices, and their coordinates in the tool's frame and unit.
+#[derive(Default)]
+pub(crate) struct Candidates {
+    /// Leaves with points that may be inside, and a mask of these points.
+    pub(super) leaves: Vec<(u32, u32)>,
+    indices: Vec<u32>,
+    pub(crate) points: PointBatch,
+    /// Normals and weights of the candidates, if requested. Normals are in the part's frame.
+    pub(crate) normals: [Vec<f32>; 3],
+    pub(crate) weights: Vec<f32>,
+}
+
+impl Candidates {
+    pub(crate) fn clear(&mut self) {
+        self.points.clear();
+    }
+
+    /// Returns the tree indices of the candidates.
+    pub(crate) fn indices(&self) -> &[u32] {
+        &self.indices[..self.points.len()]
+    }
+
+    /// Reserves memory for all points of a part with `leaves` leaves, without touching it.
+    pub(crate) fn reserve(&mut self, leaves: usize, attributes: bool) {
+        let count = (leaves + 1) * WIDTH;
+        reserve(&mut self.leaves, leaves + 1);
+        self.points.reserve(count);
+        reserve(&mut self.indices, count);
+        if attributes {
+            reserve(&mut self.weights, count);
+            self.normals.iter_mut().for_each(|list| reserve(list, count));
+        }
+    }
+
+    /// Makes room for the points of `leaves` leaves.
+    pub(super) fn room(&mut self, leaves: usize, attributes: bool) {
+        let more = (leaves + 1) * WIDTH;
+        self.points.room(more);
+        let wanted = self.points.len() + more;
+        if self.indices.len() < wanted {
+            self.indices.resize(wanted, 0);
+        }
+        if attributes && self.weights.len() < wanted {
+            self.weights.resize(wanted, 0.0);
+            self.normals.iter_mut().for_each(|list| list.resize(wanted, 0.0));
+        }
+    }
+
+    /// Appends the points of a leaf whose bits are set; there has to be room for all of them.
+    ///
+    /// The points are transformed to the tool's frame in `f64`: `Rᵀ (p − t)`, the difference first. `base` is the
+    /// leaf's centre relative to the tip.
+    #[inline(always)]
+    pub(super) fn take<S: Simd>(
+        &mut self,
+        simd: S,
+        view: &PoseTransform,
+        (leaf, base): (u32, [f64; 3]),
+        offset: &Triple<S>,
+        hits: u32,
+    ) {
+        let lanes = u32x16::from_slice(simd, &LANE) + leaf * WIDTH as u32;
+        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
+        let at = self.points.len();
+        lanes.compress(mask).store_slice(&mut self.indices[at..at + WIDTH]);
+        let (x, y, z) = (offset[0].widen(), offset[1].widen(), offset[2].widen());
+        let halves = [[x.0, y.0, z.0], [x.1, y.1, z.1]];
+        let mut count = 0;
+        for (half, bits) in halves.into_iter().zip([hits & 0xff, hits >> 8]) {
+            let p = [
+                half[0] * view.scale + base[0],
+                half[1] * view.scale + base[1],
+                half[2] * view.scale + base[2],
+            ];
+            let mask = mask64x8::from_bitmask(simd, u64::from(bits));
+            let places = self.points.next(count, LANES);
+            for (row, place) in view.carry.iter().zip(places) {
+                let carried: f64x8<S> = p[0] * row[0] + p[1] * row[1] + p[2] * row[2];
+                carried.compress(mask).store_slice(place);
+            }
+            count += bits.count_ones() as usize;
+        }
+    }
+
+    /// Appends the normals and weights of the same points.
+    #[inline(always)]
+    pub(super) fn take_attributes<S: Simd>(&mut self, simd: S, skin: &LeafAttributes, hits: u32) {
+        let mask = mask32x16::from_bitmask(simd, u64::from(hits));
+        let place = self.points.len()..self.points.len() + WIDTH;
+        for (list, of) in self.normals.iter_mut().zip(&skin.normal) {
+            f32x16::from_slice(simd, of).compress(mask).store_slice(&mut list[place.clone()]);
+        }
+        f32x16::from_slice(simd, &skin.weight).compress(mask).store_slice(&mut self.weights[place]);
+    }
+
+    /// Records that `count` points were appended.
+    #[inline(always)]
+    pub(super) fn took(&mut self, count: usize) {
+        self.points.took(count);
+    }
+}

@@ -1,0 +1,261 @@
+//! Reading a saved part.
+
+use super::SavedError;
+use super::foreign::{BEGINNING, seems};
+use super::layout::{
+    ALIGN, FileHeader, List, MAGIC, SectionHeader, Start, Surveyed, VERSION, checksums,
+    header_checksum, lists, unit,
+};
+use crate::bvh::{Frame, WIDTH};
+use crate::cloud::CoveringRadius;
+use crate::part::Part;
+use crate::point_bvh::PointBvh;
+use bytemuck::Pod;
+use nalgebra::Point3;
+use std::io::{self, Cursor, Read};
+use std::mem::size_of;
+use std::ops::Range;
+
+/// Reads the part in a file of `length` bytes; errors name it as `file`. The lists are copied into
+/// memory before they are checked, so later changes of the file have no effect.
+pub(super) fn part(source: impl Read, length: u64, file: &str) -> Result<Part, SavedError> {
+    let about = FileContext { length, file };
+    let (start, header, mut rest) = about.start(source)?;
+    let mut records = Records { about: &about, left: &header[size_of::<Start>()..] };
+    let unsound = |what: &str| about.unsound(what.to_owned());
+
+    let surveyed: Surveyed = records.next()?;
+    let survey = match start.surveyed {
+        0 => None,
+        1 => Some(surveyed.survey().ok_or_else(|| unsound("its survey has impossible numbers"))?),
+        _ => return Err(unsound("it neither has a survey nor has none")),
+    };
+    let unit = unit(start.unit).ok_or_else(|| unsound("it names no known unit"))?;
+    if start.trees == 0 {
+        return Err(unsound("it has no points"));
+    }
+    let mut outlines = Vec::new();
+    let mut at = start.header;
+    for _ in 0..start.trees {
+        outlines.push(records.outline(&mut at)?);
+    }
+    if at != start.file || records.left.len() >= ALIGN {
+        return Err(unsound("its lists do not fill it"));
+    }
+    let trees = outlines.iter().enumerate();
+    let levels = trees.map(|(tree, outline)| about.tree(tree, outline, &mut rest));
+    Ok(Part { levels: levels.collect::<Result<_, _>>()?, unit, survey })
+}
+
+/// The length and the name of the file, for checks and errors.
+struct FileContext<'a> {
+    length: u64,
+    file: &'a str,
+}
+
+/// The records of a header that have not been read yet.
+struct Records<'a> {
+    about: &'a FileContext<'a>,
+    left: &'a [u8],
+}
+
+/// A tree as described in the header.
+struct Outline {
+    stem: FileHeader,
+    lists: Vec<ListLocation>,
+}
+
+/// The location of a list of `bytes` bytes; `filled` includes the padding.
+struct ListLocation {
+    list: List,
+    bytes: usize,
+    filled: Range<u64>,
+    checksum: u32,
+}
+
+impl FileContext<'_> {
+    fn unsound(&self, what: String) -> SavedError {
+        SavedError::Inconsistent { file: self.file.to_owned(), what }
+    }
+
+    fn unreadable(&self, source: io::Error) -> SavedError {
+        SavedError::Unreadable { file: self.file.to_owned(), source }
+    }
+
+    fn damaged(&self, section: String, bytes: &Range<u64>) -> SavedError {
+        let (from, to) = (bytes.start, bytes.end);
+        SavedError::Damaged { file: self.file.to_owned(), section, from, to }
+    }
+
+    /// Reads the file's beginning and header. Returns them with the rest of the source, after checking
+    /// the file length.
+    fn start(&self, mut source: impl Read) -> Result<(Start, Vec<u8>, impl Read), SavedError> {
+        let file = || self.file.to_owned();
+        let has = self.length;
+        let truncated = |needs| Err(SavedError::Truncated { file: file(), has, needs });
+        let mut bytes = Vec::new();
+        let beginning = source.by_ref().take(BEGINNING as u64).read_to_end(&mut bytes);
+        beginning.map_err(|source| self.unreadable(source))?;
+        let known = bytes.len().min(MAGIC.len());
+        if bytes.is_empty() || bytes[..known] != MAGIC[..known] {
+            return Err(SavedError::UnknownFormat { file: file(), seems: seems(&bytes, has) });
+        }
+        let Some(start) = bytes.get(..size_of::<Start>()) else {
+            return truncated(size_of::<Start>() as u64);
+        };
+        let start: Start = bytemuck::pod_read_unaligned(start);
+        if start.header > has {
+            if start.file > has {
+                return truncated(start.file);
+            }
+            return Err(self.damaged("the header".to_owned(), &(0..size_of::<Start>() as u64)));
+        }
+        let mut source = Cursor::new(bytes).chain(source);
+        let mut header = Vec::new();
+        let whole = source.by_ref().take(start.header).read_to_end(&mut header);
+        whole.map_err(|source| self.unreadable(source))?;
+        if header.len() < size_of::<Start>() || header_checksum(&header) != start.checksum {
+            let bytes = 0..header.len().max(size_of::<Start>()) as u64;
+            return Err(self.damaged("the header".to_owned(), &bytes));
+        }
+        if start.version > VERSION {
+            let (version, reads) = (start.version, VERSION);
+            return Err(SavedError::Newer { file: file(), version, reads });
+        }
+        if start.version != VERSION {
+            return Err(self.unsound(format!("there is no version {}", start.version)));
+        }
+        match start.file {
+            needs if needs > has => truncated(needs),
+            needs if needs < has => Err(SavedError::Trailing { file: file(), has, needs }),
+            _ => Ok((start, header, source)),
+        }
+    }
+
+    /// Reads the next tree of the file.
+    fn tree(
+        &self,
+        number: usize,
+        Outline { stem, lists }: &Outline,
+        source: &mut impl Read,
+    ) -> Result<PointBvh, SavedError> {
+        let unsound = |what: &str| self.unsound(what.to_owned());
+        let positive = [stem.weight, stem.radius, stem.size.into(), stem.leaf_size.into()];
+        if !(stem.scale > 0.0 && positive.iter().all(|number| *number >= 0.0)) {
+            return Err(unsound("a tree has a size that is no size"));
+        }
+        if u64::from(stem.gone) > stem.points {
+            return Err(unsound("a tree lacks more points than it has"));
+        }
+        let mut levels = Vec::new();
+        let (mut leaves, mut skins, mut triangles) = (None, None, None);
+        for place in lists {
+            match place.list {
+                List::Boxes(_) => levels.push(self.list(number, place, source)?),
+                List::Leaves => leaves = Some(self.list(number, place, source)?),
+                List::Skins => skins = Some(self.list(number, place, source)?),
+                List::Triangles => triangles = Some(self.list(number, place, source)?),
+            }
+        }
+        let (Some(leaves), Some(skins), Some(triangles)) = (leaves, skins, triangles) else {
+            return Err(unsound("a tree lacks a list"));
+        };
+        let tree = PointBvh {
+            frame: Frame { origin: Point3::from(stem.origin), scale: stem.scale, size: stem.size },
+            levels,
+            leaves,
+            leaf_size: stem.leaf_size,
+            skins,
+            weight: stem.weight,
+            triangles,
+            cover: match stem.cover {
+                0 => None,
+                1 => Some(CoveringRadius { radius: stem.radius, proved: false }),
+                2 => Some(CoveringRadius { radius: stem.radius, proved: true }),
+                _ => return Err(unsound("a tree has an unknown kind of cover")),
+            },
+            gone: stem.gone as usize,
+        };
+        if ends(&tree) { Ok(tree) } else { Err(unsound("a tree has boxes or points of nothing")) }
+    }
+
+    /// Reads and checks the next list of the file.
+    fn list<T: Pod>(
+        &self,
+        tree: usize,
+        place: &ListLocation,
+        source: &mut impl Read,
+    ) -> Result<Vec<T>, SavedError> {
+        let mut list: Vec<T> = vec![T::zeroed(); place.bytes / size_of::<T>()];
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut list);
+        let mut filling = [0; ALIGN];
+        let filling = &mut filling[..place.bytes.next_multiple_of(ALIGN) - place.bytes];
+        let read = source.read_exact(bytes).and_then(|()| source.read_exact(filling));
+        read.map_err(|source| self.unreadable(source))?;
+        if filling.iter().any(|byte| *byte != 0) || checksums(&[bytes])[0] != place.checksum {
+            return Err(self.damaged(format!("{} of tree {tree}", place.list), &place.filled));
+        }
+        Ok(list)
+    }
+}
+
+/// Returns whether every level is padded with empty (NaN) boxes after its last item. Every index that a
+/// query meets is then that of an existing box, leaf or point.
+fn ends(tree: &PointBvh) -> bool {
+    let none = |centre: &[[f32; WIDTH]; 3], count: usize| {
+        // A full node has no padding.
+        let used = (count + WIDTH - 1) % WIDTH + 1;
+        centre.iter().all(|list| list[used..].iter().all(|part| part.is_nan()))
+    };
+    let below = tree.levels.iter().skip(1).map(|level| level.len()).chain([tree.leaves.len()]);
+    let boxes = tree
+        .levels
+        .iter()
+        .zip(below)
+        .all(|(level, below)| level.last().is_some_and(|last| none(&last.centre, below)));
+    boxes && tree.leaves.last().is_some_and(|last| none(&last.offset, tree.slots()))
+}
+
+impl Records<'_> {
+    fn next<T: Pod>(&mut self) -> Result<T, SavedError> {
+        let Some((record, left)) = self.left.split_at_checked(size_of::<T>()) else {
+            return Err(self.about.unsound("its header ends too early".to_owned()));
+        };
+        self.left = left;
+        Ok(bytemuck::pod_read_unaligned(record))
+    }
+
+    /// Reads the description of a tree whose lists begin at offset `end`, and moves `end` to the end of
+    /// the lists.
+    fn outline(&mut self, end: &mut u64) -> Result<Outline, SavedError> {
+        let stem: FileHeader = self.next()?;
+        let about = self.about;
+        if stem.points == 0 || u32::try_from(stem.points).is_err() {
+            return Err(about.unsound(format!("a tree has {} points", stem.points)));
+        }
+        let mut places = Vec::new();
+        for (list, count) in lists(stem.points) {
+            let section: SectionHeader = self.next()?;
+            // Items have at most 384 bytes, and there are fewer than 2^32 of them, so the product does
+            // not overflow.
+            let bytes = count * list.item();
+            let misplaced = || about.unsound(format!("{list} are not where they should be"));
+            if (section.at, section.bytes) != (*end, bytes)
+                || !section.at.is_multiple_of(ALIGN as u64)
+            {
+                return Err(misplaced());
+            }
+            let filled_to = end.checked_add(bytes.next_multiple_of(ALIGN as u64));
+            let filled_to = filled_to.filter(|to| *to <= about.length).ok_or_else(misplaced)?;
+            let bytes = usize::try_from(bytes).map_err(|_| misplaced())?;
+            places.push(ListLocation {
+                list,
+                bytes,
+                filled: *end..filled_to,
+                checksum: section.checksum,
+            });
+            *end = filled_to;
+        }
+        Ok(Outline { stem, lists: places })
+    }
+}

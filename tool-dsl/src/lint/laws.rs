@@ -1,0 +1,171 @@
+//! Checks of `magnitude` and `niceness` at points that samples of the inside do not reach: toward the
+//! surface, at its corners and on the axis.
+
+use super::fault::Fault;
+use super::{Linter, norm};
+use crate::bound::Extent;
+use crate::diagnostic::{CheckKind, Diagnostic, FormattedNumber, Subject};
+use crate::expr::Id;
+use crate::geometry::outline::{Point, Segment, stations};
+use crate::source::Span;
+
+/// The number of points along a segment of a profile.
+const STATIONS: usize = 8;
+/// The number of steps between points on the axis.
+const ON_AXIS: i32 = 200;
+/// The distances inside the surface at which values are compared, in sizes of the tool.
+const NEAR: f64 = 1e-10;
+const FAR: f64 = 1e-5;
+/// The ratio of the values near the surface and farther in from which a value is reported to grow without
+/// bound. For `1/sqrt(depth)` it is 316, and for a logarithm 2.
+const GROWN: f64 = 100.0;
+/// The ratio by which such a value must also exceed those at all samples, so that a value that passes through
+/// 0 is not reported.
+const BEYOND: f64 = 1000.0;
+
+/// Returns points on an outline, in the half plane's coordinates, each with a vector into the material: along
+/// its segments and at the corners between them.
+pub(super) fn beside(outline: &[Segment]) -> Vec<[Point; 2]> {
+    let each: Vec<Vec<[Point; 2]>> =
+        outline.iter().map(|segment| stations(segment, STATIONS)).collect();
+    let corners = outline.iter().zip(each.windows(2)).filter_map(|(segment, beside)| {
+        let [[_, one], [_, other]] = [beside[0].last()?, beside[1].first()?];
+        Some([segment.ends()[1], [one[0] + other[0], one[1] + other[1]]])
+    });
+    let corners: Vec<[Point; 2]> = corners.collect();
+    each.into_iter().flatten().chain(corners).collect()
+}
+
+impl Linter<'_> {
+    /// Returns the laws of a region: their names, values and locations in the text.
+    fn laws(&self, owner: usize) -> [(&'static str, Id, Span); 2] {
+        let region = &self.model.regions[owner];
+        [
+            ("magnitude", region.magnitude, region.law_spans.magnitude),
+            ("niceness", region.niceness, region.law_spans.niceness),
+        ]
+    }
+
+    /// Updates the largest values of the laws at the current point.
+    pub(super) fn measure(&mut self, owner: usize) {
+        for (law, (_, id, _)) in self.laws(owner).into_iter().enumerate() {
+            let value = self.evaluator.get(id).abs();
+            let largest = &mut self.largest[owner][law];
+            *largest = largest.max(if value.is_finite() { value } else { 0.0 });
+        }
+    }
+
+    /// Reports laws that have no value just inside a point of the surface, or that grow without bound toward
+    /// it. `way` points into the material and has any nonzero length.
+    pub(super) fn toward_surface(&mut self, at: [f64; 3], way: [f64; 3]) {
+        let length = norm(way);
+        let inside = |part: f64| [0, 1, 2].map(|k| at[k] + way[k] / length * part * self.size);
+        let [near, far] = [NEAR, FAR].map(inside);
+        let Some(owner) = self.owner(near) else { return };
+        self.without_value(owner, near);
+        let values = self.laws(owner).map(|(_, id, _)| self.evaluator.get(id).abs());
+        if self.owner(far) != Some(owner) {
+            return;
+        }
+        for (law, (quantity, id, span)) in self.laws(owner).into_iter().enumerate() {
+            let (near, far) = (values[law], self.evaluator.get(id).abs());
+            if near > GROWN * far && near > BEYOND * self.largest[owner][law] {
+                let kind = CheckKind::GrowsUnbounded {
+                    quantity,
+                    region: self.model.regions[owner].name.clone(),
+                    value: FormattedNumber(near),
+                    place: self.place(at),
+                };
+                self.report(Diagnostic::new(span, kind));
+            }
+        }
+    }
+
+    /// Reports laws that have no value on the axis.
+    pub(super) fn on_axis(&mut self, extent: &Extent) {
+        for step in 0..=ON_AXIS {
+            let part = f64::from(step) / f64::from(ON_AXIS);
+            let point = [0.0, 0.0, extent.low + part * (extent.high - extent.low)];
+            if let Some(owner) = self.owner(point) {
+                self.without_value(owner, point);
+            }
+        }
+    }
+
+    /// Reports laws that have no value at the current point.
+    fn without_value(&mut self, owner: usize, point: [f64; 3]) {
+        for (quantity, id, span) in self.laws(owner) {
+            if !self.evaluator.get(id).is_finite() {
+                let diagnostic = self.no_number(owner, (quantity, id, span), self.place(point));
+                self.report(diagnostic);
+            }
+        }
+    }
+
+    /// Returns the diagnostic of a law that is not a finite number at the current point.
+    pub(super) fn no_number(
+        &self,
+        owner: usize,
+        (quantity, id, span): (&'static str, Id, Span),
+        place: String,
+    ) -> Diagnostic {
+        let subject = Subject::Quantity(quantity, self.model.regions[owner].name.clone());
+        let fault = Fault::of(&self.model.graph, &self.evaluator, id);
+        Diagnostic::new(span, fault.kind(place, subject))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile;
+    use crate::diagnostic::Diagnostic;
+    use crate::source::Source;
+
+    /// Returns the messages for tools with a law: a profile with it as magnitude, one with it as niceness,
+    /// and one of regions written by hand.
+    fn said(law: &str) -> [Vec<String>; 3] {
+        let profile = "profile { start (0, 0); line to (2, 0) as face cutting; arc to (3, 1) center (2, 1) as corner
+                       cutting; line to (3, 20) as flute cutting; line to (0, 20) as top; }";
+        let by_hand = "d <= 3, 0 <= z <= 3 { depth: min(z, 3 - d, 3 - z)";
+        [
+            format!("{profile} magnitude: {law};"),
+            format!("{profile} niceness cutting: {law};"),
+            format!("region all where {by_hand}; magnitude: {law}; }}"),
+        ]
+        .map(|items| {
+            let compiled =
+                compile(&Source::new("a.tool", format!("tool A {{ units mm; {items} }}")));
+            compiled.diagnostics().iter().map(Diagnostic::message).collect()
+        })
+    }
+
+    #[test]
+    fn laws_that_have_no_value_at_the_surface_are_reported() {
+        let unbounded = "grows without bound toward the surface";
+        for (law, words) in [
+            ("1/depth", unbounded),
+            ("1/sqrt(depth)", unbounded),
+            ("1/z", unbounded),
+            ("sqrt(depth - 0.001)", "square root of a negative number"),
+            ("1/d", "division by zero at (0, "),
+        ] {
+            for said in said(law) {
+                assert!(said.iter().any(|message| message.contains(words)), "{law}: {said:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn laws_that_are_steep_or_vanish_at_the_surface_are_not() {
+        for law in [
+            "1/(depth + 0.001)",
+            "5*sqrt(depth)",
+            "depth^1.5",
+            "(1 - depth/10)^2",
+            "1/(1 + d)",
+            "1000000*depth",
+        ] {
+            assert_eq!(said(law).concat(), Vec::<String>::new(), "{law}");
+        }
+    }
+}

@@ -1,0 +1,389 @@
+//! Separation of two owners of a box: a curve with the owners on its two sides, and whether depth is
+//! continuous across it.
+
+mod order;
+mod signs;
+
+use super::cover::{Claim, Cover, reach};
+use super::root::{Agreement, Forms, RootForm};
+use super::sum::RootSum;
+use super::tangency::Touch;
+use super::tangent::{Off, Tangency};
+use crate::elimination::Linear;
+use crate::expr::interval::Cell;
+use crate::expr::polynomial::Polynomial;
+use crate::expr::value::Evaluator;
+use crate::expr::{Id, Node};
+use crate::formula::{ANY, CurveIndex, Formula, NEGATIVE, POSITIVE, Signs, ZERO};
+use crate::model::Model;
+use crate::number::ROUNDING;
+use order::LowerByLinear;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
+
+/// The number of boxes in which the contact of two conics is searched for.
+const TRIES: u32 = 12;
+
+/// Bounds for the border of a profile that is nearly smooth. The first limits the difference of depths,
+/// relative to the tool's size, and is added to the slack. The second limits the difference of their slopes
+/// across the border. A descent that stays on either side is then as steep up to the square of the second, by
+/// which `c` is lowered: see [`ROUNDING`](super::nonsmooth::ROUNDING).
+const TANGENT_JUMP: f64 = 4e-9;
+pub(super) const TANGENT_SLOPE: f64 = 1e-5;
+
+/// A region and its neighbour, or `None` for the outside, where depth is 0.
+pub(super) type Pair = (usize, Option<usize>);
+
+/// The continuity of depth from one owner to another.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Joint {
+    /// Nothing is known.
+    None,
+    /// No jump. Each of two depths is the smaller on its own side, or both are 0.
+    Lower,
+    /// No jump.
+    Kinked,
+    /// No jump of depth or of its slope.
+    Smooth,
+}
+
+/// The separation of two claims to a box.
+pub(super) struct Parted {
+    pub(super) curve: CurveIndex,
+    pub(super) joint: Joint,
+    /// True if the first claim is where the curve is negative.
+    pub(super) below: bool,
+    /// The largest difference of two joined depths in the box: rounding, where a profile is nearly smooth.
+    pub(super) off: f64,
+}
+
+/// The signs that a path down the tree demands.
+type Ways = Vec<(CurveIndex, Signs)>;
+
+/// The number of searches for the contact of two curves, and the contact if one was found.
+type Tried = (u32, Option<Touch>);
+
+/// A curve as a polynomial, and a second polynomial that must be positive for the first to have the curve's
+/// sign.
+pub(super) type Curve = (Polynomial, Option<Polynomial>);
+
+pub(super) struct BorderProver<'m> {
+    model: &'m Model,
+    size: f64,
+    /// The depths of [`Model::depths`], and their forms.
+    ids: Vec<Id>,
+    depths: Vec<Option<RootForm>>,
+    /// True if depths of adjacent regions may differ by rounding, whatever their slopes.
+    may_step: bool,
+    /// The largest such difference.
+    largest_step: f64,
+    /// True if owners are checked against the list of regions.
+    listed: bool,
+    curves: Vec<Option<Curve>>,
+    /// The curves that are not polynomials but sums of roots.
+    sums: Vec<Option<RootSum>>,
+    differences: BTreeMap<[usize; 2], Rc<Vec<(CurveIndex, bool)>>>,
+    /// Straight curves with a gradient of length 1.
+    lines: HashMap<CurveIndex, Option<Polynomial>>,
+    nothing: RootForm,
+    /// The curves on which the depths of two owners agree.
+    joints: BTreeMap<Pair, Vec<CurveIndex>>,
+    agree: BTreeMap<(Pair, CurveIndex), Option<Rc<Agreement>>>,
+    /// The sign that a conic has on a whole side of a line, and whether that is the side below it.
+    apart: BTreeMap<(CurveIndex, CurveIndex), Option<(bool, bool)>>,
+    /// The signs of a curve that linear curves leave possible.
+    by_linear: HashMap<(Option<usize>, Ways, CurveIndex), Signs>,
+    linear: Linear,
+    /// The order of two depths, each at its own claim, according to linear curves.
+    lower: HashMap<(Pair, [Ways; 2]), LowerByLinear>,
+    /// True if the first or the second depth is at most a third one that continues the other.
+    lower_by_third: HashMap<((Pair, [Ways; 2]), usize), bool>,
+    /// True if a claim has no point of a region.
+    excluded: HashMap<(usize, Ways), bool>,
+    /// True if a depth is at most another where curves have these signs.
+    no_deeper: HashMap<(Vec<Signs>, usize, usize), bool>,
+    /// An upper bound of the excess of one depth over another.
+    excesses: HashMap<(usize, usize), Option<f64>>,
+    touches: HashMap<(CurveIndex, CurveIndex), Tried>,
+    tangencies: HashMap<(Pair, CurveIndex), Option<Tangency>>,
+    values: Evaluator<'m>,
+    /// The current box.
+    cell: Cell,
+}
+
+impl<'m> BorderProver<'m> {
+    /// Finds the forms of a tool's depths and curves, in its box. With `steps`, depths may differ by
+    /// rounding, because slopes across borders do not matter.
+    pub(super) fn new(
+        model: &'m Model,
+        cell: Cell,
+        forms: &mut Forms<'_>,
+        (steps, finest): (bool, f64),
+    ) -> BorderProver<'m> {
+        let (size, ids) = (reach(&cell), model.depths());
+        let depths = ids.iter().map(|depth| forms.of(*depth)).collect();
+        let values = || model.curves.iter().map(|curve| curve.value);
+        let curves: Vec<_> = values().map(|value| forms.of(value)?.curve()).collect();
+        let sums = values().zip(&curves).map(|(value, curve)| match curve {
+            Some(_) => None,
+            None => RootSum::of(&model.graph, forms, value),
+        });
+        BorderProver {
+            model,
+            size,
+            may_step: steps,
+            largest_step: finest.min(TANGENT_JUMP) * size,
+            listed: !model.is_exact(),
+            values: Evaluator::new(&model.graph, ids.iter().copied()),
+            ids,
+            sums: sums.collect(),
+            differences: BTreeMap::new(),
+            depths,
+            curves,
+            nothing: RootForm::zero(),
+            joints: BTreeMap::new(),
+            agree: BTreeMap::new(),
+            apart: BTreeMap::new(),
+            by_linear: HashMap::new(),
+            linear: Linear::with_depths(model, cell),
+            lower: HashMap::new(),
+            lower_by_third: HashMap::new(),
+            excluded: HashMap::new(),
+            no_deeper: HashMap::new(),
+            excesses: HashMap::new(),
+            lines: HashMap::new(),
+            touches: HashMap::new(),
+            tangencies: HashMap::new(),
+            cell,
+        }
+    }
+
+    /// Returns whether a region's depth is the distance to a line, a circle or a point.
+    pub(super) fn is_distance(&self, region: usize) -> bool {
+        self.depths[region].as_ref().is_some_and(RootForm::is_distance)
+    }
+
+    /// Returns whether a region's depth is a root without further terms.
+    pub(super) fn is_length(&self, region: usize) -> bool {
+        self.depths[region].as_ref().is_some_and(RootForm::is_length)
+    }
+
+    /// Returns the form of a region's depth.
+    pub(super) fn depth(&self, region: usize) -> Option<&RootForm> {
+        self.depths[region].as_ref()
+    }
+
+    /// Returns whether the list of regions gives the claim's points to its owner, except on borders. If
+    /// `alone` is set, also checks that no other region contains them.
+    pub(super) fn is_right(
+        &mut self,
+        claim: &Claim,
+        place: (&mut Cover<'_>, Cell),
+        alone: bool,
+    ) -> bool {
+        let (cover, cell) = place;
+        self.cell = cell;
+        // A claim with a zero sign is a line or a point.
+        if claim.signs.iter().any(|(_, signs)| *signs == ZERO) {
+            return true;
+        }
+        let model = self.model;
+        let mut sign = |curve: CurveIndex| self.sign_on(claim, curve, cover);
+        let own = |owner: usize| model.regions[owner].inside.decided_by(&mut sign) == Some(true);
+        if !claim.owner.is_none_or(own) {
+            return false;
+        }
+        !alone
+            || (0..model.regions.len()).all(|other| {
+                let mut open = |curve: CurveIndex| self.sign_on(claim, curve, cover) & !ZERO;
+                Some(other) == claim.owner
+                    || model.regions[other].inside.decided_by(&mut open) == Some(false)
+                    || self.excluded(claim, other)
+            })
+    }
+
+    /// Returns whether linear curves prove that no point of a claim is in a region, except on borders.
+    fn excluded(&mut self, claim: &Claim, region: usize) -> bool {
+        let key = (region, ways(claim));
+        if let Some(known) = self.excluded.get(&key) {
+            return *known;
+        }
+        let way = self.signs(&key.1);
+        let linear = &self.linear;
+        // Tests one of the alternatives, with borders left out.
+        let empty = |demands: &[&Formula]| {
+            let mut demanded = vec![ANY; way.len()];
+            demands.iter().for_each(|formula| formula.demand(&mut demanded));
+            let mut signs = way.clone();
+            for (sign, demanded) in signs.iter_mut().zip(demanded) {
+                *sign &= if demanded == ANY { ANY } else { demanded & !ZERO };
+            }
+            signs.contains(&0) || linear.contradictory(&signs)
+        };
+        let inside = &self.model.regions[region].inside;
+        let none = |choices: &&[Formula]| choices.iter().all(|choice| empty(&[inside, choice]));
+        let excluded = empty(&[inside]) || inside.choices().iter().any(none);
+        self.excluded.insert(key, excluded);
+        excluded
+    }
+
+    /// Returns a curve with two claims to a box on its two sides, and the continuity of depth there. Returns
+    /// `None` if the claims do not meet in the box, given that their depths are known to differ (`apart`).
+    pub(super) fn of(
+        &mut self,
+        pair: Pair,
+        [a, b]: [&Claim; 2],
+        (cover, cell): (&mut Cover<'_>, Cell),
+        apart: bool,
+    ) -> Option<Parted> {
+        self.cell = cell;
+        let parting = parting(a, b);
+        let mut joint = parting.iter().copied().find(|curve| self.agree(pair, *curve).is_some());
+        joint = joint.or_else(|| {
+            self.joints(pair).into_iter().find(|curve| {
+                let [a, b] = [a, b].map(|claim| self.sign_on(claim, *curve, cover));
+                a & b & !ZERO == 0
+            })
+        });
+        let Some(curve) = joint else {
+            let curve = *parting.first()?;
+            if let Some(parted) = self.tangent(pair, &parting) {
+                return Some(parted);
+            }
+            let lower = self.lower(pair, [a, b], &parting, cover).map(|off| self.step(off));
+            let parted = |joint| Parted { curve, joint, below: false, off: 0.0 };
+            return match (lower, apart) {
+                (Some(0.0), true) => None,
+                (Some(off), _) => Some(Parted { off, ..parted(Joint::Lower) }),
+                (None, _) => Some(parted(Joint::None)),
+            };
+        };
+        let [of_a, of_b] = [a, b].map(|claim| self.sign_on(claim, curve, cover));
+        let below = of_a & POSITIVE == 0 || of_b & NEGATIVE == 0;
+        let parted = |joint| Parted { curve, joint, below, off: 0.0 };
+        // A curve without an agreement is where the two depths do not differ.
+        let agreement = self.agree(pair, curve);
+        let smooth = agreement.as_ref().is_some_and(|agreement| agreement.smooth);
+        // If the depths may agree on the root's other branch, nothing is known about this one.
+        let branch = agreement.and_then(|found| Some(found.branch.as_ref()?.over(&cell)));
+        let other = branch.is_some_and(|branch| branch.high < 0.0);
+        let sure = branch.is_none_or(|branch| branch.low > 0.0);
+        match (other || apart, sure) {
+            (true, true) => None,
+            (true, false) => Some(parted(Joint::None)),
+            _ if smooth => Some(parted(Joint::Smooth)),
+            _ => Some(parted(Joint::Kinked)),
+        }
+    }
+
+    /// Returns a straight curve that separates two claims, if depth is continuous across it up to rounding,
+    /// and also its slope where that matters.
+    fn tangent(&mut self, pair: Pair, parting: &[CurveIndex]) -> Option<Parted> {
+        parting.iter().find_map(|curve| {
+            let Off { jump, across } = self.tangency(pair, *curve)?;
+            let is_smooth = self.may_step || across <= TANGENT_SLOPE;
+            (jump <= self.largest_step && is_smooth).then_some(Parted {
+                curve: *curve,
+                joint: Joint::Smooth,
+                below: false,
+                off: jump,
+            })
+        })
+    }
+
+    /// Returns a difference of depths, or 0 for rounding of 256-bit constants.
+    fn step(&self, off: f64) -> f64 {
+        if off <= self.size * ROUNDING.sqrt() { 0.0 } else { off }
+    }
+
+    /// Returns the difference of two regions' depths on a straight curve in the current box.
+    fn tangency(&mut self, pair: Pair, curve: CurveIndex) -> Option<Off> {
+        let (own, Some(other)) = pair else { return None };
+        let tangency = self.tangencies.entry((pair, curve)).or_insert_with(|| {
+            let [own, other] = [&self.depths[own], &self.depths[other]];
+            let (line, _) = self.curves[curve].as_ref()?;
+            Tangency::of(own.as_ref()?, other.as_ref()?, line)
+        });
+        let Off { jump, across } = tangency.as_ref()?.over(&self.cell)?;
+        Some(Off { jump: self.step(jump), across })
+    }
+
+    /// Returns the curves on which the depths of two owners agree.
+    fn joints(&mut self, pair: Pair) -> Vec<CurveIndex> {
+        if let Some(known) = self.joints.get(&pair) {
+            return known.clone();
+        }
+        // The border of neighbours is among their own conditions.
+        let mut atoms = Vec::new();
+        for owner in [Some(pair.0), pair.1].into_iter().flatten() {
+            self.model.regions[owner].inside.open(&vec![ANY; self.curves.len()], &mut atoms);
+        }
+        let asked: BTreeSet<CurveIndex> = atoms.into_iter().map(|(curve, _)| curve).collect();
+        let differences = self.differences(pair);
+        let mut joints: Vec<CurveIndex> = differences.iter().map(|(curve, _)| *curve).collect();
+        joints.extend(asked.into_iter().filter(|curve| self.agree(pair, *curve).is_some()));
+        self.joints.insert(pair, joints.clone());
+        joints
+    }
+
+    /// Returns how two owners' depths agree on a curve, if they do.
+    fn agree(&mut self, pair: Pair, curve: CurveIndex) -> Option<Rc<Agreement>> {
+        if let Some(known) = self.agree.get(&(pair, curve)) {
+            return known.clone();
+        }
+        let other = pair.1.map_or(Some(&self.nothing), |other| self.depths[other].as_ref());
+        let agree = match (&self.depths[pair.0], other, &self.curves[curve]) {
+            (Some(own), Some(other), Some((curve, _))) => own.agrees_on(other, curve),
+            _ => None,
+        };
+        let agree = agree.map(Rc::new);
+        self.agree.insert((pair, curve), agree.clone());
+        agree
+    }
+
+    /// Returns the curves on which two depths are equal, recognised by their expressions or their sums of
+    /// roots. Each comes with whether it is positive where the first depth is larger.
+    fn differences(&mut self, (own, other): Pair) -> Rc<Vec<(CurveIndex, bool)>> {
+        let Some(other) = other else { return Rc::default() };
+        if let Some(known) = self.differences.get(&[own, other]) {
+            return known.clone();
+        }
+        let graph = &self.model.graph;
+        let [a, b] = [own, other].map(|depth| self.ids[depth]);
+        let forms = self.depths[own].as_ref().zip(self.depths[other].as_ref());
+        let is_more = |curve: CurveIndex| match *graph.node(self.model.curves[curve].value) {
+            Node::Sub(more, less) if [more, less] == [a, b] => Some(true),
+            Node::Sub(more, less) if [more, less] == [b, a] => Some(false),
+            _ => {
+                let ratio = self.sums[curve].as_ref()?.by_difference(forms?.0, forms?.1)?;
+                Some(!ratio.is_negative())
+            }
+        };
+        let curves = 0..self.model.curves.len();
+        let found = Rc::new(curves.filter_map(|curve| Some((curve, is_more(curve)?))).collect());
+        self.differences.insert([own, other], Rc::clone(&found));
+        found
+    }
+}
+
+fn ways(claim: &Claim) -> Ways {
+    claim.signs.iter().copied().filter(|(_, signs)| *signs != ANY).collect()
+}
+
+/// Returns the signs in the closure of the set with these signs.
+fn closed(signs: Signs) -> Signs {
+    if signs & (NEGATIVE | POSITIVE) != 0 { signs | ZERO } else { signs }
+}
+
+/// Returns the curves for which the paths to two claims demand opposite sides.
+fn parting(a: &Claim, b: &Claim) -> Vec<CurveIndex> {
+    let mut curves = Vec::new();
+    for (curve, signs) in &a.signs {
+        let against =
+            b.signs.iter().any(|(other, others)| other == curve && signs & others & !ZERO == 0);
+        if against && !curves.contains(curve) {
+            curves.push(*curve);
+        }
+    }
+    curves
+}

@@ -1,0 +1,125 @@
+//! The signs that a curve can have at a claim's points in a box.
+
+use super::super::cover::{Claim, Cover};
+use super::super::tangency::Touch;
+use super::{BorderProver, TRIES, Ways, ways};
+use crate::expr::polynomial::Polynomial;
+use crate::formula::{ANY, CurveIndex, NEGATIVE, POSITIVE, Signs, ZERO};
+
+impl BorderProver<'_> {
+    /// Returns the signs that a curve can have at a claim's points in the current box. They follow from the
+    /// box, from the path down the tree, and from straight curves on that path.
+    pub(super) fn sign_on(
+        &mut self,
+        claim: &Claim,
+        curve: CurveIndex,
+        cover: &mut Cover<'_>,
+    ) -> Signs {
+        let mut signs = cover.own_sign(claim, curve);
+        for (other, side) in &claim.signs {
+            if *side & NEGATIVE == 0 || *side & POSITIVE == 0 {
+                signs &= self.implied((*other, *side & NEGATIVE != 0), curve);
+            }
+        }
+        if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
+            signs &= self.by_linear(claim, curve);
+        }
+        if signs & NEGATIVE != 0 && signs & POSITIVE != 0 {
+            signs &= self.by_touch(claim, curve);
+        }
+        signs
+    }
+
+    /// Returns a curve as a polynomial, if that has the curve's sign throughout the current box.
+    pub(super) fn signed(&self, curve: CurveIndex) -> Option<&Polynomial> {
+        let (polynomial, positive) = self.curves[curve].as_ref()?;
+        let same = positive.as_ref().is_none_or(|positive| positive.over(&self.cell).low > 0.0);
+        same.then_some(polynomial)
+    }
+
+    /// Returns the signs that a curve can have next to a conic on a claim's path, if the two touch nearby.
+    fn by_touch(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let here = [self.cell.sides[0], self.cell.sides[2]].map(|side| side.low);
+        let mut signs = ANY;
+        for (other, known) in &claim.signs {
+            let from = match known & !ZERO {
+                NEGATIVE => -1,
+                POSITIVE => 1,
+                _ => continue,
+            };
+            let (Some(conic), Some(own)) = (self.signed(*other), self.signed(curve)) else {
+                continue;
+            };
+            if conic.is_linear() || own.is_linear() {
+                continue;
+            }
+            let place = (*other, curve);
+            let (tried, known) = self.touches.get(&place).unwrap_or(&(0, None));
+            let touch = match known {
+                None if *tried < TRIES => Touch::near(conic, own, here, self.size),
+                _ => known.clone(),
+            };
+            let tried = tried + 1;
+            self.touches.insert(place, (tried, touch.clone()));
+            if let Some(touch) = &touch {
+                for (to, without) in [(1, NEGATIVE), (-1, POSITIVE)] {
+                    if touch.implies(from, to) {
+                        signs &= !without;
+                    }
+                }
+            }
+        }
+        signs
+    }
+
+    pub(super) fn signs(&self, ways: &Ways) -> Vec<Signs> {
+        let mut signs = vec![ANY; self.curves.len()];
+        for (curve, known) in ways {
+            signs[*curve] &= known;
+        }
+        signs
+    }
+
+    /// Returns the signs that a curve can have according to all linear curves on a claim's path together.
+    fn by_linear(&mut self, claim: &Claim, curve: CurveIndex) -> Signs {
+        let key = (claim.owner, ways(claim), curve);
+        if let Some(known) = self.by_linear.get(&key) {
+            return *known;
+        }
+        let mut signs = self.signs(&key.1);
+        let mut possible = ANY;
+        for side in [NEGATIVE, POSITIVE] {
+            signs[curve] = side;
+            if self.linear.contradictory_in(claim.owner, &signs) {
+                possible &= !side;
+            }
+        }
+        self.by_linear.insert(key, possible);
+        possible
+    }
+
+    /// Returns the signs that a curve can have on one side of another, if one of them is straight and the two
+    /// do not cross.
+    fn implied(&mut self, (known, below): (CurveIndex, bool), curve: CurveIndex) -> Signs {
+        let side = |positive: bool| ZERO | if positive { POSITIVE } else { NEGATIVE };
+        match (self.apart(known, curve), self.apart(curve, known)) {
+            (Some((positive, clear)), _) if clear == below => side(positive),
+            // The points are inside the conic, which lies on the other side of the line.
+            (_, Some((positive, clear))) if positive == below => side(clear),
+            _ => ANY,
+        }
+    }
+
+    /// Returns the sign that a conic has on a whole side of a line, and whether that is the side below it.
+    fn apart(&mut self, line: CurveIndex, curve: CurveIndex) -> Option<(bool, bool)> {
+        if let Some(known) = self.apart.get(&(line, curve)) {
+            return *known;
+        }
+        let known = match (&self.curves[line], &self.curves[curve]) {
+            (Some((line, None)), Some((conic, None))) if !conic.is_linear() => conic.clear_of(line),
+            _ => None,
+        };
+        self.apart.insert((line, curve), known);
+        known
+    }
+}

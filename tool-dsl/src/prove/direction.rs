@@ -1,0 +1,133 @@
+//! Directions: their angle to the steepest descent of depth, and the points where they vanish.
+
+use super::nonsmooth::angle;
+use super::root::RootForm;
+use super::slope::Slope;
+use crate::domain::Domain;
+use crate::expr::interval::{Cell, Interval, ZERO};
+use crate::expr::polynomial::{Polynomial, Polynomials, monomial_of};
+use crate::expr::{Graph, Id, Node};
+use crate::model::{Model, Region};
+use crate::number::Number;
+use std::f64::consts::PI;
+
+/// The facts about a region's direction.
+#[derive(Clone)]
+pub(super) struct DirectionFacts {
+    /// True if it is parallel to the depth's gradient, with either sign.
+    pub(super) straight: bool,
+    /// The angle between it and the steepest descent, in radians.
+    pub(super) off: Option<Interval>,
+    /// The boxes where it may vanish.
+    pub(super) singular: Vec<Cell>,
+    /// True if it has a component perpendicular to an axis that the region touches, where that component has
+    /// no defined azimuth.
+    pub(super) on_axis: bool,
+}
+
+impl DirectionFacts {
+    pub(super) fn new(straight: bool) -> DirectionFacts {
+        DirectionFacts { straight, off: None, singular: Vec::new(), on_axis: false }
+    }
+
+    /// Records the facts over a box. Returns the largest angle there, if it is known.
+    pub(super) fn note(
+        &mut self,
+        course: [Interval; 3],
+        depth: Slope,
+        cell: Cell,
+        domain: Domain,
+    ) -> Option<f64> {
+        let here = off(course, depth, self.straight);
+        match here {
+            Some(off) => self.off = Some(self.off.map_or(off, |known| known.hull(off))),
+            None if vanishes(course) => {
+                let near = self.singular.iter().position(|known| known.meets(&cell));
+                let known = near.map(|at| self.singular.swap_remove(at));
+                self.singular.push(known.map_or(cell, |known| known.hull(&cell)));
+            }
+            None => {}
+        }
+        let axis = domain == Domain::HalfPlane && cell.sides[0].low <= 0.0;
+        self.on_axis |= axis && course[0] != ZERO;
+        here.map(|off| off.high)
+    }
+}
+
+/// Returns whether an identity proves that a region's direction is parallel to its depth's gradient, with
+/// either sign.
+pub(super) fn straight(model: &Model, region: &Region, depth: Option<&RootForm>) -> bool {
+    let Some(slope) = depth.and_then(RootForm::course) else { return false };
+    let mut polynomials = Polynomials::default();
+    let undivided: Vec<(Id, i64, Option<Id>)> =
+        region.raw_direction.0.iter().map(|part| undivided(&model.graph, *part)).collect();
+    let is_zero = |id: Id| model.graph.constant(id).is_some_and(Number::is_zero);
+    let mut divisors = undivided.iter().filter(|(part, ..)| !is_zero(*part)).map(|(.., by)| by);
+    let first = divisors.next();
+    if !divisors.all(|by| Some(by) == first) {
+        return false;
+    }
+    let parts: Option<Vec<(Polynomial, &Polynomial)>> = model
+        .domain
+        .coordinates()
+        .iter()
+        .map(|(coord, axis, _)| {
+            let (part, sign, _) = undivided[*axis];
+            let part = polynomials.of(&model.graph, part)?.scaled(&Number::int(sign));
+            let by = monomial_of(*coord).iter().position(|exponent| *exponent > 0)?;
+            Some((part, &slope[by]))
+        })
+        .collect();
+    let Some(parts) = parts else { return false };
+    let parallel = |(a, u): &(Polynomial, &Polynomial), (b, v): &(Polynomial, &Polynomial)| {
+        let cross = a.times(v)?.plus(&b.times(u)?.scaled(&Number::int(-1)));
+        Some(cross.is_nothing())
+    };
+    let mut pairs = parts
+        .iter()
+        .enumerate()
+        .flat_map(|(k, a)| parts[k + 1..].iter().map(move |b| parallel(a, b).unwrap_or(false)));
+    pairs.all(|parallel| parallel)
+}
+
+/// Returns a component of a vector without its sign and without the root that it is divided by.
+fn undivided(graph: &Graph, part: Id) -> (Id, i64, Option<Id>) {
+    match *graph.node(part) {
+        Node::Neg(a) => {
+            let (a, sign, by) = undivided(graph, a);
+            (a, -sign, by)
+        }
+        Node::Div(a, by) | Node::Quotient(a, by) if matches!(graph.node(by), Node::Sqrt(_)) => {
+            (a, 1, Some(by))
+        }
+        _ => (part, 1, None),
+    }
+}
+
+/// Encloses the angle between a direction and the steepest descent over a box, if the direction does not
+/// vanish there. It is exact for a direction that is `straight`.
+pub(super) fn off(course: [Interval; 3], depth: Slope, straight: bool) -> Option<Interval> {
+    let down = depth.parts.map(Interval::negated);
+    let along = (0..3).fold(ZERO, |sum, k| sum.plus(course[k].times(down[k])));
+    match along {
+        _ if vanishes(course) => None,
+        Interval { low, .. } if straight && low > 0.0 => Some(ZERO),
+        Interval { high, .. } if straight && high < 0.0 => Some(Interval { low: PI, high: PI }),
+        _ if straight => None,
+        _ => {
+            let unit = |vector: [Interval; 3], length: Interval| {
+                let per = length.reciprocal();
+                let one = Interval { low: -1.0, high: 1.0 };
+                vector.map(|part| part.times(per).common(one))
+            };
+            let squares = course.map(Interval::square);
+            let length = squares[0].plus(squares[1]).plus(squares[2]).sqrt();
+            Some(angle(unit(course, length), unit(down, depth.length)))
+        }
+    }
+}
+
+/// Returns whether a vector may be 0.
+pub(super) fn vanishes(vector: [Interval; 3]) -> bool {
+    vector.iter().all(|part| part.low <= 0.0 && part.high >= 0.0)
+}

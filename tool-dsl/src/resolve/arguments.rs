@@ -1,0 +1,166 @@
+//! Arguments of a tool's `param`s, from outside its file.
+
+use super::lower::Lowering;
+use crate::diagnostic::{
+    Diagnostic, FormattedNumber, Kind, NameRemedy, Names, ParamRemedy, Role, ValueKind, nearest,
+};
+use crate::dimension::Dimension;
+use crate::domain::Domain;
+use crate::expr::Graph;
+use crate::model::Unit;
+use crate::number::Number;
+use crate::syntax::tree::{Definition, Expr, Item, Name, Tool};
+
+/// An argument of a `param`, evaluated where it is given.
+pub(super) struct Given<'t> {
+    setting: &'t Definition,
+    value: Number,
+    dimension: Dimension,
+    /// The unit of the value.
+    unit: Unit,
+}
+
+/// Evaluates the arguments of a macro's call or of a command line: constants without names, in the file's own unit.
+pub(super) fn from_outside<'t>(
+    settings: &'t [Definition],
+    (domain, unit): (Domain, Unit),
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<Given<'t>> {
+    given(settings, &mut Lowering::new(domain, unit), diagnostics, |mut diagnostic| {
+        if let Kind::ValueKind(ValueKind::UnknownName { remedy, .. }) = &mut diagnostic.kind {
+            *remedy = NameRemedy::Constant;
+        }
+        diagnostic
+    })
+}
+
+/// Evaluates the arguments of a mount, in the names and the unit of the mounting file.
+pub(super) fn from_mount<'t>(
+    settings: &'t [Definition],
+    lowering: &mut Lowering,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Vec<Given<'t>> {
+    given(settings, lowering, diagnostics, |diagnostic| diagnostic)
+}
+
+fn given<'t>(
+    settings: &'t [Definition],
+    lowering: &mut Lowering,
+    diagnostics: &mut Vec<Diagnostic>,
+    said: impl Fn(Diagnostic) -> Diagnostic,
+) -> Vec<Given<'t>> {
+    let mut given: Vec<Given<'t>> = Vec::new();
+    for setting in settings {
+        let name = &setting.name;
+        if let Some(first) = given.iter().find(|other| other.setting.name.word == name.word) {
+            diagnostics.push(
+                Diagnostic::new(name.span, ValueKind::GivenTwice { word: name.word.clone() })
+                    .and(first.setting.name.span, "first here"),
+            );
+            continue;
+        }
+        match lowering.constant(&setting.value, Role::Param) {
+            Ok((value, dimension)) => {
+                given.push(Given { setting, value, dimension, unit: lowering.unit });
+            }
+            Err(diagnostic) => diagnostics.push(said(diagnostic)),
+        }
+    }
+    given
+}
+
+/// Returns the value of a `param`: its argument, otherwise its default.
+pub(super) fn value_of(
+    param: &Definition,
+    default: (Number, Dimension),
+    given: &[Given<'_>],
+    unit: Unit,
+) -> Result<(Number, Dimension), Diagnostic> {
+    match given.iter().find(|given| given.setting.name.word == param.name.word) {
+        Some(given) => given.replacing(&param.value, default.1, unit),
+        None => Ok(default),
+    }
+}
+
+impl Given<'_> {
+    fn replacing(
+        &self,
+        default: &Expr,
+        of_default: Dimension,
+        unit: Unit,
+    ) -> Result<(Number, Dimension), Diagnostic> {
+        let Definition { name: Name { word, .. }, value } = self.setting;
+        let Some(dimension) = of_default.alike(self.dimension) else {
+            let diagnostic = Diagnostic::new(
+                value.span,
+                ValueKind::GivenDimension {
+                    word: word.clone(),
+                    wanted: of_default,
+                    found: self.dimension,
+                },
+            )
+            .and(default.span, "its default");
+            return Err(diagnostic);
+        };
+        let power = match dimension {
+            // For a length, a number without a unit is in the unit of the file in which it is written.
+            Dimension::Length(power) => power,
+            Dimension::Bare if self.unit != unit && !self.value.is_zero() => {
+                return Err(Diagnostic::new(
+                    value.span,
+                    ValueKind::GivenUnit {
+                        word: word.clone(),
+                        number: FormattedNumber(self.value.to_f64()),
+                        here: self.unit.symbol(),
+                        there: unit.symbol(),
+                    },
+                ));
+            }
+            _ => 0.0,
+        };
+        Ok((&self.value * &scale(self.unit, unit, power), dimension))
+    }
+}
+
+/// Returns the factor that converts a power of length from one unit to another.
+fn scale(from: Unit, to: Unit, power: f64) -> Number {
+    let mut graph = Graph::default();
+    let length = graph.number(from.factor_to(to));
+    // Exponents are multiples of one half.
+    let scale = graph.power(length, (power * 2.0) as i32);
+    scale.and_then(|id| graph.constant(id).cloned()).unwrap_or_else(|| Number::int(1))
+}
+
+/// Reports arguments that no `param` takes.
+pub(super) fn untaken(tool: &Tool, given: &[Given<'_>], diagnostics: &mut Vec<Diagnostic>) {
+    let params: Vec<&str> = tool
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            Item::Param(definition) => Some(definition.name.word.as_str()),
+            _ => None,
+        })
+        .collect();
+    for Given { setting: Definition { name, .. }, .. } in given {
+        let word = name.word.as_str();
+        if params.contains(&word) {
+            continue;
+        }
+        let other = tool.items.iter().find_map(|item| match item {
+            Item::Let(definition) if definition.name.word == word => Some(definition),
+            _ => None,
+        });
+        let remedy = match (other, nearest(word, params.iter().copied())) {
+            (Some(_), _) => ParamRemedy::Let,
+            (None, Some(meant)) => ParamRemedy::Meant(meant.to_owned()),
+            (None, None) => ParamRemedy::List,
+        };
+        let (tool, params) = (tool.name.word.clone(), Names::new(params.iter().copied()));
+        let kind = ValueKind::NoSuchParam { tool, word: word.to_owned(), remedy, params };
+        let diagnostic = Diagnostic::new(name.span, kind);
+        diagnostics.push(match other {
+            Some(other) => diagnostic.and(other.name.span, "this is a `let`"),
+            None => diagnostic,
+        });
+    }
+}
